@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// What a robot is, after reading: every number is an expression on the model's own tape, whose inputs are the
+// parameters and the state. Nothing here knows how the robot is solved.
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "anholon/lie/group_kind.hpp"
+#include "anholon/mechanism.hpp"
+#include "describe/location.hpp"
+#include "tape/expr.hpp"
+
+namespace anholon {
+
+struct Parameter {
+  std::string name;
+  Exact value;
+  std::string unit;     // as written: "kg m^2"; coherent SI
+  std::string meaning;
+  Location where;
+};
+
+enum class Drive { active, passive };  // active: motion imposed, or torque imposed where a program says so
+
+/// An independent internal coordinate r_i: of a joint or of a mode.
+struct Coordinate {
+  std::string name;
+  Drive drive = Drive::passive;
+  bool is_angle = false;  // unit rad, else m
+  Exact lower = -3;       // working range [lower, upper]; a revolute joint's default is [-pi, pi]
+  Exact upper = 3;
+  Location where;
+};
+
+/// A joint: its body's frame is pose * motion(displacement) in the parent's frame.
+struct JointDescription {
+  JointKind kind = JointKind::fixed;
+  std::array<Expr, 3> axis = {0, 0, 1};  // unit vector, in the body's frame
+  Expr pitch = 0;                        // of a helical joint, m/rad
+  Expr displacement = 0;                 // an independent coordinate, or an expression of several (a coupling)
+  std::string coordinate;                // name as written; empty for a fixed joint
+};
+
+/// Mode j of a compliant body: p = X + sum_j phi_j(X) r_ej (design of the deformation field), all in the body's frame.
+struct ModeDescription {
+  int coordinate = 0;            // index of r_ej in Model::coordinates
+  std::array<Expr, 3> S;         // integral of phi_j dm
+  std::array<Expr, 9> X_phi;     // integral of X phi_j^T dm, row-major
+  std::vector<std::array<Expr, 9>> phi_phi;  // integral of phi_j phi_l^T dm for each mode l of this body
+};
+
+struct BodyDescription {
+  std::string name;
+  int parent = -1;                            // -1: the reference body
+  std::array<Expr, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // pose in the parent's frame at zero displacement
+  std::array<Expr, 3> p = {0, 0, 0};
+  JointDescription joint;
+  Expr mass = 0;
+  std::array<Expr, 3> first_moment = {0, 0, 0};             // about the body's origin
+  std::array<Expr, 6> inertia = {0, 0, 0, 0, 0, 0};         // xx yy zz xy xz yz about the origin, matrix entries
+  std::vector<ModeDescription> modes;                       // empty: rigid
+  Location where;
+};
+
+/// One term of a declared row: linear . (velocity of a point fixed in the body) + angular . (angular velocity), all in
+/// the body's own axes.
+struct RowTermDescription {
+  int body = 0;
+  std::array<Expr, 3> point = {0, 0, 0};
+  std::array<Expr, 3> linear = {0, 0, 0};
+  std::array<Expr, 3> angular = {0, 0, 0};
+};
+
+/// A constraint row: declared (terms) or written by the user (an expression, linear in the velocities).
+struct RowDescription {
+  std::string name;
+  std::vector<RowTermDescription> terms;
+  std::optional<Expr> expression;
+  Location where;
+};
+
+/// External wrench on a body: expressions of state, parameters and time.
+struct WrenchDescription {
+  int body = 0;
+  bool in_world_axes = false;         // else in the body's axes
+  std::array<Expr, 3> point = {0, 0, 0};  // application point, body frame
+  std::array<Expr, 3> force = {0, 0, 0};
+  std::array<Expr, 3> torque = {0, 0, 0};
+};
+
+struct GeneralisedForceDescription {
+  int index = 0;  // 0..5: component of the base wrench in body axes; 6 + i: coordinate i
+  Expr force = 0;
+};
+
+/// The state that expressions may name, as inputs of the model's tape.
+struct StateSymbols {
+  std::vector<NodeId> parameters;  // in the order of Model::parameters
+  NodeId t = 0;
+  std::array<NodeId, 9> R{};       // orientation of the reference body in the world, row-major
+  std::array<NodeId, 3> p{};       // position of the reference body in the world
+  std::vector<NodeId> r;           // in the order of Model::coordinates
+  std::array<NodeId, 6> eta{};     // V, Omega in body axes
+  std::vector<NodeId> r_dot;
+};
+
+struct Model {
+  std::string name;
+  std::string title;         // one line, for reports
+  std::string file;          // base name of the description
+  std::string sha256;        // of its bytes
+  GroupKind group = GroupKind::fixed;
+  std::shared_ptr<Tape> tape = std::make_shared<Tape>();
+  StateSymbols symbols;
+  std::vector<Parameter> parameters;
+  std::vector<Coordinate> coordinates;
+  std::vector<BodyDescription> bodies;  // [0] is the reference body; parents precede children
+  std::vector<RowDescription> rows;
+  std::vector<WrenchDescription> wrenches;
+  std::vector<GeneralisedForceDescription> forces;
+  std::array<Expr, 3> gravity = {0, 0, 0};  // acceleration of gravity in the world
+  Expr potential = 0;                       // joint springs, modal stiffness and the user's; without gravity
+  Expr dissipation = 0;                     // Rayleigh function of the velocities, eq. (21)
+  std::vector<std::string> free_velocities; // user's choice of kernel coordinates; may be empty
+  std::vector<std::string> notes;           // what reading assumed, for `check`
+};
+
+}  // namespace anholon

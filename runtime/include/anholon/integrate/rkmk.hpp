@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: MIT
+//
+// Runge-Kutta-Munthe-Kaas integration of
+//
+//   g_dot = g eta(t, g, y),     y_dot = f(t, g, y),     g in a Lie group, y a vector.
+//
+// On each step g = g_0 exp(theta), and the tableau is applied to the ordinary differential equation
+//
+//   theta_dot = dexp^-1_{-theta}(eta(t, g_0 exp(theta), y)),   theta(t_0) = 0;     y_dot = f            (1)
+//
+// with dexp^-1 in closed form, not truncated: the order is that of the tableau, whatever the group.
+// Munthe-Kaas 1999, "High order Runge-Kutta methods on manifolds", Appl. Numer. Math. 29.
+//
+// A field is any callable
+//
+//   field(Real t, const G& g, const Vector& y, Tangent& eta, Vector& y_dot)
+//
+// which writes every entry of eta (dim; body axes, linear part first) and of y_dot (n_y; it comes sized).
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "anholon/integrate/result.hpp"
+#include "anholon/integrate/tableau.hpp"
+#include "anholon/lie/lie_group.hpp"
+
+namespace anholon::integrate {
+
+/// The stages of one step; also the only memory an integration needs. Make one, use it for many integrations.
+template <lie::LieGroup G, template <class> class TableauOf>
+class RkmkStages {
+ public:
+  using Real = typename G::Scalar;
+  using Tableau = TableauOf<Real>;
+  using Tangent = typename G::Tangent;
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+  static constexpr int stages = Tableau::stages;
+
+  /// Allocates; nothing else here does.
+  /// @param size_y  number of components of y
+  explicit RkmkStages(Eigen::Index size_y)
+      : y_begin_(size_y), y_end_(size_y), y_stage_(size_y), y_sum_(size_y), carry_(size_y), carry_end_(size_y) {
+    for (Vector& rate : y_rate_) rate = Vector::Zero(size_y);
+    carry_.setZero();
+  }
+
+  Eigen::Index size_y() const { return y_begin_.size(); }
+
+  /// Starts an integration: evaluates the field at the state. False if the state or the field is not finite.
+  template <class Field>
+  bool start(Field&& field, const State<G>& state) {
+    t_begin_ = state.t;
+    g_begin_ = state.g;
+    y_begin_ = state.y;
+    carry_.setZero();
+    if (!state.g.is_finite() || !state.y.allFinite()) return false;
+    return evaluate_first(field);
+  }
+
+  /// Evaluates the field after an Euler step h from the current state, into slot 1 of the rates.
+  template <class Field>
+  void probe(Field&& field, Real h) {
+    y_stage_ = y_begin_ + h * y_rate_[0];
+    field(t_begin_ + h, g_begin_ * G::exp(h * theta_rate_[0]), std::as_const(y_stage_), theta_rate_[1], y_rate_[1]);
+  }
+
+  /// Evaluates the remaining stages of a step h from the current state and forms its end point.
+  /// The current state stays as it was, so that a rejected step may be tried again with another h.
+  template <class Field>
+  void advance(Field&& field, Real h) {
+    h_ = h;
+    largest_turn_ = Real(0);
+    for (int i = 1; i < stages; ++i) {
+      sum_rates(Tableau::a[i]);
+      theta_sum_ *= h;
+      note_turn(theta_sum_);
+      y_stage_ = y_begin_ + h * y_sum_;
+      Tangent eta;
+      field(t_begin_ + Tableau::c[i] * h, g_begin_ * G::exp(theta_sum_), std::as_const(y_stage_), eta, y_rate_[i]);
+      theta_rate_[i] = G::dexp_inv(theta_sum_, eta);  // (1)
+      if constexpr (Tableau::first_same_as_last) eta_end_ = eta;
+    }
+    if constexpr (!Tableau::first_same_as_last) {  // else the last stage has summed b already
+      sum_rates(Tableau::b);
+      theta_sum_ *= h;
+      note_turn(theta_sum_);
+    }
+    g_end_ = g_begin_ * G::exp(theta_sum_);
+    g_end_.normalize();  // removes rounding only: the order is not touched
+    // Kahan's sum: the part of the increment that rounding took off y_end is given back on the next step.
+    y_sum_ = h * y_sum_ - carry_;
+    y_end_ = y_begin_ + y_sum_;
+    carry_end_ = (y_end_ - y_begin_) - y_sum_;
+  }
+
+  /// Makes the end point the current state and evaluates the first stage there, or reuses the last one where the
+  /// tableau allows it. False if the field is not finite.
+  /// @param t_end  time of the end point, from the caller, who knows it without the rounding of a sum
+  template <class Field>
+  bool commit(Field&& field, Real t_end) {
+    t_begin_ = t_end;
+    g_begin_ = g_end_;
+    y_begin_.swap(y_end_);
+    carry_.swap(carry_end_);
+    if constexpr (Tableau::first_same_as_last) {
+      theta_rate_[0] = eta_end_;  // theta = 0 on the next step, where dexp^-1 is the identity
+      y_rate_[0].swap(y_rate_[stages - 1]);
+      return true;
+    } else {
+      return evaluate_first(field);
+    }
+  }
+
+  /// Calls of the field that advance() and commit() make together.
+  static constexpr int evaluations_per_step = Tableau::first_same_as_last ? stages - 1 : stages;
+
+  bool end_is_finite() const { return g_end_.is_finite() && y_end_.allFinite(); }
+
+  void copy_current_to(State<G>& state) const {
+    state.t = t_begin_;
+    state.g = g_begin_;
+    state.y = y_begin_;
+  }
+
+  Real t_begin() const { return t_begin_; }
+  Real h() const { return h_; }
+  const G& g_begin() const { return g_begin_; }
+  const G& g_end() const { return g_end_; }
+  const Vector& y_begin() const { return y_begin_; }
+  const Vector& y_end() const { return y_end_; }
+  const Tangent& theta_rate(int i) const { return theta_rate_[i]; }  ///< (1) at stage i
+  const Vector& y_rate(int i) const { return y_rate_[i]; }           ///< y_dot at stage i
+  Real largest_turn() const { return largest_turn_; }  ///< largest angle of theta over the step's stages [rad]
+
+  /// Room for one vector y that observers and error estimates may use between advance() and commit().
+  Vector& scratch_y() { return y_stage_; }
+
+ private:
+  template <class Field>
+  bool evaluate_first(Field&& field) {
+    field(t_begin_, std::as_const(g_begin_), std::as_const(y_begin_), theta_rate_[0], y_rate_[0]);
+    return theta_rate_[0].allFinite() && y_rate_[0].allFinite();
+  }
+
+  void sum_rates(const std::array<Real, stages>& weights) {
+    theta_sum_.setZero();
+    y_sum_.setZero();
+    for (int j = 0; j < stages; ++j) {
+      if (weights[j] == Real(0)) continue;
+      theta_sum_ += weights[j] * theta_rate_[j];
+      y_sum_ += weights[j] * y_rate_[j];
+    }
+  }
+
+  void note_turn(const Tangent& theta) {
+    if constexpr (G::linear_dim < G::dim) {
+      const Real turn = theta.template tail<G::dim - G::linear_dim>().norm();
+      if (!(turn <= largest_turn_)) largest_turn_ = turn;
+    }
+  }
+
+  Real t_begin_ = Real(0), h_ = Real(0), largest_turn_ = Real(0);
+  G g_begin_, g_end_;
+  Tangent theta_sum_, eta_end_;
+  std::array<Tangent, stages> theta_rate_;
+  std::array<Vector, stages> y_rate_;
+  Vector y_begin_, y_end_, y_stage_, y_sum_, carry_, carry_end_;
+};
+
+/// Half a turn: steps that turn further are refused, since dexp^-1 has its pole at a whole turn.
+template <class Real>
+inline constexpr Real largest_turn_in_a_step = Real(3.1415926535897932385L);
+
+/// Integrates with `steps` equal steps from state.t to t_end (which may lie before it).
+///
+/// @param stages    workspace; its size_y() must be state.y.size()
+/// @param field     see the head of this file
+/// @param state     in: initial; out: at the last accepted step
+/// @param observer  called after each step as observer(Real t, const G& g, const Vector& y)
+template <class G, template <class> class TableauOf, class Field, class Observer>
+Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Field&& field, State<G>& state,
+                                           typename G::Scalar t_end, long steps, Observer&& observer) {
+  using Real = typename G::Scalar;
+  using Stages = RkmkStages<G, TableauOf>;
+  eigen_assert(stages.size_y() == state.y.size());
+  Result<Real> result;
+  const Real t_begin = state.t;
+  const Real h = (t_end - t_begin) / Real(steps);
+  result.next_step = h;
+  result.evaluations = 1;
+  if (!stages.start(field, state)) {
+    result.status = Status::non_finite;
+    return result;
+  }
+  for (long step = 1; step <= steps; ++step) {
+    stages.advance(field, h);
+    result.evaluations += Stages::stages - 1;
+    if (!stages.end_is_finite()) {
+      result.status = Status::non_finite;
+      break;
+    }
+    if (stages.largest_turn() > largest_turn_in_a_step<Real>) {
+      result.status = Status::turned_too_far;
+      break;
+    }
+    ++result.accepted_steps;
+    const Real t = step == steps ? t_end : t_begin + Real(step) * h;  // not a running sum
+    observer(t, stages.g_end(), stages.y_end());
+    const bool finite = stages.commit(field, t);
+    if (!Stages::Tableau::first_same_as_last) ++result.evaluations;
+    if (!finite) {
+      result.status = Status::non_finite;
+      break;
+    }
+  }
+  stages.copy_current_to(state);
+  return result;
+}
+
+/// The same without an observer.
+template <class G, template <class> class TableauOf, class Field>
+Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Field&& field, State<G>& state,
+                                           typename G::Scalar t_end, long steps) {
+  return integrate_fixed(stages, field, state, t_end, steps, [](auto&&...) {});
+}
+
+/// RKMK4: the workspace of the classical method.
+template <class G>
+using Rkmk4 = RkmkStages<G, ClassicalRungeKutta4>;
+
+}  // namespace anholon::integrate

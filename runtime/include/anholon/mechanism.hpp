@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#pragma once
+
+// A mechanism over any scalar: the plain data that the recursion works on. Every joint moves about or along a
+// coordinate axis of its own frame; what a description says about other axes is folded into the constant poses.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "anholon/lie/group_kind.hpp"
+#include "anholon/spatial.hpp"
+
+namespace anholon {
+
+enum class JointKind { fixed, revolute, prismatic, helical };
+
+/// Position and velocity of a mechanism. r and r_dot hold every independent internal coordinate, in declared order.
+template <class S>
+struct State {
+  Mat3<S> R = Mat3<S>::identity();  // orientation of the reference body in the world
+  Vec3<S> p;                        // position of the reference body in the world, m
+  std::vector<S> r, r_dot;
+  Spatial<S> eta;                   // (V, Omega) of the reference body in its own axes; zero where the group has none
+  S t = S(0);                       // s
+};
+
+/// Mode j of a compliant body; integrals over the body in its own axes.
+template <class S>
+struct Mode {
+  int coordinate = 0;
+  Vec3<S> S_j;                   // integral of phi_j dm
+  Mat3<S> X_phi;                 // integral of X phi_j^T dm
+  std::vector<Mat3<S>> phi_phi;  // integral of phi_j phi_l^T dm, for every mode l of the body
+};
+
+template <class S>
+struct Body {
+  std::string name;
+  int parent = -1;
+  JointKind kind = JointKind::fixed;
+  int axis = 2;                          // of the joint, in the body's frame
+  S pitch = S(0);                        // helical: translation per angle, m/rad
+  int coordinate = -1;                   // independent coordinate that moves the joint alone, or -1
+  int coupling = -1;                     // index into Mechanism::couplings, or -1
+  Mat3<S> R = Mat3<S>::identity();       // pose in the parent's frame at zero displacement
+  Vec3<S> p;
+  Mat3<S> R_frame = Mat3<S>::identity(); // the described frame, in the body's: same origin, constant rotation
+  S mass = S(0);
+  Vec3<S> first_moment;                  // integral of X dm about the origin
+  Mat3<S> inertia;                       // about the origin
+  std::vector<Mode<S>> modes;            // empty: rigid
+};
+
+/// Displacement of a coupled joint, with its derivatives by the independent coordinates that it depends on.
+template <class S>
+struct Coupling {
+  std::vector<int> on;  // coordinates
+  /// writes (c, dc/dr_on[0], ..., d2c/dr_on[0]dr_on[0], d2c/dr_on[0]dr_on[1], ...) row-major
+  std::function<void(std::span<const S> r, std::span<S> out)> evaluate;
+};
+
+/// linear . (velocity of a point fixed in the body) + angular . (angular velocity), in the body's frame.
+template <class S>
+struct RowTerm {
+  int body = 0;
+  Vec3<S> point, linear, angular;
+};
+
+/// One row of eq. (2): the sum of its terms, or coefficients that the user wrote.
+template <class S>
+struct ConstraintRow {
+  std::string name;
+  std::vector<RowTerm<S>> terms;
+  /// writes the 6 + s coefficients of (eta, r_dot) and then the bias (d coefficients / dt) . velocities
+  std::function<void(const State<S>&, std::span<S> out)> written;
+};
+
+template <class S>
+struct AppliedWrench {
+  int body = 0;
+  bool in_world_axes = false;
+  Vec3<S> point;
+};
+
+template <class S>
+struct Mechanism {
+  GroupKind group = GroupKind::fixed;
+  int coordinates = 0;  // s: independent internal coordinates
+  std::vector<Body<S>> bodies;
+  std::vector<Coupling<S>> couplings;
+  std::vector<ConstraintRow<S>> rows;
+  Vec3<S> gravity;  // acceleration, world axes, m/s^2
+
+  std::vector<AppliedWrench<S>> wrenches;
+  /// writes (force, torque) of every applied wrench, 6 numbers each
+  std::function<void(const State<S>&, std::span<S> out)> evaluate_wrenches;
+  /// writes the 6 + s generalised forces of potential, dissipation and the user's own; empty where there are none
+  std::function<void(const State<S>&, std::span<S> out)> generalised_forces;
+  /// writes (potential energy without gravity, dissipated power)
+  std::function<void(const State<S>&, std::span<S> out)> user_energies;
+  /// opens a named section of a derived program; empty for numbers
+  std::function<void(const std::string&)> open_section;
+
+  void section(const std::string& title) const {
+    if (open_section) open_section(title);
+  }
+};
+
+}  // namespace anholon
