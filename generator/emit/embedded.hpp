@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// Files that are built into the library at configure time, so that the installed program needs no data files.
+
+#include <string_view>
+
+namespace anholon::embedded {
+
+extern const std::string_view version;          // of the project
+extern const std::string_view header_template;  // templates/header.mustache
+extern const std::string_view c_abi_template;   // templates/c_abi.mustache
+extern const std::string_view abi_header;       // runtime/include/anholon/abi.hpp
+
+}  // namespace anholon::embedded

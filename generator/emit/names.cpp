@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "emit/names.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+namespace anholon {
+namespace {
+
+constexpr std::array keywords = {
+    "alignas",     "alignof",  "and",        "and_eq",    "asm",       "auto",         "bitand",
+    "bitor",       "bool",     "break",      "case",      "catch",     "char",         "char16_t",
+    "char32_t",    "char8_t",  "class",      "co_await",  "co_return", "co_yield",     "compl",
+    "concept",     "const",    "const_cast", "consteval", "constexpr", "constinit",    "continue",
+    "decltype",    "default",  "delete",     "do",        "double",    "dynamic_cast", "else",
+    "enum",        "explicit", "export",     "extern",    "false",     "float",        "for",
+    "friend",      "goto",     "if",         "inline",    "int",       "long",         "mutable",
+    "namespace",   "new",      "noexcept",   "not",       "not_eq",    "nullptr",      "operator",
+    "or",          "or_eq",    "private",    "protected", "public",    "register",     "reinterpret_cast",
+    "requires",    "return",   "short",      "signed",    "sizeof",    "static",       "static_assert",
+    "static_cast", "struct",   "switch",     "template",  "this",      "thread_local", "throw",
+    "true",        "try",      "typedef",    "typeid",    "typename",  "typeof",       "union",
+    "unsigned",    "using",    "virtual",    "void",      "volatile",  "wchar_t",      "while",
+    "xor",         "xor_eq"};
+
+// what generated code says itself
+constexpr std::array own_names = {"Parameters", "Prepared", "Real", "constant", "detail", "par", "prepare",
+                                  "std",        "abs",      "acos", "asin",     "atan2",  "cos", "exp",
+                                  "log",        "sign",     "sin",  "sqrt",     "tan",    "tanh"};
+
+// macros of <cmath>, of compilers and of the headers that <cmath> may bring along
+constexpr std::array macros = {"DOMAIN",
+                               "EOF",
+                               "FP_INFINITE",
+                               "FP_NAN",
+                               "FP_NORMAL",
+                               "FP_SUBNORMAL",
+                               "FP_ZERO",
+                               "HUGE",
+                               "HUGE_VAL",
+                               "HUGE_VALF",
+                               "HUGE_VALL",
+                               "INFINITY",
+                               "MATH_ERREXCEPT",
+                               "MATH_ERRNO",
+                               "MAXFLOAT",
+                               "M_1_PI",
+                               "M_2_PI",
+                               "M_2_SQRTPI",
+                               "M_E",
+                               "M_LN10",
+                               "M_LN2",
+                               "M_LOG10E",
+                               "M_LOG2E",
+                               "M_PI",
+                               "M_PI_2",
+                               "M_PI_4",
+                               "M_SQRT1_2",
+                               "M_SQRT2",
+                               "NAN",
+                               "NULL",
+                               "OVERFLOW",
+                               "PLOSS",
+                               "SING",
+                               "SNAN",
+                               "TLOSS",
+                               "UNDERFLOW",
+                               "X_TLOSS",
+                               "assert",
+                               "errno",
+                               "isfinite",
+                               "isinf",
+                               "isnan",
+                               "isnormal",
+                               "linux",
+                               "main",
+                               "math_errhandling",
+                               "signbit",
+                               "signgam",
+                               "unix"};
+
+template <std::size_t n>
+bool contains(const std::array<const char*, n>& list, const std::string& name) {
+  return std::find(list.begin(), list.end(), name) != list.end();
+}
+
+bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_digit(char c) { return c >= '0' && c <= '9'; }
+
+}  // namespace
+
+std::string identifier(std::string_view text) {
+  std::string name;
+  for (const char c : text) {
+    const char kept = is_letter(c) || is_digit(c) ? c : '_';
+    if (kept == '_' && !name.empty() && name.back() == '_') continue;  // a double underscore is reserved
+    name += kept;
+  }
+  if (name.empty() || !is_letter(name.front()))
+    name.insert(0, name.empty() || is_digit(name.front()) ? "x_" : "x");
+  if (contains(keywords, name) || contains(own_names, name) || contains(macros, name)) name += '_';
+  return name;
+}
+
+std::string NameScope::claim(std::string_view wish) {
+  const std::string name = identifier(wish);
+  std::string candidate = name;
+  const char* const joint = name.back() == '_' ? "" : "_";
+  for (int number = 2; !taken_.insert(candidate).second; ++number)
+    candidate = fmt::format("{}{}{}", name, joint, number);
+  return candidate;
+}
+
+}  // namespace anholon

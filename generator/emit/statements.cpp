@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "emit/statements.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <set>
+#include <stdexcept>
+
+namespace anholon {
+namespace {
+
+constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+
+/// Writes one function; knows for each node in which block it is made and where it is kept.
+class Writer {
+ public:
+  Writer(const Tape& tape, const std::vector<Assignment>& results, const GivenValues& given, NameScope names,
+         const StatementStyle& style)
+      : tape_(tape), results_(results), given_(given), names_(std::move(names)), style_(style) {}
+
+  Statements write() {
+    std::vector<NodeId> roots;
+    for (const Assignment& result : results_) roots.push_back(result.node);
+    std::vector<NodeId> given;
+    for (const auto& [id, value] : given_) given.push_back(id);
+    order_ = emission_order(tape_, roots, given, style_.order);
+    name_temporaries();
+    const bool split = order_.nodes.size() > style_.split_above;
+    const std::size_t block_size =
+        split ? std::max<std::size_t>(1, style_.block_size) : std::max<std::size_t>(1, order_.nodes.size());
+    if (split) place_carried(block_size);
+
+    Statements out;
+    out.carried_size = slot_count_;
+    out.carried = carried_;
+    std::set<std::size_t> arguments;
+    for (std::size_t begin = 0; begin < order_.nodes.size(); begin += block_size) {
+      const std::size_t end = std::min(begin + block_size, order_.nodes.size());
+      start_text();
+      for (std::size_t i = begin; i < end; ++i) write_operation(i);
+      if (!split) break;
+      out.blocks.push_back({{arguments_.begin(), arguments_.end()}, finish_text()});
+      arguments.insert(arguments_.begin(), arguments_.end());
+    }
+    if (split || order_.nodes.empty()) start_text();
+    if (!order_.nodes.empty() && !split && !results_.empty()) lines_ += "\n";
+    block_ = nowhere;
+    for (const Assignment& result : results_) {
+      lines_ += fmt::format("  {} = {};\n", result.target, operand(result.node));
+    }
+    out.text = finish_text();
+    arguments.insert(arguments_.begin(), arguments_.end());
+    out.arguments.assign(arguments.begin(), arguments.end());
+    return out;
+  }
+
+ private:
+  /// sin and cos of an input keep its name; other temporaries are numbered.
+  void name_temporaries() {
+    temporary_.assign(tape_.size(), {});
+    for (std::size_t i = 0; i < order_.sincos; ++i) {
+      const Node& n = tape_.node(order_.nodes[i]);
+      if ((n.op != Op::sin && n.op != Op::cos) || tape_.node(n.a).op != Op::input) continue;
+      const std::string& argument = tape_.inputs()[tape_.node(n.a).a];
+      temporary_[order_.nodes[i]] = names_.claim((n.op == Op::sin ? "s_" : "c_") + argument);
+    }
+    int number = 0;
+    for (const NodeId id : order_.nodes) {
+      if (!temporary_[id].empty()) continue;
+      std::string name;
+      do name = fmt::format("t{}", ++number);
+      while (names_.is_taken(name));
+      temporary_[id] = std::move(name);
+    }
+  }
+
+  /// Slots of the array through which a value goes from its block to later ones; a slot is free again after
+  /// the last block that reads it.
+  void place_carried(std::size_t block_size) {
+    carried_ = names_.claim("carried");
+    block_of_.assign(tape_.size(), nowhere);
+    slot_.assign(tape_.size(), nowhere);
+    std::vector<std::size_t> last_use(tape_.size(), 0);
+    const std::size_t at_the_end = order_.nodes.size() / block_size + 1;
+    const auto use = [&](NodeId id, std::size_t block) { last_use[id] = std::max(last_use[id], block); };
+    for (std::size_t i = 0; i < order_.nodes.size(); ++i) {
+      const NodeId id = order_.nodes[i];
+      block_of_[id] = i / block_size;
+      use(tape_.node(id).a, i / block_size);
+      if (info(tape_.node(id).op).arity == 2) use(tape_.node(id).b, i / block_size);
+    }
+    for (const Assignment& result : results_) use(result.node, at_the_end);
+    using Slots = std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>>;
+    Slots unused;
+    std::vector<std::vector<std::size_t>> freed(at_the_end + 2);
+    for (std::size_t i = 0; i < order_.nodes.size(); ++i) {
+      const NodeId id = order_.nodes[i];
+      const std::size_t block = block_of_[id];
+      if (i % block_size == 0) {
+        for (const std::size_t slot : freed[block]) unused.push(slot);
+      }
+      if (last_use[id] == block) continue;
+      if (unused.empty()) unused.push(slot_count_++);
+      slot_[id] = unused.top();
+      unused.pop();
+      freed[last_use[id] + 1].push_back(slot_[id]);
+    }
+  }
+
+  void start_text() {
+    lines_.clear();
+    functions_.clear();
+    arguments_.clear();
+    uses_constant_ = false;
+    title_ = nowhere;
+  }
+
+  std::string finish_text() {
+    std::string head;
+    for (const std::string& name : functions_) {
+      if (name != "sign") head += fmt::format("  using std::{};\n", name);
+    }
+    if (uses_constant_) head += "  using detail::constant;\n";
+    if (functions_.contains("sign")) head += "  using detail::sign;\n";
+    return head + lines_;
+  }
+
+  void write_operation(std::size_t index) {
+    const NodeId id = order_.nodes[index];
+    const Node& n = tape_.node(id);
+    block_ = block_of_.empty() ? 0 : block_of_[id];
+    write_title(index < order_.sincos ? 0 : tape_.section_of(id));
+    const OpInfo& op = info(n.op);
+    if (op.cpp.back() == ')') functions_.insert(std::string(op.name));
+    const std::string a = operand(n.a);
+    const std::string value = fmt::format(fmt::runtime(op.cpp), a, op.arity == 2 ? operand(n.b) : a);
+    lines_ += fmt::format("  const Real {} = {};\n", temporary_[id], value);
+    if (!slot_.empty() && slot_[id] != nowhere)
+      lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], temporary_[id]);
+  }
+
+  void write_title(std::size_t section) {
+    if (section == title_) return;
+    title_ = section;
+    const std::string& title = tape_.sections()[section];
+    if (title.empty()) return;
+    if (!lines_.empty()) lines_ += "\n";
+    lines_ += comment(title, "  // ");
+  }
+
+  std::string operand(NodeId id) {
+    if (const auto found = given_.find(id); found != given_.end()) {
+      arguments_.insert(found->second.argument);
+      return found->second.text;
+    }
+    const Node& n = tape_.node(id);
+    if (n.op == Op::constant) {
+      uses_constant_ = true;
+      return constant_text(tape_.value(id));
+    }
+    if (n.op == Op::input) {
+      throw std::logic_error(fmt::format(
+          "an output needs '{}', which is neither a parameter nor in an input block", tape_.inputs()[n.a]));
+    }
+    if (!slot_.empty() && block_of_[id] != block_) return fmt::format("{}[{}]", carried_, slot_[id]);
+    return temporary_[id];
+  }
+
+  const Tape& tape_;
+  const std::vector<Assignment>& results_;
+  const GivenValues& given_;
+  NameScope names_;
+  const StatementStyle& style_;
+
+  EmissionOrder order_;
+  std::vector<std::string> temporary_;
+  std::vector<std::size_t> block_of_, slot_;  // empty where the function is not split
+  std::size_t slot_count_ = 0;
+  std::string carried_;
+
+  std::string lines_;
+  std::set<std::string> functions_;
+  std::set<std::size_t> arguments_;
+  bool uses_constant_ = false;
+  std::size_t title_ = nowhere;
+  std::size_t block_ = 0;
+};
+
+/// Bytes of the UTF-8 sequence at `at` that may stand in a comment: none of a control character or of one
+/// that turns the direction of writing (U+202A..202E, U+2066..2069).
+std::size_t printable_bytes(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
+  const unsigned first = byte(at);
+  if (first < 0x20 || first == 0x7F) return 0;
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : first >= 0xC2 ? 2 : 0;
+  for (std::size_t i = 1; i < length; ++i) {
+    if ((byte(at + i) & 0xC0U) != 0x80) return 0;
+  }
+  if (first == 0xE2 && byte(at + 1) == 0x80 && byte(at + 2) >= 0xAA && byte(at + 2) <= 0xAE) return 0;
+  if (first == 0xE2 && byte(at + 1) == 0x81 && byte(at + 2) >= 0xA6 && byte(at + 2) <= 0xA9) return 0;
+  if (first == 0xC2 && byte(at + 1) < 0xA0) return 0;
+  return length;
+}
+
+/// Columns of UTF-8 text: bytes that do not continue a character.
+std::size_t columns(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80; }));
+}
+
+}  // namespace
+
+Statements write_statements(const Tape& tape, const std::vector<Assignment>& results,
+                            const GivenValues& given, NameScope names, const StatementStyle& style) {
+  return Writer(tape, results, given, std::move(names), style).write();
+}
+
+std::string constant_text(const Exact& value) {
+  std::string digits = value.decimal(21);
+  if (digits.find_first_of(".e") == std::string::npos) digits += ".0";
+  return fmt::format("constant<Real>({}L)", digits);
+}
+
+std::string comment(std::string_view text, std::string_view prefix, std::size_t hang, std::size_t width) {
+  const std::string later = std::string(prefix) + std::string(hang, ' ');
+  std::string result;
+  std::string line(prefix);
+  bool has_word = false;
+  const auto end_line = [&] {
+    line.erase(line.find_last_not_of(" \\") + 1);
+    result += line + "\n";
+    line = later;
+    has_word = false;
+  };
+  std::string word;
+  const auto end_word = [&] {
+    if (word.empty()) return;
+    if (has_word && columns(line) + 1 + columns(word) > width) end_line();
+    if (has_word) line += ' ';
+    line += word;
+    word.clear();
+    has_word = true;
+  };
+  for (std::size_t i = 0; i < text.size();) {
+    if (text[i] == '\n') {
+      end_word();
+      end_line();
+      ++i;
+    } else if (text[i] == ' ' || text[i] == '\t') {
+      end_word();
+      ++i;
+    } else if (const std::size_t bytes = printable_bytes(text, i); bytes > 0) {
+      word += text.substr(i, bytes);
+      i += bytes;
+    } else {
+      word += '?';
+      ++i;
+    }
+  }
+  end_word();
+  if (has_word || result.empty()) end_line();
+  return result;
+}
+
+std::string one_line(std::string_view text) {
+  std::string flat(text);
+  std::replace(flat.begin(), flat.end(), '\n', ' ');
+  flat = comment(flat, "", 0, std::string::npos);
+  flat.pop_back();
+  return flat;
+}
+
+}  // namespace anholon

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The body of a generated function: one operation per line, section titles as comments, results at the end.
+
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "emit/names.hpp"
+#include "optimise/tape/order.hpp"
+#include "tape/tape.hpp"
+
+namespace anholon {
+
+/// A value that the function is handed: how it is written, and in which of its arguments it comes.
+struct GivenValue {
+  std::string text;
+  std::size_t argument = 0;
+};
+using GivenValues = std::unordered_map<NodeId, GivenValue>;
+
+/// target = node, the last lines of a function.
+struct Assignment {
+  std::string target;
+  NodeId node = 0;
+};
+
+struct StatementStyle {
+  SectionOrder order = SectionOrder::depth_first;
+  std::size_t split_above = 5000;  // statements; compilers are slow on longer functions
+  std::size_t block_size = 1000;
+};
+
+/// A function of its own that holds a part of a long one.
+struct StatementBlock {
+  std::vector<std::size_t> arguments;  // of the whole function that it reads, ascending
+  std::string text;
+};
+
+struct Statements {
+  std::vector<StatementBlock> blocks;  // empty where the function is not split
+  std::string text;                    // of the function itself; of its last lines where it is split
+  std::vector<std::size_t> arguments;  // that `text` and the blocks read, ascending
+  std::string carried;                 // name of the array of values that cross blocks
+  std::size_t carried_size = 0;
+};
+
+/// @param names  names that are taken already; temporaries keep clear of them
+/// @throws std::logic_error if a root needs an input that is not given
+Statements write_statements(const Tape& tape, const std::vector<Assignment>& results,
+                            const GivenValues& given, NameScope names, const StatementStyle& style = {});
+
+/// A constant of generated code with 21 significant digits, which round to nearest in every format up to the
+/// 64 bit mantissa of a long double: "constant<Real>(0.5L)".
+std::string constant_text(const Exact& value);
+
+/// The text as lines of at most `width` columns that all begin with `prefix` and may stand in a // comment:
+/// no control characters, no line that ends in a backslash.
+/// @param hang  spaces behind the prefix from the second line on
+std::string comment(std::string_view text, std::string_view prefix, std::size_t hang = 0,
+                    std::size_t width = 110);
+
+/// The text on one line, fit for a // comment.
+std::string one_line(std::string_view text);
+
+}  // namespace anholon
