@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 //
-// Small measures of how far a computed motion has strayed from laws that the exact one keeps: a rotation stays
-// orthonormal, energy balances, constraints hold.
+// Small measures of how far a computed motion has strayed from laws that the exact one keeps: a rotation
+// stays orthonormal, energy balances, constraints hold.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,13 +23,15 @@ typename Derived::Scalar orthonormality_defect(const Eigen::MatrixBase<Derived>&
 ///
 ///   defect = ( E(t) - E(0) - work(t) + dissipated(t) ) / scale
 ///
-/// where work is what actuators and external forces have put in since the start and dissipated what dampers have
-/// taken out (both best integrated along with the motion, as quadratures in y). Remembers the largest defect.
+/// where work is what actuators and external forces have put in since the start and dissipated what dampers
+/// have taken out (both best integrated along with the motion, as quadratures in y). Remembers the largest
+/// defect.
 template <class Real>
 class EnergyBalance {
  public:
   /// @param initial_energy  E(0) = T + V [J]
-  /// @param scale           an energy of ordinary size for this motion, such as its largest T [J], > 0; not E,
+  /// @param scale           an energy of ordinary size for this motion, such as its largest T [J], > 0; not
+  /// E,
   ///                        whose zero is arbitrary
   EnergyBalance(Real initial_energy, Real scale) : initial_energy_(initial_energy), scale_(scale) {}
 
@@ -65,8 +67,8 @@ typename DerivedA::Scalar constraint_residual(const Eigen::MatrixBase<DerivedA>&
   return largest;
 }
 
-/// The same in units of what cancels: max_i |sum_j A_ij v_j| / max_i sum_j |A_ij v_j|, from 0 to 1; about the unit
-/// of rounding when only rounding is at fault. 0 where all terms vanish.
+/// The same in units of what cancels: max_i |sum_j A_ij v_j| / max_i sum_j |A_ij v_j|, from 0 to 1; about the
+/// unit of rounding when only rounding is at fault. 0 where all terms vanish.
 template <class DerivedA, class DerivedV>
 typename DerivedA::Scalar relative_constraint_residual(const Eigen::MatrixBase<DerivedA>& A,
                                                        const Eigen::MatrixBase<DerivedV>& v) {

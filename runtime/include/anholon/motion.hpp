@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Imposed motion r_a(t) from a table: the cubic spline through its rows, twice continuously differentiable, so
-// that r_a, r_a_dot and r_a_ddot may all enter the dynamics.
-// Second derivatives at the knots are the unknowns: de Boor 2001, "A Practical Guide to Splines", chapter IV;
-// Press et al. 2007, "Numerical Recipes", section 3.3, and 2.7 for the cyclic system.
+// Imposed motion r_a(t) from a table: the cubic spline through its rows, twice continuously differentiable,
+// so that r_a, r_a_dot and r_a_ddot may all enter the dynamics. Second derivatives at the knots are the
+// unknowns: de Boor 2001, "A Practical Guide to Splines", chapter IV; Press et al. 2007, "Numerical Recipes",
+// section 3.3, and 2.7 for the cyclic system.
 #pragma once
 
 #include <Eigen/Core>
@@ -24,7 +24,8 @@ enum class SplineEnds {
   periodic,  ///< last row = first row, two derivatives included; beyond: again and again
 };
 
-/// s coordinates as functions of time, through a table of n rows. Constant once made; evaluation allocates nothing.
+/// s coordinates as functions of time, through a table of n rows. Constant once made; evaluation allocates
+/// nothing.
 template <class Real>
 class TabulatedMotion {
  public:
@@ -55,9 +56,8 @@ class TabulatedMotion {
 
   /// r_a and its two derivatives at t. On an interval of length h, with a = (t_1 - t)/h, b = (t - t_0)/h:
   ///
-  ///   r      = a r_0 + b r_1 + h^2/6 ((a^3 - a) m_0 + (b^3 - b) m_1)          m: second derivatives at the knots
-  ///   r_dot  = (r_1 - r_0)/h + h/6 ((1 - 3 a^2) m_0 + (3 b^2 - 1) m_1)
-  ///   r_ddot = a m_0 + b m_1
+  ///   r      = a r_0 + b r_1 + h^2/6 ((a^3 - a) m_0 + (b^3 - b) m_1)          m: second derivatives at the
+  ///   knots r_dot  = (r_1 - r_0)/h + h/6 ((1 - 3 a^2) m_0 + (3 b^2 - 1) m_1) r_ddot = a m_0 + b m_1
   ///
   /// @param[in]   t  any time [s]
   /// @param[out]  r, r_dot, r_ddot  (s) each, every entry written; vectors or Eigen::Map of arrays
@@ -117,16 +117,19 @@ class TabulatedMotion {
     }
     if (ends_ == SplineEnds::periodic) {
       // A table made with sin(2 pi k/n) closes to a few roundings of its largest entry, not exactly.
-      const Real tolerance = 16 * std::numeric_limits<Real>::epsilon() * values_.cwiseAbs().sum() / Real(rows());
+      const Real tolerance =
+          16 * std::numeric_limits<Real>::epsilon() * values_.cwiseAbs().sum() / Real(rows());
       for (Eigen::Index j = 0; j < size(); ++j) {
         if (!(std::abs(values_(rows() - 1, j) - values_(0, j)) <= tolerance)) {
-          fail("periodic ends need the last row equal to the first, but column " + std::to_string(j) + " differs");
+          fail("periodic ends need the last row equal to the first, but column " + std::to_string(j) +
+               " differs");
         }
       }
     }
   }
 
-  /// h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (slope_i - slope_{i-1}), and one row at each end.
+  /// h_{i-1} m_{i-1} + 2 (h_{i-1} + h_i) m_i + h_i m_{i+1} = 6 (slope_i - slope_{i-1}), and one row at each
+  /// end.
   void solve_open(const Matrix& slopes) {
     const Eigen::Index n = rows();
     const bool clamped = ends_ == SplineEnds::clamped;

@@ -8,7 +8,8 @@
 //
 // that is the cubic Hermite polynomial of the step's ends and a quartic bubble that lifts it to order 4:
 // its error within one step is O(h^5), hence after many steps the same power as that of the solution itself.
-// Hairer, Norsett & Wanner 1993, section II.6 (there with rcont1..5). It is C1 from step to step in y and in g.
+// Hairer, Norsett & Wanner 1993, section II.6 (there with rcont1..5). It is C1 from step to step in y and in
+// g.
 #pragma once
 
 #include <Eigen/Core>
@@ -37,7 +38,8 @@ class DenseStep {
   const Vector& y_end() const { return stages_.y_end(); }
 
   /// The state at t. No cost is paid on steps that are not evaluated.
-  /// @param[in]  t  from t_begin() to t_end()     @param[out]  g  pose     @param[out]  y  (n_y), sized by the caller
+  /// @param[in]  t  from t_begin() to t_end()     @param[out]  g  pose     @param[out]  y  (n_y), sized by
+  /// the caller
   void evaluate(Real t, G& g, Vector& y) const {
     if (t == t_end_) {
       g = g_end();

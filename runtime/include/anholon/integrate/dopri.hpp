@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// Adaptive integration on a Lie group: Munthe-Kaas form (rkmk.hpp) of Dormand-Prince 5(4), with step control by a
-// proportional-integral law and continuous output (dense.hpp).
-// Hairer, Norsett & Wanner 1993, "Solving Ordinary Differential Equations I", II.4 (error, first step, control),
-// and their code DOPRI5, whose constants are kept.
+// Adaptive integration on a Lie group: Munthe-Kaas form (rkmk.hpp) of Dormand-Prince 5(4), with step control
+// by a proportional-integral law and continuous output (dense.hpp). Hairer, Norsett & Wanner 1993, "Solving
+// Ordinary Differential Equations I", II.4 (error, first step, control), and their code DOPRI5, whose
+// constants are kept.
 #pragma once
 
 #include <Eigen/Core>
@@ -38,7 +38,7 @@ struct AdaptiveOptions {
   Real length = Real(1);        ///< what counts as a length of ordinary size [m]
   Real initial_step = Real(0);  ///< [s], > 0; 0: chosen from the field, at the cost of one evaluation
   Real max_step = std::numeric_limits<Real>::infinity();  ///< [s]
-  long max_steps = 1'000'000;   ///< limit on attempted steps, rejected ones included
+  long max_steps = 1'000'000;  ///< limit on attempted steps, rejected ones included
 };
 
 namespace detail {
@@ -59,7 +59,8 @@ class ErrorScale {
   explicit ErrorScale(const AdaptiveOptions<Real>& options) : options_(options) {}
 
   /// @param theta  (dim)     @param y  (n_y)     @param y_0, y_1  (n_y) values that set the size of each y_i
-  Real operator()(const typename G::Tangent& theta, const Vector& y, const Vector& y_0, const Vector& y_1) const {
+  Real operator()(const typename G::Tangent& theta, const Vector& y, const Vector& y_0,
+                  const Vector& y_1) const {
     using std::abs;
     const Real rotation = options_.atol + options_.rtol;
     const Real translation = rotation * options_.length;
@@ -78,16 +79,19 @@ class ErrorScale {
   const AdaptiveOptions<Real>& options_;
 };
 
-/// Size of the first step, from the field at the start and after a small Euler step (Hairer et al. 1993, II.4).
+/// Size of the first step, from the field at the start and after a small Euler step (Hairer et al. 1993,
+/// II.4).
 /// @return [s], > 0
 template <class G, class Field>
 typename G::Scalar first_step(DormandPrince<G>& stages, Field&& field, const ErrorScale<G>& scale,
-                              typename G::Scalar direction, const AdaptiveOptions<typename G::Scalar>& options) {
+                              typename G::Scalar direction,
+                              const AdaptiveOptions<typename G::Scalar>& options) {
   using Real = typename G::Scalar;
   using std::pow;
   const auto& y = stages.y_begin();
-  const Real d_0 = larger(G::dim > 0 ? Real(1) / (options.atol + options.rtol) : Real(0),  // a pose has size 1
-                          scale(G::Tangent::Zero(), y, y, y));
+  const Real d_0 =
+      larger(G::dim > 0 ? Real(1) / (options.atol + options.rtol) : Real(0),  // a pose has size 1
+             scale(G::Tangent::Zero(), y, y, y));
   const Real d_1 = scale(stages.theta_rate(0), stages.y_rate(0), y, y);
   Real h_0 = d_0 < Real(1e-5L) || d_1 < Real(1e-5L) ? Real(1e-6L) : Real(0.01L) * d_0 / d_1;
   h_0 = std::min(h_0, options.max_step);
@@ -124,7 +128,7 @@ Result<typename G::Scalar> integrate_adaptive(DormandPrince<G>& stages, Field&& 
   using std::pow;
   eigen_assert(stages.size_y() == state.y.size());
 
-  const Real beta = Real(0.04L);                    // weight of the integral part
+  const Real beta = Real(0.04L);                       // weight of the integral part
   const Real alpha = Real(0.2L) - Real(0.75L) * beta;  // the error of a step goes with h^5
   const Real safety = Real(0.9L), least_factor = Real(0.2L), largest_factor = Real(10);
 
@@ -225,8 +229,8 @@ Result<typename G::Scalar> integrate_adaptive(DormandPrince<G>& stages, Field&& 
   return integrate_adaptive(stages, field, state, t_end, options, [](const DenseStep<G>&) {});
 }
 
-/// Integrates to the last of the requested times and reports the state at each of them, by dense output: the steps
-/// are those of the tolerance, whatever the times.
+/// Integrates to the last of the requested times and reports the state at each of them, by dense output: the
+/// steps are those of the tolerance, whatever the times.
 ///
 /// @param times     (any number) in the order in which they are passed; the first not before state.t
 /// @param observer  called once for each time reached, as observer(Real t, const G& g, const Vector& y)

@@ -7,8 +7,8 @@
 
 namespace anholon::integrate {
 
-/// State of motion: a pose in a Lie group and a vector of anything else that is integrated (internal coordinates
-/// r_p, reduced velocities nu, imposed coordinates r_a, quadratures such as work).
+/// State of motion: a pose in a Lie group and a vector of anything else that is integrated (internal
+/// coordinates r_p, reduced velocities nu, imposed coordinates r_a, quadratures such as work).
 template <class G>
 struct State {
   using Real = typename G::Scalar;
@@ -19,7 +19,8 @@ struct State {
 
 enum class Status {
   ok,              ///< the end time was reached
-  step_too_small,  ///< the tolerance asks for steps below the resolution of t: a singularity, or too tight a tolerance
+  step_too_small,  ///< the tolerance asks for steps below the resolution of t: a singularity, or too tight a
+                   ///< tolerance
   too_many_steps,  ///< the limit on attempted steps was reached
   non_finite,      ///< the field, or the state, is infinite or not a number
   turned_too_far,  ///< a fixed step turned the body by more than pi, beyond the chart that exp gives
@@ -28,11 +29,16 @@ enum class Status {
 /// For messages.
 constexpr const char* name(Status status) noexcept {
   switch (status) {
-    case Status::ok: return "ok";
-    case Status::step_too_small: return "step too small";
-    case Status::too_many_steps: return "too many steps";
-    case Status::non_finite: return "non-finite value";
-    case Status::turned_too_far: return "turned by more than pi in one step";
+    case Status::ok:
+      return "ok";
+    case Status::step_too_small:
+      return "step too small";
+    case Status::too_many_steps:
+      return "too many steps";
+    case Status::non_finite:
+      return "non-finite value";
+    case Status::turned_too_far:
+      return "turned by more than pi in one step";
   }
   return "unknown";
 }
@@ -43,7 +49,7 @@ struct Result {
   Status status = Status::ok;
   long accepted_steps = 0;
   long rejected_steps = 0;
-  long evaluations = 0;    ///< calls of the field
+  long evaluations = 0;      ///< calls of the field
   Real next_step = Real(0);  ///< step [s] with which a continuation may start (adaptive only)
 
   explicit operator bool() const { return status == Status::ok; }

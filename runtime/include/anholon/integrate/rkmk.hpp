@@ -42,7 +42,12 @@ class RkmkStages {
   /// Allocates; nothing else here does.
   /// @param size_y  number of components of y
   explicit RkmkStages(Eigen::Index size_y)
-      : y_begin_(size_y), y_end_(size_y), y_stage_(size_y), y_sum_(size_y), carry_(size_y), carry_end_(size_y) {
+      : y_begin_(size_y),
+        y_end_(size_y),
+        y_stage_(size_y),
+        y_sum_(size_y),
+        carry_(size_y),
+        carry_end_(size_y) {
     for (Vector& rate : y_rate_) rate = Vector::Zero(size_y);
     carry_.setZero();
   }
@@ -64,7 +69,8 @@ class RkmkStages {
   template <class Field>
   void probe(Field&& field, Real h) {
     y_stage_ = y_begin_ + h * y_rate_[0];
-    field(t_begin_ + h, g_begin_ * G::exp(h * theta_rate_[0]), std::as_const(y_stage_), theta_rate_[1], y_rate_[1]);
+    field(t_begin_ + h, g_begin_ * G::exp(h * theta_rate_[0]), std::as_const(y_stage_), theta_rate_[1],
+          y_rate_[1]);
   }
 
   /// Evaluates the remaining stages of a step h from the current state and forms its end point.
@@ -79,7 +85,8 @@ class RkmkStages {
       note_turn(theta_sum_);
       y_stage_ = y_begin_ + h * y_sum_;
       Tangent eta;
-      field(t_begin_ + Tableau::c[i] * h, g_begin_ * G::exp(theta_sum_), std::as_const(y_stage_), eta, y_rate_[i]);
+      field(t_begin_ + Tableau::c[i] * h, g_begin_ * G::exp(theta_sum_), std::as_const(y_stage_), eta,
+            y_rate_[i]);
       theta_rate_[i] = G::dexp_inv(theta_sum_, eta);  // (1)
       if constexpr (Tableau::first_same_as_last) eta_end_ = eta;
     }
@@ -96,8 +103,8 @@ class RkmkStages {
     carry_end_ = (y_end_ - y_begin_) - y_sum_;
   }
 
-  /// Makes the end point the current state and evaluates the first stage there, or reuses the last one where the
-  /// tableau allows it. False if the field is not finite.
+  /// Makes the end point the current state and evaluates the first stage there, or reuses the last one where
+  /// the tableau allows it. False if the field is not finite.
   /// @param t_end  time of the end point, from the caller, who knows it without the rounding of a sum
   template <class Field>
   bool commit(Field&& field, Real t_end) {
@@ -133,7 +140,9 @@ class RkmkStages {
   const Vector& y_end() const { return y_end_; }
   const Tangent& theta_rate(int i) const { return theta_rate_[i]; }  ///< (1) at stage i
   const Vector& y_rate(int i) const { return y_rate_[i]; }           ///< y_dot at stage i
-  Real largest_turn() const { return largest_turn_; }  ///< largest angle of theta over the step's stages [rad]
+  Real largest_turn() const {
+    return largest_turn_;
+  }  ///< largest angle of theta over the step's stages [rad]
 
   /// Room for one vector y that observers and error estimates may use between advance() and commit().
   Vector& scratch_y() { return y_stage_; }

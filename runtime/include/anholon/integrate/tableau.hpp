@@ -4,8 +4,8 @@
 //
 //   k_i = f(t + c_i h, y + h sum_{j<i} a_ij k_j),     y_1 = y + h sum_i b_i k_i
 //
-// `first_same_as_last` tells that the last stage is evaluated at the end point (a_sj = b_j, c_s = 1), so that it
-// serves as the first stage of the next step.
+// `first_same_as_last` tells that the last stage is evaluated at the end point (a_sj = b_j, c_s = 1), so that
+// it serves as the first stage of the next step.
 #pragma once
 
 #include <array>
@@ -59,13 +59,11 @@ struct DormandPrince54 {
 
   /// Coefficients of the quartic bubble s^2 (1 - s)^2 of the continuous solution (dense.hpp); their sum is 0.
   /// Shampine's, as in Hairer, Norsett & Wanner 1993, section II.6 and their code DOPRI5.
-  static constexpr std::array<Real, stages> bubble = {q(-12715105075, 11282082432),
-                                                      0,
-                                                      q(87487479700, 32700410799),
-                                                      q(-10690763975, 1880347072),
-                                                      q(701980252875, 199316789632),
-                                                      q(-1453857185, 822651844),
-                                                      q(69997945, 29380423)};
+  static constexpr std::array<Real, stages> bubble = {
+      q(-12715105075, 11282082432),  0,
+      q(87487479700, 32700410799),   q(-10690763975, 1880347072),
+      q(701980252875, 199316789632), q(-1453857185, 822651844),
+      q(69997945, 29380423)};
 };
 
 }  // namespace anholon::integrate

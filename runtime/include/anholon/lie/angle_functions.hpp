@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
-// The scalar functions of an angle that exp, log and dexp^-1 of the rotation groups are made of, each to a few
-// units in the last place from 0 to pi and beyond. Written so that nothing cancels; where two forms are needed
-// the switch sits at a large angle where both are good, never at a tiny one where neither is.
+// The scalar functions of an angle that exp, log and dexp^-1 of the rotation groups are made of, each to a
+// few units in the last place from 0 to pi and beyond. Written so that nothing cancels; where two forms are
+// needed the switch sits at a large angle where both are good, never at a tiny one where neither is.
 #pragma once
 
 #include <cmath>
@@ -27,8 +27,9 @@ inline Real one_minus_cos_over_square(Real theta) noexcept {
 /// (theta - sin theta)/theta^3 = (1 - sinc theta)/theta^2.
 ///
 /// Up to pi/2 the alternating series sum_k (-1)^k theta^2k/(2k + 3)!, whose terms fall from the first on
-/// (1/6, 0.021, 0.0012, ... at pi/2), so that it loses nothing. Beyond, the closed form: sinc theta <= 2/pi there,
-/// so 1 - sinc theta >= 0.36 and loses less than 2 ulp. (The closed form alone loses a factor 6/theta^2.)
+/// (1/6, 0.021, 0.0012, ... at pi/2), so that it loses nothing. Beyond, the closed form: sinc theta <= 2/pi
+/// there, so 1 - sinc theta >= 0.36 and loses less than 2 ulp. (The closed form alone loses a factor
+/// 6/theta^2.)
 ///
 /// @param square      theta^2
 /// @param sinc_theta  sinc(theta), which the caller has anyway
@@ -49,8 +50,8 @@ inline Real one_minus_sinc_over_square(Real square, Real sinc_theta) noexcept {
 /// Coefficients of dexp^-1 on SO(3) and SE(3).
 template <class Real>
 struct DexpInvCoefficients {
-  Real c;              ///< (1 - x cot x)/theta^2 with x = theta/2;  1/12 at 0
-  Real c_slope;        ///< (1/theta) dc/dtheta;  1/360 at 0
+  Real c;        ///< (1 - x cot x)/theta^2 with x = theta/2;  1/12 at 0
+  Real c_slope;  ///< (1/theta) dc/dtheta;  1/360 at 0
 };
 
 /// c(theta) = (1 - x cot x)/(4 x^2) and c'(theta)/theta, with x = theta/2.
@@ -59,11 +60,11 @@ struct DexpInvCoefficients {
 ///
 ///   c = r_1/4,      c'/theta = (r_1^2 - r_2)/16,      since d y_k / d(x^2) = -y_{k+1}/2
 ///
-/// For |theta| <= pi the ratios come from y_{k-1} = (2k + 1) y_k - x^2 y_{k+1} run downwards (Miller), which is
-/// Lambert's continued fraction of tan x freed of its divisions: each subtraction takes off less than x^2/3 of
-/// its first term at k = 1, less than x^2/15 at k = 2, and so on. r_1^2 - r_2 goes from 1/9 - 1/15 at 0 to
-/// 0.164 - 0.087 at pi: less than 2 bits are lost. Beyond pi, cot x < 0 and the closed form is a sum of
-/// positive terms. The pole at theta = 2 pi is that of dexp^-1 itself.
+/// For |theta| <= pi the ratios come from y_{k-1} = (2k + 1) y_k - x^2 y_{k+1} run downwards (Miller), which
+/// is Lambert's continued fraction of tan x freed of its divisions: each subtraction takes off less than
+/// x^2/3 of its first term at k = 1, less than x^2/15 at k = 2, and so on. r_1^2 - r_2 goes from 1/9 - 1/15
+/// at 0 to 0.164 - 0.087 at pi: less than 2 bits are lost. Beyond pi, cot x < 0 and the closed form is a sum
+/// of positive terms. The pole at theta = 2 pi is that of dexp^-1 itself.
 ///
 /// @param square  theta^2, in [0, (2 pi)^2)
 template <class Real>

@@ -32,7 +32,7 @@ template <class G>
 concept LieGroup = requires(G& writable, const G& g, const typename G::Tangent& xi) {
   typename G::Scalar;
   requires std::same_as<typename G::Tangent, Eigen::Matrix<typename G::Scalar, G::dim, 1>>;
-  requires 0 <= G::linear_dim && G::linear_dim <= G::dim;
+  requires 0 <= G::linear_dim&& G::linear_dim <= G::dim;
   { G::identity() } -> std::same_as<G>;
   { g* g } -> std::same_as<G>;
   { g.inverse() } -> std::same_as<G>;

@@ -51,7 +51,7 @@ class SE2 {
     using std::cos;
     const Real omega = xi[2];
     const Real sinc_half = sinc(omega / 2);
-    const Real along = sinc_half * cos(omega / 2);             // sinc omega
+    const Real along = sinc_half * cos(omega / 2);            // sinc omega
     const Real across = omega * (sinc_half * sinc_half / 2);  // (1 - cos omega)/omega
     return SE2(along * xi[0] - across * xi[1], across * xi[0] + along * xi[1], omega);
   }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 //
-// SE(3): the pose of a free body, as a unit quaternion and a position. Tangent: (V, Omega), linear part first.
-// Conventions in lie_group.hpp. SE(3) is SO(3) over the dual numbers, Omega + epsilon V, so dexp^-1 of SE(3) is
-// that of SO(3) together with its derivative (dual numbers: Selig 2005, "Geometric Fundamentals of Robotics").
+// SE(3): the pose of a free body, as a unit quaternion and a position. Tangent: (V, Omega), linear part
+// first. Conventions in lie_group.hpp. SE(3) is SO(3) over the dual numbers, Omega + epsilon V, so dexp^-1 of
+// SE(3) is that of SO(3) together with its derivative (dual numbers: Selig 2005, "Geometric Fundamentals of
+// Robotics").
 #pragma once
 
 #include <Eigen/Core>
@@ -57,7 +58,8 @@ class SE3 {
     const Real A = sinc_x * sinc_x / 2;
     const Real B = one_minus_sinc_over_square(square, sinc_x * cos_x);  // sinc 2x = sinc x cos x
     const Vector3 ad_rho = theta.cross(rho);
-    return SE3(SO3<Real>::from_parts(cos_x, (sinc_x / 2) * theta), rho + A * ad_rho + B * theta.cross(ad_rho));
+    return SE3(SO3<Real>::from_parts(cos_x, (sinc_x / 2) * theta),
+               rho + A * ad_rho + B * theta.cross(ad_rho));
   }
 
   /// (rho, theta) with |theta| <= pi.   rho = p - 1/2 theta x p + c theta x (theta x p)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 //
 // SO(3): the orientation of a body that turns about a fixed point, as a unit quaternion. Tangent: Omega.
-// Conventions in lie_group.hpp; quaternion formulas as in Shuster 1993, "A survey of attitude representations",
-// with the scalar first and R(q1 q2) = R(q1) R(q2).
+// Conventions in lie_group.hpp; quaternion formulas as in Shuster 1993, "A survey of attitude
+// representations", with the scalar first and R(q1 q2) = R(q1) R(q2).
 #pragma once
 
 #include <Eigen/Core>
@@ -49,8 +49,8 @@ class SO3 {
 
   /// Rotation vector of least length, |log| <= pi; at half a turn one of the two.
   ///
-  /// theta = 2 atan2(|u|, w) u/|u| of the quaternion (w, u) with w >= 0. The quotient keeps its digits for every
-  /// |u| > 0, and near half a turn w, not |u|, carries the information, which is what atan2 uses.
+  /// theta = 2 atan2(|u|, w) u/|u| of the quaternion (w, u) with w >= 0. The quotient keeps its digits for
+  /// every |u| > 0, and near half a turn w, not |u|, carries the information, which is what atan2 uses.
   Tangent log() const {
     using std::abs;
     using std::atan2;

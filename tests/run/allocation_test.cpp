@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// Once the workspace is made, neither a step nor a value of the imposed motion allocates: every road to the
+// heap is counted, operator new and (Eigen's way) malloc.
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+#include <vector>
+
+#include "anholon/integrate/dopri.hpp"
+#include "anholon/motion.hpp"
+#include "run/lie_samples.hpp"
+#include "run/manufactured_motion.hpp"
+
+namespace {
+std::atomic<long> allocations{0};
+}
+
+// Sanitizers bring their own malloc; glibc lets us pass ours on.
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+#if defined(__has_feature)
+#if !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer) && !__has_feature(memory_sanitizer)
+#define ANHOLON_COUNTS_MALLOC
+#endif
+#else
+#define ANHOLON_COUNTS_MALLOC
+#endif
+#endif
+
+#ifdef ANHOLON_COUNTS_MALLOC
+extern "C" void* __libc_malloc(std::size_t);
+extern "C" void* malloc(std::size_t size) noexcept {
+  ++allocations;
+  return __libc_malloc(size);
+}
+#endif
+
+// Not inlined: the compiler would take the inner malloc and free for a mismatch with new and delete.
+[[gnu::noinline]] void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+
+namespace anholon::testing {
+namespace {
+
+using integrate::AdaptiveOptions;
+using integrate::DormandPrince;
+using integrate::Rkmk4;
+using integrate::State;
+
+/// The manufactured motion allocates; this field does not.
+struct QuietField {
+  template <class G, class Tangent, class Vector>
+  void operator()(typename G::Scalar t, const G& g, const Vector& y, Tangent& eta, Vector& y_dot) const {
+    for (int i = 0; i < G::dim; ++i) eta[i] = std::sin(t * (i + 1)) + y[i % y.size()] + g.p()[0] / 9;
+    for (Eigen::Index i = 0; i < y.size(); ++i) y_dot[i] = std::cos(t) - y[i] * y[(i + 1) % y.size()];
+  }
+};
+
+TEST(Allocation, IsSeenByTheCounter) {
+  const long before = allocations;
+  { const std::vector<double> vector(100); }
+  EXPECT_GT(allocations - before, 0);
+#ifdef ANHOLON_COUNTS_MALLOC
+  const long between = allocations;
+  { const Eigen::VectorXd vector(100); }
+  EXPECT_GT(allocations - between, 0);
+#endif
+}
+
+template <class G>
+class AllocationOn : public ::testing::Test {};
+using Groups = ::testing::Types<lie::SE3<double>, lie::SE3<float>, lie::SE3<long double>, lie::SE2<double>,
+                                lie::SO3<double>, lie::Translation<double, 3>, lie::Trivial<double>>;
+TYPED_TEST_SUITE(AllocationOn, Groups);
+
+TYPED_TEST(AllocationOn, NoneHappensInAnIntegration) {
+  using Real = typename TypeParam::Scalar;
+  using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+  const QuietField quiet;
+  const auto field = [&](Real t, const TypeParam& g, const Vector& y, auto& eta, Vector& y_dot) {
+    quiet(t, g, y, eta, y_dot);
+  };
+  Rkmk4<TypeParam> rkmk4(40);  // beyond any small-size shortcut
+  DormandPrince<TypeParam> dopri(40);
+  State<TypeParam> state{0, {}, Vector::Constant(40, Real(0.1L))};
+  const std::vector<Real> times = {Real(1.2L), Real(1.3L), Real(1.31L), Real(2)};
+  AdaptiveOptions<Real> options;
+  options.rtol = options.atol = Real(1e-5L);
+  int reported = 0;
+
+  const long before = allocations;
+  const auto fixed = integrate_fixed(rkmk4, field, state, Real(1), 50);
+  const auto adaptive = integrate_adaptive_at(dopri, field, state, times, options,
+                                              [&](Real, const TypeParam&, const Vector&) { ++reported; });
+  const long counted = allocations - before;
+
+  EXPECT_EQ(counted, 0);
+  EXPECT_TRUE(fixed);
+  EXPECT_TRUE(adaptive);
+  EXPECT_EQ(reported, 4);
+}
+
+TEST(Allocation, NoneHappensInTheImposedMotion) {
+  const TabulatedMotion<double> motion({0, 1, 2, 3}, Eigen::MatrixXd::Random(4, 3));
+  Eigen::VectorXd r(3), r_dot(3);
+  double array[3];  // generated code takes arrays
+  const long before = allocations;
+  for (double t = -1; t < 4; t += 0.1) motion.evaluate(t, r, r_dot, Eigen::Map<Eigen::VectorXd>(array, 3));
+  EXPECT_EQ(allocations - before, 0);
+}
+
+}  // namespace
+}  // namespace anholon::testing
