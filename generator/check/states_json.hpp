@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The files of `evaluate`: states in, outputs out, both in the layout of the reference files.
+
+#include <nlohmann/json.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "check/evaluated.hpp"
+#include "describe/model.hpp"
+#include "reduce/partition.hpp"
+
+namespace anholon {
+
+struct StatesFile {
+  std::vector<std::string> r_p, r_a;  // names, in the file's order
+  std::vector<Exact> parameters;      // in the model's order; the file's values override the model's
+  struct Entry {
+    std::string label;
+    EvaluationInput<Exact> input;
+  };
+  std::vector<Entry> states;
+};
+
+/// Extra keys are ignored; numbers may be JSON numbers or decimal strings.
+/// @throws ModelError naming the file and the key
+StatesFile read_states(const std::filesystem::path& path, const Model& model);
+
+/// One state's outputs in the file's coordinate order. Doubles become JSON numbers, exact values decimal strings.
+template <class S>
+nlohmann::ordered_json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e, const EvaluationInput<S>& input, unsigned digits);
+
+/// The inputs of a state rounded to S.
+template <class S>
+EvaluationInput<S> rounded_input(const EvaluationInput<Exact>& input);
+
+}  // namespace anholon

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// From a description to a program: the wanted functions, derived on one tape. Each comes from the routes that exist for
+// it; the one with the fewest operations is kept.
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "describe/model.hpp"
+#include "reduce/kernel.hpp"
+#include "tape/interface.hpp"
+
+namespace anholon {
+
+struct DeriveRequest {
+  std::string scene = "standard";
+  std::vector<std::string> functions;    // wanted; empty: every one that the model has
+  std::set<std::string> torque_driven;   // active coordinates whose torque is given in the reduced dynamics
+  Inverse inverse = Inverse::pseudo;
+  std::vector<int> leading_rows;         // for Inverse::leading; row indices
+  bool closed_forms = true;              // also try GiNaC's simplified closed form of each function
+};
+
+/// What a route to a function costs.
+struct CandidateReport {
+  std::string function;
+  std::string route;
+  int operations = 0;
+  bool chosen = false;
+};
+
+/// Reduction of one partition, for reports.
+struct ReductionReport {
+  Partition partition;
+  RankAnalysis ranks;
+  Kernel kernel;  // on the program's tape
+};
+
+struct Derivation {
+  Program program;
+  ReductionReport reduction;                   // motion-driven
+  std::optional<ReductionReport> torque_driven;  // all active coordinates by torque, where it was wanted
+  std::vector<CandidateReport> candidates;
+};
+
+/// Names of all functions, in the order in which programs list them.
+const std::vector<std::string>& function_names();
+
+/// @throws UnsupportedError, std::invalid_argument for a function name that does not exist
+std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request = {});
+
+}  // namespace anholon

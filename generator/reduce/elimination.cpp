@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "reduce/elimination.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace anholon {
+
+Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& columns, const Sampler& sampler)
+    : A_(std::move(A)), U_(A_) {
+  std::vector<char> row_done(static_cast<std::size_t>(U_.rows()), 0);
+  std::vector<char> col_done(static_cast<std::size_t>(U_.cols()), 1);
+  for (const int c : columns) col_done[static_cast<std::size_t>(c)] = 0;
+  for (int step = 0; step < U_.rows(); ++step) {
+    std::vector<NodeId> nodes;
+    for (int i = 0; i < U_.rows(); ++i) {
+      for (int j = 0; j < U_.cols(); ++j) nodes.push_back(U_(i, j).id(tape));
+    }
+    const auto values = sampler(nodes);
+    const auto at = [&](std::size_t sample, int i, int j) { return std::abs(values[sample][static_cast<std::size_t>(i * U_.cols() + j)]); };
+    // smallest size of an entry over the samples, relative to its row's largest candidate there
+    const auto strength = [&](int i, int j) {
+      double smallest = std::numeric_limits<double>::infinity();
+      for (std::size_t s = 0; s < values.size(); ++s) {
+        double largest = 0;
+        for (int c = 0; c < U_.cols(); ++c) {
+          if (col_done[static_cast<std::size_t>(c)] == 0) largest = std::max(largest, at(s, i, c));
+        }
+        // a row without any entry there loses rank whatever the pivot: no reason against this one
+        if (!std::isfinite(largest) || largest < 1e-12) continue;
+        smallest = std::min(smallest, at(s, i, j) / largest);
+      }
+      return smallest;
+    };
+    const auto fill = [&](int i, int j) {
+      int in_row = -1, in_col = -1;
+      for (int c = 0; c < U_.cols(); ++c) in_row += U_(i, c).is_zero() ? 0 : 1;
+      for (int r = 0; r < U_.rows(); ++r) in_col += row_done[static_cast<std::size_t>(r)] != 0 || U_(r, j).is_zero() ? 0 : 1;
+      return in_row * in_col;
+    };
+    struct Choice {
+      int tier, fill;  // tier 0: constant of unit size, 1: constant, 2: well away from zero, 3: anything else
+      double strength;
+      int row, col;
+    };
+    std::vector<Choice> choices;
+    for (int i = 0; i < U_.rows(); ++i) {
+      if (row_done[static_cast<std::size_t>(i)] != 0) continue;
+      for (int j = 0; j < U_.cols(); ++j) {
+        if (col_done[static_cast<std::size_t>(j)] != 0 || U_(i, j).is_zero()) continue;
+        const NodeId id = U_(i, j).id(tape);
+        const double s = strength(i, j);
+        int tier = s > 0.05 ? 2 : 3;
+        if (tape.is_constant(id)) tier = abs(tape.value(id)) == Exact(1) ? 0 : 1;
+        choices.push_back({tier, fill(i, j), s, i, j});
+      }
+    }
+    if (choices.empty()) throw std::logic_error("elimination of a matrix without full row rank");
+    const Choice best = *std::ranges::min_element(choices, [](const Choice& a, const Choice& b) {
+      if (a.tier != b.tier) return a.tier < b.tier;
+      if (a.tier == 3 && a.strength != b.strength) return a.strength > b.strength;
+      if (a.fill != b.fill) return a.fill < b.fill;
+      return std::pair(a.row, a.col) < std::pair(b.row, b.col);
+    });
+    smallest_pivot_ = std::min(smallest_pivot_, best.tier <= 1 ? 1.0 : best.strength);
+    row_done[static_cast<std::size_t>(best.row)] = 1;
+    col_done[static_cast<std::size_t>(best.col)] = 1;
+    const Expr inverse = Expr(1) / U_(best.row, best.col);
+    pivots_.push_back({best.row, best.col, inverse});
+    for (int i = 0; i < U_.rows(); ++i) {
+      if (row_done[static_cast<std::size_t>(i)] != 0 || U_(i, best.col).is_zero()) continue;
+      const Expr factor = U_(i, best.col) * inverse;
+      factors_.push_back({i, best.row, factor});
+      for (int j = 0; j < U_.cols(); ++j) U_(i, j) = j == best.col ? Expr(0) : U_(i, j) - factor * U_(best.row, j);
+    }
+  }
+}
+
+std::vector<int> Elimination::pivot_columns() const {
+  std::vector<int> columns;
+  for (const Pivot& p : pivots_) columns.push_back(p.col);
+  std::ranges::sort(columns);
+  return columns;
+}
+
+std::vector<Expr> Elimination::column(int j) const {
+  std::vector<Expr> c;
+  for (int i = 0; i < A_.rows(); ++i) c.push_back(A_(i, j));
+  return c;
+}
+
+std::vector<Expr> Elimination::solve(std::vector<Expr> b) const {
+  for (const Factor& f : factors_) b[static_cast<std::size_t>(f.target)] -= f.value * b[static_cast<std::size_t>(f.row)];
+  std::vector<Expr> x(static_cast<std::size_t>(U_.cols()), Expr(0));
+  for (std::size_t k = pivots_.size(); k-- > 0;) {
+    Expr sum = b[static_cast<std::size_t>(pivots_[k].row)];
+    for (std::size_t l = k + 1; l < pivots_.size(); ++l) sum -= U_(pivots_[k].row, pivots_[l].col) * x[static_cast<std::size_t>(pivots_[l].col)];
+    x[static_cast<std::size_t>(pivots_[k].col)] = sum * pivots_[k].inverse;
+  }
+  return x;
+}
+
+std::vector<Expr> Elimination::solve_transposed(const std::vector<Expr>& c) const {
+  std::vector<Expr> y(static_cast<std::size_t>(U_.rows()), Expr(0));
+  for (std::size_t k = 0; k < pivots_.size(); ++k) {
+    Expr sum = c[static_cast<std::size_t>(pivots_[k].col)];
+    for (std::size_t l = 0; l < k; ++l) sum -= U_(pivots_[l].row, pivots_[k].col) * y[static_cast<std::size_t>(pivots_[l].row)];
+    y[static_cast<std::size_t>(pivots_[k].row)] = sum * pivots_[k].inverse;
+  }
+  for (std::size_t k = factors_.size(); k-- > 0;) y[static_cast<std::size_t>(factors_[k].row)] -= factors_[k].value * y[static_cast<std::size_t>(factors_[k].target)];
+  return y;
+}
+
+std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K, const std::vector<std::vector<Expr>>& right_hand_sides) {
+  const int n = K.rows();
+  Matrix<Expr> L(n, n);
+  std::vector<Expr> inverse(static_cast<std::size_t>(n));
+  Matrix<Expr> W(n, n);  // L D
+  for (int j = 0; j < n; ++j) {
+    for (int i = j; i < n; ++i) {
+      Expr sum = K(i, j);
+      for (int k = 0; k < j; ++k) sum -= W(i, k) * L(j, k);
+      W(i, j) = sum;
+    }
+    inverse[static_cast<std::size_t>(j)] = Expr(1) / W(j, j);
+    for (int i = j + 1; i < n; ++i) L(i, j) = W(i, j) * inverse[static_cast<std::size_t>(j)];
+  }
+  std::vector<std::vector<Expr>> solutions = right_hand_sides;
+  for (std::vector<Expr>& x : solutions) {
+    const auto at = [&](int i) -> Expr& { return x[static_cast<std::size_t>(i)]; };
+    for (int i = 0; i < n; ++i) {
+      for (int k = 0; k < i; ++k) at(i) -= L(i, k) * at(k);
+    }
+    for (int i = 0; i < n; ++i) at(i) = at(i) * inverse[static_cast<std::size_t>(i)];
+    for (int i = n; i-- > 0;) {
+      for (int k = i + 1; k < n; ++k) at(i) -= L(k, i) * at(k);
+    }
+  }
+  return solutions;
+}
+
+}  // namespace anholon

@@ -1,0 +1,326 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "reduce/kernel.hpp"
+
+#include <Eigen/Dense>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "algebra/kernel_core.hpp"
+#include "optimise/tape/count.hpp"
+#include "tape/derivative.hpp"
+
+namespace anholon {
+namespace {
+
+constexpr int combination_limit = 400;   // free sets that are tried one by one
+constexpr int derivation_limit = 12;     // of these, how many are derived and counted
+constexpr double condition_limit = 1e8;  // beyond it a basis counts as irregular at a sample
+constexpr double vanishing = 1e-9;       // a column this much smaller than its median has vanished
+
+std::vector<int> range(int n) {
+  std::vector<int> r(static_cast<std::size_t>(n));
+  std::iota(r.begin(), r.end(), 0);
+  return r;
+}
+
+std::vector<int> complement(const std::vector<int>& of, int n) {
+  std::vector<int> r;
+  for (int i = 0; i < n; ++i) {
+    if (std::ranges::find(of, i) == of.end()) r.push_back(i);
+  }
+  return r;
+}
+
+/// All k-subsets of 0..n-1 in lexicographic order, or none if there are too many.
+std::vector<std::vector<int>> combinations(int n, int k) {
+  double count = 1;
+  for (int i = 0; i < k; ++i) count = count * (n - i) / (i + 1);
+  std::vector<std::vector<int>> all;
+  if (count > combination_limit) return all;
+  std::vector<int> pick = range(k);
+  while (true) {
+    all.push_back(pick);
+    int i = k - 1;
+    while (i >= 0 && pick[static_cast<std::size_t>(i)] == n - k + i) --i;
+    if (i < 0) return all;
+    ++pick[static_cast<std::size_t>(i)];
+    for (int j = i + 1; j < k; ++j) pick[static_cast<std::size_t>(j)] = pick[static_cast<std::size_t>(j - 1)] + 1;
+  }
+}
+
+std::vector<NodeId> nodes_of(Tape& tape, const Matrix<Expr>& m) {
+  std::vector<NodeId> nodes;
+  for (const Expr& e : m.entries()) nodes.push_back(e.id(tape));
+  return nodes;
+}
+
+std::vector<std::vector<NodeId>> rows_of(Tape& tape, const Matrix<Expr>& m) {
+  std::vector<std::vector<NodeId>> rows(static_cast<std::size_t>(m.rows()));
+  for (int i = 0; i < m.rows(); ++i) {
+    for (int j = 0; j < m.cols(); ++j) rows[static_cast<std::size_t>(i)].push_back(m(i, j).id(tape));
+  }
+  return rows;
+}
+
+Matrix<Expr> matrix_of(Tape& tape, const std::vector<std::vector<NodeId>>& rows, int cols) {
+  Matrix<Expr> m(static_cast<int>(rows.size()), cols);
+  for (int i = 0; i < m.rows(); ++i) {
+    for (int j = 0; j < cols; ++j) m(i, j) = Expr(tape, rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
+  }
+  return m;
+}
+
+std::vector<Eigen::MatrixXd> sampled(Tape& tape, const Matrix<Expr>& m, const Sampler& sampler) {
+  std::vector<Eigen::MatrixXd> result;
+  for (const auto& values : sampler(nodes_of(tape, m))) {
+    Eigen::MatrixXd x(m.rows(), m.cols());
+    for (int i = 0; i < m.rows(); ++i) {
+      for (int j = 0; j < m.cols(); ++j) x(i, j) = values[static_cast<std::size_t>(i * m.cols() + j)];
+    }
+    result.push_back(std::move(x));
+  }
+  return result;
+}
+
+}  // namespace
+
+KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
+                                       const std::vector<int>& preferred_free, const std::vector<std::string>& names, const Sampler& sampler)
+    : tape_(tape), sampler_(sampler), rows_(std::move(rows)), leading_(ranks.leading_rows) {
+  A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
+  split_redundant_rows(inverse);
+  B_1_ = C_plus_ * rows_.B;
+  choose_kernel(preferred_free, names);
+}
+
+void KinematicReduction::split_redundant_rows(Inverse inverse) {
+  const int count = rows_.A.rows();
+  const int independent = static_cast<int>(leading_.size());
+  C_ = Matrix<Expr>(count, independent);
+  N_ = Matrix<Expr>(count, count - independent);
+  C_plus_ = Matrix<Expr>(independent, count);
+  if (independent > 0) elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
+  for (int i = 0; i < independent; ++i) C_(leading_[static_cast<std::size_t>(i)], i) = 1;
+  const std::vector<int> dependent = complement(leading_, count);
+  for (std::size_t d = 0; d < dependent.size(); ++d) {  // row = w A_1
+    std::vector<Expr> row;
+    for (int j = 0; j < rows_.A.cols(); ++j) row.push_back(rows_.A(dependent[d], j));
+    const std::vector<Expr> w = independent > 0 ? elimination_->solve_transposed(row) : std::vector<Expr>{};
+    N_(dependent[d], static_cast<int>(d)) = 1;
+    for (int i = 0; i < independent; ++i) {
+      C_(dependent[d], i) = w[static_cast<std::size_t>(i)];
+      N_(leading_[static_cast<std::size_t>(i)], static_cast<int>(d)) = -w[static_cast<std::size_t>(i)];
+    }
+  }
+  if (inverse == Inverse::leading || dependent.empty()) {
+    for (int i = 0; i < independent; ++i) C_plus_(i, leading_[static_cast<std::size_t>(i)]) = 1;
+  } else if (independent > 0) {  // (C^T C)^-1 C^T
+    std::vector<std::vector<Expr>> columns;
+    for (int i = 0; i < count; ++i) {
+      columns.emplace_back();
+      for (int j = 0; j < independent; ++j) columns.back().push_back(C_(i, j));
+    }
+    const auto solved = solve_symmetric(C_.transposed() * C_, columns);
+    for (int i = 0; i < count; ++i) {
+      for (int j = 0; j < independent; ++j) C_plus_(j, i) = solved[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    }
+  }
+}
+
+std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free, bool content_divided) const {
+  const int passive = A_1_.cols();
+  Kernel kernel;
+  kernel.free = free;
+  kernel.content_divided = content_divided;
+  if (content_divided) {
+    const auto core = kernel_core(tape_, rows_of(tape_, A_1_), rows_of(tape_, B_1_), free);
+    if (!core) return std::nullopt;
+    kernel.H = matrix_of(tape_, core->H, static_cast<int>(free.size()));
+    kernel.J = matrix_of(tape_, core->J, B_1_.cols());
+  } else {
+    kernel.H = Matrix<Expr>(passive, static_cast<int>(free.size()));
+    kernel.J = Matrix<Expr>(passive, B_1_.cols());
+    std::optional<Elimination> elimination;
+    try {
+      if (A_1_.rows() > 0) elimination.emplace(tape_, A_1_, complement(free, passive), sampler_);
+    } catch (const std::logic_error&) {
+      return std::nullopt;  // the other columns are dependent
+    }
+    for (std::size_t c = 0; c < free.size(); ++c) {
+      if (elimination) {
+        const std::vector<Expr> x = elimination->solve(elimination->column(free[c]));
+        for (int i = 0; i < passive; ++i) kernel.H(i, static_cast<int>(c)) = -x[static_cast<std::size_t>(i)];
+      }
+      kernel.H(free[c], static_cast<int>(c)) = 1;
+    }
+    for (int j = 0; j < B_1_.cols() && elimination; ++j) {
+      std::vector<Expr> b;
+      for (int i = 0; i < B_1_.rows(); ++i) b.push_back(B_1_(i, j));
+      const std::vector<Expr> x = elimination->solve(b);
+      for (int i = 0; i < passive; ++i) kernel.J(i, j) = -x[static_cast<std::size_t>(i)];
+    }
+  }
+  judge(kernel);
+  return kernel;
+}
+
+/// Counts the samples at which the basis vanishes, loses rank or is not finite.
+void KinematicReduction::judge(Kernel& kernel) const {
+  const auto H = sampled(tape_, kernel.H, sampler_);
+  const auto J = sampled(tape_, kernel.J, sampler_);
+  std::vector<double> medians;
+  for (int c = 0; c < kernel.H.cols(); ++c) {
+    std::vector<double> norms;
+    for (const auto& h : H) norms.push_back(h.allFinite() ? h.col(c).norm() : std::numeric_limits<double>::infinity());
+    std::ranges::nth_element(norms, norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2));
+    medians.push_back(norms[norms.size() / 2]);
+  }
+  for (std::size_t s = 0; s < H.size(); ++s) {
+    bool regular = H[s].allFinite() && J[s].allFinite() && (J[s].size() == 0 || J[s].cwiseAbs().maxCoeff() < 1e9);
+    if (regular && kernel.H.cols() > 0) {
+      Eigen::MatrixXd h = H[s];
+      for (int c = 0; c < h.cols() && regular; ++c) {
+        const double size = h.col(c).norm();
+        regular = size > vanishing * medians[static_cast<std::size_t>(c)];
+        h.col(c) /= size;
+      }
+      if (regular) {
+        const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(h).singularValues();
+        const double condition = sigma(0) / sigma(sigma.size() - 1);
+        regular = condition < condition_limit;
+        if (regular) kernel.worst_condition = std::max(kernel.worst_condition, condition);
+      }
+    }
+    if (!regular) ++kernel.irregular;
+  }
+}
+
+void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, const std::vector<std::string>& names) {
+  const int passive = A_1_.cols();
+  const int k = passive - A_1_.rows();
+  // numeric worth of a free set: how far the other columns stay from singular, relative to all columns
+  const auto A = sampled(tape_, A_1_, sampler_);
+  const auto smallest = [](const Eigen::MatrixXd& m) {
+    if (m.rows() == 0) return 1.0;
+    return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues()(m.rows() - 1);
+  };
+  std::vector<double> best_possible;
+  for (const auto& a : A) best_possible.push_back(a.allFinite() ? smallest(a) : 0);
+  const auto worth = [&](const std::vector<int>& free) {
+    const std::vector<int> pivots = complement(free, passive);
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t s = 0; s < A.size(); ++s) {
+      if (best_possible[s] < 1e-9) continue;
+      Eigen::MatrixXd p(A[s].rows(), A[s].rows());
+      for (int j = 0; j < p.cols(); ++j) p.col(j) = A[s].col(pivots[static_cast<std::size_t>(j)]);
+      least = std::min(least, smallest(p) / best_possible[s]);
+    }
+    return least;
+  };
+
+  std::vector<std::vector<int>> free_sets;
+  if (static_cast<int>(preferred_free.size()) == k && k > 0) {
+    free_sets = {preferred_free};
+  } else if (A_1_.rows() == 0) {
+    free_sets = {range(passive)};
+  } else {
+    std::vector<std::pair<double, std::vector<int>>> ranked;
+    for (auto& set : combinations(passive, k)) {
+      const double w = worth(set);
+      ranked.emplace_back(std::isfinite(w) ? w : 0, std::move(set));
+    }
+    std::ranges::stable_sort(ranked, [](const auto& a, const auto& b) {  // equal to 1 %: keep the declared order
+      return std::floor(std::log(std::max(a.first, 1e-300)) * 100) > std::floor(std::log(std::max(b.first, 1e-300)) * 100);
+    });
+    for (auto& [w, set] : ranked) {
+      if (static_cast<int>(free_sets.size()) < derivation_limit) free_sets.push_back(set);
+    }
+    if (free_sets.empty()) {
+      const Elimination elimination(tape_, A_1_, range(passive), sampler_);
+      free_sets = {complement(elimination.pivot_columns(), passive)};
+    }
+  }
+
+  std::optional<Kernel> best;
+  int best_operations = 0;
+  for (const auto& free : free_sets) {
+    for (const bool content_divided : {false, true}) {
+      if (content_divided && A_1_.rows() == 0) continue;
+      const std::optional<Kernel> kernel = candidate(free, content_divided);
+      if (!kernel) continue;
+      std::vector<NodeId> roots = nodes_of(tape_, kernel->H);
+      const std::vector<NodeId> j = nodes_of(tape_, kernel->J);
+      roots.insert(roots.end(), j.begin(), j.end());
+      const OperationCount count = count_operations(tape_, roots);
+      const int operations = count.total() + 10 * count.divisions;  // a division takes about as long as ten products
+      const bool better = !best || kernel->irregular < best->irregular ||
+                          (kernel->irregular == best->irregular && operations < best_operations);
+      if (better) best = kernel, best_operations = operations;
+    }
+  }
+  if (!best) throw UnsupportedError("no kernel basis could be derived");
+  kernel_ = *best;
+  if (!kernel_.content_divided && A_1_.rows() > 0) kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
+
+  std::vector<std::string> free_names;
+  for (const int c : kernel_.free) free_names.push_back(names[static_cast<std::size_t>(c)]);
+  if (k == 0) {
+    kernel_.description = "no kernel: the constraints determine every passive velocity";
+  } else if (A_1_.rows() == 0) {
+    kernel_.description = "no constraints: nu are the passive velocities themselves";
+  } else {
+    kernel_.description = kernel_.content_divided
+                              ? fmt::format("denominator-free basis, content divided out, built on free velocities ({})", fmt::join(free_names, ", "))
+                              : fmt::format("pivoted basis, nu = ({})", fmt::join(free_names, ", "));
+  }
+}
+
+std::vector<Expr> KinematicReduction::velocities(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu) const {
+  std::vector<Expr> v = kernel_.J * r_a_dot;
+  const std::vector<Expr> h = kernel_.H * nu;
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] += h[i];
+  return v;
+}
+
+std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu, const std::vector<Expr>& bias,
+                                            const std::vector<std::pair<NodeId, NodeId>>& motion) const {
+  if (kernel_.content_divided) {
+    std::vector<NodeId> roots;
+    for (const Expr& e : velocities(r_a_dot, nu)) roots.push_back(e.id(tape_));
+    std::vector<Expr> result;
+    for (const NodeId id : directional_derivative(tape_, roots, motion)) result.emplace_back(tape_, id);
+    return result;
+  }
+  if (!kernel_elimination_) return std::vector<Expr>(static_cast<std::size_t>(A_1_.cols()), Expr(0));
+  std::vector<Expr> b = C_plus_ * bias;
+  for (Expr& e : b) e = -e;
+  return kernel_elimination_->solve(b);
+}
+
+std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& residual, const std::vector<Expr>& lambda_stat) const {
+  std::vector<Expr> lambda(static_cast<std::size_t>(rows_.A.rows()), Expr(0));
+  if (elimination_) lambda = C_plus_.transposed() * elimination_->solve_transposed(residual);
+  const std::vector<Expr> extra = N_ * lambda_stat;
+  for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] += extra[i];
+  return lambda;
+}
+
+std::vector<Expr> KinematicReduction::reduced_velocities(const std::vector<Expr>& passive, const std::vector<Expr>& r_a_dot) const {
+  std::vector<Expr> difference = kernel_.J * r_a_dot;
+  for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = passive[i] - difference[i];
+  if (k() == 0) return {};
+  if (!kernel_.content_divided) {
+    std::vector<Expr> nu;
+    for (const int c : kernel_.free) nu.push_back(difference[static_cast<std::size_t>(c)]);
+    return nu;
+  }
+  const Matrix<Expr> Ht = kernel_.H.transposed();
+  return solve_symmetric(Ht * kernel_.H, {Ht * difference}).front();
+}
+
+}  // namespace anholon

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "reduce/rank.hpp"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <numeric>
+
+#include "anholon/free_dynamics.hpp"
+
+namespace anholon {
+namespace {
+
+constexpr unsigned digits = 50;
+
+/// Rank by elimination with complete pivoting; what is below 1e-25 of the largest entry is zero. The samples are exact
+/// doubles, so an entry that vanishes at a special angle is about 1e-17 there and still counts.
+int rank_of(Matrix<Exact> a, const Exact& tolerance) {
+  Exact largest = 0;
+  for (const Exact& e : a.entries()) largest = std::max(largest, abs(e));
+  int rank = 0;
+  std::vector<char> used(static_cast<std::size_t>(a.cols()), 0);
+  for (int step = 0; step < a.rows(); ++step) {
+    int pivot_row = -1, pivot_col = -1;
+    Exact best = largest * tolerance;
+    for (int i = rank; i < a.rows(); ++i) {
+      for (int j = 0; j < a.cols(); ++j) {
+        if (used[static_cast<std::size_t>(j)] == 0 && abs(a(i, j)) > best) best = abs(a(i, j)), pivot_row = i, pivot_col = j;
+      }
+    }
+    if (pivot_row < 0) break;
+    for (int j = 0; j < a.cols(); ++j) std::swap(a(rank, j), a(pivot_row, j));
+    for (int i = rank + 1; i < a.rows(); ++i) {
+      const Exact factor = a(i, pivot_col) / a(rank, pivot_col);
+      for (int j = 0; j < a.cols(); ++j) a(i, j) = a(i, j) - factor * a(rank, j);
+    }
+    used[static_cast<std::size_t>(pivot_col)] = 1;
+    ++rank;
+  }
+  return rank;
+}
+
+Eigen::MatrixXd to_double(const Matrix<Exact>& a) {
+  Eigen::MatrixXd r(a.rows(), a.cols());
+  for (int i = 0; i < a.rows(); ++i) {
+    for (int j = 0; j < a.cols(); ++j) r(i, j) = a(i, j).to_double();
+  }
+  return r;
+}
+
+}  // namespace
+
+std::string RankAnalysis::table_I_class(const Partition& partition) const {
+  const bool has_kernel = static_cast<int>(partition.passive.size()) > m_locked;
+  const bool hyperstatic = m > m_locked;
+  return std::string(has_kernel ? "H nonzero" : "H empty") + (hyperstatic ? ", lambda_stat undetermined" : ", lambda_stat = 0") +
+         (has_kernel ? " (dynamic)" : " (kinematic)");
+}
+
+RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters, const Partition& partition,
+                           const std::vector<SampleState>& samples, const std::vector<int>& preferred_rows) {
+  const WorkingDigits precision(digits);
+  const Mechanism<Exact> mechanism = mechanise<Exact>(description, parameters);
+  FreeDynamics<Exact> dynamics(mechanism);
+  const Exact zero_tolerance = Exact::from_decimal("1e-25");
+  const Exact drop_tolerance = Exact::from_decimal("1e-12");
+
+  RankAnalysis analysis;
+  analysis.rows = static_cast<int>(mechanism.rows.size());
+  std::vector<int> all_rows(static_cast<std::size_t>(analysis.rows));
+  std::iota(all_rows.begin(), all_rows.end(), 0);
+  std::vector<int> all_columns = partition.passive;
+  all_columns.insert(all_columns.end(), partition.active.begin(), partition.active.end());
+  analysis.kinematic.assign(static_cast<std::size_t>(partition.s_p()), analysis.rows > 0);
+  if (analysis.rows == 0) return analysis;
+
+  std::vector<Matrix<Exact>> matrices;  // (A, B_p, B_a) at every sample
+  for (const SampleState& sample : samples) matrices.push_back(dynamics.constraints(sample.state).first);
+  Matrix<Exact> generic;  // at a random sample of full rank
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const int locked = rank_of(matrices[s].block(all_rows, partition.passive), zero_tolerance);
+    if (locked > analysis.m_locked || generic.rows() == 0) generic = matrices[s].block(all_rows, partition.passive);
+    analysis.m_locked = std::max(analysis.m_locked, locked);
+    analysis.m = std::max(analysis.m, rank_of(matrices[s].block(all_rows, all_columns), zero_tolerance));
+  }
+
+  std::vector<int> order = preferred_rows;
+  for (const int row : all_rows) {
+    if (std::ranges::find(order, row) == order.end()) order.push_back(row);
+  }
+  std::vector<int> every(partition.passive.size());
+  std::iota(every.begin(), every.end(), 0);
+  for (const int row : order) {
+    std::vector<int> tried = analysis.leading_rows;
+    tried.push_back(row);
+    if (rank_of(generic.block(tried, every), zero_tolerance) == static_cast<int>(tried.size())) analysis.leading_rows = tried;
+  }
+
+  for (std::size_t s = 0; s < samples.size(); ++s) {
+    const Matrix<Exact> locked = matrices[s].block(all_rows, partition.passive);
+    if (const int rank = rank_of(locked, drop_tolerance); rank < analysis.m_locked) {
+      analysis.drops.push_back({samples[s].label, rank});
+      continue;
+    }
+    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(to_double(locked), Eigen::ComputeFullV);
+    if (analysis.m_locked == 0) continue;
+    const double condition = svd.singularValues()(0) / svd.singularValues()(analysis.m_locked - 1);
+    if (condition > analysis.worst_condition) analysis.worst_condition = condition, analysis.worst_at = samples[s].label;
+    const auto kernel = svd.matrixV().rightCols(locked.cols() - analysis.m_locked);
+    for (int i = 0; i < partition.s_p(); ++i) {
+      if (kernel.cols() > 0 && kernel.row(partition.n + i).norm() > 1e-9) analysis.kinematic[static_cast<std::size_t>(i)] = false;
+    }
+  }
+  return analysis;
+}
+
+}  // namespace anholon
