@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Poses and joints.
+#include <fmt/format.h>
+
+#include "describe/read_parts.hpp"
+#include "tape/derivative.hpp"
+
+namespace anholon {
+namespace {
+
+using Matrix = std::array<Expr, 9>;
+
+Matrix product(const Matrix& a, const Matrix& b) {
+  Matrix c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      const std::array<Expr, 3> row = {a[3 * i], a[3 * i + 1], a[3 * i + 2]};
+      const std::array<Expr, 3> column = {b[j], b[3 + j], b[6 + j]};
+      c[3 * i + j] = dot(row, column);
+    }
+  }
+  return c;
+}
+
+/// Turn by an angle about coordinate axis 0, 1 or 2.
+Matrix turn(std::size_t axis, const Expr& angle) {
+  const std::size_t i = (axis + 1) % 3;
+  const std::size_t j = (axis + 2) % 3;
+  const Expr c = cos(angle);
+  const Expr s = sin(angle);
+  Matrix R = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+  R[4 * axis] = 1;
+  R[4 * i] = c;
+  R[4 * j] = c;
+  R[3 * i + j] = -s;
+  R[3 * j + i] = s;
+  return R;
+}
+
+/// One turn of a rotation: { axis = "x", angle = ... }.
+Matrix read_turn(const Value& value, const std::string& what, Reading& reading) {
+  TableReader table(value, what, reading.findings);
+  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  const auto axis = table.required_choice("axis", {"x", "y", "z"});
+  const Value* angle = table.required("angle", "write it in rad");
+  if (axis && angle != nullptr)
+    R = turn(*axis, reading.number(*angle, fmt::format("the angle of {}", what), units::one));
+  table.report_unknown_keys();
+  return R;
+}
+
+/// A turn, a list of turns each about the axes that the ones before it have moved, or { rpy = [roll, pitch,
+/// yaw] }.
+Matrix read_rotation(const Value& value, const std::string& what, Reading& reading) {
+  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  if (value.kind == Value::Kind::array) {
+    for (const Value& item : value.items) {
+      if (item.kind == Value::Kind::table) {
+        R = product(R, read_turn(item, what, reading));
+      } else {
+        reading.findings.error(item.where, fmt::format("a turn of {} is {}", what, item.kind_name()),
+                               "write { axis = \"x\", angle = ... }");
+      }
+    }
+    return R;
+  }
+  if (value.kind != Value::Kind::table) {
+    reading.findings.error(value.where, fmt::format("{} is {}", what, value.kind_name()),
+                           "write { axis = \"x\", angle = ... }, a list of such turns or { rpy = [...] }");
+    return R;
+  }
+  const Value* rpy = value.find("rpy");
+  if (rpy == nullptr) return read_turn(value, what, reading);
+  TableReader table(value, what, reading.findings);
+  table.optional("rpy");
+  table.report_unknown_keys();
+  const auto angles = reading.vector3(*rpy, fmt::format("rpy of {}", what), units::one);
+  const Matrix yaw = turn(2, angles[2]);
+  const Matrix pitch = turn(1, angles[1]);
+  return product(product(yaw, pitch), turn(0, angles[0]));
+}
+
+/// Units of the efforts of a joint: force or torque, and what multiplies displacement and velocity.
+struct EffortUnits {
+  Dimension effort, stiffness, damping, rate;
+};
+
+EffortUnits effort_units(bool is_angle) {
+  const Dimension effort = is_angle ? units::newton_m : units::newton;
+  const Dimension rate = is_angle ? units::per_s : units::m_per_s;
+  return {effort, is_angle ? effort : effort / units::m, effort / rate, rate};
+}
+
+/// A joint's coefficient that must not be negative at the default parameters.
+Expr read_positive(const Value& value, const std::string& what, Dimension unit, bool may_vanish,
+                   Reading& reading) {
+  const std::size_t before = reading.findings.size();
+  const Expr x = reading.number(value, what, unit);
+  const Exact at_defaults = reading.at_defaults(x, value.where, what);
+  if (reading.findings.size() == before && (at_defaults < Exact(0) || (!may_vanish && at_defaults.is_zero())))
+    reading.findings.error(value.where, fmt::format("{} is {}", what, at_defaults.decimal(8)),
+                           may_vanish ? "it must not be negative" : "it must be positive");
+  return x;
+}
+
+/// Spring, damper and friction, which act on the displacement r of the joint and its rate.
+void read_joint_forces(TableReader& joint, const Expr& r, const Expr& rate, bool is_angle, Reading& reading) {
+  const EffortUnits unit = effort_units(is_angle);
+  const Value* stiffness = joint.optional("stiffness");
+  const Value* rest = joint.optional("rest");
+  if (stiffness != nullptr) {
+    // k/2 (r - rest)^2
+    const Expr k =
+        reading.number(*stiffness, fmt::format("the stiffness of {}", joint.what()), unit.stiffness);
+    Expr stretch = r;
+    if (rest != nullptr)
+      stretch = r - reading.number(*rest, fmt::format("the rest of {}", joint.what()),
+                                   is_angle ? units::one : units::m);
+    const Expr square = stretch * stretch;
+    reading.model.potential += k * square / Expr(2);
+  } else if (rest != nullptr) {
+    reading.findings.error(rest->where, fmt::format("{} has a rest but no stiffness", joint.what()),
+                           "give it a stiffness, or remove the rest");
+  }
+  if (const Value* damping = joint.optional("damping")) {
+    // c/2 rate^2
+    const Expr c =
+        read_positive(*damping, fmt::format("the damping of {}", joint.what()), unit.damping, true, reading);
+    const Expr square = rate * rate;
+    reading.model.dissipation += c * square / Expr(2);
+  }
+  if (const Value* friction = joint.optional("friction", Value::Kind::table)) {
+    // -F tanh(rate / v)
+    TableReader table(*friction, fmt::format("the friction of {}", joint.what()), reading.findings);
+    const std::string effort = is_angle ? "torque" : "force";
+    const Value* size = table.required(effort, "write its size while the joint moves");
+    const Value* speed = table.required("velocity", "write the speed at which it has built up to 76 %");
+    table.report_unknown_keys();
+    if (size == nullptr || speed == nullptr) return;
+    const Expr F =
+        read_positive(*size, fmt::format("the {} of {}", effort, table.what()), unit.effort, true, reading);
+    const Expr v =
+        read_positive(*speed, fmt::format("the velocity of {}", table.what()), unit.rate, false, reading);
+    if (!v.is_zero()) add_force_on(r, -(F * tanh(rate / v)), reading);
+  }
+}
+
+/// Range and drive of the coordinate that moves the joint.
+void read_coordinate(BodyOutline& body, Coordinate& coordinate, Reading& reading) {
+  TableReader& joint = *body.joint;
+  if (const auto drive = joint.optional_choice("drive", {"active", "passive"}))
+    coordinate.drive = *drive == 0 ? Drive::active : Drive::passive;
+  const Value* range = coordinate.is_angle
+                           ? joint.optional("range")
+                           : joint.required("range", "write its working range, range = [lower, upper]");
+  if (coordinate.is_angle) {
+    coordinate.upper = Exact::pi();
+    coordinate.lower = -coordinate.upper;
+  }
+  if (range == nullptr) return;
+  const std::string what = fmt::format("the range of {}", joint.what());
+  if (const auto bounds = reading.range(*range, what, coordinate.is_angle ? units::one : units::m)) {
+    coordinate.lower = (*bounds)[0];
+    coordinate.upper = (*bounds)[1];
+  }
+}
+
+}  // namespace
+
+void add_force_on(const Expr& displacement, const Expr& force, Reading& reading) {
+  Model& model = reading.model;
+  Tape& tape = *model.tape;
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+    const NodeId share = derivative(tape, displacement.id(tape), model.symbols.r[i]);
+    if (!tape.is_zero(share)) model.forces.push_back({static_cast<int>(6 + i), Expr(tape, share) * force});
+  }
+}
+
+void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading) {
+  const Value* pose = body.table.optional("pose", Value::Kind::table);
+  if (pose == nullptr || described.parent < 0) return;
+  TableReader table(*pose, fmt::format("the pose of {}", body.table.what()), reading.findings);
+  if (const Value* translation = table.optional("translation"))
+    described.p =
+        reading.vector3(*translation, fmt::format("the translation of {}", body.table.what()), units::m);
+  if (const Value* rotation = table.optional("rotation"))
+    described.R = read_rotation(*rotation, fmt::format("the rotation of {}", body.table.what()), reading);
+  table.report_unknown_keys();
+}
+
+void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading) {
+  if (!body.joint) return;
+  TableReader& joint = *body.joint;
+  Model& model = reading.model;
+  const JointKind kind = described.joint.kind;
+  if (kind == JointKind::fixed) {
+    joint.report_unknown_keys();
+    return;
+  }
+  const bool is_angle = kind != JointKind::prismatic;
+  if (const Value* axis = joint.required("axis", "write its direction, for example axis = [0, 0, 1]"))
+    described.joint.axis = reading.direction(*axis, fmt::format("the axis of {}", joint.what()));
+  if (kind == JointKind::helical) {
+    if (const Value* pitch = joint.required("pitch", "write its advance in m/rad"))
+      described.joint.pitch = reading.number(*pitch, fmt::format("the pitch of {}", joint.what()), units::m);
+  }
+  if (body.coordinate >= 0) {
+    const auto i = static_cast<std::size_t>(body.coordinate);
+    described.joint.displacement = Expr(*model.tape, model.symbols.r[i]);
+    read_coordinate(body, model.coordinates[i], reading);
+  } else {
+    for (const std::string_view key : {"drive", "range"}) {
+      if (const Value* value = joint.optional(key))
+        reading.findings.error(value->where, fmt::format("{} is coupled and has a '{}'", joint.what(), key),
+                               "it belongs to the coordinates that the joint follows; remove it");
+    }
+  }
+  const Symbol* rate = reading.scope.find_rate(described.joint.coordinate);
+  if (rate != nullptr)
+    read_joint_forces(joint, described.joint.displacement, rate->quantity.value, is_angle, reading);
+  joint.report_unknown_keys();
+}
+
+}  // namespace anholon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The parts of a description, one function and one file each. All of them fill Reading::model and report
+// errors to Reading::findings.
+
+#include "describe/outline.hpp"
+
+namespace anholon {
+
+/// Pose of a body in its parent's frame: { translation, rotation }.
+void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading);
+
+/// Axis, range, drive, spring, damper and friction of a body's joint.
+void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading);
+
+/// Mass, first moment and inertia, brought to the body's origin.
+void read_inertia(BodyOutline& body, BodyDescription& described, Reading& reading);
+
+/// A uniform beam with cantilever modes.
+void read_beam(BodyOutline& body, BodyDescription& described, Reading& reading);
+
+/// Constraint rows: written ones, no_lateral_slip and rolling.
+void read_constraints(TableReader& root, Reading& reading);
+
+/// Wrenches and generalised forces.
+void read_forces(TableReader& root, Reading& reading);
+
+/// Adds the generalised force `force` that works on `displacement`: on each independent coordinate its share.
+void add_force_on(const Expr& displacement, const Expr& force, Reading& reading);
+
+/// Tables of an array of tables, such as [[body]]; anything else in it is an error.
+std::vector<const Value*> tables_of(TableReader& root, std::string_view key, Findings& findings);
+
+}  // namespace anholon
