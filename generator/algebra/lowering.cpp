@@ -5,6 +5,7 @@
 #include <cln/rational_ring.h>
 
 #include <algorithm>
+#include <unordered_set>
 
 #include "algebra/factors.hpp"
 
@@ -192,8 +193,17 @@ std::vector<NodeId> Lowering::fractions(const std::vector<Fraction>& values) {
 
 std::size_t operation_weight(const Tape& tape, const std::vector<NodeId>& roots) {
   std::size_t result = 0;
-  for (const NodeId id : tape.reachable(roots)) {
-    switch (info(tape.node(id).op).cost) {
+  std::unordered_set<NodeId> seen;  // asked, never iterated
+  std::vector<NodeId> open = roots;
+  while (!open.empty()) {
+    const NodeId id = open.back();
+    open.pop_back();
+    if (!seen.insert(id).second) continue;
+    const Node& n = tape.node(id);
+    const int arity = info(n.op).arity;
+    if (arity >= 1) open.push_back(n.a);
+    if (arity == 2) open.push_back(n.b);
+    switch (info(n.op).cost) {
       case CostClass::none:
         break;
       case CostClass::addition:
