@@ -41,7 +41,7 @@ void make_symbols(Reading& reading) {
                       symbol(SymbolKind::parameter, symbols.parameters.back(), unit_of(parameter)));
   }
   symbols.t = input("t", 0);
-  reading.scope.add("t", symbol(SymbolKind::time, symbols.t, units::s));
+  reading.scope.add("t", symbol(SymbolKind::time, symbols.t, std::nullopt));  // people write sin(t)
   constexpr std::array<char, 3> axes = {'X', 'Y', 'Z'};
   for (std::size_t i = 0; i < 9; ++i) {
     const std::string name = fmt::format("R_{}{}", axes[i / 3], axes[i % 3]);
