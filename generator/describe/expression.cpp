@@ -333,7 +333,7 @@ class ExpressionReader {
       fail(argument, fmt::format("{} of a quantity in {}", word, unit->text()),
            "its argument must be a plain number or an angle");
     }
-    return Dimension{};
+    return unit;
   }
 
   static std::optional<Dimension> root(Dimension unit) {
