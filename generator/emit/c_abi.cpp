@@ -33,6 +33,8 @@ std::string c_literal(std::string_view text) {
   return literal + "\"";
 }
 
+std::string origin(std::string_view text) { return text.empty() ? "none" : one_line(text); }
+
 std::string double_literal(const Exact& value) {
   std::string text = fmt::format("{}", value.to_double());
   if (text.find_first_of(".e") == std::string::npos) text += ".0";
@@ -94,8 +96,8 @@ std::string emit_c_abi(const Program& program, std::string_view header) {
   json data = {{"version", std::string(generator_version())},
                {"header", one_line(header)},
                {"model", one_line(program.model)},
-               {"source_file", one_line(base_name(program.source_file))},
-               {"source_sha256", one_line(program.source_sha256)},
+               {"source_file", origin(base_name(program.source_file))},
+               {"source_sha256", origin(program.source_sha256)},
                {"name_space", fmt::format("{}", fmt::join(plan.name_space, "::"))},
                {"quoted_name_space", c_literal(program.name_space)},
                {"quoted_model", c_literal(program.model)},

@@ -27,6 +27,8 @@ std::string without_last_newline(std::string text) {
   return text;
 }
 
+std::string origin(std::string_view text) { return text.empty() ? "none" : one_line(text); }
+
 std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
   return fmt::format("{}", fmt::join(parts, separator));
 }
@@ -105,8 +107,8 @@ class HeaderWriter {
     data["version"] = std::string(generator_version());
     data["model"] = one_line(program_.model);
     data["scene"] = one_line(program_.scene.empty() ? "standard" : program_.scene);
-    data["source_file"] = one_line(base_name(program_.source_file));
-    data["source_sha256"] = one_line(program_.source_sha256);
+    data["source_file"] = origin(base_name(program_.source_file));
+    data["source_sha256"] = origin(program_.source_sha256);
     data["name_space"] = joined(plan_.name_space, "::");
     write_notes(data);
     write_operations(data);

@@ -81,6 +81,32 @@ constexpr std::array macros = {"DOMAIN",
                                "signgam",
                                "unix"};
 
+// global functions of <cmath>, <cstdlib> and of what programs often include besides: no global namespace may
+// be so named
+constexpr std::array global_functions = {
+    "abort",     "abs",       "accept",    "access", "acct",        "alarm",   "asctime",  "atof",
+    "atoi",      "atol",      "bind",      "brk",    "bsearch",     "calloc",  "cbrt",     "ceil",
+    "chdir",     "chmod",     "chown",     "chroot", "clock",       "clone",   "close",    "connect",
+    "copysign",  "creat",     "crypt",     "ctime",  "daemon",      "div",     "drem",     "dup",
+    "encrypt",   "erf",       "erfc",      "exit",   "expm1",       "fabs",    "fdim",     "finite",
+    "floor",     "fma",       "fmax",      "fmin",   "fmod",        "fork",    "free",     "frexp",
+    "fsync",     "gamma",     "getenv",    "hypot",  "ilogb",       "index",   "ioctl",    "isatty",
+    "j0",        "j1",        "jn",        "kill",   "labs",        "ldexp",   "ldiv",     "lgamma",
+    "link",      "listen",    "llabs",     "lldiv",  "llrint",      "llround", "lockf",    "log10",
+    "log1p",     "log2",      "logb",      "lrint",  "lround",      "lseek",   "malloc",   "memchr",
+    "memcmp",    "memcpy",    "memset",    "mktime", "mmap",        "modf",    "mount",    "nan",
+    "nanosleep", "nearbyint", "nextafter", "nice",   "open",        "optarg",  "optind",   "opterr",
+    "pause",     "pipe",      "poll",      "pow",    "printf",      "profil",  "putenv",   "puts",
+    "qsort",     "raise",     "rand",      "random", "read",        "realloc", "realpath", "recv",
+    "remainder", "remove",    "remquo",    "rename", "rindex",      "rint",    "rmdir",    "round",
+    "scalb",     "scalbln",   "scalbn",    "scanf",  "select",      "send",    "setenv",   "setjmp",
+    "longjmp",   "shutdown",  "sigaction", "signal", "significand", "sinh",    "cosh",     "asinh",
+    "acosh",     "atanh",     "atan",      "sleep",  "socket",      "sprintf", "srand",    "srandom",
+    "stat",      "strcat",    "strchr",    "strcmp", "strcpy",      "strlen",  "swab",     "symlink",
+    "sync",      "syscall",   "system",    "tgamma", "time",        "times",   "timezone", "tolower",
+    "toupper",   "trunc",     "truncate",  "umask",  "umount",      "uname",   "unlink",   "usleep",
+    "utime",     "vfork",     "wait",      "write",  "y0",          "y1",      "yn"};
+
 template <std::size_t n>
 bool contains(const std::array<const char*, n>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
@@ -102,6 +128,11 @@ std::string identifier(std::string_view text) {
     name.insert(0, name.empty() || is_digit(name.front()) ? "x_" : "x");
   if (contains(keywords, name) || contains(own_names, name) || contains(macros, name)) name += '_';
   return name;
+}
+
+std::string namespace_identifier(std::string_view text) {
+  const std::string name = identifier(text);
+  return contains(global_functions, name) ? name + '_' : name;
 }
 
 std::string NameScope::claim(std::string_view wish) {

@@ -13,6 +13,9 @@ namespace anholon {
 /// itself. A safe identifier stays as it is.
 std::string identifier(std::string_view text);
 
+/// The same for a namespace in the global one, where functions of C lie about: "link" becomes "link_".
+std::string namespace_identifier(std::string_view text);
+
 /// Names that one scope of generated code has given away.
 class NameScope {
  public:

@@ -44,7 +44,8 @@ std::vector<std::string> split_name_space(const Program& program) {
   const std::string text = program.name_space.empty() ? program.model : program.name_space;
   for (std::size_t at = 0; at <= text.size();) {
     const std::size_t end = std::min(text.find("::", at), text.size());
-    parts.push_back(identifier(text.substr(at, end - at)));
+    const std::string part = text.substr(at, end - at);
+    parts.push_back(parts.empty() ? namespace_identifier(part) : identifier(part));
     at = end + 2;
   }
   return parts;
