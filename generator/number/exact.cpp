@@ -10,6 +10,7 @@
 #include <cln/rational_ring.h>
 #include <cln/real.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
@@ -20,6 +21,7 @@ namespace anholon {
 namespace {
 
 constexpr unsigned default_digits = 128;
+constexpr unsigned fewest_digits = 40;  // fewer, and sines near a half could not be told from a half
 constexpr unsigned rational_bits = 256;
 constexpr int exponent_limit = 4096;
 
@@ -45,8 +47,10 @@ cln::cl_R bounded(const cln::cl_R& x) {
   return bits <= 2 * rational_bits ? x : cln::cl_R(cln::cl_float(x, cln::float_format(std::max(default_digits, digits_in_use()))));
 }
 
-/// Values of sin and cos at the exact angles (0, pi/6, pi/2, ...) come back as the rationals that they are.
-Exact snapped(const cln::cl_F& x) {
+/// Values of sin and cos at the exact angles (pi/6, pi/2, ...) come back as the rationals that they are. A small angle is
+/// none of these, and its sine is small without being 0.
+Exact snapped(const cln::cl_R& angle, const cln::cl_F& x) {
+  if (cln::abs(angle) < cln::cl_RA(1) / 10) return Exact(cln::cl_R(x));
   for (const long twice : {-2L, -1L, 0L, 1L, 2L}) {
     const cln::cl_RA candidate = cln::cl_RA(twice) / 2;
     const cln::cl_F noise = cln::cl_float(cln::expt(cln::cl_RA(10), -static_cast<long>(digits_in_use()) + 12), x);
@@ -61,7 +65,9 @@ cln::cl_I power_of_ten(long exponent) {
 
 }  // namespace
 
-WorkingDigits::WorkingDigits(unsigned digits) : previous_(digits_in_use()) { digits_in_use() = digits; }
+WorkingDigits::WorkingDigits(unsigned digits) : previous_(digits_in_use()) {
+  digits_in_use() = std::max(digits, fewest_digits);
+}
 WorkingDigits::~WorkingDigits() { digits_in_use() = previous_; }
 unsigned WorkingDigits::current() { return digits_in_use(); }
 
@@ -196,11 +202,11 @@ Exact sqrt(const Exact& x) {
 }
 Exact sin(const Exact& x) {
   if (x.is_zero()) return 0;
-  return snapped(cln::sin(to_float(x.value())));
+  return snapped(x.value(), cln::sin(to_float(x.value())));
 }
 Exact cos(const Exact& x) {
   if (x.is_zero()) return 1;
-  return snapped(cln::cos(to_float(x.value())));
+  return snapped(x.value(), cln::cos(to_float(x.value())));
 }
 Exact tan(const Exact& x) { return sin(x) / cos(x); }
 Exact asin(const Exact& x) {

@@ -13,7 +13,7 @@
 
 namespace anholon {
 
-/// Decimal digits that transcendental functions of exact arguments are computed to; restored at scope end.
+/// Decimal digits, at least 40, that transcendental functions of exact arguments are computed to; restored at scope end.
 class WorkingDigits {
  public:
   explicit WorkingDigits(unsigned digits);
