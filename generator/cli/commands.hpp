@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// One function a verb of the program; each returns the exit status.
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace anholon::cli {
+
+// Exit statuses of every verb.
+inline constexpr int ok = 0;
+inline constexpr int check_failed = 1;
+inline constexpr int usage = 2;
+inline constexpr int bad_input = 3;
+inline constexpr int unsupported = 4;
+inline constexpr int internal_error = 70;
+
+struct ModelOptions {
+  std::string model;                // path of a description or scene
+  std::string scene;                // path, empty: standard
+  std::vector<std::string> functions;
+  std::string inverse = "pseudo";   // or "leading:ROW[,ROW...]"
+};
+
+struct CheckOptions : ModelOptions {
+  bool json = false;
+};
+struct GenerateOptions : ModelOptions {
+  std::string output = ".";
+  bool c_abi = false;
+  bool passes = false;
+};
+struct EvaluateOptions : ModelOptions {
+  std::string states;
+  std::string method = "generated";
+  std::string output;               // empty: standard output
+  unsigned digits = 50;
+};
+struct VerifyOptions : ModelOptions {
+  int samples = 1000;
+  bool json = false;
+};
+struct ExplainOptions : ModelOptions {
+  std::string output;
+};
+struct SimulateOptions {
+  std::string scene;
+  std::string output;
+  bool work_precision = false;
+};
+
+int check(const CheckOptions& options);
+int generate(const GenerateOptions& options);
+int evaluate(const EvaluateOptions& options);
+int verify(const VerifyOptions& options);
+int explain(const ExplainOptions& options);
+int simulate(const SimulateOptions& options);
+
+}  // namespace anholon::cli

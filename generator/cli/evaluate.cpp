@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "check/evaluate.hpp"
+
+#include "cli/common.hpp"
+
+namespace anholon::cli {
+
+int evaluate(const EvaluateOptions& options) {
+  const Model model = load_model(options);
+  const StatesFile states = read_states(options.states, model);
+  const DeriveRequest request = derive_request(options, model);
+  EvaluateRequest wanted;
+  wanted.method = options.method == "exact"       ? EvaluationMethod::exact
+                  : options.method == "recursion" ? EvaluationMethod::recursion
+                                                  : EvaluationMethod::generated;
+  wanted.digits = options.digits;
+  wanted.inverse = request.inverse;
+  wanted.leading_rows = request.leading_rows;
+  write_output(options.output, evaluate_states(model, states, wanted).dump(1) + "\n");
+  return ok;
+}
+
+}  // namespace anholon::cli
