@@ -51,8 +51,14 @@ void read_parameters(TableReader& root, Reading& reading);
 /// coordinates.
 Outline read_outline(TableReader& root, Reading& reading);
 
-/// Makes the inputs of the model's tape and the names that stand for them.
+/// Makes the inputs of the model's tape, in the order of StateSymbols, and the names that stand for them.
 void make_symbols(Reading& reading);
+
+/// The names of a model whose tape has its inputs, and the inputs' default values.
+void name_symbols(Reading& reading);
+
+/// The names of coupled coordinates, which stand for expressions of others.
+void name_coupled_coordinates(Reading& reading);
 
 /// Reads the expressions of coupled coordinates; then their names stand for them.
 void read_couplings(Outline& outline, Reading& reading);

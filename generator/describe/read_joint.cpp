@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Poses and joints.
+// Joints: axis, range, drive and what resists their motion.
 #include <fmt/format.h>
 
 #include "describe/read_parts.hpp"
@@ -7,78 +7,6 @@
 
 namespace anholon {
 namespace {
-
-using Matrix = std::array<Expr, 9>;
-
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix c;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::array<Expr, 3> row = {a[3 * i], a[3 * i + 1], a[3 * i + 2]};
-      const std::array<Expr, 3> column = {b[j], b[3 + j], b[6 + j]};
-      c[3 * i + j] = dot(row, column);
-    }
-  }
-  return c;
-}
-
-/// Turn by an angle about coordinate axis 0, 1 or 2.
-Matrix turn(std::size_t axis, const Expr& angle) {
-  const std::size_t i = (axis + 1) % 3;
-  const std::size_t j = (axis + 2) % 3;
-  const Expr c = cos(angle);
-  const Expr s = sin(angle);
-  Matrix R = {0, 0, 0, 0, 0, 0, 0, 0, 0};
-  R[4 * axis] = 1;
-  R[4 * i] = c;
-  R[4 * j] = c;
-  R[3 * i + j] = -s;
-  R[3 * j + i] = s;
-  return R;
-}
-
-/// One turn of a rotation: { axis = "x", angle = ... }.
-Matrix read_turn(const Value& value, const std::string& what, Reading& reading) {
-  TableReader table(value, what, reading.findings);
-  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  const auto axis = table.required_choice("axis", {"x", "y", "z"});
-  const Value* angle = table.required("angle", "write it in rad");
-  if (axis && angle != nullptr)
-    R = turn(*axis, reading.number(*angle, fmt::format("the angle of {}", what), units::one));
-  table.report_unknown_keys();
-  return R;
-}
-
-/// A turn, a list of turns each about the axes that the ones before it have moved, or { rpy = [roll, pitch,
-/// yaw] }.
-Matrix read_rotation(const Value& value, const std::string& what, Reading& reading) {
-  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-  if (value.kind == Value::Kind::array) {
-    for (const Value& item : value.items) {
-      if (item.kind == Value::Kind::table) {
-        R = product(R, read_turn(item, what, reading));
-      } else {
-        reading.findings.error(item.where, fmt::format("a turn of {} is {}", what, item.kind_name()),
-                               "write { axis = \"x\", angle = ... }");
-      }
-    }
-    return R;
-  }
-  if (value.kind != Value::Kind::table) {
-    reading.findings.error(value.where, fmt::format("{} is {}", what, value.kind_name()),
-                           "write { axis = \"x\", angle = ... }, a list of such turns or { rpy = [...] }");
-    return R;
-  }
-  const Value* rpy = value.find("rpy");
-  if (rpy == nullptr) return read_turn(value, what, reading);
-  TableReader table(value, what, reading.findings);
-  table.optional("rpy");
-  table.report_unknown_keys();
-  const auto angles = reading.vector3(*rpy, fmt::format("rpy of {}", what), units::one);
-  const Matrix yaw = turn(2, angles[2]);
-  const Matrix pitch = turn(1, angles[1]);
-  return product(product(yaw, pitch), turn(0, angles[0]));
-}
 
 /// Units of the efforts of a joint: force or torque, and what multiplies displacement and velocity.
 struct EffortUnits {
@@ -174,18 +102,6 @@ void add_force_on(const Expr& displacement, const Expr& force, Reading& reading)
     const NodeId share = derivative(tape, displacement.id(tape), model.symbols.r[i]);
     if (!tape.is_zero(share)) model.forces.push_back({static_cast<int>(6 + i), Expr(tape, share) * force});
   }
-}
-
-void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading) {
-  const Value* pose = body.table.optional("pose", Value::Kind::table);
-  if (pose == nullptr || described.parent < 0) return;
-  TableReader table(*pose, fmt::format("the pose of {}", body.table.what()), reading.findings);
-  if (const Value* translation = table.optional("translation"))
-    described.p =
-        reading.vector3(*translation, fmt::format("the translation of {}", body.table.what()), units::m);
-  if (const Value* rotation = table.optional("rotation"))
-    described.R = read_rotation(*rotation, fmt::format("the rotation of {}", body.table.what()), reading);
-  table.report_unknown_keys();
 }
 
 void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading) {

@@ -2,21 +2,15 @@
 #include "describe/read_model.hpp"
 
 #include <fmt/format.h>
-#include <sha256.h>
 
 #include <algorithm>
 
 #include "describe/names.hpp"
 #include "describe/read_parts.hpp"
+#include "describe/sha256.hpp"
 
 namespace anholon {
 namespace {
-
-std::string sha256_of(std::string_view bytes) {
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> digest{};
-  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), digest.data());
-  return digest.data();
-}
 
 /// Version of the format, name, title and group.
 void read_header(TableReader& root, Reading& reading) {
@@ -93,9 +87,13 @@ void check_terminal(const Outline& outline, Reading& reading) {
   }
 }
 
-void fill(TableReader& root, Reading& reading) {
+void fill(TableReader& root, const ParameterValues& overrides, Reading& reading) {
   read_header(root, reading);
   read_parameters(root, reading);
+  for (Parameter& parameter : reading.model.parameters) {
+    if (const auto value = overrides.find(parameter.name); value != overrides.end())
+      parameter.value = value->second;
+  }
   Outline outline = read_outline(root, reading);
   make_symbols(reading);
   read_couplings(outline, reading);
@@ -119,7 +117,7 @@ void fill(TableReader& root, Reading& reading) {
 
 }  // namespace
 
-Model read_model_text(std::string_view text, const std::string& file_name) {
+Model read_model_text(std::string_view text, const std::string& file_name, const ParameterValues& overrides) {
   const Value document = read_document(text, file_name);
   Model model;
   model.file = std::filesystem::path(file_name).filename().string();
@@ -127,17 +125,21 @@ Model read_model_text(std::string_view text, const std::string& file_name) {
   Findings findings;
   Reading reading(model, findings);
   TableReader root(document, "the description", findings);
+  if (document.find("model") != nullptr && document.find("body") == nullptr) {
+    throw ModelError(document.find("model")->where, "the file is a scene, not the description of a robot",
+                     "name the description, or use the scene as a scene");
+  }
   if (document.find("anholon") == nullptr) {
     throw ModelError({file_name, 1, 1}, "the file has no 'anholon'",
                      "write anholon = 1, the version of this format");
   }
-  fill(root, reading);
+  fill(root, overrides, reading);
   findings.throw_if_any();
   return model;
 }
 
-Model read_model(const std::filesystem::path& path) {
-  return read_model_text(read_bytes(path), path.string());
+Model read_model(const std::filesystem::path& path, const ParameterValues& overrides) {
+  return read_model_text(read_bytes(path), path.string(), overrides);
 }
 
 }  // namespace anholon

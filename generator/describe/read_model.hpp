@@ -4,6 +4,7 @@
 // The reader of robot descriptions, format version 1; docs/model-file.md documents every key.
 
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 
@@ -11,10 +12,15 @@
 
 namespace anholon {
 
+/// Values that replace those of the description's parameters, by name.
+using ParameterValues = std::map<std::string, Exact, std::less<>>;
+
 /// Reads a description. @throws ModelError with everything that is wrong with it
-Model read_model(const std::filesystem::path& path);
+/// @param overrides  values for some of its parameters; names that are not parameters of it are ignored
+Model read_model(const std::filesystem::path& path, const ParameterValues& overrides = {});
 
 /// Likewise from text. @param file_name  stands in messages; its last component becomes Model::file
-Model read_model_text(std::string_view text, const std::string& file_name);
+Model read_model_text(std::string_view text, const std::string& file_name,
+                      const ParameterValues& overrides = {});
 
 }  // namespace anholon

@@ -42,16 +42,10 @@ void read_parameters(TableReader& root, Reading& reading) {
     }
     TableReader table(entry.value, what, reading.findings);
     if (const Value* value = table.required("value", "give it a value")) {
-      const bool is_text = value->kind == Value::Kind::string;
-      if (is_text || value->kind == Value::Kind::number) {
-        static const Exact largest = Exact::from_decimal("1e300");
-        constexpr std::size_t most_characters = 420;
-        try {
-          const std::string text = is_text ? value->text : decimal_text(*value);
-          if (text.size() > most_characters) throw std::invalid_argument("too long");
-          parameter.value = Exact::from_decimal(text);
-          if (abs(parameter.value) > largest) throw std::invalid_argument("too large");
-        } catch (const std::invalid_argument&) {
+      if (value->kind == Value::Kind::string || value->kind == Value::Kind::number) {
+        if (const auto number = decimal_value(*value)) {
+          parameter.value = *number;
+        } else {
           reading.findings.error(
               value->where, fmt::format("the value of {} is not a decimal number", what),
               "write for example 0.25 or 1e-3; formulas belong where the parameter is used");

@@ -8,7 +8,15 @@
 
 namespace anholon {
 
-/// Pose of a body in its parent's frame: { translation, rotation }.
+struct PoseDescription {
+  std::array<Expr, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  std::array<Expr, 3> p = {0, 0, 0};
+};
+
+/// { translation, rotation }
+PoseDescription read_pose(const Value& pose, const std::string& what, Reading& reading);
+
+/// Pose of a body in its parent's frame.
 void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading);
 
 /// Axis, range, drive, spring, damper and friction of a body's joint.

@@ -147,6 +147,20 @@ std::string decimal_text(const Value& value) {
   return std::all_of(text.begin(), text.end(), belongs) ? text : "";
 }
 
+std::optional<Exact> decimal_value(const Value& value) {
+  static const Exact largest = Exact::from_decimal("1e300");
+  constexpr std::size_t most_characters = 420;
+  if (value.kind != Value::Kind::string && value.kind != Value::Kind::number) return std::nullopt;
+  const std::string text = value.kind == Value::Kind::string ? value.text : decimal_text(value);
+  if (text.size() > most_characters) return std::nullopt;
+  try {
+    const Exact number = Exact::from_decimal(text);
+    return abs(number) > largest ? std::nullopt : std::optional(number);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
+}
+
 Expr dot(const std::array<Expr, 3>& a, const std::array<Expr, 3>& b) {
   const Expr x = a[0] * b[0];
   const Expr y = a[1] * b[1];

@@ -80,6 +80,9 @@ class Reading {
 /// The text of a TOML number without its underscores; empty if it is not a decimal number.
 std::string decimal_text(const Value& value);
 
+/// A decimal number of bounded size, or a string that holds one.
+std::optional<Exact> decimal_value(const Value& value);
+
 /// Scalar and vector product.
 Expr dot(const std::array<Expr, 3>& a, const std::array<Expr, 3>& b);
 std::array<Expr, 3> cross(const std::array<Expr, 3>& a, const std::array<Expr, 3>& b);

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// A scene: what is wanted from a model. Which outputs, which parameters are frozen, joints locked and modes
+// kept, whether there is gravity, how the active coordinates move, and how to integrate. docs/model-file.md
+// documents every key.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "describe/model.hpp"
+
+namespace anholon {
+
+/// A coordinate that the scene holds at a value: an expression of parameters on the model's tape.
+struct LockedCoordinate {
+  int coordinate = 0;
+  Expr value = 0;
+};
+
+/// Imposed motion of an active coordinate: expressions of parameters and t on the model's tape, exact
+/// derivatives.
+struct ImposedMotion {
+  int coordinate = 0;
+  Expr r = 0, r_dot = 0, r_ddot = 0;
+};
+
+/// Torque on a torque-driven coordinate: an expression of parameters, state and t on the model's tape.
+struct ImposedTorque {
+  int coordinate = 0;
+  Expr torque = 0;
+};
+
+/// Imposed motion through the rows of a table.
+struct MotionTable {
+  enum class Ends { natural, clamped, periodic };
+  std::filesystem::path file;
+  Ends ends = Ends::natural;              // clamped: at rest at both ends
+  std::vector<int> coordinates;           // of the columns behind the first, which is t
+  std::vector<double> times;              // strictly increasing
+  std::vector<std::vector<double>> rows;  // one value a coordinate
+};
+
+/// Where a motion starts. What is not named is zero, but velocities: those follow from the rows as far as
+/// these rule them.
+struct InitialState {
+  std::array<Exact, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  std::array<Exact, 3> p = {0, 0, 0};
+  std::vector<std::pair<int, Exact>> coordinates;  // index in Model::coordinates
+  std::vector<std::pair<int, Exact>> velocities;   // 0..5: component of eta; 6 + i: rate of coordinate i
+};
+
+struct Integrator {
+  enum class Method { dopri5, rkmk4 };
+  Method method = Method::dopri5;
+  double tolerance = 1e-9;  // of dopri5, absolute and relative
+  double step = 0;          // s, of rkmk4
+};
+
+struct Scene {
+  std::string name;
+  std::string title;
+  std::string file;    // base name
+  std::string sha256;  // of its bytes
+  std::filesystem::path model_file;
+  Model model;                         // with the scene's parameter values; not specialised
+  std::vector<std::string> functions;  // wanted; empty: every one that the model has
+  std::vector<std::string> frozen;     // parameters that become numbers
+  std::vector<LockedCoordinate> locked;
+  std::vector<std::pair<int, int>> modes;  // (body, modes kept in each plane)
+  bool gravity = true;
+  std::vector<std::string> torque_driven;  // active coordinates whose torque is imposed
+  std::vector<ImposedMotion> motion;
+  std::optional<MotionTable> motion_table;
+  std::vector<ImposedTorque> torques;
+  InitialState initial;
+  Integrator integrator;
+  double duration = 0;               // s; 0: the scene is not to be simulated
+  std::vector<double> output_times;  // s, increasing, within [0, duration]; empty: the integrator's own steps
+};
+
+/// Reads a scene and its model. @throws ModelError with everything that is wrong with either
+Scene read_scene(const std::filesystem::path& path);
+
+/// Likewise from text. @param path  stands in messages; the model's path is relative to its folder
+Scene read_scene_text(std::string_view text, const std::filesystem::path& path);
+
+/// Whether a file is a scene rather than the description of a robot. @throws ModelError where it cannot be
+/// read
+bool is_scene(const std::filesystem::path& path);
+
+}  // namespace anholon

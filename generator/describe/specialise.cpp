@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "describe/specialise.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "tape/interpret.hpp"
+
+namespace anholon {
+namespace {
+
+using Visitor = std::function<void(Expr&)>;
+
+template <class Container>
+void visit_all(Container& expressions, const Visitor& visit) {
+  for (Expr& e : expressions) visit(e);
+}
+
+/// Every expression of a model.
+void for_each_expression(Model& model, const Visitor& visit) {
+  for (BodyDescription& body : model.bodies) {
+    visit_all(body.R, visit);
+    visit_all(body.p, visit);
+    visit_all(body.joint.axis, visit);
+    visit(body.joint.pitch);
+    visit(body.joint.displacement);
+    visit(body.mass);
+    visit_all(body.first_moment, visit);
+    visit_all(body.inertia, visit);
+    for (ModeDescription& mode : body.modes) {
+      visit_all(mode.S, visit);
+      visit_all(mode.X_phi, visit);
+      for (auto& overlap : mode.phi_phi) visit_all(overlap, visit);
+    }
+  }
+  for (RowDescription& row : model.rows) {
+    for (RowTermDescription& term : row.terms) {
+      visit_all(term.point, visit);
+      visit_all(term.linear, visit);
+      visit_all(term.angular, visit);
+    }
+    if (row.expression) visit(*row.expression);
+  }
+  for (WrenchDescription& wrench : model.wrenches) {
+    visit_all(wrench.point, visit);
+    visit_all(wrench.force, visit);
+    visit_all(wrench.torque, visit);
+  }
+  for (GeneralisedForceDescription& force : model.forces) visit(force.force);
+  visit_all(model.gravity, visit);
+  visit(model.potential);
+  visit(model.dissipation);
+}
+
+/// Indices in a body of the modes that stay when `most` are kept in each plane of deflection.
+std::vector<std::size_t> kept_modes(const BodyDescription& body, int most) {
+  std::vector<std::size_t> kept;
+  std::array<int, 3> count = {0, 0, 0};
+  for (std::size_t i = 0; i < body.modes.size(); ++i) {
+    std::size_t plane = 0;
+    while (plane < 2 && body.modes[i].S[plane].is_zero()) ++plane;
+    if (count[plane]++ < most) kept.push_back(i);
+  }
+  return kept;
+}
+
+/// Modes kept in each plane of a body.
+int modes_of(const Scene& scene, std::size_t body) {
+  for (const auto& [index, kept] : scene.modes) {
+    if (index == static_cast<int>(body)) return kept;
+  }
+  return 1 << 20;
+}
+
+void drop_modes(Model& model, const Scene& scene, const std::vector<int>& new_index) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    BodyDescription& body = model.bodies[b];
+    const std::vector<std::size_t> kept = kept_modes(body, modes_of(scene, b));
+    std::vector<ModeDescription> modes;
+    for (const std::size_t i : kept) {
+      if (new_index[static_cast<std::size_t>(body.modes[i].coordinate)] < 0) continue;  // locked at zero
+      ModeDescription mode = body.modes[i];
+      mode.coordinate = new_index[static_cast<std::size_t>(mode.coordinate)];
+      mode.phi_phi.clear();
+      for (const std::size_t j : kept) {
+        if (new_index[static_cast<std::size_t>(body.modes[j].coordinate)] >= 0)
+          mode.phi_phi.push_back(body.modes[i].phi_phi[j]);
+      }
+      modes.push_back(std::move(mode));
+    }
+    body.modes = std::move(modes);
+  }
+}
+
+/// What each input of the old tape becomes on the new one; makes the inputs of the new one.
+std::vector<Expr> new_inputs(const Model& old, Model& model, const Scene& scene,
+                             const std::vector<int>& new_index) {
+  Tape& tape = *model.tape;
+  StateSymbols& symbols = model.symbols;
+  symbols = StateSymbols();
+  std::vector<Expr> image(old.tape->inputs().size(), Expr(0));
+  const auto becomes = [&](NodeId old_input, NodeId id) {
+    image[old.tape->node(old_input).a] = Expr(tape, id);
+  };
+  const auto copied = [&](NodeId old_input) {
+    const NodeId id = tape.input(old.tape->inputs()[old.tape->node(old_input).a]);
+    becomes(old_input, id);
+    return id;
+  };
+  model.parameters.clear();
+  for (std::size_t i = 0; i < old.parameters.size(); ++i) {
+    const Parameter& parameter = old.parameters[i];
+    if (std::find(scene.frozen.begin(), scene.frozen.end(), parameter.name) != scene.frozen.end()) {
+      becomes(old.symbols.parameters[i], tape.constant(parameter.value));
+    } else {
+      model.parameters.push_back(parameter);
+      symbols.parameters.push_back(copied(old.symbols.parameters[i]));
+    }
+  }
+  symbols.t = copied(old.symbols.t);
+  for (std::size_t i = 0; i < 9; ++i) symbols.R[i] = copied(old.symbols.R[i]);
+  for (std::size_t i = 0; i < 3; ++i) symbols.p[i] = copied(old.symbols.p[i]);
+  model.coordinates.clear();
+  for (std::size_t i = 0; i < old.coordinates.size(); ++i) {
+    if (new_index[i] < 0) continue;
+    model.coordinates.push_back(old.coordinates[i]);
+    symbols.r.push_back(copied(old.symbols.r[i]));
+  }
+  for (std::size_t i = 0; i < 6; ++i) symbols.eta[i] = copied(old.symbols.eta[i]);
+  for (std::size_t i = 0; i < old.coordinates.size(); ++i) {
+    if (new_index[i] >= 0) symbols.r_dot.push_back(copied(old.symbols.r_dot[i]));
+  }
+  for (const LockedCoordinate& locked : scene.locked) {  // their places depend on parameters alone
+    const NodeId root = locked.value.id(*scene.model.tape);
+    const Expr place = interpret<Expr>(*scene.model.tape, {root}, image, FromExact<Expr>{&tape}).front();
+    const auto coordinate = static_cast<std::size_t>(locked.coordinate);
+    becomes(old.symbols.r[coordinate], place.id(tape));
+  }
+  for (Expr& e : image) e = Expr(tape, e.id(tape));  // dropped modes and rates of what stands still: zero
+  return image;
+}
+
+/// Whether a written row still holds a velocity.
+bool has_velocity(const Model& model, const RowDescription& row) {
+  if (!row.expression) return true;
+  for (const NodeId id : model.tape->reachable({row.expression->id(*model.tape)})) {
+    const auto& eta = model.symbols.eta;
+    const auto& rates = model.symbols.r_dot;
+    if (std::find(eta.begin(), eta.end(), id) != eta.end() ||
+        std::find(rates.begin(), rates.end(), id) != rates.end())
+      return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::vector<int> kept_coordinates(const Model& model, const Scene& scene) {
+  std::vector<char> gone(model.coordinates.size(), 0);
+  for (const LockedCoordinate& locked : scene.locked) gone[static_cast<std::size_t>(locked.coordinate)] = 1;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const BodyDescription& body = model.bodies[b];
+    const std::vector<std::size_t> kept = kept_modes(body, modes_of(scene, b));
+    for (std::size_t i = 0; i < body.modes.size(); ++i) {
+      if (std::find(kept.begin(), kept.end(), i) == kept.end())
+        gone[static_cast<std::size_t>(body.modes[i].coordinate)] = 1;
+    }
+  }
+  std::vector<int> new_index;
+  int next = 0;
+  for (const char is_gone : gone) new_index.push_back(is_gone != 0 ? -1 : next++);
+  return new_index;
+}
+
+Model specialise(const Model& old, const Scene& scene) {
+  const std::vector<int> new_index = kept_coordinates(old, scene);
+  Model model = old;
+  model.tape = std::make_shared<Tape>();
+  drop_modes(model, scene, new_index);
+  if (!scene.gravity) model.gravity = {0, 0, 0};
+  std::erase_if(model.forces, [&](GeneralisedForceDescription& force) {
+    if (force.index < 6) return false;
+    const int index = new_index[static_cast<std::size_t>(force.index - 6)];
+    force.index = 6 + index;
+    return index < 0;
+  });
+  try {
+    const std::vector<Expr> image = new_inputs(old, model, scene, new_index);
+    std::vector<Expr*> expressions;
+    std::vector<NodeId> roots;
+    for_each_expression(model, [&](Expr& e) {
+      if (e.tape() == nullptr) return;
+      expressions.push_back(&e);
+      roots.push_back(e.id(*old.tape));
+    });
+    const std::vector<Expr> copies =
+        interpret<Expr>(*old.tape, roots, image, FromExact<Expr>{model.tape.get()});
+    for (std::size_t i = 0; i < copies.size(); ++i) *expressions[i] = copies[i];
+  } catch (const std::domain_error& error) {
+    throw ModelError({scene.file, 0, 0},
+                     fmt::format("frozen and locked values leave the model undefined: {}", error.what()),
+                     "freeze other values, or fewer");
+  }
+  for (BodyDescription& body : model.bodies) {
+    const auto found = std::find_if(old.coordinates.begin(), old.coordinates.end(),
+                                    [&](const Coordinate& c) { return c.name == body.joint.coordinate; });
+    if (found != old.coordinates.end() &&
+        new_index[static_cast<std::size_t>(found - old.coordinates.begin())] < 0)
+      body.joint.coordinate.clear();
+  }
+  std::erase_if(model.free_velocities, [&](const std::string& name) {
+    const auto is_it = [&](const Coordinate& c) { return c.name == name; };
+    return std::any_of(old.coordinates.begin(), old.coordinates.end(), is_it) &&
+           std::none_of(model.coordinates.begin(), model.coordinates.end(), is_it);
+  });
+  std::erase_if(model.rows, [&](const RowDescription& row) {
+    if (has_velocity(model, row)) return false;
+    model.notes.push_back(fmt::format("constraint '{}' holds by itself in scene '{}'", row.name, scene.name));
+    return true;
+  });
+  return model;
+}
+
+}  // namespace anholon
