@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "describe/read_urdf.hpp"
+
+#include <fmt/format.h>
+#include <sha256.h>
+
+#include <algorithm>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "describe/names.hpp"
+#include "describe/urdf_tree.hpp"
+
+namespace anholon {
+namespace {
+
+std::string sha256_of(std::string_view bytes) {
+  std::array<char, SHA256_DIGEST_STRING_LENGTH> digest{};
+  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), digest.data());
+  return digest.data();
+}
+
+/// Words that expressions and generated code use for themselves.
+const std::set<std::string>& words_in_use() {
+  static const std::set<std::string> words = {
+      "t",    "g",    "R",    "p",    "r",    "pi",   "eta",  "sin", "cos", "tan", "asin", "acos", "atan2", "exp",
+      "log",  "tanh", "abs",  "sign", "sqrt", "dot",  "ddot", "p_X", "p_Y", "p_Z", "R_XX", "R_XY", "R_XZ",  "R_YX",
+      "R_YY", "R_YZ", "R_ZX", "R_ZY", "R_ZZ", "V_X",  "V_Y",  "V_Z", "Omega_X", "Omega_Y", "Omega_Z"};
+  return words;
+}
+
+/// A name of the file as an identifier: other characters become underscores, keywords get one behind them.
+std::string identifier_from(std::string_view text, std::string_view prefix) {
+  constexpr std::size_t longest = 48;  // leaves room for what is put behind
+  std::string name;
+  for (const char c : text) {
+    const bool fits = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    const char kept = fits ? c : '_';
+    if (kept == '_' && (name.empty() || name.back() == '_')) continue;
+    name += kept;
+  }
+  name = name.substr(0, longest);
+  while (!name.empty() && name.back() == '_') name.pop_back();
+  if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = fmt::format("{}{}{}", prefix, name.empty() ? "" : "_", name);
+  if (!objection_to_name(name).empty()) name += "_";
+  return name;
+}
+
+/// Gives each name once.
+class NameGiver {
+ public:
+  NameGiver(std::string kind, std::vector<std::string>& notes) : kind_(std::move(kind)), notes_(notes) {}
+  std::string operator()(const std::string& text) {
+    const std::string base = identifier_from(text, kind_);
+    std::string name = base;
+    for (int i = 2; words_in_use().contains(name) || !taken_.insert(name).second; ++i)
+      name = fmt::format("{}{}{}", base, base.back() == '_' ? "" : "_", i);
+    if (name != text) notes_.push_back(fmt::format("{} '{}' is called {}", kind_, text, name));
+    return name;
+  }
+
+ private:
+  std::string kind_;
+  std::vector<std::string>& notes_;
+  std::set<std::string> taken_;
+};
+
+/// "pi/2", "-3 pi/4" for k quarters of pi.
+std::string quarters_of_pi(int k) {
+  if (k == 0) return "0";
+  const int divisor = k % 4 == 0 ? 4 : k % 2 == 0 ? 2 : 1;
+  const int numerator = k / divisor;
+  const std::string factor = numerator == 1 ? "" : numerator == -1 ? "-" : fmt::format("{} ", numerator);
+  return fmt::format("{}pi{}", factor, divisor == 4 ? "" : fmt::format("/{}", 4 / divisor));
+}
+
+bool is_zero(const UrdfInertial& inertial) {
+  return inertial.mass.is_zero() && std::ranges::all_of(inertial.inertia, [](const Exact& x) { return x.is_zero(); });
+}
+
+class UrdfReader {
+ public:
+  UrdfReader(std::string_view text, const std::string& file_name, const UrdfOptions& options)
+      : options_(options), source_(text, file_name), file_(read_urdf_elements(source_)), tree_(urdf_tree(file_, {file_name, 0, 0})) {
+    model_.file = std::filesystem::path(file_name).filename().string();
+    model_.sha256 = sha256_of(text);
+  }
+
+  Model run() {
+    model_.notes = file_.notes;
+    model_.title = file_.name;
+    model_.name = NameGiver("robot", model_.notes)(file_.name);
+    model_.group = options_.floating ? GroupKind::SE3 : GroupKind::fixed;
+    model_.gravity = {0, 0, constant(-options_.gravity)};
+    drop_world();
+    name_coordinates();
+    read_inertias();
+    make_inputs();
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n) add_link(n);
+    return std::move(model_);
+  }
+
+ private:
+  Expr constant(const Exact& x) { return {*model_.tape, model_.tape->constant(x)}; }
+  [[nodiscard]] const UrdfLink& link(std::size_t node) const { return file_.links[static_cast<std::size_t>(tree_.nodes[node].link)]; }
+  [[nodiscard]] const UrdfJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
+  void note(std::string text) { model_.notes.push_back(std::move(text)); }
+
+  /// A massless root whose only joint is a floating one is the world itself.
+  void drop_world() {
+    if (tree_.nodes.size() < 2) return;
+    const auto& inertial = link(0).inertial;
+    const bool one_child = std::ranges::count(tree_.nodes, 0, &UrdfNode::parent) == 1;
+    const UrdfJoint& first = joint(tree_.nodes[1].joint);
+    if (first.type != UrdfJointType::floating || !one_child || (inertial && !is_zero(*inertial))) return;
+    note(fmt::format("floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world", first.name,
+                     link(1).name, link(0).name));
+    model_.group = GroupKind::SE3;
+    tree_.nodes.erase(tree_.nodes.begin());
+    for (UrdfNode& node : tree_.nodes) --node.parent;
+    tree_.nodes[0] = {tree_.nodes[0].link, -1, -1};
+  }
+
+  /// One coordinate for each displacement of a joint that does not mimic.
+  void name_coordinates() {
+    NameGiver name("joint", model_.notes);
+    first_coordinate_.assign(file_.joints.size(), -1);
+    const auto add = [&](const UrdfJoint& j, const std::string& text, bool is_angle, bool is_chain) {
+      Coordinate c;
+      c.name = name(text);
+      c.drive = Drive::active;
+      c.is_angle = is_angle;
+      c.upper = is_angle ? Exact::pi() : Exact(1);
+      c.lower = -c.upper;
+      c.where = j.where;
+      if (j.limit && !is_chain) c.lower = (*j.limit)[0], c.upper = (*j.limit)[1];
+      if (!j.limit && j.type == UrdfJointType::revolute)
+        note(fmt::format("joint '{}' has no limits: range [-pi, pi]", j.name));
+      if (!is_angle && (is_chain || !j.limit)) note(fmt::format("joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
+      model_.coordinates.push_back(std::move(c));
+    };
+    for (const UrdfNode& node : tree_.nodes) {
+      if (node.joint < 0) continue;
+      const auto j = static_cast<std::size_t>(node.joint);
+      const UrdfJoint& described = file_.joints[j];
+      if (described.mimic || described.type == UrdfJointType::fixed) continue;
+      first_coordinate_[j] = static_cast<int>(model_.coordinates.size());
+      if (described.type == UrdfJointType::planar) {
+        for (const char* part : {"x", "y"}) add(described, fmt::format("{}_{}", described.name, part), false, true);
+        add(described, described.name + "_angle", true, true);
+      } else if (described.type == UrdfJointType::floating) {
+        for (const char* part : {"x", "y", "z"}) add(described, fmt::format("{}_{}", described.name, part), false, true);
+        for (const char* part : {"yaw", "pitch", "roll"}) add(described, fmt::format("{}_{}", described.name, part), true, true);
+        note(fmt::format("floating joint '{}' inside the tree became three slides and three turns (yaw, pitch, roll): singular "
+                         "at a pitch of pi/2",
+                         described.name));
+      } else {
+        add(described, described.name, described.type != UrdfJointType::prismatic, false);
+      }
+    }
+  }
+
+  /// Mass, first moment and inertia of every link about its own origin, in its own axes; parameters where wanted.
+  void read_inertias() {
+    NameGiver body_name("link", model_.notes);
+    for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
+      names_.push_back(body_name(link(n).name));
+      std::array<Exact, 10> figures;  // m, mx, my, mz, xx, yy, zz, xy, xz, yz
+      const auto& inertial = link(n).inertial;
+      if (!inertial) {
+        note(fmt::format("link '{}' has no inertial: massless", link(n).name));
+      } else {
+        figures = about_origin(*inertial, link(n).name);
+      }
+      figures_.push_back(figures);
+      if (!options_.symbolic_inertia) continue;
+      constexpr std::array<const char*, 10> suffix = {"m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
+      for (std::size_t i = 0; i < 10; ++i) {
+        if (figures[i].is_zero()) continue;
+        const char* unit = i == 0 ? "kg" : i < 4 ? "kg m" : "kg m^2";
+        model_.parameters.push_back({fmt::format("{}{}{}", names_[n], names_[n].back() == '_' ? "" : "_", suffix[i]), figures[i], unit,
+                                     fmt::format("{} of link {} about its origin, in its own axes", suffix[i], link(n).name),
+                                     inertial->where});
+      }
+    }
+  }
+
+  std::array<Exact, 10> about_origin(const UrdfInertial& i, const std::string& name) {
+    const std::string what = fmt::format("the inertial of link '{}'", name);
+    const ExactMatrix R = rotation(i.origin.rpy, what);
+    const ExactMatrix central = {i.inertia[0], i.inertia[3], i.inertia[4], i.inertia[3], i.inertia[1],
+                                 i.inertia[5], i.inertia[4], i.inertia[5], i.inertia[2]};
+    const ExactVector& c = i.origin.xyz;
+    const Exact half_trace = (central[0] + central[4] + central[8]) / Exact(2);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (half_trace - central[4 * k] < -half_trace * Exact::from_decimal("1e-9")) {
+        note(fmt::format("{} breaks the triangle rule: one principal moment exceeds the sum of the others", what));
+        break;
+      }
+    }
+    bool turned = false;  // a product with the identity would keep the values but not their exactness as zeros
+    for (const Exact& a : i.origin.rpy) turned = turned || !a.is_zero();
+    const ExactMatrix I = turned ? product(product(R, central), transposed(R)) : central;
+    const Exact& m = i.mass;
+    const Exact square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+    if (m.is_zero() && !is_zero(i)) note(fmt::format("link '{}' has inertia but no mass", name));
+    return {m,
+            m * c[0],
+            m * c[1],
+            m * c[2],
+            I[0] + m * (square - c[0] * c[0]),
+            I[4] + m * (square - c[1] * c[1]),
+            I[8] + m * (square - c[2] * c[2]),
+            I[1] - m * c[0] * c[1],
+            I[2] - m * c[0] * c[2],
+            I[5] - m * c[1] * c[2]};
+  }
+
+  ExactMatrix rotation(const ExactVector& rpy, const std::string& of) {
+    if (!options_.as_written) {
+      constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
+      for (std::size_t i = 0; i < 3; ++i) {
+        const auto turns = rpy[i].is_zero() ? std::nullopt : eighth_turns(rpy[i]);
+        if (turns) note(fmt::format("{} {} of {} taken as {}", names[i], rpy[i].decimal(20), of, quarters_of_pi(*turns)));
+      }
+    }
+    return rotation_from_rpy(rpy, !options_.as_written);
+  }
+
+  /// The inputs of the model's tape, in the order that all models have.
+  void make_inputs() {
+    Tape& tape = *model_.tape;
+    StateSymbols& s = model_.symbols;
+    constexpr std::array<char, 3> axes = {'X', 'Y', 'Z'};
+    for (const Parameter& p : model_.parameters) s.parameters.push_back(tape.input(p.name));
+    s.t = tape.input("t");
+    for (std::size_t i = 0; i < 9; ++i) s.R[i] = tape.input(fmt::format("R_{}{}", axes[i / 3], axes[i % 3]));
+    for (std::size_t i = 0; i < 3; ++i) s.p[i] = tape.input(fmt::format("p_{}", axes[i]));
+    for (const Coordinate& c : model_.coordinates) s.r.push_back(tape.input(c.name));
+    for (std::size_t i = 0; i < 6; ++i) s.eta[i] = tape.input(std::string(twist_component_names[i]));
+    for (const Coordinate& c : model_.coordinates) s.r_dot.push_back(tape.input(c.name + "_dot"));
+  }
+
+  void add_link(std::size_t n) {
+    BodyDescription body;
+    body.name = names_[n];
+    body.where = link(n).where;
+    set_inertia(body, n);
+    const UrdfNode& node = tree_.nodes[n];
+    if (node.joint < 0) {
+      body_of_.push_back(static_cast<int>(model_.bodies.size()));
+      model_.bodies.push_back(std::move(body));
+      return;
+    }
+    const UrdfJoint& j = joint(node.joint);
+    const std::string what = fmt::format("joint '{}'", j.name);
+    body.parent = body_of_[static_cast<std::size_t>(node.parent)];
+    const ExactMatrix R = rotation(j.origin.rpy, what);
+    for (std::size_t i = 0; i < 9; ++i) body.R[i] = constant(R[i]);
+    for (std::size_t i = 0; i < 3; ++i) body.p[i] = constant(j.origin.xyz[i]);
+    if (j.type == UrdfJointType::planar || j.type == UrdfJointType::floating) {
+      add_chain(std::move(body), j, node.joint);
+    } else {
+      if (j.type != UrdfJointType::fixed) add_joint(body, j, node.joint);
+      model_.bodies.push_back(std::move(body));
+    }
+    body_of_.push_back(static_cast<int>(model_.bodies.size()) - 1);
+  }
+
+  void set_inertia(BodyDescription& body, std::size_t n) {
+    std::array<Expr, 10> f;
+    for (std::size_t i = 0; i < 10; ++i) {
+      f[i] = figures_[n][i].is_zero() ? Expr(0)
+             : options_.symbolic_inertia ? Expr(*model_.tape, model_.symbols.parameters[next_parameter_++])
+                                         : constant(figures_[n][i]);
+    }
+    body.mass = f[0];
+    body.first_moment = {f[1], f[2], f[3]};
+    body.inertia = {f[4], f[5], f[6], f[7], f[8], f[9]};
+  }
+
+  std::array<Expr, 3> axis(const UrdfJoint& j) {
+    const ExactVector a = unit_vector(j.axis, !options_.as_written);
+    if (a != j.axis)
+      note(fmt::format("axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8), a[1].decimal(8), a[2].decimal(8)));
+    return {constant(a[0]), constant(a[1]), constant(a[2])};
+  }
+
+  void add_joint(BodyDescription& body, const UrdfJoint& j, int index) {
+    const UrdfFollower& follower = tree_.followers[static_cast<std::size_t>(index)];
+    const auto coordinate = static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(follower.leader)]);
+    body.joint.kind = j.type == UrdfJointType::prismatic ? JointKind::prismatic : JointKind::revolute;
+    body.joint.axis = axis(j);
+    body.joint.coordinate = model_.coordinates[coordinate].name;
+    const Expr factor = constant(follower.multiplier);
+    const Expr turned = factor * Expr(*model_.tape, model_.symbols.r[coordinate]);
+    body.joint.displacement = turned + constant(follower.offset);
+    const Expr rate = factor * Expr(*model_.tape, model_.symbols.r_dot[coordinate]);
+    add_resistance(j, coordinate, factor, rate);
+  }
+
+  /// Damping c: D = c/2 rate^2; dry friction: -f sign(rate).
+  void add_resistance(const UrdfJoint& j, std::size_t coordinate, const Expr& factor, const Expr& rate) {
+    if (!j.damping.is_zero()) {
+      const Expr square = rate * rate;
+      model_.dissipation += constant(j.damping / Exact(2)) * square;
+    }
+    if (!j.friction.is_zero()) {
+      const Expr effort = constant(-j.friction) * sign(rate);
+      model_.forces.push_back({static_cast<int>(6 + coordinate), factor * effort});
+    }
+  }
+
+  /// A joint of several displacements as a chain of massless bodies; the link is the last of them.
+  void add_chain(BodyDescription body, const UrdfJoint& j, int index) {
+    const bool planar = j.type == UrdfJointType::planar;
+    std::vector<std::pair<JointKind, std::array<Expr, 3>>> steps;
+    if (planar) {
+      const ExactVector normal = unit_vector(j.axis, !options_.as_written);
+      std::size_t least = 0;  // the coordinate axis that is least along the normal: the next two make a right-handed frame
+      for (std::size_t k = 1; k < 3; ++k) {
+        if (abs(normal[k]) < abs(normal[least])) least = k;
+      }
+      ExactVector x;
+      for (std::size_t k = 0; k < 3; ++k) x[k] = (k == least ? Exact(1) : Exact(0)) - normal[least] * normal[k];
+      x = unit_vector(x, true);
+      const ExactVector y = {normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2], normal[0] * x[1] - normal[1] * x[0]};
+      for (const ExactVector& a : {x, y}) steps.push_back({JointKind::prismatic, {constant(a[0]), constant(a[1]), constant(a[2])}});
+      steps.push_back({JointKind::revolute, axis(j)});
+    } else {
+      const std::array<std::array<Expr, 3>, 3> e = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+      for (std::size_t k = 0; k < 3; ++k) steps.push_back({JointKind::prismatic, e[k]});
+      for (std::size_t k = 3; k-- > 0;) steps.push_back({JointKind::revolute, e[k]});
+    }
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+      const auto coordinate = static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(index)]) + i;
+      BodyDescription part;
+      const bool last = i + 1 == steps.size();
+      if (last) part = body;
+      part.name = last ? body.name : fmt::format("{}_{}", body.name, i + 1);
+      part.where = body.where;
+      part.parent = i == 0 ? body.parent : static_cast<int>(model_.bodies.size()) - 1;
+      part.R = i == 0 ? body.R : BodyDescription().R;
+      part.p = i == 0 ? body.p : BodyDescription().p;
+      part.joint.kind = steps[i].first;
+      part.joint.axis = steps[i].second;
+      part.joint.coordinate = model_.coordinates[coordinate].name;
+      part.joint.displacement = Expr(*model_.tape, model_.symbols.r[coordinate]);
+      add_resistance(j, coordinate, 1, Expr(*model_.tape, model_.symbols.r_dot[coordinate]));
+      model_.bodies.push_back(std::move(part));
+    }
+  }
+
+  const UrdfOptions options_;
+  XmlSource source_;
+  UrdfFile file_;
+  UrdfTree tree_;
+  Model model_;
+  std::vector<int> first_coordinate_;          // of each joint, in Model::coordinates
+  std::vector<std::string> names_;             // of the nodes' links
+  std::vector<std::array<Exact, 10>> figures_; // inertial figures of the nodes' links
+  std::vector<int> body_of_;                   // of each node, in Model::bodies
+  std::size_t next_parameter_ = 0;
+};
+
+}  // namespace
+
+Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options) {
+  return UrdfReader(text, file_name, options).run();
+}
+
+Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << file.rdbuf();
+  if (!file) throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
+  return read_urdf_text(bytes.str(), path.string(), options);
+}
+
+}  // namespace anholon
