@@ -192,5 +192,57 @@ TEST(KernelCore, OfTheDifferentialDriveIsConstant) {
   }
 }
 
+TEST(KernelCore, TakesOtherFunctionsAsSymbols) {
+  Tape tape;
+  const Expr a = input(tape, "a");
+  const Expr b = input(tape, "b");
+  const Expr root = sqrt(a * a + b * b);
+  Expr many = 0;  // outgrows the bound of an entry
+  for (int i = 0; i < 12; ++i) many += input(tape, "x" + std::to_string(i));
+  const Expr square = many * many;
+  const Matrix A = test::matrix(tape, {{root * a, root * b, root * a}, {square, exp(a), square * b / a}});
+  const Matrix B = test::matrix(tape, {{atan2(a, b)}, {square}});
+  const auto core = kernel_core(tape, A, B, {2});
+  ASSERT_TRUE(core);
+  expect_kernel(tape, A, B, *core);
+}
+
+TEST(KernelCore, OfNoConstraintIsEverything) {
+  Tape tape;
+  const auto core = kernel_core(tape, {}, {}, {0, 1});
+  ASSERT_TRUE(core);
+  EXPECT_EQ(entries(core->H), entries(test::matrix(tape, {{1, 0}, {0, 1}})));
+}
+
+TEST(KernelCore, GivesUpOnLargeDenseBlocksOnly) {
+  Tape tape;
+  const auto dense = [&](int rows, int columns) {
+    std::vector<std::vector<Expr>> m;
+    for (int i = 0; i < rows; ++i) {
+      auto& row = m.emplace_back();
+      for (int j = 0; j < columns; ++j) row.push_back(input(tape, "a" + std::to_string(10 * i + j)));
+    }
+    return test::matrix(tape, m);
+  };
+  const Matrix four = dense(4, 5);
+  const auto core = kernel_core(tape, four, Matrix(4), {4});
+  ASSERT_TRUE(core);
+  expect_kernel(tape, four, Matrix(4), *core);
+  EXPECT_FALSE(kernel_core(tape, dense(5, 6), Matrix(5), {5}));
+
+  // Six rows that fall apart into 2 + 2 + 2.
+  Matrix six(6, std::vector<NodeId>(7, tape.constant(0)));
+  for (std::size_t block = 0; block < 3; ++block) {
+    const Matrix m = dense(2, 3);
+    for (std::size_t i = 0; i < 2; ++i) {
+      for (std::size_t j = 0; j < 2; ++j) six[2 * block + i][2 * block + j] = m[i][j];
+      six[2 * block + i][6] = m[i][2];
+    }
+  }
+  const auto blocks = kernel_core(tape, six, Matrix(6), {6});
+  ASSERT_TRUE(blocks);
+  expect_kernel(tape, six, Matrix(6), *blocks);
+}
+
 }  // namespace
 }  // namespace anholon
