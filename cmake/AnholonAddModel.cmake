@@ -5,7 +5,9 @@
 #
 # Generates the C++ of a model at build time and makes it a target. Programs that link the target include
 #
-#   <model>.hpp  or, with a scene,  <model>_<scene>.hpp      named after the files, without folder and extension
+#   <model>.hpp  or, with a scene,  <model>_<scene>.hpp
+#
+# named after the files: board.toml with gait.scene.toml gives board_gait.hpp.
 #
 #   MODEL, SCENE   description and scene (TOML); relative to the current source folder
 #   FUNCTIONS      functions to generate; default: all that the model or the scene asks for
@@ -50,6 +52,7 @@ function(anholon_add_model target)
   set(options "")
   if(arg_SCENE)
     get_filename_component(scene "${arg_SCENE}" NAME_WLE)
+    string(REGEX REPLACE "\\.scene$" "" scene "${scene}")
     string(APPEND name "_${scene}")
     list(APPEND inputs "${arg_SCENE}")
     list(APPEND options --scene "${arg_SCENE}")
