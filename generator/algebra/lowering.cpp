@@ -159,7 +159,7 @@ NodeId Lowering::sum(const Polynomial& p) {
     }
     terms.emplace_back(cln::minusp(coefficient), scaled(cln::abs(coefficient), id));
   }
-  std::ranges::stable_partition(terms, [](const auto& t) { return !t.first; });
+  std::stable_partition(terms.begin(), terms.end(), [](const auto& t) { return !t.first; });
   const bool all_negative = terms.front().first;
   NodeId result = terms.front().second;
   for (std::size_t i = 1; i < terms.size(); ++i) {
