@@ -1,26 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "check/evaluate.hpp"
 
-#include "check/compile_cache.hpp"
-#include "number/exact_eigen.hpp"
+#include "check/compiled_caller.hpp"
+#include "check/evaluate_recursion.hpp"
 
 namespace anholon {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-/// Calls compiled code with its parameters set.
-ProgramCaller<double> compiled_caller(const Program& program, const std::vector<Exact>& parameters) {
-  auto code = std::make_shared<CompiledProgram>(program);
-  std::vector<double> values;
-  for (const Exact& p : parameters) values.push_back(p.to_double());
-  code->set_parameters(values);
-  return [code](const std::string& function, const NamedValues<double>& inputs) {
-    const CompiledProgram::Blocks blocks(inputs.begin(), inputs.end());
-    const CompiledProgram::Blocks outputs = code->call(function, blocks);
-    return NamedValues<double>(outputs.begin(), outputs.end());
-  };
-}
 
 }  // namespace
 

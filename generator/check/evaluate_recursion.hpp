@@ -2,81 +2,26 @@
 #pragma once
 
 // The numeric recursion and numeric reduction at one state, over double or Exact: no code is generated and no kernel
-// basis is differentiated.
+// basis is differentiated. Instantiated once, since factorisations over Exact are slow to compile.
 
-#include "anholon/free_dynamics.hpp"
-#include "anholon/reduction.hpp"
+#include "anholon/mechanism.hpp"
 #include "check/evaluated.hpp"
+#include "number/exact.hpp"
 #include "reduce/partition.hpp"
 
 namespace anholon {
 
-namespace detail {
-
-template <class S>
-std::vector<S> from_eigen(const DynamicVector<S>& x) {
-  return {x.data(), x.data() + x.size()};
-}
-template <class S>
-Matrix<S> from_eigen(const DynamicMatrix<S>& x) {
-  Matrix<S> m(static_cast<int>(x.rows()), static_cast<int>(x.cols()));
-  for (int i = 0; i < m.rows(); ++i) {
-    for (int j = 0; j < m.cols(); ++j) m(i, j) = x(i, j);
-  }
-  return m;
-}
-
-}  // namespace detail
-
 /// @param threshold  relative size below which a pivot of the constraint matrix counts as zero
 template <class S>
-Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition, const EvaluationInput<S>& input, const S& threshold) {
-  FreeDynamics<S> dynamics(mechanism);
-  Evaluated<S> e;
-  e.M = dynamics.mass_matrix(input.state);
-  e.force = dynamics.forces(input.state);
-  std::tie(e.G, e.bias) = dynamics.constraints(input.state);
-  const auto energies = dynamics.energies(input.state);
-  e.kinetic = energies.kinetic, e.gravity = energies.gravity, e.elastic = energies.elastic, e.dissipated_power = energies.dissipated_power;
+Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition, const EvaluationInput<S>& input, const S& threshold);
 
-  const std::vector<int>& passive = partition.passive;
-  const std::vector<int>& active = partition.active;
-  std::vector<int> rows(mechanism.rows.size());
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
-  const DynamicMatrix<S> A = to_eigen(e.G.block(rows, passive));
-  const DynamicMatrix<S> B = to_eigen(e.G.block(rows, active));
-  const DynamicMatrix<S> M_pp = to_eigen(e.M.block(passive, passive));
-  const DynamicMatrix<S> M_pa = to_eigen(e.M.block(passive, active));
-  const DynamicVector<S> bias = to_eigen(e.bias);
-  const auto pick = [](const std::vector<S>& v, const std::vector<int>& indices) {
-    DynamicVector<S> r(static_cast<Eigen::Index>(indices.size()));
-    for (std::size_t i = 0; i < indices.size(); ++i) r(static_cast<Eigen::Index>(i)) = v[static_cast<std::size_t>(indices[i])];
-    return r;
-  };
-  const DynamicMatrix<S> Z = ConstraintFactors<S>(A, threshold).kernel();
-  e.projector = detail::from_eigen<S>(DynamicMatrix<S>(Z * Z.transpose()));
+extern template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&, const EvaluationInput<double>&, const double&);
+extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&, const EvaluationInput<Exact>&, const Exact&);
 
-  if (input.has_acceleration) {
-    DynamicVector<S> r_a_ddot(static_cast<Eigen::Index>(active.size()));
-    for (std::size_t i = 0; i < active.size(); ++i) r_a_ddot(static_cast<Eigen::Index>(i)) = input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
-    const DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
-    const auto solution = solve_constrained<S>(M_pp, force, A, bias + B * r_a_ddot, threshold);
-    e.acceleration.assign(e.force.size(), S(0));
-    for (std::size_t i = 0; i < passive.size(); ++i) e.acceleration[static_cast<std::size_t>(passive[i])] = solution.acceleration(static_cast<Eigen::Index>(i));
-    for (std::size_t i = 0; i < active.size(); ++i) e.acceleration[static_cast<std::size_t>(active[i])] = r_a_ddot(static_cast<Eigen::Index>(i));
-    e.lambda = detail::from_eigen<S>(solution.multipliers);
-    const DynamicMatrix<S> M_aa = to_eigen(e.M.block(active, active));
-    const DynamicVector<S> tau = M_pa.transpose() * solution.acceleration + M_aa * r_a_ddot - pick(e.force, active) - B.transpose() * solution.multipliers;
-    e.tau_a = detail::from_eigen<S>(tau);
-  }
-  if (input.has_torque) {
-    DynamicVector<S> force = to_eigen(e.force);
-    for (const int i : active) force(i) += input.tau[static_cast<std::size_t>(i - partition.n)];
-    const auto solution = solve_constrained<S>(to_eigen(e.M), force, to_eigen(e.G), bias, threshold);
-    e.free_acceleration = detail::from_eigen<S>(solution.acceleration);
-    e.free_lambda = detail::from_eigen<S>(solution.multipliers);
-  }
-  return e;
-}
+/// Minimum-norm least-squares solution of A x = b.
+std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b);
+
+/// Orthogonal projector onto the range of H, of full column rank.
+Matrix<double> range_projector(const Matrix<double>& H);
 
 }  // namespace anholon

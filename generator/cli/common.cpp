@@ -9,15 +9,34 @@
 #include <stdexcept>
 
 #include "describe/read_model.hpp"
+#include "describe/scene.hpp"
+#include "describe/specialise.hpp"
 #include "emit/write_file.hpp"
 
 namespace anholon::cli {
 
-Model load_model(const ModelOptions& options) { return read_model(options.model); }
+Model load_model(const ModelOptions& options) {
+  if (!options.scene.empty()) {
+    const Scene scene = read_scene(options.scene);
+    return specialise(scene.model, scene);
+  }
+  if (is_scene(options.model)) {
+    const Scene scene = read_scene(options.model);
+    return specialise(scene.model, scene);
+  }
+  return read_model(options.model);
+}
 
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   DeriveRequest request;
   request.functions = options.functions;
+  const std::string scene_file = !options.scene.empty() ? options.scene : is_scene(options.model) ? options.model : "";
+  if (!scene_file.empty()) {
+    const Scene scene = read_scene(scene_file);
+    request.scene = scene.name;
+    request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
+    if (request.functions.empty()) request.functions = scene.functions;
+  }
   const std::string prefix = "leading:";
   if (options.inverse == "pseudo") return request;
   if (!options.inverse.starts_with(prefix)) throw std::invalid_argument(fmt::format("--inverse is '{}', not pseudo or leading:ROWS", options.inverse));

@@ -177,9 +177,10 @@ class Deriver {
       (is_active ? r_a : r_p).push_back(passive[i]);
     }
     const bool acceleration = order == "dot";
+    const std::string driven = p.active.empty() && request_.torque_driven.empty() ? "r_a" : "r_d";
     return {block(acceleration ? "eta_dot" : "eta", acceleration ? "m/s^2, rad/s^2" : "m/s, rad/s", "twist of the reference body in its own axes, linear part first", eta),
             block(acceleration ? "r_p_ddot" : "r_p_dot", "per r_p", "passive coordinates", r_p),
-            block(acceleration ? "r_a_ddot" : "r_a_dot", "per r_a", "torque-driven coordinates", r_a)};
+            block(driven + (acceleration ? "_ddot" : "_dot"), "per r_a", "torque-driven coordinates", r_a)};
   }
 
   // ---- quantities ----------------------------------------------------------------------------------------------

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "check/evaluate_recursion.hpp"
+
+#include <tuple>
+
+#include "anholon/free_dynamics.hpp"
+#include "anholon/reduction.hpp"
+#include "number/exact_eigen.hpp"
+
+namespace anholon {
+
+namespace {
+
+template <class S>
+std::vector<S> from_eigen(const DynamicVector<S>& x) {
+  return {x.data(), x.data() + x.size()};
+}
+template <class S>
+Matrix<S> from_eigen(const DynamicMatrix<S>& x) {
+  Matrix<S> m(static_cast<int>(x.rows()), static_cast<int>(x.cols()));
+  for (int i = 0; i < m.rows(); ++i) {
+    for (int j = 0; j < m.cols(); ++j) m(i, j) = x(i, j);
+  }
+  return m;
+}
+
+}  // namespace
+
+template <class S>
+Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition, const EvaluationInput<S>& input, const S& threshold) {
+  FreeDynamics<S> dynamics(mechanism);
+  Evaluated<S> e;
+  e.M = dynamics.mass_matrix(input.state);
+  e.force = dynamics.forces(input.state);
+  std::tie(e.G, e.bias) = dynamics.constraints(input.state);
+  const auto energies = dynamics.energies(input.state);
+  e.kinetic = energies.kinetic, e.gravity = energies.gravity, e.elastic = energies.elastic, e.dissipated_power = energies.dissipated_power;
+
+  const std::vector<int>& passive = partition.passive;
+  const std::vector<int>& active = partition.active;
+  std::vector<int> rows(mechanism.rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[i] = static_cast<int>(i);
+  const DynamicMatrix<S> A = to_eigen(e.G.block(rows, passive));
+  const DynamicMatrix<S> B = to_eigen(e.G.block(rows, active));
+  const DynamicMatrix<S> M_pp = to_eigen(e.M.block(passive, passive));
+  const DynamicMatrix<S> M_pa = to_eigen(e.M.block(passive, active));
+  const DynamicVector<S> bias = to_eigen(e.bias);
+  const auto pick = [](const std::vector<S>& v, const std::vector<int>& indices) {
+    DynamicVector<S> r(static_cast<Eigen::Index>(indices.size()));
+    for (std::size_t i = 0; i < indices.size(); ++i) r(static_cast<Eigen::Index>(i)) = v[static_cast<std::size_t>(indices[i])];
+    return r;
+  };
+  const DynamicMatrix<S> Z = ConstraintFactors<S>(A, threshold).kernel();
+  e.projector = from_eigen<S>(DynamicMatrix<S>(Z * Z.transpose()));
+
+  if (input.has_acceleration) {
+    DynamicVector<S> r_a_ddot(static_cast<Eigen::Index>(active.size()));
+    for (std::size_t i = 0; i < active.size(); ++i) r_a_ddot(static_cast<Eigen::Index>(i)) = input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
+    const DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
+    const auto solution = solve_constrained<S>(M_pp, force, A, bias + B * r_a_ddot, threshold);
+    e.acceleration.assign(e.force.size(), S(0));
+    for (std::size_t i = 0; i < passive.size(); ++i) e.acceleration[static_cast<std::size_t>(passive[i])] = solution.acceleration(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < active.size(); ++i) e.acceleration[static_cast<std::size_t>(active[i])] = r_a_ddot(static_cast<Eigen::Index>(i));
+    e.lambda = from_eigen<S>(solution.multipliers);
+    const DynamicMatrix<S> M_aa = to_eigen(e.M.block(active, active));
+    const DynamicVector<S> tau = M_pa.transpose() * solution.acceleration + M_aa * r_a_ddot - pick(e.force, active) - B.transpose() * solution.multipliers;
+    e.tau_a = from_eigen<S>(tau);
+  }
+  if (input.has_torque) {
+    DynamicVector<S> force = to_eigen(e.force);
+    for (const int i : active) force(i) += input.tau[static_cast<std::size_t>(i - partition.n)];
+    const auto solution = solve_constrained<S>(to_eigen(e.M), force, to_eigen(e.G), bias, threshold);
+    e.free_acceleration = from_eigen<S>(solution.acceleration);
+    e.free_lambda = from_eigen<S>(solution.multipliers);
+  }
+  return e;
+}
+
+template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&, const EvaluationInput<double>&, const double&);
+template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&, const EvaluationInput<Exact>&, const Exact&);
+
+std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b) {
+  return from_eigen<Exact>(ConstraintFactors<Exact>(to_eigen(A), Exact::from_decimal("1e-25")).solve(to_eigen(b)));
+}
+
+Matrix<double> range_projector(const Matrix<double>& H) {
+  const DynamicMatrix<double> Q = DynamicMatrix<double>(Eigen::HouseholderQR<DynamicMatrix<double>>(to_eigen(H)).householderQ()).leftCols(H.cols());
+  return from_eigen<double>(DynamicMatrix<double>(Q * Q.transpose()));
+}
+
+}  // namespace anholon

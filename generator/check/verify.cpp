@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "check/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+
+#include "check/compiled_caller.hpp"
+#include "anholon/free_dynamics.hpp"
+#include "check/evaluate_program.hpp"
+#include "check/evaluate_recursion.hpp"
+#include "describe/mechanise.hpp"
+#include "reduce/samples.hpp"
+
+namespace anholon {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr unsigned digits = 60;
+constexpr int formula_samples = 40;  // the exact recursion with its factorisations is slow
+constexpr int condition_trials = 4;
+
+double size_of(const std::vector<Exact>& v) {
+  double largest = 0;
+  for (const Exact& x : v) largest = std::max(largest, std::abs(x.to_double()));
+  return largest;
+}
+
+template <class S>
+double distance(const std::vector<S>& a, const std::vector<Exact>& b) {
+  double largest = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if constexpr (std::is_same_v<S, double>) {
+      if (!std::isfinite(a[i])) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, std::abs((Exact::from_double(a[i]) - b[i]).to_double()));
+    } else {
+      largest = std::max(largest, std::abs((a[i] - b[i]).to_double()));
+    }
+  }
+  return largest;
+}
+
+/// Blocks of one kind of quantity: a pose has no scale of its own parts, a twist has two.
+struct Record {
+  std::vector<double> error, scale, recursion_error;
+  std::vector<std::string> label;
+};
+
+class Verifier {
+ public:
+  Verifier(const Model& model, const Derivation& derivation)
+      : model_(model),
+        program_(derivation.program),
+        derivation_(derivation),
+        partition_(partition_of(model)),
+        description_(describe_mechanism(model)) {
+    for (const Parameter& p : model.parameters) {
+      const double rounded = p.value.to_double();  // double code is given these numbers
+      parameters_.push_back(Exact::from_double(rounded));
+      double_parameters_.push_back(rounded);
+    }
+    exact_ = interpreting_caller<Exact>(program_, parameters_);
+    compiled_ = compiled_caller(program_, parameters_);
+  }
+
+  Verification run(int samples, const std::function<void(int)>& progress) {
+    const WorkingDigits precision(digits);
+    const Mechanism<Exact> mechanism = mechanise<Exact>(description_, parameters_);
+    const Mechanism<double> rounded = mechanise<double>(description_, double_parameters_);
+    SampleSource source(4);
+    for (int s = 0; s < samples; ++s) {
+      if (progress) progress(s);
+      label_ = fmt::format("sample {}", s + 1);
+      NamedValues<Exact> inputs = random_inputs(source);
+      compare(inputs);
+      if (s < formula_samples) check_formulas(mechanism, rounded, inputs);
+    }
+    return summarise(samples, source);
+  }
+
+ private:
+  /// Position in the working range; velocities, accelerations, torques in +-1. Every value is a double.
+  NamedValues<Exact> random_inputs(SampleSource& source) {
+    state_ = random_state(model_, source);
+    NamedValues<Exact> in = position_inputs(model_, partition_, state_);
+    in["g"] = {state_.p.x, state_.p.y, Exact::from_double(atan2(state_.R(1, 0), state_.R(0, 0)).to_double())};
+    if (model_.group == GroupKind::SE2) state_.R = AxisRotation<Exact>{2, cos(in["g"][2]), sin(in["g"][2])}.matrix();
+    for (const InputBlock& block : program_.inputs) {
+      if (in.contains(block.name)) continue;
+      for (std::size_t i = 0; i < block.nodes.size(); ++i) in[block.name].push_back(source.uniform(Exact(-1), Exact(1)));
+    }
+    make_compatible(in);
+    return in;
+  }
+
+  /// Imposed rates that satisfy C r_a_dot = 0, C r_a_ddot + ... = 0 as well as doubles can.
+  void make_compatible(NamedValues<Exact>& in) {
+    if (find_function(program_, "compatibility") == nullptr) return;
+    for (const char* name : {"velocity_residual", "acceleration_residual"}) {
+      const std::string input = std::string(name) == "velocity_residual" ? "r_a_dot" : "r_a_ddot";
+      const std::vector<Exact> residual = exact_("compatibility", in).at(name);
+      std::vector<Exact>& x = in.at(input);
+      Matrix<Exact> C(static_cast<int>(residual.size()), static_cast<int>(x.size()));
+      for (std::size_t j = 0; j < x.size(); ++j) {  // linear in x: columns by unit steps
+        NamedValues<Exact> moved = in;
+        moved[input][j] = x[j] + Exact(1);
+        const std::vector<Exact> column = exact_("compatibility", moved).at(name);
+        for (std::size_t i = 0; i < residual.size(); ++i) C(static_cast<int>(i), static_cast<int>(j)) = column[i] - residual[i];
+      }
+      const std::vector<Exact> step = minimum_norm_solution(C, residual);
+      for (std::size_t j = 0; j < x.size(); ++j) x[j] = Exact::from_double((x[j] - step[j]).to_double());
+    }
+  }
+
+  static NamedValues<double> as_doubles(const NamedValues<Exact>& in) {
+    NamedValues<double> out;
+    for (const auto& [name, values] : in) {
+      for (const Exact& x : values) out[name].push_back(x.to_double());
+    }
+    return out;
+  }
+
+  void compare(const NamedValues<Exact>& in) {
+    const NamedValues<double> rounded = as_doubles(in);
+    for (const Function& f : program_.functions) {
+      const NamedValues<Exact> expected = exact_(f.name, in);
+      const NamedValues<double> got = compiled_(f.name, rounded);
+      for (const OutputBlock& b : f.outputs) {
+        Record& record = records_[{f.name, b.name}];
+        record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
+        record.scale.push_back(size_of(expected.at(b.name)));
+        record.label.push_back(label_);
+      }
+      inputs_by_label_[label_] = in;
+    }
+  }
+
+  /// The basis-free outputs by the exact recursion, at the velocities that nu and r_a_dot mean.
+  void check_formulas(const Mechanism<Exact>& mechanism, const Mechanism<double>& rounded, const NamedValues<Exact>& in) {
+    if (find_function(program_, "kinematics") == nullptr || find_function(program_, "forward_dynamics") == nullptr) return;
+    const NamedValues<Exact> kinematics = exact_("kinematics", in);
+    EvaluationInput<Exact> input;
+    input.state = state_;
+    const auto block = [](const NamedValues<Exact>& values, const std::string& name, std::size_t size) {
+      const auto found = values.find(name);
+      return found == values.end() ? std::vector<Exact>(size, Exact(0)) : found->second;
+    };
+    const auto n = static_cast<std::size_t>(partition_.n);
+    const auto components = free_components(model_.group);
+    const std::vector<Exact> eta = block(kinematics, "eta", n);
+    for (std::size_t i = 0; i < n; ++i) input.state.eta[components[i]] = eta[i];
+    const std::vector<Exact> r_p_dot = block(kinematics, "r_p_dot", static_cast<std::size_t>(partition_.s_p()));
+    for (std::size_t i = 0; i < r_p_dot.size(); ++i) input.state.r_dot[static_cast<std::size_t>(partition_.passive[n + i]) - n] = r_p_dot[i];
+    input.r_ddot.assign(model_.coordinates.size(), Exact(0));
+    const std::vector<Exact> r_a_dot = block(in, "r_a_dot", partition_.active.size());
+    const std::vector<Exact> r_a_ddot = block(in, "r_a_ddot", partition_.active.size());
+    for (std::size_t i = 0; i < partition_.active.size(); ++i) {
+      const std::size_t at = static_cast<std::size_t>(partition_.active[i]) - n;
+      input.state.r_dot[at] = r_a_dot[i];
+      input.r_ddot[at] = r_a_ddot[i];
+    }
+    input.has_acceleration = true;
+    ++formula_count_;
+    const Evaluated<Exact> expected = evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"));
+    const Evaluated<double> numeric = evaluate_recursion(rounded, partition_, double_input(input), 1e-9);
+
+    NamedValues<Exact> at = in;
+    const NamedValues<Exact> forward = exact_("forward_dynamics", at);
+    if (forward.contains("nu_dot")) at["nu_dot"] = forward.at("nu_dot");
+    if (at.contains("lambda_stat")) std::ranges::fill(at["lambda_stat"], Exact(0));
+    const bool over_constrained = find_function(program_, "compatibility") != nullptr;  // rounded rates violate it by 1e-16
+    const auto pick = [&](const auto& values, const std::vector<int>& indices) {
+      std::decay_t<decltype(values)> r;
+      for (const int i : indices) r.push_back(values[static_cast<std::size_t>(i)]);
+      return r;
+    };
+    const auto agree = [&](const std::string& function, const std::string& output, const std::vector<Exact>& got, const std::vector<Exact>& want, const std::vector<double>& by_double) {
+      const double scale = std::max(size_of(want), 1e-3);
+      const double error = distance(got, want) / scale / (over_constrained ? 1e20 : 1.0);
+      if (error > formula_worst_) formula_worst_ = error, formula_at_ = function + "." + output;
+      records_[{function, output}].recursion_error.push_back(distance(by_double, want) / scale);
+    };
+    std::vector<int> eta_at(n), r_p_at(partition_.passive.begin() + partition_.n, partition_.passive.end());
+    for (std::size_t i = 0; i < n; ++i) eta_at[i] = static_cast<int>(i);
+    if (forward.contains("eta_dot")) agree("forward_dynamics", "eta_dot", forward.at("eta_dot"), pick(expected.acceleration, eta_at), pick(numeric.acceleration, eta_at));
+    if (forward.contains("r_p_ddot")) agree("forward_dynamics", "r_p_ddot", forward.at("r_p_ddot"), pick(expected.acceleration, r_p_at), pick(numeric.acceleration, r_p_at));
+    if (find_function(program_, "inverse_torques") != nullptr) agree("inverse_torques", "tau_a", exact_("inverse_torques", at).at("tau_a"), expected.tau_a, numeric.tau_a);
+    if (find_function(program_, "multipliers") != nullptr) agree("multipliers", "lambda", exact_("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
+    balance_energy(mechanism, input, expected, at);
+  }
+
+  static EvaluationInput<double> double_input(const EvaluationInput<Exact>& e) {
+    EvaluationInput<double> d;
+    for (std::size_t i = 0; i < 9; ++i) d.state.R.m[i] = e.state.R.m[i].to_double();
+    for (int i = 0; i < 3; ++i) d.state.p[i] = e.state.p[i].to_double();
+    for (int i = 0; i < 6; ++i) d.state.eta[i] = e.state.eta[i].to_double();
+    for (const Exact& x : e.state.r) d.state.r.push_back(x.to_double());
+    for (const Exact& x : e.state.r_dot) d.state.r_dot.push_back(x.to_double());
+    for (const Exact& x : e.r_ddot) d.r_ddot.push_back(x.to_double());
+    d.has_acceleration = true;
+    return d;
+  }
+
+  /// d(T + V_gravity)/dt = tau_a . r_a_dot + power of what is applied; the derivative by central differences, whose error
+  /// of 1e-24 is far below double rounding. Torques are those of the compiled code.
+  void balance_energy(const Mechanism<Exact>& mechanism, const EvaluationInput<Exact>& input, const Evaluated<Exact>& e, const NamedValues<Exact>& at) {
+    Mechanism<Exact> bare = mechanism;
+    bare.generalised_forces = {};
+    bare.wrenches.clear();
+    FreeDynamics<Exact> dynamics(bare);
+    const Exact h = Exact::from_decimal("1e-12");
+    const auto energy = [&](const Exact& step) {
+      State<Exact> s = input.state;
+      s.p += s.R * (step * s.eta.linear);
+      s.R = s.R + step * (s.R * skew(s.eta.angular));
+      const auto components = free_components(model_.group);
+      for (std::size_t i = 0; i < components.size(); ++i) s.eta[components[i]] += step * e.acceleration[i];
+      for (std::size_t i = 0; i < s.r.size(); ++i) {
+        s.r[i] += step * input.state.r_dot[i];
+        s.r_dot[i] += step * e.acceleration[components.size() + i];
+      }
+      const auto energies = dynamics.energies(s);
+      return energies.kinetic + energies.gravity;
+    };
+    const double rate = ((energy(h) - energy(-h)) / (Exact(2) * h)).to_double();
+    const std::vector<Exact> inertial = dynamics.forces(input.state);
+    double power = 0, scale = std::abs(rate);
+    const auto add = [&](double x) { power += x, scale = std::max(scale, std::abs(x)); };
+    const auto components = free_components(model_.group);
+    for (std::size_t i = 0; i < inertial.size(); ++i) {
+      const Exact& v = i < components.size() ? input.state.eta[components[i]] : input.state.r_dot[i - components.size()];
+      add(((e.force[i] - inertial[i]) * v).to_double());
+    }
+    if (find_function(program_, "inverse_torques") != nullptr) {
+      const std::vector<double> tau = compiled_("inverse_torques", as_doubles(at)).at("tau_a");
+      for (std::size_t i = 0; i < tau.size(); ++i) add(tau[i] * at.at("r_a_dot")[i].to_double());
+    }
+    if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
+  }
+
+  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last place.
+  double condition(const std::string& function, const std::string& output, const std::string& label, double scale, SampleSource& source) {
+    const NamedValues<Exact>& in = inputs_by_label_.at(label);
+    const std::vector<Exact> base = exact_(function, in).at(output);
+    double largest = 0;
+    for (int trial = 0; trial < condition_trials; ++trial) {
+      NamedValues<Exact> moved = in;
+      for (auto& [name, values] : moved) {
+        for (Exact& x : values) x = x * (Exact(1) + Exact::from_double(source.uniform() < 0.5 ? eps : -eps));
+      }
+      largest = std::max(largest, distance(exact_(function, moved).at(output), base) / scale);
+    }
+    return largest / eps;
+  }
+
+  Verification summarise(int samples, SampleSource& source) {
+    Verification v;
+    v.samples = samples;
+    v.formula_samples = formula_count_;
+    v.formula_worst = formula_worst_;
+    v.formula_at = formula_at_;
+    v.energy_balance = energy_balance_;
+    for (const Function& f : program_.functions) {
+      for (const OutputBlock& b : f.outputs) {
+        const Record& record = records_.at({f.name, b.name});
+        std::vector<double> sizes = record.scale;
+        std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+        const double typical = sizes[sizes.size() / 2];
+        OutputError e;
+        e.function = f.name;
+        e.output = b.name;
+        std::vector<double> relative;
+        for (std::size_t i = 0; i < record.error.size(); ++i) {
+          const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
+          relative.push_back(record.error[i] / scale);
+          if (!(relative.back() <= e.worst)) e.worst = relative.back(), e.worst_at = record.label[i];
+          if (relative.back() > verification_bound) {
+            const double kappa = condition(f.name, b.name, record.label[i], scale, source);
+            e.condition = std::max(e.condition, kappa);
+            if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
+          }
+        }
+        std::ranges::sort(relative);
+        e.median = relative[relative.size() / 2];
+        e.p99 = relative[std::min(relative.size() - 1, relative.size() * 99 / 100)];
+        if (!record.recursion_error.empty()) e.recursion_worst = *std::ranges::max_element(record.recursion_error);
+        v.passed = v.passed && e.passed;
+        v.outputs.push_back(std::move(e));
+      }
+    }
+    v.passed = v.passed && v.formula_worst <= formula_bound && v.energy_balance <= 1e-11;
+    return v;
+  }
+
+  const Model& model_;
+  const Program& program_;
+  const Derivation& derivation_;
+  Partition partition_;
+  MechanismDescription description_;
+  std::vector<Exact> parameters_;
+  std::vector<double> double_parameters_;
+  ProgramCaller<Exact> exact_;
+  ProgramCaller<double> compiled_;
+  State<Exact> state_;
+  std::string label_;
+  std::map<std::pair<std::string, std::string>, Record> records_;
+  std::map<std::string, NamedValues<Exact>> inputs_by_label_;
+  double formula_worst_ = 0, energy_balance_ = 0;
+  int formula_count_ = 0;
+  std::string formula_at_;
+};
+
+}  // namespace
+
+Verification verify_program(const Model& model, const Derivation& derivation, int samples, const std::function<void(int)>& progress) {
+  return Verifier(model, derivation).run(samples, progress);
+}
+
+}  // namespace anholon

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// Generated code against exact evaluation of the same program, and that program against the exact recursion, which
+// knows no kernel basis and no optimiser: the first measures rounding, the second the formulas.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "derive/derive.hpp"
+
+namespace anholon {
+
+struct OutputError {
+  std::string function, output;
+  double median = 0, p99 = 0, worst = 0;  // of |generated - exact| / natural scale
+  double recursion_worst = -1;            // of |double recursion - exact| / natural scale; negative: not computed there
+  double condition = 0;                   // where the worst exceeds the bound: change per relative change of the inputs
+  std::string worst_at;
+  bool passed = true;
+};
+
+struct Verification {
+  std::vector<OutputError> outputs;
+  double formula_worst = 0;   // program against recursion, both exact, relative to the natural scale
+  std::string formula_at;     // the output where
+  double energy_balance = 0;  // worst |dE/dt - power| / scale of the powers
+  int samples = 0;
+  int formula_samples = 0;
+  bool passed = true;
+};
+
+inline constexpr double verification_bound = 1e-13;  // of the natural scale; beyond it 10 eps kappa
+inline constexpr double formula_bound = 1e-30;       // both sides carry 60 digits
+
+/// @param progress  called now and then with the number of samples done; may be empty
+Verification verify_program(const Model& model, const Derivation& derivation, int samples, const std::function<void(int)>& progress);
+
+}  // namespace anholon

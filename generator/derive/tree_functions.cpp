@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "derive/tree_functions.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "anholon/articulated.hpp"
+#include "anholon/composite.hpp"
+#include "anholon/factor.hpp"
+#include "derive/tree_inputs.hpp"
+#include "describe/mechanise.hpp"
+#include "optimise/model/merge_fixed.hpp"
+#include "optimise/model/regroup.hpp"
+#include "optimise/model/rotate_leaves.hpp"
+#include "optimise/model/slide_frames.hpp"
+#include "optimise/tape/count.hpp"
+
+namespace anholon {
+namespace {
+
+/// One choice of frames and inertial figures: the same motion, other constants.
+struct Frames {
+  std::string name;
+  Mechanism<Expr> mechanism;
+};
+
+struct Route {
+  std::string name;
+  std::vector<OutputBlock> outputs;
+};
+
+class TreeDeriver {
+ public:
+  TreeDeriver(const Model& model, const TreeRequest& request)
+      : model_(model), request_(request), result_(std::make_unique<TreeDerivation>()), program_(result_->program), tape_(program_.tape), in_(model, program_) {}
+
+  std::unique_ptr<TreeDerivation> run() {
+    program_.model = model_.name;
+    program_.scene = request_.scene;
+    program_.name_space = model_.name + "::" + request_.scene;
+    program_.source_file = model_.file;
+    program_.source_sha256 = model_.sha256;
+    for (const std::string& name : request_.functions) {
+      if (std::ranges::find(tree_function_names(), name) == tree_function_names().end())
+        throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name, fmt::join(tree_function_names(), ", ")));
+    }
+    make_frames();
+    for (const std::string& name : tree_function_names()) {
+      if (request_.functions.empty() || std::ranges::find(request_.functions, name) != request_.functions.end()) derive(name);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  // ---- frames --------------------------------------------------------------------------------------------------
+  void make_frames() {
+    const MechanismDescription description = describe_mechanism(model_);
+    if (!description.rows.empty() || !description.wrenches.empty())
+      throw UnsupportedError(fmt::format("model '{}' has constraints or external wrenches: its functions are those of derive()", model_.name));
+    Mechanism<Expr> mechanism = mechanise<Expr>(description, in_.parameters, FromExact<Expr>{&tape_});
+    for (const Body<Expr>& b : mechanism.bodies) {
+      if (!b.modes.empty()) throw UnsupportedError(fmt::format("body '{}' is compliant: the functions of model '{}' are those of derive()", b.name, model_.name));
+    }
+    mechanism.open_section = [this](const std::string& title) { tape_.section(title); };
+    const int merged = merge_fixed(mechanism);
+    result_->passes.push_back(fmt::format("merged {} bodies on fixed joints", merged));
+    const auto add = [&](const std::string& name, Mechanism<Expr> m) { frames_.push_back({name, std::move(m)}); };
+    Mechanism<Expr> slid = mechanism;
+    result_->passes.push_back(fmt::format("slid {} frames along their joints", slide_frames(slid)));
+    Mechanism<Expr> rotated = slid;
+    result_->passes.push_back(fmt::format("turned {} frames of tips", rotate_leaves(rotated)));
+    Mechanism<Expr> best = rotated;
+    regroup(best);
+    add("slid, tips turned, regrouped", best);
+    if (!request_.search) return;
+    Mechanism<Expr> unturned = slid;
+    regroup(unturned);
+    add("slid, regrouped", unturned);
+    Mechanism<Expr> regrouped = mechanism;
+    regroup(regrouped);
+    add("regrouped", regrouped);
+    add("slid", slid);
+    add("as described", mechanism);
+  }
+
+  // ---- routes --------------------------------------------------------------------------------------------------
+  OutputBlock block(std::string name, std::string unit, std::string meaning, const std::vector<Expr>& v) {
+    OutputBlock b{std::move(name), std::move(unit), std::move(meaning), static_cast<int>(v.size()), 1, {}};
+    for (const Expr& e : v) b.nodes.push_back(e.id(tape_));
+    return b;
+  }
+  OutputBlock block(std::string name, std::string unit, std::string meaning, const Matrix<Expr>& m) {
+    OutputBlock b = block(std::move(name), std::move(unit), std::move(meaning), m.entries());
+    b.rows = m.rows();
+    b.cols = m.cols();
+    return b;
+  }
+  static std::vector<NodeId> roots_of(const Route& r) {
+    std::vector<NodeId> roots;
+    for (const OutputBlock& b : r.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+    return roots;
+  }
+
+  /// Derives a function by every route and keeps the cheapest.
+  void derive(const std::string& name) {
+    std::vector<Route> routes;
+    for (const Frames& frames : frames_) {
+      for (Route& r : routes_of(name, frames.mechanism)) {
+        r.name += r.name.empty() ? frames.name : ", frames " + frames.name;
+        std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+        routes.push_back(std::move(r));
+      }
+    }
+    std::vector<int> cost;
+    for (const Route& r : routes) cost.push_back(count_operations(tape_, roots_of(r)).total());
+    const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
+    for (std::size_t i = 0; i < routes.size(); ++i) result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
+    program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
+  }
+
+  std::vector<Route> routes_of(const std::string& name, const Mechanism<Expr>& m) {
+    if (name == "inverse_dynamics") return {{"", inverse_dynamics(m, in_.eta, in_.eta_dot, in_.r_dot, in_.r_ddot, true)}};
+    if (name == "bias_forces") return {{"", inverse_dynamics(m, in_.eta, {}, in_.r_dot, zeros(), true)}};
+    if (name == "gravity_forces") return {{"", inverse_dynamics(m, {}, {}, zeros(), zeros(), false)}};
+    if (name == "mass_matrix") return {{"", {block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))}}};
+    if (name == "forward_dynamics") {
+      std::vector<Route> routes = {{"composite bodies and LTDL factor", forward_dynamics(m, false)}};
+      if (std::ranges::all_of(m.bodies, [](const Body<Expr>& b) { return b.coupling < 0; }))
+        routes.push_back({"articulated bodies", forward_dynamics(m, true)});
+      return routes;
+    }
+    throw std::logic_error("a function without a derivation");
+  }
+
+  static std::string meaning(const std::string& name) {
+    if (name == "inverse_dynamics") return "Joint forces and, for a moving reference body, the wrench on it that a motion needs.";
+    if (name == "bias_forces") return "What inverse dynamics needs without accelerations: Coriolis, centrifugal and gravity forces, friction.";
+    if (name == "gravity_forces") return "What inverse dynamics needs at rest.";
+    if (name == "mass_matrix") return "Mass matrix M of (eta, r_dot).";
+    if (name == "forward_dynamics") return "Accelerations under joint forces tau.";
+    return "";
+  }
+
+  // ---- quantities ----------------------------------------------------------------------------------------------
+  [[nodiscard]] std::vector<Expr> zeros() const { return std::vector<Expr>(in_.r.size(), Expr(0)); }
+  [[nodiscard]] int n() const { return static_cast<int>(free_components(model_.group).size()); }
+  [[nodiscard]] std::vector<Expr> free_part(const Spatial<Expr>& x) const {
+    std::vector<Expr> v;
+    for (const int c : free_components(model_.group)) v.push_back(x[c]);
+    return v;
+  }
+
+  /// Springs, dampers and friction: generalised forces of the coordinates; empty where there are none.
+  std::vector<Expr> own_forces(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const std::vector<Expr>& r_dot) const {
+    if (!m.generalised_forces) return {};
+    State<Expr> state = in_.state();
+    state.eta = eta;
+    state.r_dot = r_dot;
+    std::vector<Expr> force(6 + r_dot.size(), Expr(0));
+    m.section("springs, dampers and friction");
+    m.generalised_forces(state, force);
+    return force;
+  }
+
+  /// Generalised forces in the order (reference body, coordinates) of a motion whose base acceleration is a.
+  std::pair<Spatial<Expr>, std::vector<Expr>> sweep(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const Vec3<Expr>& wd, const Vec3<Expr>& a,
+                                                    const std::vector<Expr>& r_dot, const std::vector<Expr>& r_ddot, bool own) {
+    RigidTree<Expr> tree(m);
+    tree.position(in_.r);
+    tree.move_base(eta.angular, wd, a);
+    tree.move(r_dot, r_ddot);
+    Spatial<Expr> base;
+    std::vector<Expr> force = tree.inverse_dynamics(base);
+    if (!own) return {base, force};
+    const std::vector<Expr> applied = own_forces(m, eta, r_dot);
+    for (std::size_t i = 0; i < applied.size(); ++i) {
+      if (i < 6) base[static_cast<int>(i)] = base[static_cast<int>(i)] - applied[i];
+      if (i >= 6) force[i - 6] -= applied[i];
+    }
+    return {base, force};
+  }
+
+  std::vector<OutputBlock> inverse_dynamics(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const Spatial<Expr>& eta_dot,
+                                            const std::vector<Expr>& r_dot, const std::vector<Expr>& r_ddot, bool own) {
+    m.section(m.bodies[0].name + ": acceleration");
+    const Vec3<Expr> a = eta_dot.linear + cross(eta.angular, eta.linear) - transposed_times(in_.R, m.gravity);
+    const auto [base, force] = sweep(m, eta, eta_dot.angular, a, r_dot, r_ddot, own);
+    return {block("base_wrench", "N, N m", "on the reference body about its origin, in its own axes", free_part(base)),
+            block("tau", "N m or N", "forces of the joints", force)};
+  }
+
+  Matrix<Expr> mass_matrix(const Mechanism<Expr>& m) {
+    RigidTree<Expr> tree(m);
+    tree.position(in_.r);
+    return composite_mass_matrix(tree);
+  }
+
+  /// With A = eta_dot.linear + Omega x V - R^T gravity as the unknown of a free reference body, gravity drops out of all but
+  /// the last line; a reference body that cannot accelerate everywhere carries gravity as its own acceleration.
+  std::vector<OutputBlock> forward_dynamics(const Mechanism<Expr>& m, bool articulated_bodies) {
+    m.section(m.bodies[0].name + ": acceleration");
+    const Vec3<Expr> drift = cross(in_.eta.angular, in_.eta.linear) - transposed_times(in_.R, m.gravity);
+    const auto components = free_components(model_.group);
+    const bool is_free = model_.group == GroupKind::SE3;
+    const Vec3<Expr> a = is_free ? Vec3<Expr>{} : drift;
+    const std::vector<Expr> applied = own_forces(m, in_.eta, in_.r_dot);
+    std::vector<Expr> tau = in_.tau;
+    for (std::size_t i = 6; i < applied.size(); ++i) tau[i - 6] += applied[i];
+    Spatial<Expr> eta_dot;
+    std::vector<Expr> r_ddot;
+    if (articulated_bodies) {
+      RigidTree<Expr> tree(m);
+      tree.position(in_.r);
+      tree.move_base(in_.eta.angular, {}, a);
+      tree.move(in_.r_dot, zeros());
+      TreeAcceleration<Expr> result = articulated_acceleration(tree, tau);
+      eta_dot = result.base;
+      r_ddot = std::move(result.r_ddot);
+    } else {
+      const auto [base, force] = sweep(m, in_.eta, {}, a, in_.r_dot, zeros(), false);
+      const Matrix<Expr> M = mass_matrix(m);
+      m.section("factor and solution");
+      std::vector<Expr> b;
+      for (const int c : components) b.push_back(-base[c]);
+      for (std::size_t i = 0; i < tau.size(); ++i) b.push_back(tau[i] - force[i]);
+      const std::vector<Expr> x = ltdl(M).solve(b);
+      for (std::size_t i = 0; i < components.size(); ++i) eta_dot[components[i]] = x[i];
+      r_ddot.assign(x.begin() + n(), x.end());
+    }
+    if (is_free) eta_dot.linear -= drift;
+    return {block("eta_dot", "m/s^2, rad/s^2", "derivative of eta", free_part(eta_dot)), block("r_ddot", "rad/s^2 or m/s^2", "second derivatives of r", r_ddot)};
+  }
+
+  const Model& model_;
+  const TreeRequest& request_;
+  std::unique_ptr<TreeDerivation> result_;
+  Program& program_;
+  Tape& tape_;
+  TreeInputs in_;
+  std::vector<Frames> frames_;
+};
+
+}  // namespace
+
+const std::vector<std::string>& tree_function_names() {
+  static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces", "gravity_forces", "mass_matrix", "forward_dynamics"};
+  return names;
+}
+
+std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request) { return TreeDeriver(model, request).run(); }
+
+}  // namespace anholon

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The functions of an unconstrained tree of rigid bodies, all of whose coordinates are driven: inverse and forward dynamics,
+// mass matrix and their like. Each is derived in several frames and by several algorithms; the cheapest program is kept.
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "derive/derive.hpp"
+#include "describe/model.hpp"
+#include "tape/interface.hpp"
+
+namespace anholon {
+
+struct TreeRequest {
+  std::string scene = "standard";
+  std::vector<std::string> functions;  // wanted; empty: all of tree_function_names()
+  bool search = true;                  // try every choice of frames and algorithm; else only the first of each
+};
+
+struct TreeDerivation {
+  Program program;
+  std::vector<CandidateReport> candidates;
+  std::vector<std::string> passes;  // what the passes on the mechanism did
+};
+
+/// Names of the functions that derive_tree knows, in the order in which programs list them.
+const std::vector<std::string>& tree_function_names();
+
+/// Inputs are R (orientation of the reference body, for a group that turns), eta, eta_dot, r, r_dot, r_ddot, tau; twists and
+/// wrenches are those of the described reference body in its own axes, (V, Omega) and (force, torque).
+/// @throws UnsupportedError where the model has constraints, external wrenches or compliant bodies
+std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request = {});
+
+}  // namespace anholon
