@@ -14,6 +14,12 @@ NodeId Expr::id(Tape& tape) const {
 
 bool Expr::is_zero() const { return tape_ == nullptr ? numerator_ == 0 : tape_->is_zero(static_cast<NodeId>(numerator_)); }
 
+std::optional<Exact> Expr::constant_value() const {
+  if (tape_ == nullptr) return Exact::ratio(numerator_, denominator_);
+  const auto id = static_cast<NodeId>(numerator_);
+  return tape_->is_constant(id) ? std::optional(tape_->value(id)) : std::nullopt;
+}
+
 Expr Expr::binary(Op op, const Expr& x, const Expr& y) {
   Tape* tape = x.tape_ != nullptr ? x.tape_ : y.tape_;
   if (tape != nullptr) return {*tape, tape->apply(op, x.id(*tape), y.id(*tape))};

@@ -6,6 +6,7 @@
 // be derived symbolically and does not compile.
 
 #include <cstdint>
+#include <optional>
 
 #include "tape/tape.hpp"
 
@@ -22,6 +23,8 @@ class Expr {
   [[nodiscard]] NodeId id(Tape& tape) const;
   /// Structural zero: what emission would print as 0.
   [[nodiscard]] bool is_zero() const;
+  /// The number that this is, if it depends on no input.
+  [[nodiscard]] std::optional<Exact> constant_value() const;
 
   Expr& operator+=(const Expr& other) { return *this = *this + other; }
   Expr& operator-=(const Expr& other) { return *this = *this - other; }

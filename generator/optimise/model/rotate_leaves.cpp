@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "optimise/model/rotate_leaves.hpp"
+
+#include "optimise/model/constants.hpp"
+
+namespace anholon {
+
+template <class S>
+void turn_frame(Mechanism<S>& mechanism, std::size_t k, const S& angle, const S& c, const S& s) {
+  Body<S>& body = mechanism.bodies[k];
+  const Mat3<S> back = AxisRotation<S>{body.axis, c, -s}.matrix();
+  set_moments(body, moments_in(back, Vec3<S>{}, moments_of(body)));
+  body.R_frame = back * body.R_frame;
+  for (Body<S>& child : mechanism.bodies) {
+    if (child.parent != static_cast<int>(k)) continue;
+    child.R = back * child.R;
+    child.p = back * child.p;
+  }
+  Coupling<S> shifted;
+  if (body.coupling >= 0) {
+    shifted = mechanism.couplings[static_cast<std::size_t>(body.coupling)];
+    shifted.evaluate = [angle, before = shifted.evaluate](std::span<const S> r, std::span<S> out) {
+      before(r, out);
+      out[0] = out[0] + angle;
+    };
+  } else {
+    shifted.on = {body.coordinate};
+    shifted.evaluate = [angle, at = static_cast<std::size_t>(body.coordinate)](std::span<const S> r, std::span<S> out) {
+      out[0] = r[at] + angle;
+      out[1] = S(1);
+      out[2] = S(0);
+    };
+  }
+  body.coordinate = -1;
+  body.coupling = static_cast<int>(mechanism.couplings.size());
+  mechanism.couplings.push_back(std::move(shifted));
+}
+
+template <class S>
+int rotate_leaves(Mechanism<S>& mechanism) {
+  require_rigid_tree(mechanism);
+  int turned_frames = 0;
+  for (std::size_t k = 1; k < mechanism.bodies.size(); ++k) {
+    const Body<S>& body = mechanism.bodies[k];
+    if (body.kind != JointKind::revolute) continue;
+    bool is_tip = true;
+    for (const Body<S>& other : mechanism.bodies) is_tip = is_tip && other.parent != static_cast<int>(k);
+    const S& along_x = body.first_moment[(body.axis + 1) % 3];
+    const S& along_y = body.first_moment[(body.axis + 2) % 3];
+    const auto x = constant_value(along_x);
+    const auto y = constant_value(along_y);
+    if (!is_tip || !x || !y || x->is_zero() || y->is_zero()) continue;
+    const Exact length = sqrt(*x * *x + *y * *y);
+    const auto constant = [like = along_x](const Exact& value) { return constant_like(like, value); };
+    const S zero = constant(0);
+    turn_frame(mechanism, k, constant(atan2(*y, *x)), constant(*x / length), constant(*y / length));
+    mechanism.bodies[k].first_moment[(body.axis + 2) % 3] = zero;  // up to the last digits of the root
+    ++turned_frames;
+  }
+  return turned_frames;
+}
+
+template void turn_frame(Mechanism<Exact>&, std::size_t, const Exact&, const Exact&, const Exact&);
+template void turn_frame(Mechanism<Expr>&, std::size_t, const Expr&, const Expr&, const Expr&);
+template int rotate_leaves(Mechanism<Exact>&);
+template int rotate_leaves(Mechanism<Expr>&);
+
+}  // namespace anholon
