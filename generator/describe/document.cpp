@@ -1,6 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "describe/document.hpp"
 
+// toml++ 3.3 trusts some bytes that users can write, such as "[=": it asserts, or without assertions goes on
+// wrongly. Here its assertions stay on, and throw.
+#undef NDEBUG
+namespace {
+struct TomlAssertion {};
+[[noreturn]] void give_up_on_toml() { throw TomlAssertion(); }
+}  // namespace
+#define TOML_ASSERT(expr) ((expr) ? void() : give_up_on_toml())
 #define TOML_EXCEPTIONS 1
 #include <fmt/format.h>
 #include <toml++/toml.h>
@@ -40,6 +48,17 @@ class Source {
             "break it into shorter ones");
       }
     }
+  }
+
+  /// Place of the line at which toml++ gives up on an assertion: the last of the shortest part that makes it
+  /// do so.
+  [[nodiscard]] Location location_of_assertion() const {
+    std::size_t below = 0, lines = line_begin_.size();
+    while (below + 1 < lines) {
+      const std::size_t middle = (below + lines) / 2;
+      (gives_up(text_.substr(0, line_begin_[middle])) ? lines : below) = middle;
+    }
+    return {file_, static_cast<int>(lines), 1};
   }
 
   [[nodiscard]] Location location(const toml::source_position& at) const {
@@ -82,6 +101,17 @@ class Source {
   }
 
  private:
+  static bool gives_up(std::string_view part) {
+    try {
+      (void)toml::parse(part);
+      return false;
+    } catch (const toml::parse_error&) {
+      return false;
+    } catch (const TomlAssertion&) {
+      return true;
+    }
+  }
+
   std::string_view text_;
   std::string file_;
   std::vector<std::size_t> line_begin_;
@@ -169,6 +199,9 @@ Value read_document(std::string_view text, const std::string& file_name) {
     return converted(toml::parse(text), source);
   } catch (const toml::parse_error& error) {
     throw ModelError(source.location(error.source().begin), fmt::format("not TOML: {}", error.description()),
+                     "see toml.io for the syntax");
+  } catch (const TomlAssertion&) {
+    throw ModelError(source.location_of_assertion(), "not TOML: something here is neither a key nor a value",
                      "see toml.io for the syntax");
   }
 }

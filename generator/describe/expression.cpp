@@ -211,7 +211,8 @@ class ExpressionReader {
                word, known,
                known.empty() ? "only numbers are known here" : fmt::format("known here: {}", listed(known))));
     }
-    if (!symbol->objection.empty()) fail(begin, fmt::format("'{}' {}", word, symbol->objection), "remove it");
+    if (!symbol->objection.empty())
+      fail(begin, fmt::format("'{}' {}", word, symbol->objection), symbol->mend);
     if (!allowed_.contains(symbol->kind)) {
       fail(begin, fmt::format("'{}' is {}", word, description(symbol->kind)),
            fmt::format("only {} may stand here", description(allowed_)));

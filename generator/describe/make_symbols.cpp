@@ -47,7 +47,7 @@ void name_symbols(Reading& reading) {
   Tape& tape = *model.tape;
   const StateSymbols& symbols = model.symbols;
   const auto symbol = [&](SymbolKind kind, NodeId id, std::optional<Dimension> unit) {
-    return Symbol{kind, {Expr(tape, id), unit}, ""};
+    return Symbol{kind, {Expr(tape, id), unit}, "", ""};
   };
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const Parameter& parameter = model.parameters[i];
@@ -67,8 +67,10 @@ void name_symbols(Reading& reading) {
   const auto free = free_components(model.group);
   for (std::size_t i = 0; i < 6; ++i) {
     Symbol velocity = symbol(SymbolKind::velocity, symbols.eta[i], i < 3 ? units::m_per_s : units::per_s);
-    if (std::find(free.begin(), free.end(), static_cast<int>(i)) == free.end())
+    if (std::find(free.begin(), free.end(), static_cast<int>(i)) == free.end()) {
       velocity.objection = fmt::format("is always zero where the group is {}", name(model.group));
+      velocity.mend = "remove it";
+    }
     reading.scope.add(std::string(twist_component_names[i]), std::move(velocity));
   }
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
@@ -91,9 +93,9 @@ void name_coupled_coordinates(Reading& reading) {
     if (joint.coordinate.empty() || coordinate_index(model, joint.coordinate) >= 0) continue;
     const NodeId rate = directional_derivative(tape, {joint.displacement.id(tape)}, motion).front();
     reading.scope.add(joint.coordinate,
-                      Symbol{SymbolKind::coordinate, {joint.displacement, std::nullopt}, ""});
+                      Symbol{SymbolKind::coordinate, {joint.displacement, std::nullopt}, "", ""});
     reading.scope.add_rate(joint.coordinate,
-                           Symbol{SymbolKind::velocity, {Expr(tape, rate), std::nullopt}, ""});
+                           Symbol{SymbolKind::velocity, {Expr(tape, rate), std::nullopt}, "", ""});
   }
 }
 
@@ -104,6 +106,7 @@ void read_couplings(Outline& outline, Reading& reading) {
     Symbol symbol;
     symbol.kind = SymbolKind::coordinate;
     symbol.objection = "is a coupled coordinate itself";
+    symbol.mend = "write the coupling with independent ones";
     reading.scope.add(coupling.coordinate, symbol);
   }
   for (const CouplingOutline& coupling : outline.couplings) {

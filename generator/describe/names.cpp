@@ -64,7 +64,7 @@ std::string objection_to_name(std::string_view name) {
 std::string closest_name(std::string_view name, const std::vector<std::string>& candidates) {
   if (name.size() > longest_name) return "";
   std::string best;
-  std::size_t least = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t least = name.size() < 2 ? 1 : std::max<std::size_t>(1, name.size() / 4) + 1;
   for (const std::string& candidate : candidates) {
     if (candidate.size() > longest_name) continue;
     if (const std::size_t distance = edit_distance(name, candidate); distance < least) {

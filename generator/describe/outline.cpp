@@ -62,7 +62,10 @@ void read_joint_outline(BodyOutline& body, BodyDescription& described, Reading& 
   TableReader& joint =
       body.joint.emplace(*table, fmt::format("the joint of {}", body.table.what()), reading.findings);
   const auto kind = joint.required_choice("kind", joint_kinds);
-  if (!kind) return;
+  if (!kind) {
+    joint.accept_all_keys();
+    return;
+  }
   described.joint.kind = static_cast<JointKind>(*kind);
   if (described.joint.kind == JointKind::fixed) return;
   const Value* name = joint.required("coordinate", Value::Kind::string, "name it: coordinate = \"r1\"");
@@ -236,8 +239,9 @@ Outline read_outline(TableReader& root, Reading& reading) {
     }
     if (model.bodies.empty()) {
       for (const std::string_view key : {"parent", "joint", "pose"}) {
-        if (const Value* value = body.table.optional(key))
-          reading.findings.error(value->where, fmt::format("the reference body has a '{}'", key),
+        if (table->find(key) != nullptr)
+          reading.findings.error(body.table.optional(key)->where,
+                                 fmt::format("the reference body has a '{}'", key),
                                  "the first body is the reference body and hangs on nothing; remove it");
       }
     } else {

@@ -152,6 +152,8 @@ RowDescription read_row(TableReader& table, std::size_t number, Reading& reading
       check_linear(*row.expression, written->where, table.what(), reading);
   } else if (const auto choice = table.required_choice("kind", {"no_lateral_slip", "rolling"})) {
     row = *choice == 0 ? read_blade(table, reading) : read_rolling(table, reading);
+  } else {
+    table.accept_all_keys();
   }
   return row;
 }

@@ -93,8 +93,9 @@ PoseDescription read_pose(const Value& pose, const std::string& what, Reading& r
 }
 
 void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading) {
+  if (described.parent < 0) return;  // the reference body has none
   const Value* pose = body.table.optional("pose", Value::Kind::table);
-  if (pose == nullptr || described.parent < 0) return;
+  if (pose == nullptr) return;
   const PoseDescription read = read_pose(*pose, fmt::format("the pose of {}", body.table.what()), reading);
   described.R = read.R;
   described.p = read.p;

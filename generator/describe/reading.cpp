@@ -52,9 +52,10 @@ Expr Reading::number(const Value& value, std::string_view what, std::optional<Di
   try {
     const Quantity quantity = read_expression(*model.tape, text, scope, allowed);
     if (unit && quantity.unit && *quantity.unit != *unit) {
-      findings.error(value.where,
-                     fmt::format("{} is in {}, not in {}", what, unit->text(), quantity.unit->text()),
-                     "check the expression and the units of its parameters");
+      findings.error(
+          value.where,
+          fmt::format("{} has the unit {}, but needs {}", what, quantity.unit->text(), unit->text()),
+          "check the expression and the units of its parameters");
       return 0;
     }
     return quantity.value;

@@ -43,6 +43,7 @@ struct Symbol {
   SymbolKind kind = SymbolKind::parameter;
   Quantity quantity;
   std::string objection;  // why the name may not be used though it is known; else empty
+  std::string mend = "remove it";
 };
 
 /// The names that expressions of one file may use.

@@ -9,6 +9,14 @@
 #include "describe/names.hpp"
 
 namespace anholon {
+namespace {
+
+std::string one_of(const std::vector<std::string>& choices) {
+  return choices.size() == 1 ? fmt::format("write \"{}\"", choices[0])
+                             : fmt::format("write one of {}", listed(choices));
+}
+
+}  // namespace
 
 const Value* TableReader::optional(std::string_view key) {
   if (std::find(known_.begin(), known_.end(), key) == known_.end()) known_.emplace_back(key);
@@ -49,8 +57,8 @@ std::optional<std::size_t> TableReader::choice(const Value* value, std::string_v
   if (value == nullptr) return std::nullopt;
   const auto found = std::find(choices.begin(), choices.end(), value->text);
   if (found != choices.end()) return static_cast<std::size_t>(found - choices.begin());
-  findings_->error(value->where, fmt::format("'{}' is not a {} of {}", value->text, key, what_),
-                   did_you_mean(value->text, choices, fmt::format("write one of {}", listed(choices))));
+  findings_->error(value->where, fmt::format("'{}' of {} is '{}'", key, what_, value->text),
+                   did_you_mean(value->text, choices, one_of(choices)));
   return std::nullopt;
 }
 
@@ -61,8 +69,7 @@ std::optional<std::size_t> TableReader::optional_choice(std::string_view key,
 
 std::optional<std::size_t> TableReader::required_choice(std::string_view key,
                                                         const std::vector<std::string>& choices) {
-  return choice(required(key, Value::Kind::string, fmt::format("write one of {}", listed(choices))), key,
-                choices);
+  return choice(required(key, Value::Kind::string, one_of(choices)), key, choices);
 }
 
 std::optional<int> TableReader::optional_integer(std::string_view key, int least, int most) {
@@ -73,11 +80,13 @@ std::optional<int> TableReader::optional_integer(std::string_view key, int least
   const auto [stop, problem] = std::from_chars(value->text.data(), end, number);
   if (problem == std::errc() && stop == end && number >= least && number <= most) return number;
   findings_->error(value->where, fmt::format("'{}' of {} is {}", key, what_, value->text),
-                   fmt::format("it needs to be an integer from {} to {}", least, most));
+                   least == most ? fmt::format("it needs to be {}", least)
+                                 : fmt::format("it needs to be an integer from {} to {}", least, most));
   return std::nullopt;
 }
 
 void TableReader::report_unknown_keys() {
+  if (accepts_all_keys_) return;
   for (const Entry& entry : table_->entries) {
     if (std::find(known_.begin(), known_.end(), entry.key) != known_.end()) continue;
     std::vector<std::string> unused;

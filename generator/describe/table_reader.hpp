@@ -36,6 +36,8 @@ class TableReader {
   /// A decimal integer from `least` to `most`.
   std::optional<int> optional_integer(std::string_view key, int least, int most);
 
+  /// For tables whose keys cannot be judged, because what they belong to is wrong.
+  void accept_all_keys() { accepts_all_keys_ = true; }
   /// Reports every key that was not asked for.
   void report_unknown_keys();
 
@@ -56,6 +58,7 @@ class TableReader {
   std::string what_;
   Findings* findings_;
   std::vector<std::string> known_;
+  bool accepts_all_keys_ = false;
 };
 
 /// The kind as in "needs to be a table".

@@ -17,7 +17,7 @@ class Expression : public ::testing::Test {
   Expression() {
     const auto input = [&](const std::string& name, SymbolKind kind, Dimension unit, int value) {
       inputs.push_back(Exact(value));
-      return Symbol{kind, {Expr(tape, tape.input(name)), unit}, ""};
+      return Symbol{kind, {Expr(tape, tape.input(name)), unit}, "", ""};
     };
     scope.add("l", input("l", SymbolKind::parameter, units::m, 3));
     scope.add("m", input("m", SymbolKind::parameter, units::kg, 5));
