@@ -85,8 +85,10 @@ TEST(Scene, MotionHasExactDerivatives) {
 
 TEST(Scene, OverridesParametersBeforeTheModelIsChecked) {
   EXPECT_EQ(scene("parameters = { l = 0.3 }\n").model.parameters[2].value, Exact::ratio(3, 10));
-  EXPECT_EQ(error("parameters = { L = \"-0.3\" }\n").substr(0, 89),
-            "soft_snakeboard.toml:51:21: error: the length of the beam of body 'beam_3' is -0.3; it must");
+  EXPECT_TRUE(
+      error("parameters = { L = \"-0.3\" }\n")
+          .starts_with(
+              "soft_snakeboard.toml:51:21: error: the length of the beam of body 'beam_3' is -0.3; it must"));
 }
 
 TEST(Scene, StartsAtItsInitialState) {
