@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 
 #include "anholon/articulated.hpp"
 #include "anholon/composite.hpp"
@@ -16,7 +17,10 @@
 #include "optimise/model/regroup.hpp"
 #include "optimise/model/rotate_leaves.hpp"
 #include "optimise/model/slide_frames.hpp"
+#include "optimise/tape/common_factors.hpp"
+#include "optimise/tape/common_sums.hpp"
 #include "optimise/tape/count.hpp"
+#include "optimise/tape/opposite_differences.hpp"
 
 namespace anholon {
 namespace {
@@ -67,23 +71,21 @@ class TreeDeriver {
     mechanism.open_section = [this](const std::string& title) { tape_.section(title); };
     const int merged = merge_fixed(mechanism);
     result_->passes.push_back(fmt::format("merged {} bodies on fixed joints", merged));
-    const auto add = [&](const std::string& name, Mechanism<Expr> m) { frames_.push_back({name, std::move(m)}); };
-    Mechanism<Expr> slid = mechanism;
-    result_->passes.push_back(fmt::format("slid {} frames along their joints", slide_frames(slid)));
-    Mechanism<Expr> rotated = slid;
-    result_->passes.push_back(fmt::format("turned {} frames of tips", rotate_leaves(rotated)));
-    Mechanism<Expr> best = rotated;
-    regroup(best);
-    add("slid, tips turned, regrouped", best);
+    const auto add = [&](const std::string& name, Mechanism<Expr> m, bool tips, bool base_parameters) {
+      if (tips) rotate_leaves(m);
+      if (base_parameters) regroup(m);
+      frames_.push_back({name, std::move(m)});
+    };
+    Mechanism<Expr> to_tips = mechanism;
+    result_->passes.push_back(fmt::format("slid {} frames along their joints", slide_frames(to_tips)));
+    add("slid to the tips, tips turned, regrouped", to_tips, true, true);
     if (!request_.search) return;
-    Mechanism<Expr> unturned = slid;
-    regroup(unturned);
-    add("slid, regrouped", unturned);
-    Mechanism<Expr> regrouped = mechanism;
-    regroup(regrouped);
-    add("regrouped", regrouped);
-    add("slid", slid);
-    add("as described", mechanism);
+    Mechanism<Expr> to_base = mechanism;
+    slide_frames(to_base, SlideTowards::base);
+    add("slid to the base, tips turned, regrouped", to_base, true, true);
+    add("slid to the tips, regrouped", to_tips, false, true);
+    add("slid to the base, regrouped", to_base, false, true);
+    add("slid to the tips", to_tips, false, false);
   }
 
   // ---- routes --------------------------------------------------------------------------------------------------
@@ -116,9 +118,32 @@ class TreeDeriver {
     }
     std::vector<int> cost;
     for (const Route& r : routes) cost.push_back(count_operations(tape_, roots_of(r)).total());
+    const auto place = [&](std::size_t route, const std::vector<NodeId>& roots) {
+      std::size_t next = 0;
+      for (OutputBlock& b : routes[route].outputs) {
+        for (NodeId& id : b.nodes) id = roots[next++];
+      }
+    };
+    std::vector<std::size_t> order(routes.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cost[i]; });
+    for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), finalists); ++i) {
+      const std::vector<NodeId> shared = share(roots_of(routes[order[i]]));
+      place(order[i], shared);
+      cost[order[i]] = count_operations(tape_, shared).total();
+    }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
     for (std::size_t i = 0; i < routes.size(); ++i) result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
     program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
+  }
+
+  /// Passes over the program itself; they are costly, so only the cheapest routes see them.
+  static constexpr std::size_t finalists = 2;
+  std::vector<NodeId> share(std::vector<NodeId> roots) {
+    roots = merge_opposite_differences(tape_, std::move(roots));
+    roots = extract_common_factors(tape_, std::move(roots));
+    roots = share_common_sums(tape_, std::move(roots));
+    return merge_opposite_differences(tape_, std::move(roots));
   }
 
   std::vector<Route> routes_of(const std::string& name, const Mechanism<Expr>& m) {
@@ -128,7 +153,9 @@ class TreeDeriver {
     if (name == "mass_matrix") return {{"", {block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))}}};
     if (name == "forward_dynamics") {
       std::vector<Route> routes = {{"composite bodies and LTDL factor", forward_dynamics(m, false)}};
-      if (std::ranges::all_of(m.bodies, [](const Body<Expr>& b) { return b.coupling < 0; }))
+      RigidTree<Expr> tree(m);
+      tree.position(in_.r);
+      if (joints_are_independent(tree))
         routes.push_back({"articulated bodies", forward_dynamics(m, true)});
       return routes;
     }

@@ -12,9 +12,14 @@ namespace anholon {
 template <class S>
 void slide(Mechanism<S>& mechanism, std::size_t k, const Vec3<S>& t);
 
-/// Slides every frame, parents first. Instantiated for Exact and Expr.
+enum class SlideTowards {
+  tips,  // a body's offset from its parent loses its component along the body's own axis; the children take it over
+  base,  // a body with one child takes over the component of the child's offset along its own axis
+};
+
+/// Slides every frame. Instantiated for Exact and Expr.
 /// @return number of frames that moved
 template <class S>
-int slide_frames(Mechanism<S>& mechanism);
+int slide_frames(Mechanism<S>& mechanism, SlideTowards towards = SlideTowards::tips);
 
 }  // namespace anholon

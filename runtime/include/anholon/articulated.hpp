@@ -96,10 +96,23 @@ struct TreeAcceleration {
   std::vector<S> r_ddot;
 };
 
+/// Whether every joint that moves has a coordinate of its own. Needs position().
+template <class S>
+bool joints_are_independent(const RigidTree<S>& tree) {
+  std::vector<char> taken(static_cast<std::size_t>(tree.mechanism().coordinates), 0);
+  for (std::size_t k = 1; k < tree.size(); ++k) {
+    if (!tree.moves(k)) continue;
+    const int c = tree.own_coordinate(k);
+    if (c < 0 || taken[static_cast<std::size_t>(c)] != 0) return false;
+    taken[static_cast<std::size_t>(c)] = 1;
+  }
+  return true;
+}
+
 /// Accelerations that joint forces and the wrenches of the motion at hand leave. Needs position() and move() with zero
 /// accelerations of the coordinates and, for a free reference body, of its frame.
 /// @param force  (coordinates) applied generalised forces
-/// No joint may be coupled.
+/// Every joint must have a coordinate of its own (joints_are_independent).
 template <class S>
 TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std::vector<S>& force) {
   const Mechanism<S>& mechanism = tree.mechanism();
@@ -120,7 +133,7 @@ TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std
       joint[k].rest = A[k];
     } else {
       joint[k] = release(b, A[k]);
-      const S tau = force[static_cast<std::size_t>(b.coordinate)];
+      const S tau = force[static_cast<std::size_t>(tree.own_coordinate(k))];
       const S u = tau - tree.joint_force(b, p[k]);
       own[k] = joint[k].inverse_d * u;
       for (int i = 0; i < 6; ++i) p[k][i] = p[k][i] + joint[k].W[i] * u;
@@ -169,7 +182,7 @@ TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std
     S carried = S(0);
     for (int i = 0; i < 6; ++i) carried = carried + joint[k].W[i] * a[k][i];
     const S r_ddot = own[k] - carried;
-    result.r_ddot[static_cast<std::size_t>(b.coordinate)] = r_ddot;
+    result.r_ddot[static_cast<std::size_t>(tree.own_coordinate(k))] = r_ddot;
     if (b.kind != JointKind::prismatic) a[k].angular[b.axis] = a[k].angular[b.axis] + r_ddot;
     if (b.kind == JointKind::prismatic) a[k].linear[b.axis] = a[k].linear[b.axis] + r_ddot;
     if (b.kind == JointKind::helical) a[k].linear[b.axis] = a[k].linear[b.axis] + b.pitch * r_ddot;

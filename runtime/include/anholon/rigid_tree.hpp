@@ -160,6 +160,16 @@ class RigidTree {
   [[nodiscard]] const MassMoments<S>& moments(std::size_t k) const { return moments_[k]; }
   [[nodiscard]] const Motion& motion(std::size_t k) const { return motions_[k]; }
   [[nodiscard]] bool moves(std::size_t k) const { return body(k).coordinate >= 0 || body(k).coupling >= 0; }
+  /// The coordinate whose rate is that of body k's joint, where no other coordinate moves it; else -1. Needs position().
+  [[nodiscard]] int own_coordinate(std::size_t k) const {
+    int coordinate = -1;
+    int shares = 0;
+    for_each_share(k, [&](int c, const S& share) {
+      ++shares;
+      if (vanishes(share - S(1))) coordinate = c;
+    });
+    return shares == 1 ? coordinate : -1;
+  }
 
   /// Component of a wrench that does work on the joint.
   [[nodiscard]] static S joint_force(const Body<S>& b, const Spatial<S>& f) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// a - b and b - a are one operation: the second becomes the negation of the first, and its users absorb the sign.
+
+#include <vector>
+
+#include "tape/tape.hpp"
+
+namespace anholon {
+
+/// @return nodes with the values of the roots; never more additions, multiplications and divisions than before
+std::vector<NodeId> merge_opposite_differences(Tape& tape, std::vector<NodeId> roots);
+
+}  // namespace anholon
