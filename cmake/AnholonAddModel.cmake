@@ -66,7 +66,7 @@ function(anholon_add_model target)
   endif()
 
   # The folder with what programs include holds nothing else.
-  set(folder "${CMAKE_CURRENT_BINARY_DIR}/anholon/${target}")
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/anholon_models/${target}")
   set(include "${folder}/include")
   if(arg_STATIC)
     set(header "${folder}/generated/${name}.hpp")  # wrapped: see AnholonInstantiate.cmake

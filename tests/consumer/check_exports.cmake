@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+#
+# cmake -DPREFIX=<installed> -DSOURCE=<source> -DBUILD=<build> -P check_exports.cmake
+file(GLOB_RECURSE files "${PREFIX}/*.cmake")
+list(LENGTH files count)
+if(count LESS 6)
+  message(FATAL_ERROR "only ${count} CMake files below ${PREFIX}")
+endif()
+foreach(file IN LISTS files)
+  file(READ "${file}" text)
+  string(REPLACE "${PREFIX}" "" text "${text}")
+  foreach(private IN ITEMS "${SOURCE}" "${BUILD}" anholon_project_options)
+    string(FIND "${text}" "${private}" at)
+    if(NOT at EQUAL -1)
+      message(FATAL_ERROR "${file} names ${private}")
+    endif()
+  endforeach()
+endforeach()
+foreach(file IN ITEMS bin/anholon include/anholon/mechanism.hpp include/anholon-generator/derive/derive.hpp)
+  if(NOT EXISTS "${PREFIX}/${file}")
+    message(FATAL_ERROR "there is no ${PREFIX}/${file}")
+  endif()
+endforeach()
