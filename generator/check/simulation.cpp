@@ -106,7 +106,7 @@ SceneProgram make_program(const Scene& scene) {
   std::vector<NodeId> roots;
   for (const Function& f : program.functions) {
     for (const OutputBlock& b : f.outputs) {
-      const bool velocity = f.name == "kinematics" && (b.name == "eta" || b.name == "r_p_dot" || b.name == "r_a_dot");
+      const bool velocity = f.name == "kinematics" && (b.name == "eta" || b.name == "r_p_dot" || b.name == "r_d_dot");
       if (!velocity && !(f.name == "forward_dynamics" && b.name == "nu_dot")) continue;
       rates.outputs.push_back(b);
       roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
@@ -121,7 +121,7 @@ SceneProgram make_program(const Scene& scene) {
 template <class S>
 struct Buffers {
   std::vector<S> t, g, R, p, r_p, r_a, r_a_dot, r_a_ddot, r_d_dot, nu, nu_dot, eta, r_p_dot, r_m, r_m_dot, r_m_ddot, tau_a, tau_d, torque, lambda, kinetic, gravity,
-      elastic, dissipated_power, A, B_p, B_a, velocity_residual;
+      elastic, dissipated_power, applied_power, A, B_p, B_a, velocity_residual;
   std::map<std::string, std::vector<S>> others;
 
   std::vector<S>& operator[](const std::string& name) {
@@ -131,7 +131,7 @@ struct Buffers {
         {"r_a_dot", &Buffers::r_a_dot}, {"r_a_ddot", &Buffers::r_a_ddot}, {"r_d_dot", &Buffers::r_d_dot}, {"nu", &Buffers::nu}, {"nu_dot", &Buffers::nu_dot},
         {"eta", &Buffers::eta}, {"r_p_dot", &Buffers::r_p_dot}, {"r_m", &Buffers::r_m}, {"r_m_dot", &Buffers::r_m_dot}, {"r_m_ddot", &Buffers::r_m_ddot},
         {"tau_a", &Buffers::tau_a}, {"tau_d", &Buffers::tau_d}, {"torque", &Buffers::torque}, {"lambda", &Buffers::lambda}, {"kinetic", &Buffers::kinetic},
-        {"gravity", &Buffers::gravity}, {"elastic", &Buffers::elastic}, {"dissipated_power", &Buffers::dissipated_power}, {"A", &Buffers::A}, {"B_p", &Buffers::B_p},
+        {"gravity", &Buffers::gravity}, {"elastic", &Buffers::elastic}, {"dissipated_power", &Buffers::dissipated_power}, {"applied_power", &Buffers::applied_power}, {"A", &Buffers::A}, {"B_p", &Buffers::B_p},
         {"B_a", &Buffers::B_a}, {"velocity_residual", &Buffers::velocity_residual}};
     const auto member = members.find(name);
     return member != members.end() ? this->*(member->second) : others[name];
@@ -241,7 +241,7 @@ class Runner {
     b.nu.resize(static_cast<std::size_t>(k_)), b.nu_dot.resize(static_cast<std::size_t>(k_));
     b.eta.resize(static_cast<std::size_t>(program.original.n)), b.r_p_dot.resize(b.r_p.size());
     b.r_d_dot.resize(program.driven.size()), b.torque.resize(program.driven.size()), b.tau_d.resize(program.driven.size());
-    b.dissipated_power.resize(1), b.kinetic.resize(1), b.gravity.resize(1), b.elastic.resize(1);
+    b.dissipated_power.resize(1), b.applied_power.resize(1), b.kinetic.resize(1), b.gravity.resize(1), b.elastic.resize(1);
     for (std::size_t i = 0; i < program.original.active.size(); ++i) {
       const bool driven = std::ranges::find(program.driven, program.original.active[i]) != program.driven.end();
       (driven ? driven_at_ : motion_at_).push_back(i);
@@ -293,8 +293,8 @@ class Runner {
     for (const S& x : b.r_d_dot) y_dot(next++) = x;
     for (const S& x : b.nu_dot) y_dot(next++) = x;
     if (y.size() == next) return;
-    y_dot(next++) = power();
     if (energies) energies();
+    y_dot(next++) = power() + b.applied_power[0];
     y_dot(next) = b.dissipated_power[0];
   }
 

@@ -493,10 +493,11 @@ class Deriver {
   void derive_energies() {
     if (!wanted("energies")) return;
     const auto e = dynamics_.energies(symbols_.moving(full_velocity()));
-    emit("energies", "Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy; power of the dissipation function.",
+    emit("energies", "Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy; power lost and power of applied forces.",
          {{"recursion", {block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}), block("gravity", "J", "potential of gravity", std::vector{e.gravity}),
                          block("elastic", "J", "springs, modes and the described potential", std::vector{e.elastic}),
-                         block("dissipated_power", "W", "velocities times the gradient of the dissipation function", std::vector{e.dissipated_power})}}});
+                         block("dissipated_power", "W", "velocities times the gradient of the dissipation function", std::vector{e.dissipated_power}),
+                         block("applied_power", "W", "of the described forces and wrenches", std::vector{e.applied_power})}}});
   }
 
   void derive_poses() {

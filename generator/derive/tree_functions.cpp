@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 #include <numeric>
+#include <set>
 
 #include "anholon/articulated.hpp"
 #include "anholon/composite.hpp"
@@ -109,15 +110,26 @@ class TreeDeriver {
   /// Derives a function by every route and keeps the cheapest.
   void derive(const std::string& name) {
     std::vector<Route> routes;
+    std::vector<int> cost;
+    std::set<std::string> hopeless;  // algorithms that lost by a quarter in the first frames
     for (const Frames& frames : frames_) {
-      for (Route& r : routes_of(name, frames.mechanism)) {
-        r.name += r.name.empty() ? frames.name : ", frames " + frames.name;
+      const std::size_t first = routes.size();
+      for (const Algorithm& algorithm : algorithms_of(name)) {
+        if (hopeless.contains(algorithm.name)) continue;
+        Route r{algorithm.name, algorithm.outputs(frames.mechanism)};
         std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+        if (r.outputs.empty()) continue;
+        cost.push_back(count_operations(tape_, roots_of(r)).total());
         routes.push_back(std::move(r));
       }
+      if (first == routes.size()) continue;
+      const int least = *std::min_element(cost.begin() + static_cast<std::ptrdiff_t>(first), cost.end());
+      for (std::size_t i = first; i < routes.size(); ++i) {
+        if (cost[i] > least + least / 4) hopeless.insert(routes[i].name);
+        routes[i].name += (routes[i].name.empty() ? "frames " : ", frames ") + frames.name;
+      }
     }
-    std::vector<int> cost;
-    for (const Route& r : routes) cost.push_back(count_operations(tape_, roots_of(r)).total());
+    if (routes.empty()) return;
     const auto place = [&](std::size_t route, const std::vector<NodeId>& roots) {
       std::size_t next = 0;
       for (OutputBlock& b : routes[route].outputs) {
@@ -146,20 +158,28 @@ class TreeDeriver {
     return merge_opposite_differences(tape_, std::move(roots));
   }
 
-  std::vector<Route> routes_of(const std::string& name, const Mechanism<Expr>& m) {
-    if (name == "inverse_dynamics") return {{"", inverse_dynamics(m, in_.eta, in_.eta_dot, in_.r_dot, in_.r_ddot, true)}};
-    if (name == "bias_forces") return {{"", inverse_dynamics(m, in_.eta, {}, in_.r_dot, zeros(), true)}};
-    if (name == "gravity_forces") return {{"", inverse_dynamics(m, {}, {}, zeros(), zeros(), false)}};
-    if (name == "mass_matrix") return {{"", {block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))}}};
+  /// Ways to derive a function in given frames; one that does not apply has no outputs.
+  struct Algorithm {
+    std::string name;
+    std::function<std::vector<OutputBlock>(const Mechanism<Expr>&)> outputs;
+  };
+  std::vector<Algorithm> algorithms_of(const std::string& name) {
+    using M = const Mechanism<Expr>&;
+    if (name == "inverse_dynamics") return {{"", [this](M m) { return inverse_dynamics(m, in_.eta, in_.eta_dot, in_.r_dot, in_.r_ddot, true); }}};
+    if (name == "bias_forces") return {{"", [this](M m) { return inverse_dynamics(m, in_.eta, {}, in_.r_dot, zeros(), true); }}};
+    if (name == "gravity_forces") return {{"", [this](M m) { return inverse_dynamics(m, {}, {}, zeros(), zeros(), false); }}};
+    if (name == "mass_matrix")
+      return {{"", [this](M m) { return std::vector{block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))}; }}};
     if (name == "forward_dynamics") {
-      std::vector<Route> routes = {{"composite bodies and LTDL factor", forward_dynamics(m, false)}};
-      RigidTree<Expr> tree(m);
-      tree.position(in_.r);
-      if (joints_are_independent(tree))
-        routes.push_back({"articulated bodies", forward_dynamics(m, true)});
-      return routes;
+      return {{"articulated bodies", [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
+              {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
     }
     throw std::logic_error("a function without a derivation");
+  }
+  [[nodiscard]] bool independent(const Mechanism<Expr>& m) const {
+    RigidTree<Expr> tree(m);
+    tree.position(in_.r);
+    return joints_are_independent(tree);
   }
 
   static std::string meaning(const std::string& name) {

@@ -247,11 +247,16 @@ class Describer {
       force[6 + i] = -Expr(tape_, derivative(tape_, U, s.r[i])) - damping;
       power = power + Expr(tape_, s.r_dot[i]) * damping;
     }
-    for (const GeneralisedForceDescription& f : model_.forces) force[static_cast<std::size_t>(f.index)] += f.force;
+    Expr applied = 0;
+    for (const GeneralisedForceDescription& f : model_.forces) {
+      const auto index = static_cast<std::size_t>(f.index);
+      force[index] += f.force;
+      applied = applied + f.force * Expr(tape_, index < 6 ? s.eta[index] : s.r_dot[index - 6]);
+    }
     if (std::ranges::any_of(force, [](const Expr& e) { return !e.is_zero(); })) {
       for (const Expr& e : force) result_.force_roots.push_back(e.id(tape_));
     }
-    if (!model_.potential.is_zero() || !power.is_zero()) result_.energy_roots = {U, power.id(tape_)};
+    if (!model_.potential.is_zero() || !power.is_zero() || !applied.is_zero()) result_.energy_roots = {U, power.id(tape_), applied.id(tape_)};
   }
 
   const Model& model_;

@@ -37,7 +37,7 @@ struct MechanismDescription {
   std::vector<AppliedWrench<Expr>> wrenches;
   std::vector<NodeId> wrench_roots;    // 6 each
   std::vector<NodeId> force_roots;     // 6 + s, empty where all vanish
-  std::vector<NodeId> energy_roots;    // potential, dissipated power; empty where both vanish
+  std::vector<NodeId> energy_roots;    // potential, dissipated power, power of generalised forces; empty where all vanish
 };
 
 /// Brings a description to mechanism form. Adds derivative nodes to the model's tape.

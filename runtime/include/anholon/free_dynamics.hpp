@@ -126,11 +126,12 @@ class FreeDynamics {
   }
 
   struct Energies {
-    S kinetic, gravity, elastic, dissipated_power;  // J, J, J, W
+    S kinetic, gravity, elastic, dissipated_power, applied_power;  // J, J, J, W, W
   };
-  /// Kinetic energy; potential of gravity (zero at the world's origin); user, spring and modal energy; dissipated power.
+  /// Kinetic energy; potential of gravity (zero at the world's origin); user, spring and modal energy; power lost to the
+  /// dissipation function; power of the user's generalised forces and wrenches.
   Energies energies(const State<S>& state) {
-    Energies e{S(0), S(0), S(0), S(0)};
+    Energies e{S(0), S(0), S(0), S(0), S(0)};
     recursion_.position(state);
     recursion_.twists(state);
     recursion_.poses(state, R_, p_);
@@ -142,11 +143,13 @@ class FreeDynamics {
       e.gravity = e.gravity - dot(mechanism_.gravity, inertia.mass * p_[k] + R_[k] * inertia.first_moment);
     }
     if (mechanism_.user_energies) {
-      std::vector<S> user(2, S(0));
+      std::vector<S> user(3, S(0));
       mechanism_.user_energies(state, user);
       e.elastic = user[0];
       e.dissipated_power = user[1];
+      e.applied_power = user[2];
     }
+    if (!mechanism_.wrenches.empty()) e.applied_power = e.applied_power + recursion_.applied_wrench_power(state);
     return e;
   }
 

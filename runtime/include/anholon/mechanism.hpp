@@ -98,7 +98,7 @@ struct Mechanism {
   std::function<void(const State<S>&, std::span<S> out)> evaluate_wrenches;
   /// writes the 6 + s generalised forces of potential, dissipation and the user's own; empty where there are none
   std::function<void(const State<S>&, std::span<S> out)> generalised_forces;
-  /// writes (potential energy without gravity, dissipated power)
+  /// writes (potential energy without gravity, dissipated power, power of the user's generalised forces)
   std::function<void(const State<S>&, std::span<S> out)> user_energies;
   /// opens a named section of a derived program; empty for numbers
   std::function<void(const std::string&)> open_section;

@@ -103,7 +103,12 @@ class Recursion {
       wrenches_[k] = body_wrench(body, joints_[k].inertia, motions_[k], std::span<const S>(state.r_dot), r_ddot, modal_);
       for (std::size_t j = 0; j < modal_.size(); ++j) add_force(body.modes[j].coordinate, modal_[j]);
     }
-    if (applied && !mechanism_.wrenches.empty()) subtract_applied_wrenches(state);
+    if (applied && !mechanism_.wrenches.empty()) {
+      for_each_applied_wrench(state, [this](std::size_t k, const Spatial<S>& wrench) {
+        wrenches_[k].linear -= wrench.linear;
+        wrenches_[k].angular -= wrench.angular;
+      });
+    }
     for (std::size_t k = mechanism_.bodies.size(); k-- > 1;) {
       const Body<S>& body = mechanism_.bodies[k];
       mechanism_.section(body.name + ": joint force");
@@ -120,6 +125,15 @@ class Recursion {
       for (int i = 0; i < 6; ++i) base_wrench_[i] = base_wrench_[i] - force_[static_cast<std::size_t>(i)];
       for (std::size_t i = 0; i < generalised_.size(); ++i) generalised_[i] = generalised_[i] - force_[6 + i];
     }
+  }
+
+  /// Power of the applied wrenches. Needs twists().
+  S applied_wrench_power(const State<S>& state) {
+    S power = S(0);
+    for_each_applied_wrench(state, [&](std::size_t k, const Spatial<S>& wrench) {
+      power = power + dot(wrench.linear, motions_[k].v) + dot(wrench.angular, motions_[k].w);
+    });
+    return power;
   }
 
   [[nodiscard]] const Spatial<S>& base_wrench() const { return base_wrench_; }
@@ -205,7 +219,9 @@ class Recursion {
     const Coupling<S>& c = mechanism_.couplings[static_cast<std::size_t>(body.coupling)];
     for (std::size_t i = 0; i < c.on.size(); ++i) add_force(c.on[i], coupling_values_[static_cast<std::size_t>(body.coupling)][1 + i] * force);
   }
-  void subtract_applied_wrenches(const State<S>& state) {
+  /// Calls f(body, wrench about the body's origin in its axes) for every applied wrench.
+  template <class F>
+  void for_each_applied_wrench(const State<S>& state, const F& f) {
     mechanism_.section("applied wrenches");
     mechanism_.evaluate_wrenches(state, applied_);
     poses(state, orientation_, position_);
@@ -213,13 +229,9 @@ class Recursion {
       const AppliedWrench<S>& w = mechanism_.wrenches[i];
       const auto k = static_cast<std::size_t>(w.body);
       const S* x = &applied_[6 * i];
-      Vec3<S> force{x[0], x[1], x[2]};
-      Vec3<S> torque{x[3], x[4], x[5]};
       const Mat3<S> from = w.in_world_axes ? orientation_[k].transposed() : mechanism_.bodies[k].R_frame;
-      force = from * force;
-      torque = from * torque;
-      wrenches_[k].linear -= force;
-      wrenches_[k].angular -= torque + cross(w.point, force);
+      const Vec3<S> force = from * Vec3<S>{x[0], x[1], x[2]};
+      f(k, Spatial<S>{force, from * Vec3<S>{x[3], x[4], x[5]} + cross(w.point, force)});
     }
   }
 
