@@ -12,7 +12,8 @@
 namespace anholon {
 
 /// A name of the model in LaTeX: m_c -> m_{c}, r1 -> r_{1}, alpha -> \alpha, Omega_Z -> \Omega_{Z},
-/// m_wheel -> m_{\mathrm{wheel}}, dot(r1) and r1_dot -> \dot{r}_{1}, r1_ddot -> \ddot{r}_{1}.
+/// m_wheel -> m_{\mathrm{wheel}}, dot(r1) and r1_dot -> \dot{r}_{1}, r1_ddot -> \ddot{r}_{1}, nu[0] ->
+/// \nu_{0}.
 std::string latex_name(std::string_view name);
 
 struct LatexNames {

@@ -48,6 +48,12 @@ std::pair<std::string_view, std::string_view> trailing_digits(std::string_view t
 }  // namespace
 
 std::string latex_name(std::string_view name) {
+  std::string_view entry;  // of "x[2]"
+  const std::size_t bracket = name.find('[');
+  if (bracket != std::string_view::npos && name.ends_with("]")) {
+    entry = name.substr(bracket + 1, name.size() - bracket - 2);
+    name = name.substr(0, bracket);
+  }
   std::string accent;
   if (take_call(name, "ddot(") || take_suffix(name, "_ddot")) {
     accent = "\\ddot";
@@ -67,6 +73,7 @@ std::string latex_name(std::string_view name) {
     if (!digits.empty()) subscript += fmt::format("{}{}", letters.size() > 1 ? "\\," : "", digits);
     rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
   }
+  if (!entry.empty()) subscript += fmt::format("{}{}", subscript.empty() ? "" : ",", entry);
   const std::string letter = accent.empty() ? word(base) : fmt::format("{}{{{}}}", accent, word(base));
   return subscript.empty() ? letter : fmt::format("{}_{{{}}}", letter, subscript);
 }

@@ -5,6 +5,7 @@
 #include <cln/rational_ring.h>
 
 #include <algorithm>
+#include <numeric>
 #include <unordered_set>
 
 #include "algebra/factors.hpp"
@@ -58,6 +59,29 @@ Split most_shared(const Polynomial& p) {
     }
   }
   result.common = cln::zerop(shared) ? Polynomial::variable(chosen) : Polynomial(shared);
+  return result;
+}
+
+/// f = whole + rest / denominator: whole terms where the denominator is a monomial or constant.
+struct Parts {
+  Polynomial whole;
+  Polynomial rest;
+};
+
+Parts parted(const Fraction& f) {
+  Parts result;
+  if (f.denominator.size() > 1) {
+    result.rest = f.numerator;
+    return result;
+  }
+  for (const auto& [monomial, coefficient] : f.numerator.terms()) {
+    const Polynomial term = Polynomial::term(monomial, coefficient);
+    if (const auto quotient = divide(term, f.denominator)) {
+      result.whole = result.whole + *quotient;
+    } else {
+      result.rest = result.rest + term;
+    }
+  }
   return result;
 }
 
@@ -129,7 +153,7 @@ NodeId Lowering::product(const Polynomial& p) {
   const Polynomial rest = *divide(p, Polynomial::term(monomial_content(p), 1));
   const NodeId plain =
       tape_->apply(Op::mul, monomial, nested(rest));  // x^2 - y^2 costs less than its factors
-  return operation_weight(*tape_, {plain}) < operation_weight(*tape_, {factored}) ? plain : factored;
+  return operation_weight(*tape_, {plain}) <= operation_weight(*tape_, {factored}) ? plain : factored;
 }
 
 NodeId Lowering::nested(const Polynomial& p) {
@@ -153,10 +177,13 @@ NodeId Lowering::nested(const Polynomial& p) {
 NodeId Lowering::sum(const Polynomial& p) {
   std::vector<std::pair<bool, NodeId>> terms;  // negative?, magnitude
   for (const auto& [monomial, coefficient] : p.terms()) {
+    unsigned common = 0;  // x^2 y^2 = (x y)^2
+    for (const auto exponent : monomial) common = std::gcd(common, unsigned{exponent});
     NodeId id = tape_->constant(1);
     for (std::size_t i = 0; i < monomial.size(); ++i) {
-      if (monomial[i] > 0) id = tape_->apply(Op::mul, id, power(ring_->variables()[i], monomial[i]));
+      if (monomial[i] > 0) id = tape_->apply(Op::mul, id, power(ring_->variables()[i], monomial[i] / common));
     }
+    id = power(id, std::max(common, 1U));
     terms.emplace_back(cln::minusp(coefficient), scaled(cln::abs(coefficient), id));
   }
   std::stable_partition(terms.begin(), terms.end(), [](const auto& t) { return !t.first; });
@@ -169,23 +196,25 @@ NodeId Lowering::sum(const Polynomial& p) {
 }
 
 std::vector<NodeId> Lowering::fractions(const std::vector<Fraction>& values) {
-  std::map<Polynomial, std::vector<std::size_t>> by_denominator;
-  std::vector<NodeId> result(values.size());
+  struct User {
+    std::size_t index;
+    Polynomial numerator;
+  };
+  std::map<Polynomial, std::vector<User>> by_denominator;
+  std::vector<NodeId> result;
   for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i].numerator.is_zero()) {
-      result[i] = tape_->constant(0);
-    } else if (values[i].denominator.is_constant()) {
-      result[i] = polynomial(cln::recip(values[i].denominator.constant()) * values[i].numerator);
-    } else {
-      by_denominator[values[i].denominator].push_back(i);
-    }
+    auto [whole, rest] = parted(values[i]);
+    result.push_back(polynomial(whole));
+    if (!rest.is_zero()) by_denominator[values[i].denominator].push_back({i, std::move(rest)});
   }
   for (const auto& [denominator, users] : by_denominator) {
     Polynomial common;
-    for (const std::size_t i : users) common = gcd(common, values[i].numerator);
+    for (const User& user : users) common = gcd(common, user.numerator);
+    if (users.size() == 1) common = users.front().numerator;
     const NodeId shared = tape_->apply(Op::div, polynomial(common), polynomial(denominator));
-    for (const std::size_t i : users) {
-      result[i] = tape_->apply(Op::mul, polynomial(*divide(values[i].numerator, common)), shared);
+    for (const User& user : users) {
+      const NodeId rest = tape_->apply(Op::mul, polynomial(*divide(user.numerator, common)), shared);
+      result[user.index] = tape_->apply(Op::add, result[user.index], rest);
     }
   }
   return result;

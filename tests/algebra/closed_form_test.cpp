@@ -104,6 +104,14 @@ TEST(ClosedForm, CancelsQuotients) {
   EXPECT_EQ((*form)[3], (c * c).id(tape)) << text(tape, (*form)[3]);
 }
 
+TEST(ClosedForm, DividesOnlyWhatIsNotDivisible) {
+  Tape tape;
+  const Expr a = input(tape, "a"), b = input(tape, "b"), x = input(tape, "x");
+  const auto form = closed_form(tape, {((a * a * sin(x) + b * a * cos(x)) / (a * cos(x))).id(tape)});
+  ASSERT_TRUE(form);
+  EXPECT_EQ((*form)[0], ((a * sin(x)) / cos(x) + b).id(tape)) << text(tape, (*form)[0]);
+}
+
 TEST(ClosedForm, GivesUpBySize) {
   Tape tape;
   Expr sum = 0;

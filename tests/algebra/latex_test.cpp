@@ -19,6 +19,8 @@ TEST(LatexName, PutsIndicesBelowAndRatesUnderDots) {
   EXPECT_EQ(latex_name("dot(r1)"), "\\dot{r}_{1}");
   EXPECT_EQ(latex_name("r1_ddot"), "\\ddot{r}_{1}");
   EXPECT_EQ(latex_name("mX0"), "\\mathrm{mX}_{0}");
+  EXPECT_EQ(latex_name("nu[0]"), "\\nu_{0}");
+  EXPECT_EQ(latex_name("r_a_dot[1]"), "\\dot{r}_{a,1}");
   EXPECT_EQ(latex_name("J_w_2"), "J_{w,2}");
 }
 
