@@ -112,7 +112,7 @@ SceneProgram make_program(const Scene& scene) {
       roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
     }
   }
-  p.operations = count_operations(program.tape, roots).total();
+  p.operations = operations_per_call(program, roots).total();
   if (!rates.outputs.empty()) program.functions.push_back(rates);
   return p;
 }

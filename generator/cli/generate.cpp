@@ -34,7 +34,7 @@ int generate(const GenerateOptions& options) {
   for (const Function& f : program.functions) {
     std::vector<NodeId> roots;
     for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-    const OperationCount count = count_operations(program.tape, roots);
+    const OperationCount count = operations_per_call(program, roots);
     std::string before;
     std::string route;
     int most = 0;

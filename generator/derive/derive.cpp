@@ -116,7 +116,7 @@ class Deriver {
       for (const OutputBlock& b : r.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
       return roots;
     };
-    const auto cost = [&](const Route& r) { return count_operations(tape_, roots_of(r)).total(); };
+    const auto cost = [&](const Route& r) { return operations_per_call(program_, roots_of(r)).total(); };
     const auto cheapest = [&] { return std::ranges::min_element(routes, {}, cost); };
     if (request_.closed_forms) {
       const Route& base = *cheapest();
@@ -543,6 +543,23 @@ class Deriver {
 };
 
 }  // namespace
+
+OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots) {
+  const Tape& tape = program.tape;
+  std::vector<char> on_parameters(tape.size(), 0);
+  for (const ParameterInfo& p : program.parameters) on_parameters[p.node] = 1;
+  std::vector<NodeId> prepared;
+  for (const NodeId id : tape.reachable(roots)) {
+    const Node& n = tape.node(id);
+    const int arity = info(n.op).arity;
+    if (arity == 0) continue;
+    const auto fixed = [&](NodeId x) { return on_parameters[x] != 0 || tape.is_constant(x); };
+    if (!fixed(n.a) || (arity == 2 && !fixed(n.b))) continue;
+    on_parameters[id] = 1;
+    prepared.push_back(id);
+  }
+  return count_operations(tape, roots, prepared);
+}
 
 const std::vector<std::string>& function_names() {
   static const std::vector<std::string> names = {

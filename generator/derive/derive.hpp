@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "describe/model.hpp"
+#include "optimise/tape/count.hpp"
 #include "reduce/kernel.hpp"
 #include "tape/interface.hpp"
 
@@ -47,6 +48,9 @@ struct Derivation {
   std::optional<ReductionReport> torque_driven;  // all active coordinates by torque, where it was wanted
   std::vector<CandidateReport> candidates;
 };
+
+/// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.
+OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots);
 
 /// Names of all functions, in the order in which programs list them.
 const std::vector<std::string>& function_names();

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The checked-in sources of the models are what the generator writes today, byte for byte.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "derive/derive.hpp"
+#include "describe/read_model.hpp"
+#include "emit/header.hpp"
+
+namespace anholon {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path root = ANHOLON_SOURCE_DIR;
+
+std::string bytes_of(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// First line in which two texts differ, for the message.
+std::string first_difference(const std::string& a, const std::string& b) {
+  std::istringstream x(a), y(b);
+  std::string p, q;
+  for (int line = 1;; ++line) {
+    const bool more_a = static_cast<bool>(std::getline(x, p)), more_b = static_cast<bool>(std::getline(y, q));
+    if (!more_a && !more_b) return "none";
+    if (more_a != more_b || p != q) return "line " + std::to_string(line) + "\n- " + p + "\n+ " + q;
+  }
+}
+
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(root / "models")) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(entry.path() / (name + ".toml"))) names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+class EveryModel : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryModel, IsReproducedByteForByte) {
+  const fs::path kept = root / "generated" / GetParam() / "standard.hpp";
+  ASSERT_TRUE(fs::exists(kept)) << "run scripts/regenerate";
+  const Model model = read_model(root / "models" / GetParam() / (GetParam() + ".toml"));
+  const std::string expected = bytes_of(kept);
+  const std::string text = emit_header(derive(model)->program);
+  EXPECT_TRUE(text == expected) << "generated code changed at " << first_difference(expected, text)
+                                << "\nif this is meant, run scripts/regenerate and commit the result with its cause";
+  EXPECT_TRUE(text == emit_header(derive(model)->program)) << "two derivations in one process differ";
+}
+
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(model_names()));
+
+}  // namespace
+}  // namespace anholon
