@@ -94,18 +94,16 @@ KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const Ra
     : tape_(tape), sampler_(sampler), rows_(std::move(rows)), leading_(ranks.leading_rows) {
   A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
   split_redundant_rows(inverse);
-  B_1_ = C_plus_ * rows_.B;
+  B_1_ = C_ * rows_.B;
   choose_kernel(preferred_free, names);
 }
 
 void KinematicReduction::split_redundant_rows(Inverse inverse) {
   const int count = rows_.A.rows();
   const int independent = static_cast<int>(leading_.size());
-  C_ = Matrix<Expr>(count, independent);
   N_ = Matrix<Expr>(count, count - independent);
-  C_plus_ = Matrix<Expr>(independent, count);
+  C_ = Matrix<Expr>(independent, count);
   if (independent > 0) elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
-  for (int i = 0; i < independent; ++i) C_(leading_[static_cast<std::size_t>(i)], i) = 1;
   const std::vector<int> dependent = complement(leading_, count);
   for (std::size_t d = 0; d < dependent.size(); ++d) {  // row = w A_1
     std::vector<Expr> row;
@@ -113,23 +111,19 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
     const std::vector<Expr> w = independent > 0 ? elimination_->solve_transposed(row) : std::vector<Expr>{};
     N_(dependent[d], static_cast<int>(d)) = 1;
     for (int i = 0; i < independent; ++i) {
-      C_(dependent[d], i) = w[static_cast<std::size_t>(i)];
       N_(leading_[static_cast<std::size_t>(i)], static_cast<int>(d)) = -w[static_cast<std::size_t>(i)];
     }
   }
   if (inverse == Inverse::leading || dependent.empty()) {
-    for (int i = 0; i < independent; ++i) C_plus_(i, leading_[static_cast<std::size_t>(i)]) = 1;
-  } else if (independent > 0) {  // (C^T C)^-1 C^T
-    std::vector<std::vector<Expr>> columns;
-    for (int i = 0; i < count; ++i) {
-      columns.emplace_back();
-      for (int j = 0; j < independent; ++j) columns.back().push_back(C_(i, j));
-    }
-    const auto solved = solve_symmetric(C_.transposed() * C_, columns);
-    for (int i = 0; i < count; ++i) {
-      for (int j = 0; j < independent; ++j) C_plus_(j, i) = solved[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    }
+    for (int i = 0; i < independent; ++i) C_(i, leading_[static_cast<std::size_t>(i)]) = 1;
+    return;
   }
+  if (independent == 0) return;
+  // Least squares over all rows: A_P^T A‡ x = A_P^T b on independent columns P. No choice of rows can go singular, and
+  // its transpose gives the multipliers of least norm, lambda = A_P mu.
+  C_ = rows_.A.block(range(count), elimination_->pivot_columns()).transposed();
+  A_1_ = C_ * rows_.A;
+  elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
 }
 
 std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free, bool content_divided) const {
@@ -297,14 +291,14 @@ std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, co
     return result;
   }
   if (!kernel_elimination_) return std::vector<Expr>(static_cast<std::size_t>(A_1_.cols()), Expr(0));
-  std::vector<Expr> b = C_plus_ * bias;
+  std::vector<Expr> b = C_ * bias;
   for (Expr& e : b) e = -e;
   return kernel_elimination_->solve(b);
 }
 
 std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& residual, const std::vector<Expr>& lambda_stat) const {
   std::vector<Expr> lambda(static_cast<std::size_t>(rows_.A.rows()), Expr(0));
-  if (elimination_) lambda = C_plus_.transposed() * elimination_->solve_transposed(residual);
+  if (elimination_) lambda = C_.transposed() * elimination_->solve_transposed(residual);
   const std::vector<Expr> extra = N_ * lambda_stat;
   for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] += extra[i];
   return lambda;

@@ -68,11 +68,10 @@ class KinematicReduction {
   Sampler sampler_;
   ConstraintRows rows_;
   std::vector<int> leading_;
-  Matrix<Expr> A_1_;        // leading rows: m° x passive
-  Matrix<Expr> C_;          // A‡ = C A_1
-  Matrix<Expr> C_plus_;     // m° x rows
+  Matrix<Expr> A_1_;        // C A‡: m° independent rows, m° x passive
+  Matrix<Expr> C_;     // C: picks the leading rows, or weighs all of them, m° x rows
   Matrix<Expr> N_;
-  Matrix<Expr> B_1_;        // C^+ B_a
+  Matrix<Expr> B_1_;        // C B_a
   std::optional<Elimination> elimination_;         // for the multipliers
   std::optional<Elimination> kernel_elimination_;  // on the kernel's own pivots, for its drift
   Kernel kernel_;
