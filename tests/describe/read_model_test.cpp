@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "describe/mechanise.hpp"
 #include "describe/outline.hpp"
@@ -341,6 +342,17 @@ force = "-R_XX*p_X*1"
   ASSERT_EQ(model.forces.size(), 2U);
   EXPECT_EQ(model.forces[0].index, 5);
   EXPECT_EQ(model.forces[1].index, 6);
+}
+
+TEST(ReadModel, ReadsTheExampleOfItsDocumentation) {
+  std::ostringstream text;
+  text << std::ifstream(ANHOLON_SOURCE_DIR "/docs/model-file.md").rdbuf();
+  const std::string page = text.str();
+  const std::string fence = "```toml\n";
+  const std::size_t begin = page.find(fence) + fence.size();
+  const Model model = read_model_text(page.substr(begin, page.find("```", begin) - begin), "example.toml");
+  EXPECT_EQ(model.name, "cart_pendulum");
+  EXPECT_EQ(model.coordinates.size(), 1U);
 }
 
 TEST(ReadModel, PlacesErrorsInStringsOfManyLines) {
