@@ -9,82 +9,105 @@
 #include <sstream>
 
 #include "describe/read_model.hpp"
+#include "describe/specialise.hpp"
 
 namespace anholon {
 namespace {
 
-std::vector<std::string> seeds() {
-  std::vector<std::string> texts;
-  for (const char* name : {"mobile_pendulum", "bicycle", "soft_snakeboard", "trailer"}) {
-    std::ostringstream text;
-    text << std::ifstream(std::filesystem::path(ANHOLON_SOURCE_DIR) / "models" / name /
-                          (std::string(name) + ".toml"))
-                .rdbuf();
-    texts.push_back(text.str());
+std::string text_of(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(std::filesystem::path(ANHOLON_SOURCE_DIR) / "models" / file).rdbuf();
+  return text.str();
+}
+
+/// One to four changes of bytes, pieces and ends.
+std::string mutated(std::string text, std::mt19937_64& rng) {
+  static const std::vector<std::string> pieces = {"\"",     "'",
+                                                  "{",      "}",
+                                                  "[",      "]",
+                                                  "[[",     "#",
+                                                  "=",      ",",
+                                                  "1e308",  "-",
+                                                  "^",      "(",
+                                                  ")",      "0",
+                                                  "nan",    "inf",
+                                                  "1e-4",   "r1",
+                                                  "dot(",   "V_X",
+                                                  "\n",     "\\u",
+                                                  "\"\"\"", "\xff",
+                                                  "true",   ".",
+                                                  "e9",     "\t",
+                                                  "pi",     "/0",
+                                                  "^64",    "modes = 30\n",
+                                                  "range",  "sqrt(",
+                                                  "exp("};
+  const std::size_t changes = 1 + rng() % 4;
+  for (std::size_t i = 0; i < changes; ++i) {
+    const std::size_t at = rng() % text.size();
+    switch (rng() % 5) {
+      case 0:
+        text[at] = static_cast<char>(rng() % 256);
+        break;
+      case 1:
+        text.erase(at, 1 + rng() % 20);
+        break;
+      case 2:
+        text.insert(at, pieces[rng() % pieces.size()]);
+        break;
+      case 3:
+        text.insert(at, text.substr(rng() % text.size(), rng() % 60));
+        break;
+      default:
+        text.resize(std::max<std::size_t>(at, 1));
+        break;
+    }
+    if (text.empty()) text = "x";
   }
-  return texts;
+  return text;
+}
+
+/// Reads mutants of good texts; returns how many were accepted.
+template <class Read>
+int read_mutants(const std::vector<std::string>& good, int samples, const Read& read) {
+  std::mt19937_64 rng(20130922);  // fixed: a failure must be repeatable
+  int accepted = 0;
+  for (int sample = 0; sample < samples; ++sample) {
+    const std::string text = mutated(good[rng() % good.size()], rng);
+    try {
+      read(text);
+      ++accepted;
+    } catch (const ModelError& error) {
+      EXPECT_FALSE(error.diagnostics().empty());
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << "sample " << sample << ": " << error.what() << "\n" << text;
+    }
+  }
+  return accepted;
 }
 
 TEST(Mutation, OfGoodFilesEndsInAModelOrAModelError) {
-  const std::vector<std::string> good = seeds();
-  const std::vector<std::string> pieces = {"\"",     "'",
-                                           "{",      "}",
-                                           "[",      "]",
-                                           "[[",     "#",
-                                           "=",      ",",
-                                           "1e308",  "-",
-                                           "^",      "(",
-                                           ")",      "0",
-                                           "nan",    "inf",
-                                           "1e-4",   "r1",
-                                           "dot(",   "V_X",
-                                           "\n",     "\\u",
-                                           "\"\"\"", "\xff",
-                                           "true",   ".",
-                                           "e9",     "\t",
-                                           "pi",     "/0",
-                                           "^64",    "modes = 30\n",
-                                           "range",  "sqrt(",
-                                           "exp("};
-  std::mt19937_64 rng(20130922);  // fixed: a failure must be repeatable
-  int accepted = 0;
   const auto start = std::chrono::steady_clock::now();
-  for (int sample = 0; sample < 4000; ++sample) {
-    std::string text = good[rng() % good.size()];
-    const std::size_t changes = 1 + rng() % 4;
-    for (std::size_t i = 0; i < changes; ++i) {
-      const std::size_t at = rng() % text.size();
-      switch (rng() % 5) {
-        case 0:
-          text[at] = static_cast<char>(rng() % 256);
-          break;
-        case 1:
-          text.erase(at, 1 + rng() % 20);
-          break;
-        case 2:
-          text.insert(at, pieces[rng() % pieces.size()]);
-          break;
-        case 3:
-          text.insert(at, text.substr(rng() % text.size(), rng() % 60));
-          break;
-        default:
-          text.resize(std::max<std::size_t>(at, 1));
-          break;
-      }
-      if (text.empty()) text = "x";
-    }
-    try {
-      read_model_text(text, "mutant.toml");
-      ++accepted;
-    } catch (const ModelError& error) {
-      ASSERT_FALSE(error.diagnostics().empty());
-    } catch (const std::exception& error) {
-      FAIL() << "sample " << sample << ": " << error.what() << "\n" << text;
-    }
-  }
+  const std::vector<std::string> good = {
+      text_of("mobile_pendulum/mobile_pendulum.toml"), text_of("bicycle/bicycle.toml"),
+      text_of("soft_snakeboard/soft_snakeboard.toml"), text_of("trailer/trailer.toml")};
+  EXPECT_GT(read_mutants(good, 4000, [](const std::string& text) { read_model_text(text, "mutant.toml"); }),
+            10);
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  EXPECT_GT(accepted, 10);
   EXPECT_LT(time.count(), 240);  // measured: below 10 s
+}
+
+TEST(Mutation, OfGoodScenesEndsInASceneOrAModelError) {
+  const std::filesystem::path path =
+      std::filesystem::path(ANHOLON_SOURCE_DIR) / "models/soft_snakeboard/mutant.toml";
+  const std::vector<std::string> good = {text_of("soft_snakeboard/gait.scene.toml"),
+                                         text_of("soft_snakeboard/fixed_rotor.scene.toml"),
+                                         text_of("soft_snakeboard/rigid_beams.scene.toml")};
+  EXPECT_GT(read_mutants(good, 1000,
+                         [&](const std::string& text) {
+                           const Scene scene = read_scene_text(text, path);
+                           specialise(scene.model, scene);
+                         }),
+            10);
 }
 
 TEST(Mutation, DeepAndLongFilesAreRefusedSoon) {
