@@ -3,9 +3,9 @@
 
 #include <fmt/format.h>
 
-// toml++ 3.3 trusts some bytes that users can write. With "[=" it asserts, or without assertions goes on wrongly: here
-// its assertions stay on, and throw. A letter such as a Greek one leads it to a place that it takes for unreachable:
-// here that place returns.
+// toml++ 3.3 trusts some bytes that users can write. With "[=" it asserts, or without assertions goes on
+// wrongly: here its assertions stay on, and throw. A letter such as a Greek one leads it to a place that it
+// takes for unreachable: here that place returns.
 #undef NDEBUG
 namespace {
 struct TomlAssertion {};

@@ -46,6 +46,10 @@ void check_linear(const Expr& row, const Location& where, const std::string& wha
   const auto is_velocity = [&](NodeId id) {
     return std::find(velocities.begin(), velocities.end(), id) != velocities.end();
   };
+  const auto not_linear = [&](NodeId velocity) {
+    return fmt::format("{} is not linear in {}", what, tape.inputs()[tape.node(velocity).a]);
+  };
+  const std::string mend = "a row is a sum of velocities times expressions without velocities";
   std::vector<NodeId> used;
   for (const NodeId id : tape.reachable({root})) {
     if (is_velocity(id)) used.push_back(id);
@@ -55,13 +59,19 @@ void check_linear(const Expr& row, const Location& where, const std::string& wha
                            "write it with V_X ... Omega_Z or dot(...) of coordinates");
     return;
   }
+  for (const NodeId id : tape.reachable({root})) {  // the derivative of a sign hides what it depends on
+    if (tape.node(id).op != Op::sign) continue;
+    const std::vector<NodeId> inside = tape.reachable({tape.node(id).a});
+    if (const auto found = std::find_if(inside.begin(), inside.end(), is_velocity); found != inside.end()) {
+      reading.findings.error(where, not_linear(*found), mend);
+      return;
+    }
+  }
   std::vector<NodeId> coefficients;
   for (const NodeId velocity : used) coefficients.push_back(derivative(tape, root, velocity));
   const std::vector<NodeId> reached = tape.reachable(coefficients);
   if (const auto found = std::find_if(reached.begin(), reached.end(), is_velocity); found != reached.end()) {
-    reading.findings.error(where,
-                           fmt::format("{} is not linear in {}", what, tape.inputs()[tape.node(*found).a]),
-                           "a row is a sum of velocities times expressions without velocities");
+    reading.findings.error(where, not_linear(*found), mend);
     return;
   }
   std::vector<Expr> at_rest;
@@ -95,8 +105,7 @@ RowDescription read_blade(TableReader& table, Reading& reading) {
 }
 
 /// A wheel of radius h that rolls along its plane without slip:
-///   d . v_C - h (omega_wheel . axis) = 0,   C the wheel's centre, as a point of the wheel's parent; d = axis
-///   x normal
+///   d . v_C - h (omega_wheel . axis) = 0,   C the wheel's centre, a point of its parent; d = axis x normal
 RowDescription read_rolling(TableReader& table, Reading& reading) {
   static const Exact rounding = Exact::from_decimal("1e-40");
   RowDescription row;
