@@ -50,8 +50,6 @@ class ElementReader {
 
   /// @param ignored  attributes that are read over, with a note
   void check_attributes(const XMLElement& e, const std::string& what, const Names& known, const Names& ignored = {}) {
-    if (const std::string twice = source_.repeated_attribute(e); !twice.empty())
-      error(source_.place(e, twice), fmt::format("{} has the attribute '{}' twice", what, twice), "remove one of them");
     for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
       if (std::ranges::find(known, a->Name()) != known.end()) continue;
       if (std::ranges::find(ignored, a->Name()) != ignored.end()) {

@@ -17,7 +17,7 @@ std::string syntax_fault(tinyxml2::XMLError error) {
     case tinyxml2::XML_ERROR_MISMATCHED_ELEMENT:
       return "an element is closed by the tag of another one";
     case tinyxml2::XML_ERROR_PARSING_ATTRIBUTE:
-      return "an attribute is not of the form name=\"value\"";
+      return "an attribute is not of the form name=\"value\", or stands there twice";
     case tinyxml2::XML_ERROR_PARSING_ELEMENT:
       return "an element is not well-formed";
     case tinyxml2::XML_ELEMENT_DEPTH_EXCEEDED:
@@ -113,16 +113,6 @@ Location XmlSource::place(const tinyxml2::XMLElement& element, std::string_view 
     if (a.name == attribute) return location(a.offset);
   }
   return place(element);
-}
-
-std::string XmlSource::repeated_attribute(const tinyxml2::XMLElement& element) const {
-  const auto& attributes = tags_[tag_of_.at(&element)].attributes;
-  for (std::size_t i = 0; i < attributes.size(); ++i) {
-    for (std::size_t j = 0; j < i; ++j) {
-      if (attributes[i].name == attributes[j].name) return std::string(attributes[i].name);
-    }
-  }
-  return "";
 }
 
 }  // namespace anholon

@@ -27,8 +27,6 @@ class XmlSource {
   [[nodiscard]] Location place(const tinyxml2::XMLElement& element) const;
   /// Place of an attribute's name; of the element where it has no such attribute.
   [[nodiscard]] Location place(const tinyxml2::XMLElement& element, std::string_view attribute) const;
-  /// An attribute that the element has twice; empty where there is none.
-  [[nodiscard]] std::string repeated_attribute(const tinyxml2::XMLElement& element) const;
 
  private:
   struct Attribute {

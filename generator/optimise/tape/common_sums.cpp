@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <stdexcept>
 #include <unordered_map>
 
 #include "optimise/tape/count.hpp"
@@ -89,6 +90,15 @@ class SharedSums {
     return {ordered ? a.node : b.node, ordered ? b.node : a.node, a.negative != b.negative};
   }
 
+  [[nodiscard]] std::pair<std::size_t, std::size_t> occurrence(const std::vector<Term>& terms, const Pair& pair) const {
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      for (std::size_t j = 0; j < i; ++j) {
+        if (terms[i].node != terms[j].node && pair_of(terms[i], terms[j]) == pair) return {i, j};
+      }
+    }
+    throw std::logic_error("a pair is not in its sum");
+  }
+
   /// Takes the pair that most sums have, puts a new term in its place, and goes on while a pair stands in two sums.
   void find_pairs() {
     std::map<Pair, std::set<NodeId>> where;
@@ -123,10 +133,10 @@ class SharedSums {
       for (const NodeId sum : users) {
         enter(sum, false);
         std::vector<Term>& terms = sums_[sum];
-        const auto at = [&](NodeId node) { return std::ranges::find(terms, node, &Term::node); };
-        const bool negative = at(pair.x)->negative;
-        terms.erase(at(pair.x));
-        terms.erase(at(pair.y));
+        const auto [i, j] = occurrence(terms, pair);  // a node may stand in a sum twice, with either sign
+        const bool negative = terms[i].node == pair.x ? terms[i].negative : terms[j].negative;
+        terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(std::max(i, j)));
+        terms.erase(terms.begin() + static_cast<std::ptrdiff_t>(std::min(i, j)));
         terms.push_back({term, negative});
         changed_.insert(sum);
         enter(sum, true);
