@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// a - b and b - a are one operation: the second becomes the negation of the first, and its users absorb the sign.
+// a - b and b - a are one operation: signs are taken out of products and differences and carried to the users, so that values
+// that differ in sign alone are computed once.
 
 #include <vector>
 
