@@ -45,9 +45,9 @@ int main(int argc, char** argv) {
   std::sort(files.begin(), files.end());
 
   fmt::print("| robot |");
-  for (const std::string& name : tree_function_names()) fmt::print(" {} |", name);
+  for (const std::string& name : standard_tree_functions()) fmt::print(" {} |", name);
   fmt::print(" sin + cos | s |\n|---|");
-  for (std::size_t i = 0; i < tree_function_names().size() + 2; ++i) fmt::print("---:|");
+  for (std::size_t i = 0; i < standard_tree_functions().size() + 2; ++i) fmt::print("---:|");
   fmt::print("\n");
   int status = 0;
   for (const auto& file : files) {
@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
       fmt::print("| {} |", file.stem().string());
       int angles = 0;
-      for (const std::string& name : tree_function_names()) {
+      for (const std::string& name : standard_tree_functions()) {
         const auto function = std::ranges::find(derivation->program.functions, name, &Function::name);
         if (function == derivation->program.functions.end()) {
           fmt::print(" |");

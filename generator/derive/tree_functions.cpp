@@ -13,6 +13,7 @@
 #include "anholon/composite.hpp"
 #include "anholon/factor.hpp"
 #include "derive/tree_inputs.hpp"
+#include "derive/tree_kinematics.hpp"
 #include "describe/mechanise.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/model/regroup.hpp"
@@ -54,7 +55,8 @@ class TreeDeriver {
     }
     make_frames();
     for (const std::string& name : tree_function_names()) {
-      if (request_.functions.empty() || std::ranges::find(request_.functions, name) != request_.functions.end()) derive(name);
+      const std::vector<std::string>& wanted = request_.functions.empty() ? standard_tree_functions() : request_.functions;
+      if (std::ranges::find(wanted, name) != wanted.end()) derive(name);
     }
     return std::move(result_);
   }
@@ -70,7 +72,9 @@ class TreeDeriver {
       if (!b.modes.empty()) throw UnsupportedError(fmt::format("body '{}' is compliant: the functions of model '{}' are those of derive()", b.name, model_.name));
     }
     mechanism.open_section = [this](const std::string& title) { tape_.section(title); };
+    described_ = mechanism;
     const int merged = merge_fixed(mechanism);
+    merged_ = mechanism;
     result_->passes.push_back(fmt::format("merged {} bodies on fixed joints", merged));
     const auto add = [&](const std::string& name, Mechanism<Expr> m, bool tips, bool base_parameters) {
       if (tips) rotate_leaves(m);
@@ -151,7 +155,9 @@ class TreeDeriver {
 
   /// Passes over the program itself; they are costly, so only the cheapest routes see them.
   static constexpr std::size_t finalists = 2;
+  static constexpr std::size_t largest_shared = 200000;  // nodes of the tape beyond which the passes would dominate the time
   std::vector<NodeId> share(std::vector<NodeId> roots) {
+    if (tape_.size() > largest_shared) return roots;
     roots = merge_opposite_differences(tape_, std::move(roots));
     roots = extract_common_factors(tape_, std::move(roots));
     roots = share_common_sums(tape_, std::move(roots));
@@ -174,6 +180,32 @@ class TreeDeriver {
       return {{"articulated bodies", [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
               {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
     }
+    if (name == "mass_factor") {
+      return {{"composite bodies", [this](M m) {
+                 const LtdlFactor<Expr> f = ltdl(mass_matrix(m));
+                 Matrix<Expr> L = f.L;
+                 for (int i = 0; i < L.rows(); ++i) L(i, i) = 1;
+                 return std::vector{block("L", "mixed", "unit lower triangular", L), block("D", "mixed", "diagonal", f.D)};
+               }}};
+    }
+    if (name == "inverse_mass_matrix") return {{"LTDL factor, unit columns", [this](M m) { return inverse_mass_matrix(m); }}};
+    if (name == "centroidal_momentum") {
+      return {{"composite bodies", [this](M m) {
+                 const CentroidalMomentum<Expr> c = centroidal_momentum(m, in_.state());
+                 return std::vector{block("momentum", "kg m/s, kg m^2/s", "linear, and angular about the centre of mass, world axes", six(c.momentum)),
+                                    block("centre", "m", "centre of mass in the world", std::vector{c.centre.x, c.centre.y, c.centre.z})};
+               }}};
+    }
+    if (name == "energies") {
+      return {{"", [this](M m) {
+                 const auto e = FreeDynamics<Expr>(m).energies(in_.state());
+                 return std::vector{block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}),
+                                    block("gravity", "J", "potential energy of gravity, zero at the origin of the world", std::vector{e.gravity})};
+               }}};
+    }
+    if (name == "forward_kinematics") return {{"", [this](M m) { return is_first(m) ? forward_kinematics() : std::vector<OutputBlock>{}; }}};
+    if (name == "jacobians") return {{"", [this](M m) { return is_first(m) ? jacobians() : std::vector<OutputBlock>{}; }}};
+    if (name == "regressor") return {{"", [this](M m) { return is_first(m) ? regressors() : std::vector<OutputBlock>{}; }}};
     throw std::logic_error("a function without a derivation");
   }
   [[nodiscard]] bool independent(const Mechanism<Expr>& m) const {
@@ -188,6 +220,13 @@ class TreeDeriver {
     if (name == "gravity_forces") return "What inverse dynamics needs at rest.";
     if (name == "mass_matrix") return "Mass matrix M of (eta, r_dot).";
     if (name == "forward_dynamics") return "Accelerations under joint forces tau.";
+    if (name == "mass_factor") return "M = L^T D L.";
+    if (name == "inverse_mass_matrix") return "Inverse of M.";
+    if (name == "centroidal_momentum") return "Momentum of the robot about its centre of mass.";
+    if (name == "energies") return "Kinetic and potential energy.";
+    if (name == "forward_kinematics") return "Poses of all links in the world, R row-major and p.";
+    if (name == "jacobians") return "Twists of the links at the tips in their own axes: J (eta, r_dot); their derivative is J (eta_dot, r_ddot) + bias.";
+    if (name == "regressor") return "Inverse dynamics without springs, dampers and friction as Y pi, linear in the inertial figures pi of the bodies.";
     return "";
   }
 
@@ -245,6 +284,67 @@ class TreeDeriver {
     return composite_mass_matrix(tree);
   }
 
+  [[nodiscard]] bool is_first(const Mechanism<Expr>& m) const { return &m == &frames_[0].mechanism; }
+  static std::vector<Expr> six(const Spatial<Expr>& x) {
+    std::vector<Expr> v;
+    for (int i = 0; i < 6; ++i) v.push_back(x[i]);
+    return v;
+  }
+
+  std::vector<OutputBlock> inverse_mass_matrix(const Mechanism<Expr>& m) {
+    const LtdlFactor<Expr> factor = ltdl(mass_matrix(m));
+    const int size = factor.L.rows();
+    Matrix<Expr> inverse(size, size);
+    for (int c = 0; c < size; ++c) {
+      std::vector<Expr> e(static_cast<std::size_t>(size), Expr(0));
+      e[static_cast<std::size_t>(c)] = 1;
+      const std::vector<Expr> x = factor.solve(e);
+      for (int i = 0; i <= c; ++i) inverse(i, c) = inverse(c, i) = x[static_cast<std::size_t>(i)];
+    }
+    return {block("M_inverse", "mixed", "(eta, r) x (eta, r)", inverse)};
+  }
+
+  std::vector<OutputBlock> forward_kinematics() {
+    std::vector<Mat3<Expr>> R;
+    std::vector<Vec3<Expr>> p;
+    FreeDynamics<Expr>(described_).poses(in_.state(), R, p);
+    std::vector<OutputBlock> outputs;
+    for (std::size_t k = 0; k < R.size(); ++k) {
+      const std::string& name = described_.bodies[k].name;
+      outputs.push_back(block("R_" + name, "1", "orientation of link " + name, std::vector<Expr>(R[k].m.begin(), R[k].m.end())));
+      outputs.back().rows = outputs.back().cols = 3;
+      outputs.push_back(block("p_" + name, "m", "origin of link " + name, std::vector{p[k].x, p[k].y, p[k].z}));
+    }
+    return outputs;
+  }
+
+  std::vector<OutputBlock> jacobians() {
+    std::vector<int> tips;
+    for (std::size_t k = 0; k < described_.bodies.size(); ++k) {
+      const bool is_parent = std::ranges::any_of(described_.bodies, [&](const Body<Expr>& b) { return b.parent == static_cast<int>(k); });
+      if (!is_parent) tips.push_back(static_cast<int>(k));
+    }
+    const std::vector<FrameJacobian<Expr>> frames = frame_jacobians(described_, in_.state(), tips);
+    std::vector<OutputBlock> outputs;
+    for (std::size_t i = 0; i < tips.size(); ++i) {
+      const std::string& name = described_.bodies[static_cast<std::size_t>(tips[i])].name;
+      outputs.push_back(block("J_" + name, "mixed", "6 x (eta, r)", frames[i].J));
+      outputs.push_back(block("bias_" + name, "m/s^2, rad/s^2", "linear part first", frames[i].bias));
+    }
+    return outputs;
+  }
+
+  std::vector<OutputBlock> regressors() {
+    RigidTree<Expr> tree(merged_);
+    tree.position(in_.r);
+    tree.move_base(in_.eta.angular, in_.eta_dot.angular,
+                   in_.eta_dot.linear + cross(in_.eta.angular, in_.eta.linear) - transposed_times(in_.R, merged_.gravity));
+    tree.move(in_.r_dot, in_.r_ddot);
+    std::string names;
+    for (const Body<Expr>& b : merged_.bodies) names += (names.empty() ? "" : ", ") + b.name;
+    return {block("Y", "mixed", "columns m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of " + names, regressor(tree))};
+  }
+
   /// With A = eta_dot.linear + Omega x V - R^T gravity as the unknown of a free reference body, gravity drops out of all but
   /// the last line; a reference body that cannot accelerate everywhere carries gravity as its own acceleration.
   std::vector<OutputBlock> forward_dynamics(const Mechanism<Expr>& m, bool articulated_bodies) {
@@ -287,12 +387,21 @@ class TreeDeriver {
   Program& program_;
   Tape& tape_;
   TreeInputs in_;
+  Mechanism<Expr> described_;  // every link a body
+  Mechanism<Expr> merged_;     // without fixed joints, in the described frames
   std::vector<Frames> frames_;
 };
 
 }  // namespace
 
 const std::vector<std::string>& tree_function_names() {
+  static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces",         "gravity_forces",      "mass_matrix",
+                                                 "forward_dynamics", "mass_factor",         "inverse_mass_matrix", "centroidal_momentum",
+                                                 "energies",         "forward_kinematics",  "jacobians",           "regressor"};
+  return names;
+}
+
+const std::vector<std::string>& standard_tree_functions() {
   static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces", "gravity_forces", "mass_matrix", "forward_dynamics"};
   return names;
 }

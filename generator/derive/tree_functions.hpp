@@ -16,7 +16,7 @@ namespace anholon {
 
 struct TreeRequest {
   std::string scene = "standard";
-  std::vector<std::string> functions;  // wanted; empty: all of tree_function_names()
+  std::vector<std::string> functions;  // wanted; empty: standard_tree_functions()
   bool search = true;                  // try every choice of frames and algorithm; else only the first of each
 };
 
@@ -28,6 +28,9 @@ struct TreeDerivation {
 
 /// Names of the functions that derive_tree knows, in the order in which programs list them.
 const std::vector<std::string>& tree_function_names();
+
+/// Those that are derived where none are named: inverse and forward dynamics, bias, gravity, mass matrix.
+const std::vector<std::string>& standard_tree_functions();
 
 /// Inputs are R (orientation of the reference body, for a group that turns), eta, eta_dot, r, r_dot, r_ddot, tau; twists and
 /// wrenches are those of the described reference body in its own axes, (V, Omega) and (force, torque).

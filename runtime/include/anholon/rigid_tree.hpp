@@ -120,9 +120,8 @@ class RigidTree {
   }
 
   /// Wrench about its origin that the motion of a body needs.
-  [[nodiscard]] Spatial<S> body_wrench(std::size_t k) const {
-    const Motion& m = motions_[k];
-    const MassMoments<S>& b = moments_[k];
+  [[nodiscard]] Spatial<S> body_wrench(std::size_t k) const { return body_wrench(moments_[k], motions_[k]); }
+  [[nodiscard]] static Spatial<S> body_wrench(const MassMoments<S>& b, const Motion& m) {
     return {b.mass * m.a + m.U * b.first, cross(b.first, m.a) + rotational_moment(b.second, m)};
   }
 
