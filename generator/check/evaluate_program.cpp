@@ -7,24 +7,25 @@
 
 namespace anholon {
 
-Evaluated<double> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<double>& call, const EvaluationInput<double>& input) {
+template <class S>
+Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call, const EvaluationInput<S>& input) {
   const Program& program = derivation.program;
   const Partition partition = partition_of(model);
   const int n = partition.n;
   const int size = n + static_cast<int>(model.coordinates.size());
-  NamedValues<double> in = position_inputs(model, partition, input.state);
+  NamedValues<S> in = position_inputs(model, partition, input.state);
   const auto components = free_components(model.group);
   for (const int c : components) in["eta"].push_back(input.state.eta[c]);
   for (std::size_t i = static_cast<std::size_t>(n); i < partition.passive.size(); ++i) in["r_p_dot"].push_back(input.state.r_dot[static_cast<std::size_t>(partition.passive[i] - n)]);
   for (const int i : partition.active) {
     const auto a = static_cast<std::size_t>(i - n);
     in["r_a_dot"].push_back(input.state.r_dot[a]);
-    in["r_a_ddot"].push_back(input.has_acceleration ? input.r_ddot[a] : 0.0);
-    in["tau_a"].push_back(input.has_torque ? input.tau[a] : 0.0);
+    in["r_a_ddot"].push_back(input.has_acceleration ? input.r_ddot[a] : S(0));
+    in["tau_a"].push_back(input.has_torque ? input.tau[a] : S(0));
   }
-  const auto run = [&](const std::string& name) { return find_function(program, name) != nullptr ? call(name, in) : NamedValues<double>{}; };
-  const auto matrix = [](const NamedValues<double>& out, const std::string& name, int rows, int cols) {
-    Matrix<double> m(rows, cols);
+  const auto run = [&](const std::string& name) { return find_function(program, name) != nullptr ? call(name, in) : NamedValues<S>{}; };
+  const auto matrix = [](const NamedValues<S>& out, const std::string& name, int rows, int cols) {
+    Matrix<S> m(rows, cols);
     const auto found = out.find(name);
     if (found == out.end()) return m;
     for (int i = 0; i < rows; ++i) {
@@ -32,36 +33,36 @@ Evaluated<double> evaluate_program(const Model& model, const Derivation& derivat
     }
     return m;
   };
-  const auto get = [](const NamedValues<double>& out, const std::string& name) {
+  const auto get = [](const NamedValues<S>& out, const std::string& name) {
     const auto found = out.find(name);
-    return found == out.end() ? std::vector<double>{} : found->second;
+    return found == out.end() ? std::vector<S>{} : found->second;
   };
   std::vector<int> eta, r_p(partition.passive.begin() + n, partition.passive.end());
   for (int i = 0; i < n; ++i) eta.push_back(i);
   const std::vector<int>& r_a = partition.active;
 
-  Evaluated<double> e;
-  e.M = Matrix<double>(size, size);
-  const NamedValues<double> free = run("free_dynamics");
+  Evaluated<S> e;
+  e.M = Matrix<S>(size, size);
+  const NamedValues<S> free = run("free_dynamics");
   const auto place = [&](const std::string& name, const std::vector<int>& rows, const std::vector<int>& cols) {
-    const Matrix<double> m = matrix(free, name, static_cast<int>(rows.size()), static_cast<int>(cols.size()));
+    const Matrix<S> m = matrix(free, name, static_cast<int>(rows.size()), static_cast<int>(cols.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (std::size_t j = 0; j < cols.size(); ++j) e.M(rows[i], cols[j]) = e.M(cols[j], rows[i]) = m(static_cast<int>(i), static_cast<int>(j));
     }
   };
   place("M_eta_eta", eta, eta), place("M_p", r_p, eta), place("M_a", r_a, eta);
   place("m_pp", r_p, r_p), place("m_pa", r_p, r_a), place("m_aa", r_a, r_a);
-  const auto scatter_into = [&](std::vector<double>& to, const std::vector<double>& from, const std::vector<int>& at) {
+  const auto scatter_into = [&](std::vector<S>& to, const std::vector<S>& from, const std::vector<int>& at) {
     for (std::size_t i = 0; i < from.size(); ++i) to[static_cast<std::size_t>(at[i])] = from[i];
   };
-  e.force.assign(static_cast<std::size_t>(size), 0.0);
+  e.force.assign(static_cast<std::size_t>(size), S(0));
   scatter_into(e.force, get(free, "f"), eta), scatter_into(e.force, get(free, "Q_p"), r_p), scatter_into(e.force, get(free, "Q_a"), r_a);
 
   const int rows = static_cast<int>(model.rows.size());
-  const NamedValues<double> constraints = run("constraints");
-  e.G = Matrix<double>(rows, size);
+  const NamedValues<S> constraints = run("constraints");
+  e.G = Matrix<S>(rows, size);
   const auto place_columns = [&](const std::string& name, const std::vector<int>& cols) {
-    const Matrix<double> m = matrix(constraints, name, rows, static_cast<int>(cols.size()));
+    const Matrix<S> m = matrix(constraints, name, rows, static_cast<int>(cols.size()));
     for (int i = 0; i < rows; ++i) {
       for (std::size_t j = 0; j < cols.size(); ++j) e.G(i, cols[j]) = m(i, static_cast<int>(j));
     }
@@ -72,39 +73,39 @@ Evaluated<double> evaluate_program(const Model& model, const Derivation& derivat
   const int passive = static_cast<int>(partition.passive.size());
   const int k = derivation.reduction.kernel.H.cols();
   e.nu = in["nu"] = get(run("reduced_velocities"), "nu");
-  const NamedValues<double> kinematics = run("kinematics");
+  const NamedValues<S> kinematics = run("kinematics");
   e.H = matrix(kinematics, "H", passive, k);
   e.J = matrix(kinematics, "J", passive, partition.s_a());
   e.basis = derivation.reduction.kernel.description;
   if (k > 0) {
     e.projector = range_projector(e.H);
   } else {
-    e.projector = Matrix<double>(passive, passive);
+    e.projector = Matrix<S>(passive, passive);
   }
-  const NamedValues<double> energies = run("energies");
-  const auto energy = [&](const char* name) { const auto v = get(energies, name); return v.empty() ? 0.0 : v[0]; };
+  const NamedValues<S> energies = run("energies");
+  const auto energy = [&](const char* name) { const auto v = get(energies, name); return v.empty() ? S(0) : v[0]; };
   e.kinetic = energy("kinetic"), e.gravity = energy("gravity"), e.elastic = energy("elastic"), e.dissipated_power = energy("dissipated_power");
 
   if (input.has_acceleration) {
-    const NamedValues<double> reduced = run("reduced_dynamics");
+    const NamedValues<S> reduced = run("reduced_dynamics");
     e.M_r = matrix(reduced, "M_r", k, k);
     e.f_r = get(reduced, "f_r");
-    const NamedValues<double> forward = run("forward_dynamics");
+    const NamedValues<S> forward = run("forward_dynamics");
     e.nu_dot = in["nu_dot"] = get(forward, "nu_dot");
-    e.acceleration.assign(static_cast<std::size_t>(size), 0.0);
+    e.acceleration.assign(static_cast<std::size_t>(size), S(0));
     scatter_into(e.acceleration, get(forward, "eta_dot"), eta);
     scatter_into(e.acceleration, get(forward, "r_p_ddot"), r_p);
     scatter_into(e.acceleration, in["r_a_ddot"], r_a);
     const auto& stat = std::ranges::find(program.inputs, "lambda_stat", &InputBlock::name);
-    if (stat != program.inputs.end()) in["lambda_stat"].assign(stat->nodes.size(), 0.0);
+    if (stat != program.inputs.end()) in["lambda_stat"].assign(stat->nodes.size(), S(0));
     e.tau_a = get(run("inverse_torques"), "tau_a");
     e.lambda = get(run("multipliers"), "lambda");
   }
   if (input.has_torque) {
     in["w"] = get(run("torque_driven_velocities"), "w");
-    const NamedValues<double> forward = run("torque_driven_dynamics");
+    const NamedValues<S> forward = run("torque_driven_dynamics");
     in["w_dot"] = get(forward, "w_dot");
-    e.free_acceleration.assign(static_cast<std::size_t>(size), 0.0);
+    e.free_acceleration.assign(static_cast<std::size_t>(size), S(0));
     scatter_into(e.free_acceleration, get(forward, "eta_dot"), eta);
     scatter_into(e.free_acceleration, get(forward, "r_p_ddot"), r_p);
     scatter_into(e.free_acceleration, get(forward, "r_a_ddot"), r_a);
@@ -112,5 +113,8 @@ Evaluated<double> evaluate_program(const Model& model, const Derivation& derivat
   }
   return e;
 }
+
+template Evaluated<double> evaluate_program(const Model&, const Derivation&, const ProgramCaller<double>&, const EvaluationInput<double>&);
+template Evaluated<Exact> evaluate_program(const Model&, const Derivation&, const ProgramCaller<Exact>&, const EvaluationInput<Exact>&);
 
 }  // namespace anholon

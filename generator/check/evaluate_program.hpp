@@ -50,6 +50,7 @@ ProgramCaller<S> interpreting_caller(const Program& program, std::vector<S> para
     for (const InputBlock& block : program.inputs) {
       const auto value = named.find(block.name);
       if (value == named.end()) continue;
+      if (value->second.size() != block.nodes.size()) throw std::invalid_argument("input block '" + block.name + "' has the wrong size");
       for (std::size_t i = 0; i < block.nodes.size(); ++i) inputs[program.tape.node(block.nodes[i]).a] = value->second[i];
     }
     std::vector<S> flat(found->second.output_count(), S(0));
@@ -80,7 +81,11 @@ NamedValues<S> position_inputs(const Model& model, const Partition& partition, c
   return in;
 }
 
-/// Every function that the program has, in double.
-Evaluated<double> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<double>& call, const EvaluationInput<double>& input);
+/// Every function that the program has.
+template <class S>
+Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call, const EvaluationInput<S>& input);
+
+extern template Evaluated<double> evaluate_program(const Model&, const Derivation&, const ProgramCaller<double>&, const EvaluationInput<double>&);
+extern template Evaluated<Exact> evaluate_program(const Model&, const Derivation&, const ProgramCaller<Exact>&, const EvaluationInput<Exact>&);
 
 }  // namespace anholon

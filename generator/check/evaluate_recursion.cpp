@@ -83,9 +83,13 @@ std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vect
   return from_eigen<Exact>(ConstraintFactors<Exact>(to_eigen(A), Exact::from_decimal("1e-25")).solve(to_eigen(b)));
 }
 
-Matrix<double> range_projector(const Matrix<double>& H) {
-  const DynamicMatrix<double> Q = DynamicMatrix<double>(Eigen::HouseholderQR<DynamicMatrix<double>>(to_eigen(H)).householderQ()).leftCols(H.cols());
-  return from_eigen<double>(DynamicMatrix<double>(Q * Q.transpose()));
+template <class S>
+Matrix<S> range_projector(const Matrix<S>& H) {
+  const DynamicMatrix<S> Q = DynamicMatrix<S>(Eigen::HouseholderQR<DynamicMatrix<S>>(to_eigen(H)).householderQ()).leftCols(H.cols());
+  return from_eigen<S>(DynamicMatrix<S>(Q * Q.transpose()));
 }
+
+template Matrix<double> range_projector(const Matrix<double>&);
+template Matrix<Exact> range_projector(const Matrix<Exact>&);
 
 }  // namespace anholon

@@ -22,6 +22,10 @@ extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, con
 std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b);
 
 /// Orthogonal projector onto the range of H, of full column rank.
-Matrix<double> range_projector(const Matrix<double>& H);
+template <class S>
+Matrix<S> range_projector(const Matrix<S>& H);
+
+extern template Matrix<double> range_projector(const Matrix<double>&);
+extern template Matrix<Exact> range_projector(const Matrix<Exact>&);
 
 }  // namespace anholon
