@@ -42,17 +42,60 @@ struct SceneProgram {
   int operations = 0;
 };
 
-std::vector<NodeId> copied(const Scene& scene, Program& program, const std::vector<Expr>& expressions) {
+/// Expressions of the scene on the program's tape. Velocities are those that nu and r_a_dot mean.
+std::vector<NodeId> copied(const Scene& scene, const SceneProgram& p, const std::vector<Expr>& expressions) {
+  Program& program = p.derivation->program;
   Tape& from = *scene.model.tape;
   std::vector<Expr> inputs(from.inputs().size(), Expr(0));
   const StateSymbols& s = scene.model.symbols;
+  const auto set = [&](NodeId symbol, NodeId value) { inputs[from.node(symbol).a] = Expr(program.tape, value); };
+  const auto block = [&](const std::string& name) {
+    const auto found = std::ranges::find(program.inputs, name, &InputBlock::name);
+    return found == program.inputs.end() ? std::vector<NodeId>{} : found->nodes;
+  };
+  const auto velocity = [&](const std::string& name) {  // an output of the kinematics, or imposed
+    for (const Function& f : program.functions) {
+      for (const OutputBlock& b : f.outputs) {
+        if (f.name == "kinematics" && b.name == name) return b.nodes;
+      }
+    }
+    return block(name);
+  };
   for (std::size_t i = 0; i < scene.model.parameters.size(); ++i) {
-    const Parameter& p = scene.model.parameters[i];
-    const auto kept = std::ranges::find(program.parameters, p.name, &ParameterInfo::name);
-    inputs[from.node(s.parameters[i]).a] = Expr(program.tape, kept != program.parameters.end() ? kept->node : program.tape.constant(p.value));
+    const Parameter& parameter = scene.model.parameters[i];
+    const auto kept = std::ranges::find(program.parameters, parameter.name, &ParameterInfo::name);
+    set(s.parameters[i], kept != program.parameters.end() ? kept->node : program.tape.constant(parameter.value));
   }
-  const auto t = std::ranges::find(program.inputs, "t", &InputBlock::name);
-  inputs[from.node(s.t).a] = Expr(program.tape, t->nodes[0]);
+  set(s.t, block("t")[0]);
+  const GroupKind group = p.model.group;
+  if (group == GroupKind::SE2) {
+    const std::vector<NodeId> g = block("g");
+    const Mat3<Expr> R = AxisRotation<Expr>{2, cos(Expr(program.tape, g[2])), sin(Expr(program.tape, g[2]))}.matrix();
+    for (std::size_t i = 0; i < 9; ++i) set(s.R[i], R.m[i].id(program.tape));
+    set(s.p[0], g[0]), set(s.p[1], g[1]);
+  } else {
+    for (const std::size_t i : {0U, 4U, 8U}) set(s.R[i], program.tape.constant(1));
+    const std::vector<NodeId> R = block("R"), position = block("p");
+    for (std::size_t i = 0; i < R.size(); ++i) set(s.R[i], R[i]);
+    for (std::size_t i = 0; i < position.size(); ++i) set(s.p[i], position[i]);
+  }
+  const auto components = free_components(group);
+  const std::vector<NodeId> eta = velocity("eta"), r_p = block("r_p"), r_a = block("r_a");
+  for (std::size_t i = 0; i < eta.size(); ++i) set(s.eta[static_cast<std::size_t>(components[i])], eta[i]);
+  const std::vector<int> kept = kept_coordinates(scene.model, scene);
+  const auto each = [&](const std::vector<NodeId>& nodes, const std::vector<int>& velocities, const std::vector<NodeId>& symbols) {
+    for (std::size_t c = 0; c < kept.size(); ++c) {
+      const auto at = std::ranges::find(velocities, kept[c] + p.original.n);
+      if (kept[c] >= 0 && at != velocities.end() && !nodes.empty()) set(symbols[c], nodes[static_cast<std::size_t>(at - velocities.begin())]);
+    }
+  };
+  const std::vector<int> passive(p.original.passive.begin() + p.original.n, p.original.passive.end());
+  each(r_p, passive, s.r), each(r_a, p.original.active, s.r);
+  each(velocity("r_p_dot"), passive, s.r_dot), each(velocity("r_d_dot"), p.driven, s.r_dot), each(block("r_a_dot"), p.reduced.active, s.r_dot);
+  for (const LockedCoordinate& locked : scene.locked) {
+    const NodeId value = locked.value.id(from);
+    inputs[from.node(s.r[static_cast<std::size_t>(locked.coordinate)]).a] = interpret<Expr>(from, {value}, inputs, FromExact<Expr>{&program.tape}).front();
+  }
   std::vector<NodeId> roots;
   for (const Expr& e : expressions) roots.push_back(e.id(from));
   std::vector<NodeId> result;
@@ -87,9 +130,9 @@ SceneProgram make_program(const Scene& scene) {
     }
     const int size = static_cast<int>(r.size());
     if (size > 0) {
-      imposed.outputs = {{"r_m", "rad or m", "motion-driven coordinates", size, 1, copied(scene, program, r)},
-                         {"r_m_dot", "rad/s or m/s", "their rates", size, 1, copied(scene, program, r_dot)},
-                         {"r_m_ddot", "rad/s^2 or m/s^2", "their second derivatives", size, 1, copied(scene, program, r_ddot)}};
+      imposed.outputs = {{"r_m", "rad or m", "motion-driven coordinates", size, 1, copied(scene, p, r)},
+                         {"r_m_dot", "rad/s or m/s", "their rates", size, 1, copied(scene, p, r_dot)},
+                         {"r_m_ddot", "rad/s^2 or m/s^2", "their second derivatives", size, 1, copied(scene, p, r_ddot)}};
     }
   }
   if (!scene.torques.empty() || !p.driven.empty()) {
@@ -98,7 +141,10 @@ SceneProgram make_program(const Scene& scene) {
       const auto found = std::ranges::find_if(scene.torques, [&](const ImposedTorque& x) { return kept[static_cast<std::size_t>(x.coordinate)] == i - p.original.n; });
       torque.push_back(found == scene.torques.end() ? Expr(0) : found->torque);
     }
-    imposed.outputs.push_back({"torque", "N m or N", "torque-driven coordinates", static_cast<int>(torque.size()), 1, copied(scene, program, torque)});
+    if (!torque.empty()) {
+      program.functions.push_back({"imposed_torque", "Torques on the torque-driven coordinates.",
+                                   {{"torque", "N m or N", "torque-driven coordinates", static_cast<int>(torque.size()), 1, copied(scene, p, torque)}}, ""});
+    }
   }
   if (!imposed.outputs.empty()) program.functions.push_back(imposed);
 
@@ -246,23 +292,21 @@ class Runner {
       const bool driven = std::ranges::find(program.driven, program.original.active[i]) != program.driven.end();
       (driven ? driven_at_ : motion_at_).push_back(i);
     }
-    imposed = bound(code, "imposed", b), rates = bound(code, "rates", b), kinematics = bound(code, "kinematics", b), torques = bound(code, "inverse_torques", b);
+    imposed = bound(code, "imposed", b), imposed_torque = bound(code, "imposed_torque", b), rates = bound(code, "rates", b), kinematics = bound(code, "kinematics", b), torques = bound(code, "inverse_torques", b);
     multipliers = bound(code, "multipliers", b), constraints = bound(code, "constraints", b), energies = bound(code, "energies", b);
     reduced_velocities = bound(code, "reduced_velocities", b), compatibility = bound(code, "compatibility", b);
     if (scene.motion_table) table_.emplace(scene, program);
   }
 
-  /// Imposed motion and torques at t.
+  /// Imposed motion at t.
   void impose(S t) {
     b.t[0] = t;
     if (imposed) imposed();
     if (table_) (*table_)(t, b);
     for (std::size_t i = 0; i < motion_at_.size(); ++i) b.r_a[motion_at_[i]] = b.r_m[i], b.r_a_dot[i] = b.r_m_dot[i], b.r_a_ddot[i] = b.r_m_ddot[i];
-    if (driven_at_.empty()) return;
-    std::vector<S>& tau = motion_at_.empty() ? b.tau_a : b.tau_d;
-    for (std::size_t i = 0; i < driven_at_.size(); ++i) tau[i] = b.torque[i];
   }
 
+  /// Pose, shape and reduced velocities, and the torques that follow from them. Needs impose().
   template <class G, class Vector>
   void set(const G& g, const Vector& y) {
     const auto R = g.R();
@@ -276,6 +320,10 @@ class Runner {
     for (S& x : b.r_p) x = y(next++);
     for (const std::size_t i : driven_at_) b.r_a[i] = y(next++);
     for (S& x : b.nu) x = y(next++);
+    if (!imposed_torque) return;
+    imposed_torque();
+    std::vector<S>& tau = motion_at_.empty() ? b.tau_a : b.tau_d;
+    for (std::size_t i = 0; i < driven_at_.size(); ++i) tau[i] = b.torque[i];
   }
 
   /// Size of y without quadratures.
@@ -310,7 +358,7 @@ class Runner {
   }
 
   Buffers<S> b;
-  Call imposed, rates, kinematics, torques, multipliers, constraints, energies, reduced_velocities, compatibility;
+  Call imposed, imposed_torque, rates, kinematics, torques, multipliers, constraints, energies, reduced_velocities, compatibility;
   long evaluations = 0;
 
  private:
@@ -687,10 +735,20 @@ std::vector<WorkPrecisionPoint> work_precision(const Scene& scene) {
         for (const auto* part : {&run.b.eta, &run.b.r_p_dot, &run.b.r_d_dot}) v.insert(v.end(), part->begin(), part->end());
         for (Eigen::Index i = 0; i < passive; ++i) state.y(shape + i) = v[static_cast<std::size_t>(i)];
         FreeDynamics<double> dynamics(mechanism);
+        Eigen::VectorXd velocities_of_nu = Eigen::VectorXd::Zero(run.size());
+        const auto set_velocity = [&](Eigen::Index i, double rate) {
+          if (i < p.n) run.b.eta[static_cast<std::size_t>(i)] = rate;
+          else if (i < p.n + program.original.s_p()) run.b.r_p_dot[static_cast<std::size_t>(i - p.n)] = rate;
+          else run.b.r_d_dot[static_cast<std::size_t>(i - p.n - program.original.s_p())] = rate;
+        };
         const auto components = free_components(program.model.group);
         const auto field = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
           run.impose(t);
-          run.set(g, y);  // nu is not used
+          for (Eigen::Index i = 0; i < shape; ++i) velocities_of_nu(i) = y(i);
+          for (Eigen::Index i = 0; i < passive; ++i) set_velocity(i, y(shape + i));
+          if (run.imposed_torque && run.reduced_velocities) run.reduced_velocities();  // torques may depend on velocities
+          for (std::size_t i = 0; i < run.b.nu.size(); ++i) velocities_of_nu(shape + static_cast<Eigen::Index>(i)) = run.b.nu[i];
+          run.set(g, velocities_of_nu);
           State<double> s;
           for (std::size_t i = 0; i < 9; ++i) s.R.m[i] = run.b.R[i];
           s.p = {run.b.p[0], run.b.p[1], run.b.p[2]};
@@ -732,12 +790,7 @@ std::vector<WorkPrecisionPoint> work_precision(const Scene& scene) {
         const double start = cpu_now();
         const auto outcome = integrate::integrate_adaptive(stages, field, state, scene.duration, options, [](const auto&) {});
         const double seconds = cpu_now() - start;
-        for (Eigen::Index i = 0; i < passive; ++i) {  // back to nu, to compare the same quantities
-          const double rate = state.y(shape + i);
-          if (i < p.n) run.b.eta[static_cast<std::size_t>(i)] = rate;
-          else if (i < p.n + program.original.s_p()) run.b.r_p_dot[static_cast<std::size_t>(i - p.n)] = rate;
-          else run.b.r_d_dot[static_cast<std::size_t>(i - p.n - program.original.s_p())] = rate;
-        }
+        for (Eigen::Index i = 0; i < passive; ++i) set_velocity(i, state.y(shape + i));  // back to nu, to compare the same
         run.impose(scene.duration);
         Eigen::VectorXd final(run.size());
         final.setZero();
