@@ -30,9 +30,10 @@ std::vector<std::pair<Real, Real>> gauss_legendre(int n) {
   return rule;
 }
 
-/// Cantilever mode j = 1, 2, ... with phi(1) = 1: cosh bs - cos bs - sigma (sinh bs - sin bs), halved up to its sign.
+/// Cantilever mode j = 1, 2, ... with phi(1) = 1: cosh bs - cos bs - sigma (sinh bs - sin bs) over its value at 1. The
+/// hyperbolic functions are taken apart, because sigma is close to 1: 1 - sigma = (sin b - cos b - e^-b) / (sinh b + sin b).
 struct Mode {
-  Real b, sigma, tip;
+  Real b, sigma, difference, tip;
   explicit Mode(int j) {
     Real low = (j - 1) * M_PIl + 1e-3L, high = j * M_PIl;  // cos b cosh b = -1, one root in each interval
     const auto f = [](Real x) { return std::cos(x) + 1 / std::cosh(x); };
@@ -41,16 +42,16 @@ struct Mode {
       ((f(middle) > 0) == (f(low) > 0) ? low : high) = middle;
     }
     b = low;
-    sigma = (std::cosh(b) + std::cos(b)) / (std::sinh(b) + std::sin(b));
-    tip = raw(1);
+    difference = (std::sin(b) - std::cos(b) - std::exp(-b)) / (std::sinh(b) + std::sin(b));
+    sigma = 1 - difference;
+    tip = part(1, -1);
   }
-  [[nodiscard]] Real raw(Real s) const {
-    return std::cosh(b * s) - std::cos(b * s) - sigma * (std::sinh(b * s) - std::sin(b * s));
+  [[nodiscard]] Real part(Real s, Real sign) const {
+    const Real hyperbolic = (difference * std::exp(b * s) + (1 + sigma) * std::exp(-b * s)) / 2;
+    return hyperbolic + sign * (std::cos(b * s) - sigma * std::sin(b * s));
   }
-  [[nodiscard]] Real at(Real s) const { return raw(s) / tip; }
-  [[nodiscard]] Real curvature(Real s) const {
-    return b * b * (std::cosh(b * s) + std::cos(b * s) - sigma * (std::sinh(b * s) + std::sin(b * s))) / tip;
-  }
+  [[nodiscard]] Real at(Real s) const { return part(s, -1) / tip; }
+  [[nodiscard]] Real curvature(Real s) const { return b * b * part(s, 1) / tip; }
 };
 
 struct Beam {

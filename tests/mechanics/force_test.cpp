@@ -76,16 +76,16 @@ TEST(UserForce, ActsOnItsCoordinateOrComponent) {
       "[[force]]\ncoordinate = \"x\"\nforce = \"F*cos(b)*(1 + (V_Y/u)^2) - F*dot(x)/u\"\n"
       "[[force]]\ncoordinate = \"b\"\nforce = \"-F*l*sin(3*t) + F*x*R_XY\"\n"
       "[[force]]\ncoordinate = \"b\"\nforce = \"0.25\"\n"
-      "[[force]]\ncomponent = \"V_Z\"\nforce = \"-F*V_Z/u + F*dot(b)\"\n"
-      "[[force]]\ncomponent = \"Omega_X\"\nforce = \"F*p_X*Omega_Y\"\n");
+      "[[force]]\ncomponent = \"V_Z\"\nforce = \"-F*V_Z/u + F*l*dot(b)/u\"\n"
+      "[[force]]\ncomponent = \"Omega_X\"\nforce = \"F*p_X*l*Omega_Y/u\"\n");
   w.forces = [](const Sample& sample) {
-    const State<double>& s = sample.state;
+    const State<Real>& s = sample.state;
     const Real F = 2, u = 1.5L, l = 0.5L, x = s.r[0], b = s.r[1], dx = s.r_dot[0], db = s.r_dot[1];
     const Real V_Y = s.eta.linear.y, V_Z = s.eta.linear.z;
     return std::vector<Real>{0,
                              0,
-                             -F * V_Z / u + F * db,
-                             F * s.p.x * s.eta.angular.y,
+                             -F * V_Z / u + F * l * db / u,
+                             F * s.p.x * l * s.eta.angular.y / u,
                              0,
                              0,
                              F * std::cos(b) * (1 + (V_Y / u) * (V_Y / u)) - F * dx / u,
@@ -117,7 +117,7 @@ TEST(Dissipation, ActsByItsGradientInTheVelocities) {
       "e = { value = 1.5, unit = \"N s/m\" }\nf = { value = 0.3, unit = \"kg s/m^2\" }",
       "", "", "");
   const auto forces = [](const Sample& sample) {
-    const State<double>& s = sample.state;
+    const State<Real>& s = sample.state;
     const Real dx = s.r_dot[0], db = s.r_dot[1], V_X = s.eta.linear.x, V_Y = s.eta.linear.y;
     const Real slip = dx - 0.5L * db, c = std::cos(Real(s.r[1])), drag = 1.5L * c * c * (V_Y + dx);
     return std::vector<Real>{-1.2L * V_X * V_X * V_X, -drag, 0, 0, 0, 0, -3 * slip - drag, 1.5L * slip};
@@ -147,15 +147,15 @@ TEST(Wrench, InBodyAxesFollowsTheDescribedFrameOfTheBody) {
       "[[force]]\nbody = \"hinge\"\npoint = [0.1, -0.2, \"l\"]\nforce = [\"F*sin(b)\", \"-2*F\", \"F*x/l\"]\n"
       "torque = [0, \"F*l*cos(t)\", \"F*l\"]\n"
       "[[force]]\nbody = \"slide\"\naxes = \"body\"\nforce = [0, \"F*R_XX\", \"F\"]\n"
-      "[[force]]\nbody = \"base\"\npoint = [\"l\", 0, 0.3]\nforce = [\"-F\", 0, \"F*dot(b)\"]\n");
+      "[[force]]\nbody = \"base\"\npoint = [\"l\", 0, 0.3]\nforce = [\"-F\", 0, \"F*sin(3*t)\"]\n");
   w.loads = [](const Sample& sample, const std::vector<Pose>& frames) {
-    const State<double>& s = sample.state;
+    const State<Real>& s = sample.state;
     const Real F = 4, l = 0.5L, x = s.r[0], b = s.r[1];
     const auto at_point = [](const Pose& frame, const Vector& point, const Vector& force, const Vector& torque) {
       return Load{world(frame, force), world(frame, torque + moment(point, force))};
     };
     return std::vector<Load>{
-        at_point(frames[0], {l, 0, 0.3L}, {-F, 0, F * s.r_dot[1]}, {}),
+        at_point(frames[0], {l, 0, 0.3L}, {-F, 0, F * std::sin(3 * Real(s.t))}, {}),
         at_point(frames[1], {}, {0, F * s.R.m[0], F}, {}),
         at_point(frames[2], {0.1L, -0.2L, l}, {F * std::sin(b), -2 * F, F * x / l}, {0, F * l * std::cos(Real(s.t)), F * l})};
   };
@@ -170,7 +170,7 @@ TEST(Wrench, InWorldAxesKeepsItsDirection) {
       "[[force]]\nbody = \"base\"\naxes = \"world\"\ntorque = [0, \"F*l\", 0]\n"
       "[[force]]\nbody = \"slide\"\naxes = \"world\"\npoint = [0, \"l\", 0]\nforce = [0, 0, \"-3*F\"]\n");
   w.loads = [](const Sample& sample, const std::vector<Pose>& frames) {
-    const State<double>& s = sample.state;
+    const State<Real>& s = sample.state;
     const Real F = 4, l = 0.5L, x = s.r[0];
     const auto at_point = [](const Pose& frame, const Vector& point, const Vector& force, const Vector& torque) {
       return Load{force, torque + moment(world(frame, point), force)};

@@ -83,8 +83,10 @@ inline Pose turned(const std::array<Real, 3>& axis, const Jet& angle) {
   const Jet c = cos(angle);
   const Jet s = sin(angle);
   Pose g;
-  for (std::size_t i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {  // cos 1 + (1 - cos) a a^T + sin [a]
     for (std::size_t j = 0; j < 3; ++j) g.R[i][j] = (Jet(1) - c) * Jet(axis[i] * axis[j]) + (i == j ? c : Jet(0));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
     g.R[k][j] += s * Jet(axis[i]);
     g.R[j][k] += -(s * Jet(axis[i]));

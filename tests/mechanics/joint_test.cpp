@@ -113,7 +113,7 @@ TEST(Joint, KeepsItsAxisWhenItsParametersChange) {
   const Mechanism<Real> direct = mechanise<Real>(here, {2.9L});
   std::mt19937_64 rng(20130922);
   for (int i = 0; i < 20; ++i) {
-    const State<Real> state = converted<Real>(random_position_and_velocity(model, rng));
+    const State<Real> state = random_position_and_velocity(model, rng);
     FreeDynamics<Real> a(changed), b(direct);
     const auto f = a.forces(state);
     const auto g = b.forces(state);
@@ -214,7 +214,7 @@ void expect_coupling(const std::string& group, const std::string& kind, const st
     const Jet stretch = c(r[0], r[1]) - Jet(0.3L);
     return Jet(4.5L / 2) * stretch * stretch;
   };
-  const auto rate_and_gradient = [c](const State<double>& s) {
+  const auto rate_and_gradient = [c](const State<Real>& s) {
     const Real c_a = c(Jet(s.r[0], 1, 0), Jet(s.r[1])).d;
     const Real c_x = c(Jet(s.r[0]), Jet(s.r[1], 1, 0)).d;
     return std::array<Real, 3>{c_a * s.r_dot[0] + c_x * s.r_dot[1], c_a, c_x};

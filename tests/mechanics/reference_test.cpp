@@ -8,6 +8,7 @@
 #include <map>
 #include <memory>
 
+#include "anholon/reduction.hpp"
 #include "check/evaluate.hpp"
 #include "describe/read_model.hpp"
 #include "mechanics/compare_reference.hpp"
@@ -43,6 +44,11 @@ class Reference : public testing::TestWithParam<System> {
         states(read_states(
             std::string(ANHOLON_SOURCE_DIR) + "/tests/reference/" + GetParam().reference + ".json", model)) {}
 
+  [[nodiscard]] Json evaluate(EvaluationMethod method) const {
+    EvaluateRequest request;
+    request.method = method;
+    return evaluate_states(model, states, request);
+  }
   void expect_agreement(const Json& answer, const char* tolerance) const {
     for (const test::Comparison& c : test::compare(reference, answer, Exact::from_decimal(tolerance))) {
       EXPECT_TRUE(c.fault.empty() && c.worst_of_allowed <= 1)
@@ -57,16 +63,16 @@ class Reference : public testing::TestWithParam<System> {
 };
 
 TEST_P(Reference, IsMetByTheGeneratedCode) {
-  expect_agreement(evaluate_states(model, states, {EvaluationMethod::generated}), "1e-12");
+  expect_agreement(evaluate(EvaluationMethod::generated), "1e-12");
 }
 
 TEST_P(Reference, IsMetByTheNumericRecursion) {
-  expect_agreement(evaluate_states(model, states, {EvaluationMethod::recursion}), "1e-12");
+  expect_agreement(evaluate(EvaluationMethod::recursion), "1e-12");
 }
 
 // 1e-25: the references print 30 digits, the evaluation carries 50
 TEST_P(Reference, IsMetByTheExactRecursion) {
-  expect_agreement(evaluate_states(model, states, {EvaluationMethod::exact}), "1e-25");
+  expect_agreement(evaluate(EvaluationMethod::exact), "1e-25");
 }
 
 /// The derived tape itself, run in exact arithmetic: no rounding can hide a wrong term.
@@ -116,7 +122,7 @@ Column column(const std::vector<Exact>& list) { return to_eigen(list); }
 Dense least_squares(const Dense& A, const Dense& b) {  // A has full column rank
   return (A.transpose() * A).eval().partialPivLu().solve((A.transpose() * b).eval());
 }
-double size(const Dense& m) {
+double magnitude(const Dense& m) {
   Exact s = 0;
   for (Eigen::Index i = 0; i < m.size(); ++i) s = std::max(s, abs(m.data()[i]));
   return s.to_double();
@@ -180,8 +186,8 @@ TEST_P(Reference, IsMetInTheDocumentedBasis) {
     const Dense J = to_eigen(e.J);
     const DocumentedBasis basis = documented_basis(model, states.parameters, input.state, J);
     const BasisChange change{least_squares(basis.H, H), least_squares(basis.H, Dense(J - basis.J))};
-    EXPECT_LT(size(basis.H * change.T - H), 1e-30);  // both span the same kernel
-    EXPECT_LT(size(basis.H * change.K - (J - basis.J)), 1e-30);
+    EXPECT_LT(magnitude(basis.H * change.T - H), 1e-30);  // both span the same kernel
+    EXPECT_LT(magnitude(basis.H * change.K - (J - basis.J)), 1e-30);
     return change;
   };
   const Exact step = Exact::from_decimal("1e-20");
@@ -204,8 +210,8 @@ TEST_P(Reference, IsMetInTheDocumentedBasis) {
 
     const DocumentedBasis basis = documented_basis(model, states.parameters, input.state, to_eigen(e.J));
     const Eigen::Index k = basis.H.cols();
-    EXPECT_LT(size(dense(documented["H"], basis.H.rows(), k) - basis.H), 1e-28);
-    EXPECT_LT(size(dense(documented["J"], basis.J.rows(), basis.J.cols()) - basis.J), 1e-28);
+    EXPECT_LT(magnitude(dense(documented["H"], basis.H.rows(), k) - basis.H), 1e-28);
+    EXPECT_LT(magnitude(dense(documented["J"], basis.J.rows(), basis.J.cols()) - basis.J), 1e-28);
     Column r_a_dot(static_cast<Eigen::Index>(derivation->reduction.partition.s_a())), r_a_ddot = r_a_dot;
     for (Eigen::Index i = 0; i < r_a_dot.size(); ++i) {
       const auto at = static_cast<std::size_t>(derivation->reduction.partition.active[static_cast<std::size_t>(i)] -
@@ -214,13 +220,13 @@ TEST_P(Reference, IsMetInTheDocumentedBasis) {
     }
     const Dense M_documented = dense(documented["M_reduced"], k, k);
     const Column rate = T_dot * column(e.nu) + now.K * r_a_ddot + K_dot * r_a_dot;
-    const double scale = 1 + size(now.T) * size(now.T);  // 1e-25 of what the change of basis makes of the numbers
-    EXPECT_LT(size(now.T * column(e.nu) + now.K * r_a_dot - column(documented["eta_r"])), 1e-25 * (1 + size(now.T)));
-    EXPECT_LT(size(now.T.transpose() * M_documented * now.T - to_eigen(e.M_r)), 1e-25 * scale);
+    const double scale = 1 + magnitude(now.T) * magnitude(now.T);  // 1e-25 of what the change of basis makes of the numbers
+    EXPECT_LT(magnitude(now.T * column(e.nu) + now.K * r_a_dot - column(documented["eta_r"])), 1e-25 * (1 + magnitude(now.T)));
+    EXPECT_LT(magnitude(now.T.transpose() * M_documented * now.T - to_eigen(e.M_r)), 1e-25 * scale);
     const Column F = column(documented["F_reduced"]);
-    EXPECT_LT(size(now.T.transpose() * (F - M_documented * rate) - column(e.f_r)),
-              1e-25 * scale * (1 + size(F) + size(rate)));
-    EXPECT_LT(size(now.T * column(e.nu_dot) + rate - column(documented["eta_r_dot"])), 1e-25 * scale * (1 + size(F) + size(rate)));
+    EXPECT_LT(magnitude(now.T.transpose() * (F - M_documented * rate) - column(e.f_r)),
+              1e-25 * scale * (1 + magnitude(F) + magnitude(rate)));
+    EXPECT_LT(magnitude(now.T * column(e.nu_dot) + rate - column(documented["eta_r_dot"])), 1e-25 * scale * (1 + magnitude(F) + magnitude(rate)));
   }
 }
 
@@ -269,9 +275,9 @@ TEST_F(PendulumTorques, FollowTheLeadingWheelOrAreSharedEqually) {
       SCOPED_TRACE(states.states[s].label);
       const Column want = column(reference["states"][s]["outputs"]["torques_eq44"][choice.key]);
       const Evaluated<Exact> e = evaluate_program(model, *derivation, call, states.states[s].input);
-      EXPECT_LT(size(column(e.tau_a) - want), 1e-25 * (1 + size(want)));
+      EXPECT_LT(magnitude(column(e.tau_a) - want), 1e-25 * (1 + magnitude(want)));
       const Column rounded = column(compiled["states"][s]["outputs"]["given_r_a"]["tau_a"]);
-      EXPECT_LT(size(rounded - want), 1e-12 * (1 + size(want)));
+      EXPECT_LT(magnitude(rounded - want), 1e-12 * (1 + magnitude(want)));
     }
   }
 }
@@ -301,12 +307,12 @@ TEST_F(PendulumTorques, MoveFromWheelToWheelWithTheStaticLoading) {
     for (const auto& [share, key] : {std::pair(Exact(0), front), std::pair(load, rear), std::pair(load / Exact(2), equal)}) {
       in["lambda_stat"] = {share};
       const Column want = column(eq44[key]);
-      EXPECT_LT(size(column(call("inverse_torques", in)["tau_a"]) - want), 1e-25 * (1 + size(want))) << key;
+      EXPECT_LT(magnitude(column(call("inverse_torques", in)["tau_a"]) - want), 1e-25 * (1 + magnitude(want))) << key;
       const std::vector<Exact> lambda = call("multipliers", in)["lambda"];
       // the wheel's own balance: tau_i = J_w r_i_ddot + R lambda_i
       for (std::size_t i = 0; i < 2; ++i)
         EXPECT_LT(abs(want(static_cast<Eigen::Index>(i)) - states.parameters[2] * input.r_ddot[i] - R * lambda[i]).to_double(),
-                  1e-25 * (1 + size(want)));
+                  1e-25 * (1 + magnitude(want)));
     }
   }
 }
