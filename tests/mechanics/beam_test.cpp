@@ -30,8 +30,9 @@ std::vector<std::pair<Real, Real>> gauss_legendre(int n) {
   return rule;
 }
 
-/// Cantilever mode j = 1, 2, ... with phi(1) = 1: cosh bs - cos bs - sigma (sinh bs - sin bs) over its value at 1. The
-/// hyperbolic functions are taken apart, because sigma is close to 1: 1 - sigma = (sin b - cos b - e^-b) / (sinh b + sin b).
+/// Cantilever mode j = 1, 2, ... with phi(1) = 1: cosh bs - cos bs - sigma (sinh bs - sin bs) over its value
+/// at 1. The hyperbolic functions are taken apart, because sigma is close to 1: 1 - sigma = (sin b - cos b -
+/// e^-b) / (sinh b + sin b).
 struct Mode {
   Real b, sigma, difference, tip;
   explicit Mode(int j) {
@@ -66,12 +67,14 @@ void PrintTo(const Beam& b, std::ostream* stream) { *stream << b.name; }
 
 class CompliantBeam : public testing::TestWithParam<Beam> {};
 
-// A beam behind a hinge about an oblique axis, which also carries a rigid tip mass of its own frame, on a free base.
+// A beam behind a hinge about an oblique axis, which also carries a rigid tip mass of its own frame, on a
+// free base.
 TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
   const Beam beam = GetParam();
   const std::string planes = beam.planes;
   std::string plane_list;
-  for (const char plane : planes) plane_list += fmt::format("{}\"{}\"", plane_list.empty() ? "" : ", ", plane);
+  for (const char plane : planes)
+    plane_list += fmt::format("{}\"{}\"", plane_list.empty() ? "" : ", ", plane);
   const Real L = 0.8L, rhoA = 0.9L, EI = 1.4L;
   std::vector<Mode> shapes;
   for (int j = 1; j <= beam.modes; ++j) shapes.emplace_back(j);
@@ -79,18 +82,23 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
 
   Witness w;
   w.description =
-      header(beam.group, "gravity = [0.6, -3.1, -8.8]\n[parameters]\nL = { value = 0.8, unit = \"m\" }\nrhoA = { value = 0.9, unit = "
-                         "\"kg/m\" }\nEI = { value = 1.4, unit = \"N m^2\" }") +
+      header(beam.group,
+             "gravity = [0.6, -3.1, -8.8]\n[parameters]\nL = { value = 0.8, unit = \"m\" }\nrhoA = { value = "
+             "0.9, unit = "
+             "\"kg/m\" }\nEI = { value = 1.4, unit = \"N m^2\" }") +
       body("base", "", cloud(0)) +
       body("blade", "base", cloud(1),
-           fmt::format("pose = {{ translation = [0.2, -0.1, 0.3], rotation = {{ axis = \"z\", angle = 0.7 }} }}\n"
-                       "joint = {{ kind = \"revolute\", axis = [0, -0.28, 0.96], coordinate = \"a\" }}\n"
-                       "[body.beam]\nlength = \"L\"\nmass_per_length = \"rhoA\"\nbending_stiffness = \"EI\"\nmodes = {}\nplanes = [{}]\n"
-                       "deformation = \"quadratic\"\nrange = [-0.2, 0.2]\n{}\n",
-                       beam.modes, plane_list, beam.damping));
+           fmt::format(
+               "pose = {{ translation = [0.2, -0.1, 0.3], rotation = {{ axis = \"z\", angle = 0.7 }} }}\n"
+               "joint = {{ kind = \"revolute\", axis = [0, -0.28, 0.96], coordinate = \"a\" }}\n"
+               "[body.beam]\nlength = \"L\"\nmass_per_length = \"rhoA\"\nbending_stiffness = \"EI\"\nmodes = "
+               "{}\nplanes = [{}]\n"
+               "deformation = \"quadratic\"\nrange = [-0.2, 0.2]\n{}\n",
+               beam.modes, plane_list, beam.damping));
   w.gravity = {0.6L, -3.1L, -8.8L};
   w.masses = [=](const Pose& g, const std::vector<Jet>& r) {
-    const Pose blade = g * moved({0.2L, -0.1L, 0.3L}) * turned({0, 0, 1}, 0.7L) * turned({0, -0.28L, 0.96L}, r[0]);
+    const Pose blade =
+        g * moved({0.2L, -0.1L, 0.3L}) * turned({0, 0, 1}, 0.7L) * turned({0, -0.28L, 0.96L}, r[0]);
     std::vector<MassPoint> points;
     add(points, g, cloud(0)), add(points, blade, cloud(1));
     for (const auto& [s, weight] : rule) {
@@ -136,13 +144,14 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
   expect_mechanics_of(w);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, CompliantBeam,
-                         testing::Values(Beam{"OneModeInPlane", 1, "y", ""}, Beam{"OneModeOutOfPlane", 1, "z", ""},
-                                         Beam{"OneModeOnAPlanarBase", 1, "y", "", 0, 0, "SE2"},
-                                         Beam{"ThreeModes", 3, "y", "modal_damping = 0.2", 0.2L, 0},
-                                         Beam{"OneModeInBothPlanes", 1, "yz", ""},
-                                         Beam{"TwoModesInBothPlanes", 2, "zy", "material_damping = 0.002", 0, 0.002L}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Kinds, CompliantBeam,
+    testing::Values(Beam{"OneModeInPlane", 1, "y", ""}, Beam{"OneModeOutOfPlane", 1, "z", ""},
+                    Beam{"OneModeOnAPlanarBase", 1, "y", "", 0, 0, "SE2"},
+                    Beam{"ThreeModes", 3, "y", "modal_damping = 0.2", 0.2L, 0},
+                    Beam{"OneModeInBothPlanes", 1, "yz", ""},
+                    Beam{"TwoModesInBothPlanes", 2, "zy", "material_damping = 0.002", 0, 0.002L}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace anholon

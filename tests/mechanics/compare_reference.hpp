@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The comparison of an answer of `evaluate` with a reference file, quantity by quantity. Error of a quantity at a state:
-// the largest difference over the natural scale, which is the largest magnitude of that quantity at that state, but not
-// below its median over the states. Constrained quantities may lose the condition number of (A, B_p) near a singular
-// configuration: there the tolerance is multiplied by it.
+// The comparison of an answer of `evaluate` with a reference file, quantity by quantity. Error of a quantity
+// at a state: the largest difference over the natural scale, which is the largest magnitude of that quantity
+// at that state, but not below its median over the states. Constrained quantities may lose the condition
+// number of (A, B_p) near a singular configuration: there the tolerance is multiplied by it.
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -81,19 +81,41 @@ inline Exact condition(const Json& outputs) {
 /// What is wrong with a quantity, and the worst error over what is allowed.
 struct Comparison {
   std::string quantity;
-  std::string fault;        // empty where the quantity is present everywhere
+  std::string fault;  // empty where the quantity is present everywhere
   double worst_of_allowed = 0;
-  double error = 0;         // at the worst state
+  double error = 0;  // at the worst state
   std::string where;
 };
 
 inline const std::vector<std::string>& basis_free_quantities() {
-  static const std::vector<std::string> names = {
-      "M_eta_eta", "M_p", "M_a", "m_pp", "m_pa", "m_aa", "f", "Q_p", "Q_a", "A", "B_p", "B_a",
-      "constraint_bias_Gdot_v", "kernel_projector", "given_r_a.eta_dot", "given_r_a.r_p_ddot",
-      "given_r_a.lambda_min_norm", "given_r_a.tau_a", "given_tau_a.eta_dot", "given_tau_a.r_p_ddot",
-      "given_tau_a.r_a_ddot", "given_tau_a.lambda_min_norm", "energy.kinetic", "energy.gravity",
-      "energy.elastic", "energy.total", "energy.dissipated_power", "energy.actuator_power"};
+  static const std::vector<std::string> names = {"M_eta_eta",
+                                                 "M_p",
+                                                 "M_a",
+                                                 "m_pp",
+                                                 "m_pa",
+                                                 "m_aa",
+                                                 "f",
+                                                 "Q_p",
+                                                 "Q_a",
+                                                 "A",
+                                                 "B_p",
+                                                 "B_a",
+                                                 "constraint_bias_Gdot_v",
+                                                 "kernel_projector",
+                                                 "given_r_a.eta_dot",
+                                                 "given_r_a.r_p_ddot",
+                                                 "given_r_a.lambda_min_norm",
+                                                 "given_r_a.tau_a",
+                                                 "given_tau_a.eta_dot",
+                                                 "given_tau_a.r_p_ddot",
+                                                 "given_tau_a.r_a_ddot",
+                                                 "given_tau_a.lambda_min_norm",
+                                                 "energy.kinetic",
+                                                 "energy.gravity",
+                                                 "energy.elastic",
+                                                 "energy.total",
+                                                 "energy.dissipated_power",
+                                                 "energy.actuator_power"};
   return names;
 }
 

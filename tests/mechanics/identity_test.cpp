@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// Laws that every shipped robot must satisfy. The derived programs are run in exact arithmetic with 60 digits, so that a
-// law holds to 1e-25 or is broken: nothing is blamed on rounding.
+// Laws that every shipped robot must satisfy. The derived programs are run in exact arithmetic with 60
+// digits, so that a law holds to 1e-25 or is broken: nothing is blamed on rounding.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -79,12 +79,14 @@ class Robot {
     for (const int i : partition_.active) input.tau[coordinate(i)] = source.uniform(Exact(-2), Exact(2));
     return input;
   }
-  void set_velocity(State<Exact>& state, const Values& eta, const Values& r_p_dot, const Values& r_a_dot) const {
+  void set_velocity(State<Exact>& state, const Values& eta, const Values& r_p_dot,
+                    const Values& r_a_dot) const {
     const auto components = free_components(model_.group);
     for (std::size_t i = 0; i < eta.size(); ++i) state.eta[components[i]] = eta[i];
     for (std::size_t i = 0; i < r_p_dot.size(); ++i)
       state.r_dot[coordinate(partition_.passive[static_cast<std::size_t>(partition_.n) + i])] = r_p_dot[i];
-    for (std::size_t i = 0; i < r_a_dot.size(); ++i) state.r_dot[coordinate(partition_.active[i])] = r_a_dot[i];
+    for (std::size_t i = 0; i < r_a_dot.size(); ++i)
+      state.r_dot[coordinate(partition_.active[i])] = r_a_dot[i];
   }
   /// The same input with r_a_ddot given instead of the torques, taken from an acceleration (n + s).
   [[nodiscard]] EvaluationInput<Exact> imposing(EvaluationInput<Exact> input, const Values& v_dot) const {
@@ -99,7 +101,9 @@ class Robot {
     v.insert(v.end(), s.r_dot.begin(), s.r_dot.end());
     return v;
   }
-  [[nodiscard]] std::size_t coordinate(int velocity) const { return static_cast<std::size_t>(velocity - partition_.n); }
+  [[nodiscard]] std::size_t coordinate(int velocity) const {
+    return static_cast<std::size_t>(velocity - partition_.n);
+  }
 
  private:
   Model model_;
@@ -116,10 +120,18 @@ DeriveRequest without_closed_forms(std::vector<std::string> functions = {}) {
   return request;
 }
 /// Those that a motion with given r_a or given torques needs.
-const std::vector<std::string> motion_functions = {"kinematics", "reduced_velocities", "constraints", "reduced_dynamics",
-                                                   "forward_dynamics", "inverse_torques", "multipliers", "energies",
-                                                   "torque_driven_kinematics", "torque_driven_velocities",
-                                                   "torque_driven_dynamics", "torque_driven_multipliers"};
+const std::vector<std::string> motion_functions = {"kinematics",
+                                                   "reduced_velocities",
+                                                   "constraints",
+                                                   "reduced_dynamics",
+                                                   "forward_dynamics",
+                                                   "inverse_torques",
+                                                   "multipliers",
+                                                   "energies",
+                                                   "torque_driven_kinematics",
+                                                   "torque_driven_velocities",
+                                                   "torque_driven_dynamics",
+                                                   "torque_driven_multipliers"};
 
 constexpr int states_tried = 10;
 
@@ -137,12 +149,15 @@ TEST_P(EveryModel, KeepsItsConstraintsWhateverNuIs) {
   for (int i = 0; i < states_tried; ++i) {
     EvaluationInput<Exact> input = robot.admissible(source);
     NamedValues<Exact> in = position_inputs(robot.model(), robot.partition(), input.state);
-    for (const int a : robot.partition().active) in["r_a_dot"].push_back(input.state.r_dot[robot.coordinate(a)]);
-    for (int k = 0; k < robot.derivation().reduction.kernel.H.cols(); ++k) in["nu"].push_back(source.uniform(Exact(-2), Exact(2)));
+    for (const int a : robot.partition().active)
+      in["r_a_dot"].push_back(input.state.r_dot[robot.coordinate(a)]);
+    for (int k = 0; k < robot.derivation().reduction.kernel.H.cols(); ++k)
+      in["nu"].push_back(source.uniform(Exact(-2), Exact(2)));
     NamedValues<Exact> v = robot.call("kinematics", in);
     robot.set_velocity(input.state, v["eta"], v["r_p_dot"], in["r_a_dot"]);
     const Evaluated<Exact> e = robot.evaluate(input);
-    EXPECT_LT(largest(times(e.G, robot.velocity(input.state))), 1e-25 * (1 + largest(robot.velocity(input.state))));
+    EXPECT_LT(largest(times(e.G, robot.velocity(input.state))),
+              1e-25 * (1 + largest(robot.velocity(input.state))));
     for (std::size_t k = 0; k < e.nu.size(); ++k)  // and reduced_velocities undoes kinematics
       EXPECT_LT(abs(e.nu[k] - in["nu"][k]).to_double(), 1e-25);
   }
@@ -163,11 +178,12 @@ TEST_P(EveryModel, AcceleratesAsItsConstraintsAllow) {
   }
 }
 
-// d(T + V)/dt = tau_a . r_a_dot - dissipation, by central differences of the energies along the motion with a step of 1e-20:
-// error 1e-40 of the third derivative, and 1e-60 / 1e-20 of rounding.
+// d(T + V)/dt = tau_a . r_a_dot - dissipation, by central differences of the energies along the motion with a
+// step of 1e-20: error 1e-40 of the third derivative, and 1e-60 / 1e-20 of rounding.
 TEST_P(EveryModel, GainsThePowerOfItsActuatorsAndLosesWhatItDissipates) {
   const Robot robot(shipped(GetParam()), without_closed_forms());
-  if (!robot.model().forces.empty() || !robot.model().wrenches.empty()) GTEST_SKIP() << "has forces without a potential";
+  if (!robot.model().forces.empty() || !robot.model().wrenches.empty())
+    GTEST_SKIP() << "has forces without a potential";
   SampleSource source(13);
   const Exact step = Exact::from_decimal("1e-20");
   for (int i = 0; i < states_tried; ++i) {
@@ -196,8 +212,8 @@ TEST_P(EveryModel, GainsThePowerOfItsActuatorsAndLosesWhatItDissipates) {
   }
 }
 
-// The torques that impose a motion, fed to the torque-driven model, give the motion back: for m = m° they are the torques one
-// started from; for m > m° they differ from them by the share that only loads the contacts.
+// The torques that impose a motion, fed to the torque-driven model, give the motion back: for m = m° they are
+// the torques one started from; for m > m° they differ from them by the share that only loads the contacts.
 TEST_P(EveryModel, ReturnsItsMotionFromItsTorques) {
   const Robot robot(shipped(GetParam()), without_closed_forms());
   const RankAnalysis& ranks = robot.derivation().reduction.ranks;
@@ -216,7 +232,8 @@ TEST_P(EveryModel, ReturnsItsMotionFromItsTorques) {
     if (ranks.m == ranks.m_locked) {
       EXPECT_LT(change.to_double(), 1e-25 * (1 + largest(imposed.tau_a)));
     }
-    EXPECT_LT(largest(difference(robot.evaluate(input).free_acceleration, motion)), 1e-25 * (1 + largest(motion)));
+    EXPECT_LT(largest(difference(robot.evaluate(input).free_acceleration, motion)),
+              1e-25 * (1 + largest(motion)));
   }
 }
 
@@ -259,7 +276,8 @@ TEST_P(EveryModel, DoesNotKnowWhereTheWorldIsWithoutGravity) {
     }
     if (group != GroupKind::SO3) there.state.p += change.p;
     const Values motion = robot.evaluate(here).free_acceleration;
-    EXPECT_LT(largest(difference(robot.evaluate(there).free_acceleration, motion)), 1e-25 * (1 + largest(motion)));
+    EXPECT_LT(largest(difference(robot.evaluate(there).free_acceleration, motion)),
+              1e-25 * (1 + largest(motion)));
     const Evaluated<Exact> a = robot.evaluate(robot.imposing(here, motion));
     const Evaluated<Exact> b = robot.evaluate(robot.imposing(there, motion));
     EXPECT_LT(largest(difference(a.tau_a, b.tau_a)), 1e-25 * (1 + largest(a.tau_a)));
@@ -307,7 +325,8 @@ TEST_P(EveryModel, MovesTheSameWhateverTheKernelBasis) {
   EXPECT_GT(tried, 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, EveryModel, testing::ValuesIn(shipped_models()), [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(Shipped, EveryModel, testing::ValuesIn(shipped_models()),
+                         [](const auto& info) { return info.param; });
 
 }  // namespace
 }  // namespace anholon

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Motions as truncated Taylor series in time, and poses made of them. The tests of mechanics write a robot's positions
-// down with homogeneous transforms over these numbers; velocities and accelerations then follow without any formula of
-// mechanics. Nothing here shares code with the recursion.
+// Motions as truncated Taylor series in time, and poses made of them. The tests of mechanics write a robot's
+// positions down with homogeneous transforms over these numbers; velocities and accelerations then follow
+// without any formula of mechanics. Nothing here shares code with the recursion.
 
 #include <array>
 #include <cmath>
@@ -30,9 +30,7 @@ struct Jet {
 };
 
 /// f(a) from the value and the first two derivatives of f.
-inline Jet chain(const Jet& a, Real f, Real f1, Real f2) {
-  return {f, f1 * a.d, f2 * a.d * a.d + f1 * a.dd};
-}
+inline Jet chain(const Jet& a, Real f, Real f1, Real f2) { return {f, f1 * a.d, f2 * a.d * a.d + f1 * a.dd}; }
 inline Jet sin(const Jet& a) { return chain(a, std::sin(a.x), std::cos(a.x), -std::sin(a.x)); }
 inline Jet cos(const Jet& a) { return chain(a, std::cos(a.x), -std::sin(a.x), -std::cos(a.x)); }
 inline Jet exp(const Jet& a) { return chain(a, std::exp(a.x), std::exp(a.x), std::exp(a.x)); }
@@ -43,7 +41,9 @@ struct Vector {
   Vector(Jet x, Jet y, Jet z) : c{x, y, z} {}
   Jet& operator[](std::size_t i) { return c[i]; }
   const Jet& operator[](std::size_t i) const { return c[i]; }
-  friend Vector operator+(const Vector& a, const Vector& b) { return {a[0] + b[0], a[1] + b[1], a[2] + b[2]}; }
+  friend Vector operator+(const Vector& a, const Vector& b) {
+    return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
+  }
   friend Vector operator*(const Jet& s, const Vector& a) { return {s * a[0], s * a[1], s * a[2]}; }
 };
 
@@ -84,7 +84,8 @@ inline Pose turned(const std::array<Real, 3>& axis, const Jet& angle) {
   const Jet s = sin(angle);
   Pose g;
   for (std::size_t i = 0; i < 3; ++i) {  // cos 1 + (1 - cos) a a^T + sin [a]
-    for (std::size_t j = 0; j < 3; ++j) g.R[i][j] = (Jet(1) - c) * Jet(axis[i] * axis[j]) + (i == j ? c : Jet(0));
+    for (std::size_t j = 0; j < 3; ++j)
+      g.R[i][j] = (Jet(1) - c) * Jet(axis[i] * axis[j]) + (i == j ? c : Jet(0));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;

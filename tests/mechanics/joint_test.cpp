@@ -11,7 +11,8 @@ namespace {
 using namespace test;  // NOLINT: the vocabulary of these tests
 using std::cos, std::sin;
 
-// ---- every joint about every axis --------------------------------------------------------------------------------
+// ---- every joint about every axis
+// --------------------------------------------------------------------------------
 
 struct Axis {
   const char* name;
@@ -33,7 +34,8 @@ const Axis axes[] = {
     {"ObliqueBackwards", "[\"2/7\", \"3/7\", \"-6/7\"]", {2 / 7.0L, 3 / 7.0L, -6 / 7.0L}},
     {"Scaled", "[1, 2, -2]", {1 / 3.0L, 2 / 3.0L, -2 / 3.0L}},
     {"SymbolicInAPlane", "[\"cos(alpha)\", 0, \"-sin(alpha)\"]", {cos(alpha), 0, -sin(alpha)}},
-    {"Symbolic", "[\"cos(alpha)*cos(beta)\", \"sin(alpha)*cos(beta)\", \"sin(beta)\"]",
+    {"Symbolic",
+     "[\"cos(alpha)*cos(beta)\", \"sin(alpha)*cos(beta)\", \"sin(beta)\"]",
      {cos(alpha) * cos(beta), sin(alpha) * cos(beta), sin(beta)}},
 };
 
@@ -45,27 +47,33 @@ void PrintTo(const JointCase& c, std::ostream* stream) { *stream << c.kind << ' 
 
 class Joint : public testing::TestWithParam<JointCase> {};
 
-// A free base, the joint under test in a tilted place, a hinge behind it, and a body fixed to that: each body's frame may be
-// turned by what the reader makes of its axis, and none of this may show.
+// A free base, the joint under test in a tilted place, a hinge behind it, and a body fixed to that: each
+// body's frame may be turned by what the reader makes of its axis, and none of this may show.
 TEST_P(Joint, MovesTheMassesAsItsTransformSays) {
   const auto& [kind, axis] = GetParam();
   const std::string kind_text = kind;
-  const std::string more = kind_text == "prismatic" ? ", range = [-1, 1]" : kind_text == "helical" ? ", pitch = 0.13" : "";
+  const std::string more = kind_text == "prismatic" ? ", range = [-1, 1]"
+                           : kind_text == "helical" ? ", pitch = 0.13"
+                                                    : "";
   Witness w;
   w.description =
-      header("SE3", "gravity = [1.3, -0.7, -9.6]\n[parameters]\nalpha = { value = 0.7, unit = \"rad\" }\nbeta = { value = "
-                    "2.3, unit = \"rad\" }") +
+      header("SE3",
+             "gravity = [1.3, -0.7, -9.6]\n[parameters]\nalpha = { value = 0.7, unit = \"rad\" }\nbeta = { "
+             "value = "
+             "2.3, unit = \"rad\" }") +
       body("base", "", cloud(0)) +
       body("moving", "base", cloud(1),
-           fmt::format("pose = {{ translation = [0.2, -0.3, 0.4], rotation = {{ axis = \"y\", angle = 0.4 }} }}\n"
-                       "joint = {{ kind = \"{}\", axis = {}, coordinate = \"a\"{} }}",
-                       kind, axis.text, more),
+           fmt::format(
+               "pose = {{ translation = [0.2, -0.3, 0.4], rotation = {{ axis = \"y\", angle = 0.4 }} }}\n"
+               "joint = {{ kind = \"{}\", axis = {}, coordinate = \"a\"{} }}",
+               kind, axis.text, more),
            false) +
       body("hinged", "moving", cloud(2),
            "pose = { translation = [0.1, 0.25, -0.2], rotation = { axis = \"x\", angle = -0.9 } }\n"
            "joint = { kind = \"revolute\", axis = [0, -0.6, 0.8], coordinate = \"b\" }") +
       body("tip", "hinged", cloud(0),
-           "pose = { translation = [-0.1, 0, 0.3], rotation = [{ axis = \"z\", angle = 0.5 }, { axis = \"x\", angle = 0.3 }] }\n"
+           "pose = { translation = [-0.1, 0, 0.3], rotation = [{ axis = \"z\", angle = 0.5 }, { axis = "
+           "\"x\", angle = 0.3 }] }\n"
            "joint = { kind = \"fixed\" }");
   w.gravity = {1.3L, -0.7L, -9.6L};
   w.masses = [kind_text, axis = axis](const Pose& g, const std::vector<Jet>& r) {
@@ -74,10 +82,12 @@ TEST_P(Joint, MovesTheMassesAsItsTransformSays) {
     const Jet along = kind_text == "prismatic" ? r[0] : kind_text == "helical" ? Jet(0.13L) * r[0] : Jet(0);
     motion.p = Vector(along * axis.value[0], along * axis.value[1], along * axis.value[2]);
     const Pose moving = g * moved({0.2L, -0.3L, 0.4L}) * turned({0, 1, 0}, 0.4L) * motion;
-    const Pose hinged = moving * moved({0.1L, 0.25L, -0.2L}) * turned({1, 0, 0}, -0.9L) * turned({0, -0.6L, 0.8L}, r[1]);
+    const Pose hinged =
+        moving * moved({0.1L, 0.25L, -0.2L}) * turned({1, 0, 0}, -0.9L) * turned({0, -0.6L, 0.8L}, r[1]);
     const Pose tip = hinged * moved({-0.1L, 0, 0.3L}) * turned({0, 0, 1}, 0.5L) * turned({1, 0, 0}, 0.3L);
     std::vector<MassPoint> points;
-    add(points, g, cloud(0)), add(points, moving, cloud(1)), add(points, hinged, cloud(2)), add(points, tip, cloud(0));
+    add(points, g, cloud(0)), add(points, moving, cloud(1)), add(points, hinged, cloud(2)),
+        add(points, tip, cloud(0));
     return points;
   };
   expect_mechanics_of(w);
@@ -96,14 +106,15 @@ INSTANTIATE_TEST_SUITE_P(Kinds, Joint, testing::ValuesIn(joint_cases()), [](cons
   return name + "About" + info.param.axis.name;
 });
 
-// The axes stay right when parameters change after the description was read, though the axis that the frame is turned to
-// was chosen at their defaults.
+// The axes stay right when parameters change after the description was read, though the axis that the frame
+// is turned to was chosen at their defaults.
 TEST(Joint, KeepsItsAxisWhenItsParametersChange) {
   const auto text = [](const char* value) {
     return header("SE3", fmt::format("[parameters]\nalpha = {{ value = {}, unit = \"rad\" }}\n", value)) +
            body("base", "", cloud(0)) +
            body("arm", "base", cloud(1),
-                "joint = { kind = \"helical\", pitch = 0.2, axis = [\"cos(alpha)/3\", \"sin(alpha)/3\", \"2*sqrt(2)/3\"], coordinate = "
+                "joint = { kind = \"helical\", pitch = 0.2, axis = [\"cos(alpha)/3\", \"sin(alpha)/3\", "
+                "\"2*sqrt(2)/3\"], coordinate = "
                 "\"a\" }");
   };
   const MechanismDescription there = describe_mechanism(read_model_text(text("0.4"), "there.toml"));
@@ -121,7 +132,8 @@ TEST(Joint, KeepsItsAxisWhenItsParametersChange) {
   }
 }
 
-// ---- every group --------------------------------------------------------------------------------------------------
+// ---- every group
+// --------------------------------------------------------------------------------------------------
 
 class Group : public testing::TestWithParam<GroupKind> {};
 
@@ -138,21 +150,23 @@ TEST_P(Group, MovesTheReferenceBodyInItsOwnAxes) {
   if (group == GroupKind::SE3 || group == GroupKind::R3) potential += " - c*p_Z*p_Y";
   if (turns && moves) potential += " + c*d*R_XX*p_Y";
   Witness w;
-  w.description = header(std::string(name(group)), fmt::format("gravity = [0.9, -2.1, -9.4]\npotential = \"{}\"\n"
-                                                              "[parameters]\nk = {{ value = 3.5, unit = \"N m\" }}\n"
-                                                              "c = {{ value = 12.5, unit = \"N/m\" }}\n"
-                                                              "d = {{ value = 0.75, unit = \"m\" }}",
-                                                              potential)) +
-                  body("base", "", cloud(0)) +
-                  body("upper", "base", cloud(1),
-                       "pose = { translation = [0.3, 0.1, -0.2], rotation = { rpy = [0.2, -0.5, 1.1] } }\n"
-                       "joint = { kind = \"revolute\", axis = [0, 0, 1], coordinate = \"a\" }") +
-                  body("lower", "upper", cloud(2),
-                       "pose = { translation = [0.4, 0, 0.1] }\njoint = { kind = \"revolute\", axis = [0, 1, 0], coordinate = \"b\" }");
+  w.description =
+      header(std::string(name(group)), fmt::format("gravity = [0.9, -2.1, -9.4]\npotential = \"{}\"\n"
+                                                   "[parameters]\nk = {{ value = 3.5, unit = \"N m\" }}\n"
+                                                   "c = {{ value = 12.5, unit = \"N/m\" }}\n"
+                                                   "d = {{ value = 0.75, unit = \"m\" }}",
+                                                   potential)) +
+      body("base", "", cloud(0)) +
+      body("upper", "base", cloud(1),
+           "pose = { translation = [0.3, 0.1, -0.2], rotation = { rpy = [0.2, -0.5, 1.1] } }\n"
+           "joint = { kind = \"revolute\", axis = [0, 0, 1], coordinate = \"a\" }") +
+      body("lower", "upper", cloud(2),
+           "pose = { translation = [0.4, 0, 0.1] }\njoint = { kind = \"revolute\", axis = [0, 1, 0], "
+           "coordinate = \"b\" }");
   w.gravity = {0.9L, -2.1L, -9.4L};
   w.masses = [](const Pose& g, const std::vector<Jet>& r) {
-    const Pose upper = g * moved({0.3L, 0.1L, -0.2L}) * turned({0, 0, 1}, 1.1L) * turned({0, 1, 0}, -0.5L) * turned({1, 0, 0}, 0.2L) *
-                       turned({0, 0, 1}, r[0]);
+    const Pose upper = g * moved({0.3L, 0.1L, -0.2L}) * turned({0, 0, 1}, 1.1L) * turned({0, 1, 0}, -0.5L) *
+                       turned({1, 0, 0}, 0.2L) * turned({0, 0, 1}, r[0]);
     const Pose lower = upper * moved({0.4L, 0, 0.1L}) * turned({0, 1, 0}, r[1]);
     std::vector<MassPoint> points;
     add(points, g, cloud(0)), add(points, upper, cloud(1)), add(points, lower, cloud(2));
@@ -161,8 +175,10 @@ TEST_P(Group, MovesTheReferenceBodyInItsOwnAxes) {
   w.potential = [=](const Pose& g, const std::vector<Jet>& r) {
     const Jet k = 3.5L, c = 12.5L, d = 0.75L;
     Jet U = k * cos(r[0]) * cos(r[1]);
-    if (turns) U += k * g.R[0][1] * g.R[1][0] + Jet(2) * k * g.R[0][0] * cos(r[0]) - k * g.R[1][1] * g.R[0][1];
-    if (group == GroupKind::SE3 || group == GroupKind::SO3) U += Jet(3) * k * g.R[2][0] * g.R[1][2] * g.R[2][2];
+    if (turns)
+      U += k * g.R[0][1] * g.R[1][0] + Jet(2) * k * g.R[0][0] * cos(r[0]) - k * g.R[1][1] * g.R[0][1];
+    if (group == GroupKind::SE3 || group == GroupKind::SO3)
+      U += Jet(3) * k * g.R[2][0] * g.R[1][2] * g.R[2][2];
     if (moves) U += c * g.p[0] * g.p[0] * Jet(0.5L) + c * g.p[0] * d * cos(r[1]);
     if (moves && group != GroupKind::R1) U += c * g.p[0] * g.p[1] + c * g.p[1] * g.p[1];
     if (group == GroupKind::SE3 || group == GroupKind::R3) U += -(c * g.p[2] * g.p[1]);
@@ -172,29 +188,35 @@ TEST_P(Group, MovesTheReferenceBodyInItsOwnAxes) {
   expect_mechanics_of(w);
 }
 INSTANTIATE_TEST_SUITE_P(Kinds, Group,
-                         testing::Values(GroupKind::SE3, GroupKind::SE2, GroupKind::SO3, GroupKind::R1, GroupKind::R2, GroupKind::R3,
-                                         GroupKind::fixed),
+                         testing::Values(GroupKind::SE3, GroupKind::SE2, GroupKind::SO3, GroupKind::R1,
+                                         GroupKind::R2, GroupKind::R3, GroupKind::fixed),
                          [](const auto& info) { return std::string(name(info.param)); });
 
-// ---- couplings ----------------------------------------------------------------------------------------------------
+// ---- couplings
+// ----------------------------------------------------------------------------------------------------
 
-/// A chain a (turn about z), x (slide along y), then a joint whose displacement is c(a, x), with a spring, a damper and
-/// friction on the coupled joint itself.
+/// A chain a (turn about z), x (slide along y), then a joint whose displacement is c(a, x), with a spring, a
+/// damper and friction on the coupled joint itself.
 void expect_coupling(const std::string& group, const std::string& kind, const std::string& expression,
                      const std::function<Jet(const Jet& a, const Jet& x)>& c) {
   SCOPED_TRACE(kind + " " + expression);
   const std::string friction = kind == "prismatic" ? "force" : "torque";
   Witness w;
   w.description =
-      header(group, "gravity = [0.4, -9.2, 2.2]\n[parameters]\nl = { value = 0.8, unit = \"m\" }") + body("base", "", cloud(0)) +
-      body("turning", "base", cloud(1), "joint = { kind = \"revolute\", axis = [0, 0, 1], coordinate = \"a\" }") +
+      header(group, "gravity = [0.4, -9.2, 2.2]\n[parameters]\nl = { value = 0.8, unit = \"m\" }") +
+      body("base", "", cloud(0)) +
+      body("turning", "base", cloud(1),
+           "joint = { kind = \"revolute\", axis = [0, 0, 1], coordinate = \"a\" }") +
       body("sliding", "turning", cloud(2),
-           "pose = { translation = [0.1, 0, 0.2] }\njoint = { kind = \"prismatic\", axis = [0, 1, 0], coordinate = \"x\", range = [-1, 1] }") +
-      body("coupled", "sliding", cloud(1),
-           fmt::format("pose = {{ translation = [0, 0.2, 0.1], rotation = {{ axis = \"y\", angle = 0.6 }} }}\n"
-                       "joint = {{ kind = \"{}\", axis = [0.8, 0, -0.6], coordinate = \"q\"{}, stiffness = 4.5, rest = 0.3, "
-                       "damping = 0.7, friction = {{ {} = 0.9, velocity = 0.4 }} }}",
-                       kind, kind == "helical" ? ", pitch = -0.11" : "", friction)) +
+           "pose = { translation = [0.1, 0, 0.2] }\njoint = { kind = \"prismatic\", axis = [0, 1, 0], "
+           "coordinate = \"x\", range = [-1, 1] }") +
+      body(
+          "coupled", "sliding", cloud(1),
+          fmt::format("pose = {{ translation = [0, 0.2, 0.1], rotation = {{ axis = \"y\", angle = 0.6 }} }}\n"
+                      "joint = {{ kind = \"{}\", axis = [0.8, 0, -0.6], coordinate = \"q\"{}, stiffness = "
+                      "4.5, rest = 0.3, "
+                      "damping = 0.7, friction = {{ {} = 0.9, velocity = 0.4 }} }}",
+                      kind, kind == "helical" ? ", pitch = -0.11" : "", friction)) +
       fmt::format("[[coupling]]\ncoordinate = \"q\"\nequals = \"{}\"\n", expression);
   w.gravity = {0.4L, -9.2L, 2.2L};
   w.masses = [=](const Pose& g, const std::vector<Jet>& r) {
@@ -207,7 +229,8 @@ void expect_coupling(const std::string& group, const std::string& kind, const st
     motion.p = Vector(along * 0.8L, 0, along * -0.6L);
     const Pose coupled = sliding * moved({0, 0.2L, 0.1L}) * turned({0, 1, 0}, 0.6L) * motion;
     std::vector<MassPoint> points;
-    add(points, g, cloud(0)), add(points, turning, cloud(1)), add(points, sliding, cloud(2)), add(points, coupled, cloud(1));
+    add(points, g, cloud(0)), add(points, turning, cloud(1)), add(points, sliding, cloud(2)),
+        add(points, coupled, cloud(1));
     return points;
   };
   w.potential = [=](const Pose&, const std::vector<Jet>& r) {

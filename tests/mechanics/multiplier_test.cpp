@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// The derived program against the full equations of motion with multipliers, written from positions and contact points and
-// solved in long double: accelerations, torques and multipliers of the robots that have no reference vectors.
+// The derived program against the full equations of motion with multipliers, written from positions and
+// contact points and solved in long double: accelerations, torques and multipliers of the robots that have no
+// reference vectors.
 #include <gtest/gtest.h>
 
 #include "anholon/reduction.hpp"
@@ -41,7 +42,8 @@ Column picked(const Column& x, const std::vector<int>& at) {
 Dense picked(const Dense& x, const std::vector<int>& rows, const std::vector<int>& cols) {
   Dense r(static_cast<Eigen::Index>(rows.size()), static_cast<Eigen::Index>(cols.size()));
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < cols.size(); ++j) r(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = x(rows[i], cols[j]);
+    for (std::size_t j = 0; j < cols.size(); ++j)
+      r(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = x(rows[i], cols[j]);
   }
   return r;
 }
@@ -65,7 +67,8 @@ TEST_P(Multipliers, OfTheFullEquationsGiveTheMotionAndTorquesOfTheReducedOnes) {
     // near a loss of rank the tolerance grows with the condition number; an error is shrunk by it instead
     std::vector<Real> shrunk = list(want);
     ASSERT_EQ(shrunk.size(), have.size()) << block;
-    for (std::size_t i = 0; i < shrunk.size(); ++i) shrunk[i] += (static_cast<Real>(have[i]) - shrunk[i]) / condition;
+    for (std::size_t i = 0; i < shrunk.size(); ++i)
+      shrunk[i] += (static_cast<Real>(have[i]) - shrunk[i]) / condition;
     errors.add(block, list(want), shrunk);
   };
   for (int i = 0; i < 100; ++i) {
@@ -73,7 +76,8 @@ TEST_P(Multipliers, OfTheFullEquationsGiveTheMotionAndTorquesOfTheReducedOnes) {
     Sample sample;
     sample.state = random_position_and_velocity(model, rng);
     for (std::size_t c = 0; c < model.coordinates.size(); ++c) {  // working range
-      const double low = model.coordinates[c].lower.to_double(), high = model.coordinates[c].upper.to_double();
+      const double low = model.coordinates[c].lower.to_double(),
+                   high = model.coordinates[c].upper.to_double();
       sample.state.r[c] = std::uniform_real_distribution<double>(low, high)(rng);
     }
     // admissible velocity: the projection of a random one; then an admissible acceleration of all coordinates
@@ -83,7 +87,8 @@ TEST_P(Multipliers, OfTheFullEquationsGiveTheMotionAndTorquesOfTheReducedOnes) {
     v = (Z * (Z.transpose() * v)).eval();
     const auto components = free_components(model.group);
     for (std::size_t k = 0; k < n; ++k) sample.state.eta[components[k]] = v(static_cast<Eigen::Index>(k));
-    for (std::size_t k = 0; k < sample.state.r_dot.size(); ++k) sample.state.r_dot[k] = v(static_cast<Eigen::Index>(n + k));
+    for (std::size_t k = 0; k < sample.state.r_dot.size(); ++k)
+      sample.state.r_dot[k] = v(static_cast<Eigen::Index>(n + k));
     const Equations e = equations(robot, model.group, sample);
     Column v_dot(v.size());
     for (Real& x : v_dot) x = 3 * normal(rng);
@@ -110,9 +115,10 @@ TEST_P(Multipliers, OfTheFullEquationsGiveTheMotionAndTorquesOfTheReducedOnes) {
     // r_a(t) given
     const std::vector<int>&p = partition.passive, &a = partition.active;
     const Dense A = picked(e.G, every_row, p), B = picked(e.G, every_row, a);
-    const Motion imposed = solve_saddle(picked(e.M, p, p), picked(e.force, p) - picked(e.M, p, a) * r_a_ddot, A, e.bias + B * r_a_ddot);
-    const Column tau = picked(e.M, a, p) * imposed.acceleration + picked(e.M, a, a) * r_a_ddot - picked(e.force, a) -
-                       B.transpose() * imposed.multipliers;
+    const Motion imposed = solve_saddle(picked(e.M, p, p), picked(e.force, p) - picked(e.M, p, a) * r_a_ddot,
+                                        A, e.bias + B * r_a_ddot);
+    const Column tau = picked(e.M, a, p) * imposed.acceleration + picked(e.M, a, a) * r_a_ddot -
+                       picked(e.force, a) - B.transpose() * imposed.multipliers;
     const Real condition = std::max<Real>(1, condition_of(A));
     std::vector<double> passive;
     for (const int at : p) passive.push_back(have.acceleration[static_cast<std::size_t>(at)]);
@@ -125,20 +131,23 @@ TEST_P(Multipliers, OfTheFullEquationsGiveTheMotionAndTorquesOfTheReducedOnes) {
     const Motion free = solve_saddle(e.M, e.force + actuation, e.G, e.bias);
     const Real free_condition = std::max<Real>(1, condition_of(e.G));
     scaled("accelerations, torques given", free.acceleration, have.free_acceleration, free_condition);
-    if (e.G.rows() > 0) scaled("multipliers, torques given", free.multipliers, have.free_lambda, free_condition);
+    if (e.G.rows() > 0)
+      scaled("multipliers, torques given", free.multipliers, have.free_lambda, free_condition);
   }
   errors.expect_below(1e-12L);
 }
 
 INSTANTIATE_TEST_SUITE_P(Robots, Multipliers,
-                         testing::Values(Case{"double_pendulum", double_pendulum()}, Case{"arm6", arm6()}, Case{"free_chain", free_chain()},
-                                         Case{"wheeled_snake3", wheeled_snake(3)}, Case{"wheeled_snake5", wheeled_snake(5)},
-                                         Case{"trailer", trailer()}, Case{"mobile_pendulum", mobile_pendulum()},
+                         testing::Values(Case{"double_pendulum", double_pendulum()}, Case{"arm6", arm6()},
+                                         Case{"free_chain", free_chain()},
+                                         Case{"wheeled_snake3", wheeled_snake(3)},
+                                         Case{"wheeled_snake5", wheeled_snake(5)}, Case{"trailer", trailer()},
+                                         Case{"mobile_pendulum", mobile_pendulum()},
                                          Case{"mobile_pendulum_one_wheel", mobile_pendulum()}),
                          [](const auto& info) { return std::string(info.param.model); });
 
-// Murray, Li & Sastry, A Mathematical Introduction to Robotic Manipulation (1994), example 4.3, with gravity added: relative
-// angles from the downward vertical.
+// Murray, Li & Sastry, A Mathematical Introduction to Robotic Manipulation (1994), example 4.3, with gravity
+// added: relative angles from the downward vertical.
 TEST(DoublePendulum, FollowsItsTextbookEquations) {
   const Model model = read_model(ANHOLON_SOURCE_DIR "/models/double_pendulum/double_pendulum.toml");
   const auto derivation = derive(model);
@@ -155,11 +164,13 @@ TEST(DoublePendulum, FollowsItsTextbookEquations) {
     input.r_ddot = {std::uniform_real_distribution<double>(-5, 5)(rng), 0};
     input.tau = {std::uniform_real_distribution<double>(-5, 5)(rng), 0};
     const Evaluated<double> e = evaluate_program(model, *derivation, call, input);
-    const Real q1 = input.state.r[0], q2 = input.state.r[1], u1 = input.state.r_dot[0], u2 = input.state.r_dot[1];
-    const Real alpha = J1 + J2 + m1 * c1 * c1 + m2 * (l1 * l1 + c2 * c2), beta = m2 * l1 * c2, delta = J2 + m2 * c2 * c2;
+    const Real q1 = input.state.r[0], q2 = input.state.r[1], u1 = input.state.r_dot[0],
+               u2 = input.state.r_dot[1];
+    const Real alpha = J1 + J2 + m1 * c1 * c1 + m2 * (l1 * l1 + c2 * c2), beta = m2 * l1 * c2,
+               delta = J2 + m2 * c2 * c2;
     const Real M11 = alpha + 2 * beta * std::cos(q2), M12 = delta + beta * std::cos(q2), M22 = delta;
-    const Real h1 = -beta * std::sin(q2) * (2 * u1 * u2 + u2 * u2) + (m1 * c1 + m2 * l1) * gamma * std::sin(q1) +
-                    m2 * c2 * gamma * std::sin(q1 + q2);
+    const Real h1 = -beta * std::sin(q2) * (2 * u1 * u2 + u2 * u2) +
+                    (m1 * c1 + m2 * l1) * gamma * std::sin(q1) + m2 * c2 * gamma * std::sin(q1 + q2);
     const Real h2 = beta * std::sin(q2) * u1 * u1 + m2 * c2 * gamma * std::sin(q1 + q2);
     const Real a1 = input.r_ddot[0];
     const Real a2 = (-h2 - M12 * a1) / M22;
@@ -168,7 +179,8 @@ TEST(DoublePendulum, FollowsItsTextbookEquations) {
     errors.add("second acceleration", {a2}, std::vector{e.acceleration[1]});
     errors.add("torque", {M11 * a1 + M12 * a2 + h1}, e.tau_a);
     const Real determinant = M11 * M22 - M12 * M12, tau = input.tau[0];
-    errors.add("accelerations, torque given", {(M22 * (tau - h1) + M12 * h2) / determinant, (-M11 * h2 - M12 * (tau - h1)) / determinant},
+    errors.add("accelerations, torque given",
+               {(M22 * (tau - h1) + M12 * h2) / determinant, (-M11 * h2 - M12 * (tau - h1)) / determinant},
                e.free_acceleration);
   }
   errors.expect_below(1e-13L);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// The reference vectors (mobile pendulum, bicycle, rigid and soft snake-board), which were made without the recursion:
-// every way of evaluating a model must meet them, and so must the program in the basis that the article documents.
+// The reference vectors (mobile pendulum, bicycle, rigid and soft snake-board), which were made without the
+// recursion: every way of evaluating a model must meet them, and so must the program in the basis that the
+// article documents.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -38,8 +39,8 @@ class Reference : public testing::TestWithParam<System> {
     setenv("ANHOLON_CACHE", (std::string(ANHOLON_BINARY_DIR) + "/compiled").c_str(), 0);
   }
   Reference()
-      : model(read_model(std::string(ANHOLON_SOURCE_DIR) + "/models/" + GetParam().model + "/" + GetParam().model +
-                         ".toml")),
+      : model(read_model(std::string(ANHOLON_SOURCE_DIR) + "/models/" + GetParam().model + "/" +
+                         GetParam().model + ".toml")),
         reference(test::read_reference(GetParam().reference)),
         states(read_states(
             std::string(ANHOLON_SOURCE_DIR) + "/tests/reference/" + GetParam().reference + ".json", model)) {}
@@ -71,9 +72,7 @@ TEST_P(Reference, IsMetByTheNumericRecursion) {
 }
 
 // 1e-25: the references print 30 digits, the evaluation carries 50
-TEST_P(Reference, IsMetByTheExactRecursion) {
-  expect_agreement(evaluate(EvaluationMethod::exact), "1e-25");
-}
+TEST_P(Reference, IsMetByTheExactRecursion) { expect_agreement(evaluate(EvaluationMethod::exact), "1e-25"); }
 
 /// The derived tape itself, run in exact arithmetic: no rounding can hide a wrong term.
 TEST_P(Reference, IsMetByTheDerivedProgramRunExactly) {
@@ -83,7 +82,8 @@ TEST_P(Reference, IsMetByTheDerivedProgramRunExactly) {
   Json result;
   for (const auto& entry : states.states) {
     const Evaluated<Exact> e = evaluate_program(model, *derivation, call, entry.input);
-    result["states"].push_back({{"label", entry.label}, {"outputs", answer(model, states, e, entry.input, 50)}});
+    result["states"].push_back(
+        {{"label", entry.label}, {"outputs", answer(model, states, e, entry.input, 50)}});
   }
   expect_agreement(result, "1e-25");
 }
@@ -133,8 +133,8 @@ struct DocumentedBasis {
   Dense H, J;
 };
 
-DocumentedBasis documented_basis(const Model& model, const std::vector<Exact>& parameters, const State<Exact>& state,
-                                 const Dense& program_J) {
+DocumentedBasis documented_basis(const Model& model, const std::vector<Exact>& parameters,
+                                 const State<Exact>& state, const Dense& program_J) {
   const auto parameter = [&](const std::string& name) {
     for (std::size_t i = 0; i < parameters.size(); ++i) {
       if (model.parameters[i].name == name) return parameters[i];
@@ -147,7 +147,8 @@ DocumentedBasis documented_basis(const Model& model, const std::vector<Exact>& p
     b.J(0, 0) = parameter("R");
     return b;
   }
-  if (model.name == "bicycle") {  // the one solution of (46) with Omega_Y = 0; its values are compared with (54)
+  if (model.name ==
+      "bicycle") {  // the one solution of (46) with Omega_Y = 0; its values are compared with (54)
     DocumentedBasis b{Dense::Zero(7, 1), program_J};
     b.H(4, 0) = 1;
     b.J.row(4).setZero();
@@ -167,15 +168,17 @@ struct BasisChange {
   Dense T, K;
 };
 
-// M_reduced = H^T M H and F_reduced = M_reduced eta_r_dot in the documented basis, from the program's M_r, f_r:
+// M_reduced = H^T M H and F_reduced = M_reduced eta_r_dot in the documented basis, from the program's M_r,
+// f_r:
 //   M_r = T^T M_reduced T,    f_r = T^T (F_reduced - M_reduced (T_dot nu + K r_a_ddot + K_dot r_a_dot)).
-// T_dot and K_dot by central differences along the motion with a step of 1e-20: error 1e-40 of the third derivative, plus
-// 1e-70 / 1e-20 of rounding.
+// T_dot and K_dot by central differences along the motion with a step of 1e-20: error 1e-40 of the third
+// derivative, plus 1e-70 / 1e-20 of rounding.
 TEST_P(Reference, IsMetInTheDocumentedBasis) {
   const WorkingDigits digits(70);
   DeriveRequest request;
-  request.functions = {"kinematics", "reduced_velocities", "constraints", "free_dynamics", "reduced_dynamics",
-                       "forward_dynamics", "inverse_torques", "multipliers", "energies"};
+  request.functions = {"kinematics",      "reduced_velocities", "constraints",
+                       "free_dynamics",   "reduced_dynamics",   "forward_dynamics",
+                       "inverse_torques", "multipliers",        "energies"};
   request.inverse = Inverse::leading;  // the J of (38) is that of the leading wheel
   request.leading_rows = {0};
   const auto derivation = derive(model, request);
@@ -214,26 +217,31 @@ TEST_P(Reference, IsMetInTheDocumentedBasis) {
     EXPECT_LT(magnitude(dense(documented["J"], basis.J.rows(), basis.J.cols()) - basis.J), 1e-28);
     Column r_a_dot(static_cast<Eigen::Index>(derivation->reduction.partition.s_a())), r_a_ddot = r_a_dot;
     for (Eigen::Index i = 0; i < r_a_dot.size(); ++i) {
-      const auto at = static_cast<std::size_t>(derivation->reduction.partition.active[static_cast<std::size_t>(i)] -
-                                               derivation->reduction.partition.n);
+      const auto at =
+          static_cast<std::size_t>(derivation->reduction.partition.active[static_cast<std::size_t>(i)] -
+                                   derivation->reduction.partition.n);
       r_a_dot(i) = input.state.r_dot[at], r_a_ddot(i) = input.r_ddot[at];
     }
     const Dense M_documented = dense(documented["M_reduced"], k, k);
     const Column rate = T_dot * column(e.nu) + now.K * r_a_ddot + K_dot * r_a_dot;
-    const double scale = 1 + magnitude(now.T) * magnitude(now.T);  // 1e-25 of what the change of basis makes of the numbers
-    EXPECT_LT(magnitude(now.T * column(e.nu) + now.K * r_a_dot - column(documented["eta_r"])), 1e-25 * (1 + magnitude(now.T)));
+    const double scale =
+        1 + magnitude(now.T) * magnitude(now.T);  // 1e-25 of what the change of basis makes of the numbers
+    EXPECT_LT(magnitude(now.T * column(e.nu) + now.K * r_a_dot - column(documented["eta_r"])),
+              1e-25 * (1 + magnitude(now.T)));
     EXPECT_LT(magnitude(now.T.transpose() * M_documented * now.T - to_eigen(e.M_r)), 1e-25 * scale);
     const Column F = column(documented["F_reduced"]);
     EXPECT_LT(magnitude(now.T.transpose() * (F - M_documented * rate) - column(e.f_r)),
               1e-25 * scale * (1 + magnitude(F) + magnitude(rate)));
-    EXPECT_LT(magnitude(now.T * column(e.nu_dot) + rate - column(documented["eta_r_dot"])), 1e-25 * scale * (1 + magnitude(F) + magnitude(rate)));
+    EXPECT_LT(magnitude(now.T * column(e.nu_dot) + rate - column(documented["eta_r_dot"])),
+              1e-25 * scale * (1 + magnitude(F) + magnitude(rate)));
   }
 }
 
 INSTANTIATE_TEST_SUITE_P(Article, Reference, testing::ValuesIn(systems),
                          [](const auto& info) { return std::string(info.param.model); });
 
-// ---- the three rows of (44) -------------------------------------------------------------------------------------
+// ---- the three rows of (44)
+// -------------------------------------------------------------------------------------
 
 class PendulumTorques : public testing::Test {
  protected:
@@ -246,8 +254,8 @@ class PendulumTorques : public testing::Test {
     DeriveRequest request;
     request.inverse = inverse;
     request.leading_rows = rows;
-    request.functions = {"kinematics", "reduced_velocities", "forward_dynamics", "inverse_torques", "multipliers",
-                         "constraints"};
+    request.functions = {"kinematics",      "reduced_velocities", "forward_dynamics",
+                         "inverse_torques", "multipliers",        "constraints"};
     return derive(model, request);
   }
   static constexpr const char* front = "T=0 (wheel 1 leading)";
@@ -282,8 +290,8 @@ TEST_F(PendulumTorques, FollowTheLeadingWheelOrAreSharedEqually) {
   }
 }
 
-// tau_a = tau_a(0) - B_a^T N s with B_a = -R 1 and N = (-1, 1), or its negative: s of size X/R hands the load to the other
-// wheel, half of it shares the load.
+// tau_a = tau_a(0) - B_a^T N s with B_a = -R 1 and N = (-1, 1), or its negative: s of size X/R hands the load
+// to the other wheel, half of it shares the load.
 TEST_F(PendulumTorques, MoveFromWheelToWheelWithTheStaticLoading) {
   const auto derivation = derived(Inverse::leading, {0});
   const auto call = interpreting_caller<Exact>(derivation->program, states.parameters);
@@ -304,15 +312,19 @@ TEST_F(PendulumTorques, MoveFromWheelToWheelWithTheStaticLoading) {
     const Exact R = states.parameters[3];
     ASSERT_EQ(model.parameters[3].name, "R");
     const Exact load = test::number(eq44[X]) / (R * N[1]);
-    for (const auto& [share, key] : {std::pair(Exact(0), front), std::pair(load, rear), std::pair(load / Exact(2), equal)}) {
+    for (const auto& [share, key] :
+         {std::pair(Exact(0), front), std::pair(load, rear), std::pair(load / Exact(2), equal)}) {
       in["lambda_stat"] = {share};
       const Column want = column(eq44[key]);
-      EXPECT_LT(magnitude(column(call("inverse_torques", in)["tau_a"]) - want), 1e-25 * (1 + magnitude(want))) << key;
+      EXPECT_LT(magnitude(column(call("inverse_torques", in)["tau_a"]) - want), 1e-25 * (1 + magnitude(want)))
+          << key;
       const std::vector<Exact> lambda = call("multipliers", in)["lambda"];
       // the wheel's own balance: tau_i = J_w r_i_ddot + R lambda_i
       for (std::size_t i = 0; i < 2; ++i)
-        EXPECT_LT(abs(want(static_cast<Eigen::Index>(i)) - states.parameters[2] * input.r_ddot[i] - R * lambda[i]).to_double(),
-                  1e-25 * (1 + magnitude(want)));
+        EXPECT_LT(
+            abs(want(static_cast<Eigen::Index>(i)) - states.parameters[2] * input.r_ddot[i] - R * lambda[i])
+                .to_double(),
+            1e-25 * (1 + magnitude(want)));
     }
   }
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The shipped robots written down a second time: their masses by homogeneous transforms, their contacts by the velocity of
-// the contact point. Numbers are typed from the robots' data sheets, not read from the descriptions.
+// The shipped robots written down a second time: their masses by homogeneous transforms, their contacts by
+// the velocity of the contact point. Numbers are typed from the robots' data sheets, not read from the
+// descriptions.
 
 #include "mechanics/witness.hpp"
 
@@ -19,8 +20,9 @@ struct Robot {
   std::function<std::vector<Contact>(const Pose& g, const std::vector<Jet>& r)> contacts;
 };
 
-/// Signed masses that have a given mass, mass centre and inertia about it (xx, yy, zz, xy, xz, yz): the second moments
-/// P = tr(I)/2 1 - I lie on pairs of points at +-1 m, which the centre balances. Energies are linear in the masses.
+/// Signed masses that have a given mass, mass centre and inertia about it (xx, yy, zz, xy, xz, yz): the
+/// second moments P = tr(I)/2 1 - I lie on pairs of points at +-1 m, which the centre balances. Energies are
+/// linear in the masses.
 inline Cloud cloud_of(double mass, const std::array<double, 3>& com, const std::array<double, 6>& I) {
   const double half_trace = (I[0] + I[1] + I[2]) / 2;
   std::array<double, 3> P = {half_trace - I[0], half_trace - I[1], half_trace - I[2]};
@@ -119,7 +121,8 @@ inline Robot wheeled_snake(std::size_t links) {
   const auto frames = [links](const Pose& g, const std::vector<Jet>& r) {
     std::vector<Pose> list = {g};
     for (std::size_t i = 1; i < links; ++i)
-      list.push_back(list.back() * moved({i == 1 ? Real(-a) : Real(-2 * a), 0, 0}) * turned({0, 0, 1}, r[i - 1]));
+      list.push_back(list.back() * moved({i == 1 ? Real(-a) : Real(-2 * a), 0, 0}) *
+                     turned({0, 0, 1}, r[i - 1]));
     return list;
   };
   Robot robot;
@@ -139,7 +142,9 @@ inline Robot wheeled_snake(std::size_t links) {
 }
 
 inline Robot trailer() {
-  const auto hitched = [](const Pose& g, const std::vector<Jet>& r) { return g * moved({-0.12L, 0, 0}) * turned({0, 0, 1}, r[0]); };
+  const auto hitched = [](const Pose& g, const std::vector<Jet>& r) {
+    return g * moved({-0.12L, 0, 0}) * turned({0, 0, 1}, r[0]);
+  };
   Robot robot;
   robot.witness.masses = [hitched](const Pose& g, const std::vector<Jet>& r) {
     std::vector<MassPoint> points;
@@ -148,7 +153,9 @@ inline Robot trailer() {
     add(points, g * turned({0, 0, 1}, r[1]), planar(0, 0, 0.05));
     return points;
   };
-  robot.witness.forces = [](const Sample& s) { return std::vector<Real>{0, 0, 0, -0.02L * s.state.r_dot[0], 0}; };
+  robot.witness.forces = [](const Sample& s) {
+    return std::vector<Real>{0, 0, 0, -0.02L * s.state.r_dot[0], 0};
+  };
   robot.contacts = [hitched](const Pose& g, const std::vector<Jet>& r) {
     return std::vector<Contact>{blade(g, 0), blade(hitched(g, r), -0.4L)};
   };
@@ -163,7 +170,8 @@ inline Robot mobile_pendulum() {
     std::vector<MassPoint> points;
     points.push_back({3.2L, g.p});
     for (const std::size_t i : {0, 1})
-      add(points, g * moved({i == 0 ? 0.3L : -0.3L, 0, 0}) * turned({0, 1, 0}, r[i]), cloud_of(0.45, {0, 0, 0}, {0, 0.0037, 0, 0, 0, 0}));
+      add(points, g * moved({i == 0 ? 0.3L : -0.3L, 0, 0}) * turned({0, 1, 0}, r[i]),
+          cloud_of(0.45, {0, 0, 0}, {0, 0.0037, 0, 0, 0, 0}));
     points.push_back({0.75L, g * Vector(Jet(0.8L) * sin(r[2]), 0, Jet(-0.8L) * cos(r[2]))});
     return points;
   };
@@ -173,7 +181,8 @@ inline Robot mobile_pendulum() {
   return robot;
 }
 
-// ---- the equations of motion with multipliers --------------------------------------------------------------------
+// ---- the equations of motion with multipliers
+// --------------------------------------------------------------------
 
 using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 using Column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
@@ -190,7 +199,8 @@ inline Equations equations(const Robot& robot, GroupKind group, const Sample& sa
   Equations e{Dense(size, size), Dense(0, size), Column(size), Column(0)};
   for (Eigen::Index i = 0; i < size; ++i) {
     e.force(i) = x.force[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < size; ++j) e.M(i, j) = x.M[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    for (Eigen::Index j = 0; j < size; ++j)
+      e.M(i, j) = x.M[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
   }
   if (!robot.contacts) return e;
   const std::vector<Real> rest(static_cast<std::size_t>(size), 0);
@@ -222,7 +232,8 @@ struct Motion {
   Column acceleration, multipliers;  // of least norm
 };
 
-/// The saddle-point system of the given unknowns, solved as one; where rows are redundant, the solution of least norm.
+/// The saddle-point system of the given unknowns, solved as one; where rows are redundant, the solution of
+/// least norm.
 inline Motion solve_saddle(const Dense& M, const Column& force, const Dense& A, const Column& bias) {
   const Eigen::Index n = M.rows(), rows = A.rows();
   if (n + rows == 0) return {Column(0), Column(0)};
@@ -242,7 +253,8 @@ inline Dense kernel_of(const Dense& A) {
   if (A.rows() == 0) return Dense::Identity(A.cols(), A.cols());
   const Eigen::JacobiSVD<Dense> svd(A, Eigen::ComputeFullV);
   Eigen::Index rank = 0;
-  for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i) rank += svd.singularValues()(i) > 1e-12L ? 1 : 0;
+  for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i)
+    rank += svd.singularValues()(i) > 1e-12L ? 1 : 0;
   return svd.matrixV().rightCols(A.cols() - rank);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
-// The recursion and the projection run over GiNaC's expressions on small systems, against the tape's programs: every
-// difference is zero as a rational function of the symbols with c^2 + s^2 = 1.
+// The recursion and the projection run over GiNaC's expressions on small systems, against the tape's
+// programs: every difference is zero as a rational function of the symbols with c^2 + s^2 = 1.
 #include <gtest/gtest.h>
 
 #include "algebra/convert.hpp"
@@ -26,7 +26,8 @@ class Symbolic {
         partition_(partition_of(model_)),
         converter_(derivation_->program.tape, GinacConverter::Angles::functions) {
     Expressions parameters;
-    for (const ParameterInfo& p : derivation_->program.parameters) parameters.push_back(converter_.to_ginac(p.node));
+    for (const ParameterInfo& p : derivation_->program.parameters)
+      parameters.push_back(converter_.to_ginac(p.node));
     mechanism_ = mechanise<ex>(describe_mechanism(model_), parameters);
   }
 
@@ -50,7 +51,8 @@ class Symbolic {
       if (block.name != name) continue;
       Matrix<ex> m(block.rows, block.cols);
       for (int i = 0; i < block.rows; ++i) {
-        for (int j = 0; j < block.cols; ++j) m(i, j) = converter_.to_ginac(block.nodes[static_cast<std::size_t>(i * block.cols + j)]);
+        for (int j = 0; j < block.cols; ++j)
+          m(i, j) = converter_.to_ginac(block.nodes[static_cast<std::size_t>(i * block.cols + j)]);
       }
       return m;
     }
@@ -164,8 +166,9 @@ TEST_P(Ginac, DerivesTheFreeDynamicsOfTheTape) {
     std::vector<int> rows, cols;
   };
   int entries = 0;
-  for (const Block& b : {Block{"M_eta_eta", eta, eta}, Block{"M_p", r_p, eta}, Block{"M_a", p.active, eta}, Block{"m_pp", r_p, r_p},
-                         Block{"m_pa", r_p, p.active}, Block{"m_aa", p.active, p.active}}) {
+  for (const Block& b :
+       {Block{"M_eta_eta", eta, eta}, Block{"M_p", r_p, eta}, Block{"M_a", p.active, eta},
+        Block{"m_pp", r_p, r_p}, Block{"m_pa", r_p, p.active}, Block{"m_aa", p.active, p.active}}) {
     const Matrix<ex> have = s.output("free_dynamics", b.name);
     if (b.rows.empty() || b.cols.empty()) continue;
     ASSERT_EQ(have.rows(), static_cast<int>(b.rows.size())) << b.name;
@@ -177,7 +180,8 @@ TEST_P(Ginac, DerivesTheFreeDynamicsOfTheTape) {
   for (const auto& [name, rows] : {std::pair("f", eta), std::pair("Q_p", r_p), std::pair("Q_a", p.active)}) {
     const Matrix<ex> have = s.output("free_dynamics", name);
     for (int i = 0; i < have.rows(); ++i, ++entries)
-      EXPECT_TRUE(s.vanishes(have(i, 0) - force[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])])) << name << ' ' << i;
+      EXPECT_TRUE(s.vanishes(have(i, 0) - force[static_cast<std::size_t>(rows[static_cast<std::size_t>(i)])]))
+          << name << ' ' << i;
   }
   EXPECT_GT(entries, 3);
 }
@@ -199,30 +203,36 @@ TEST_P(Ginac, ProjectsAsTheTapeDoes) {
   const Expressions r_p = s.input("r_p"), r_a = s.input("r_a");
   for (std::size_t i = 0; i < drift.size(); ++i) {
     for (std::size_t k = 0; k < r_p.size(); ++k)
-      drift[i] += passive[i].diff(GiNaC::ex_to<GiNaC::symbol>(r_p[k])) * passive[static_cast<std::size_t>(p.n) + k];
-    for (std::size_t k = 0; k < r_a.size(); ++k) drift[i] += passive[i].diff(GiNaC::ex_to<GiNaC::symbol>(r_a[k])) * r_a_dot[k];
+      drift[i] +=
+          passive[i].diff(GiNaC::ex_to<GiNaC::symbol>(r_p[k])) * passive[static_cast<std::size_t>(p.n) + k];
+    for (std::size_t k = 0; k < r_a.size(); ++k)
+      drift[i] += passive[i].diff(GiNaC::ex_to<GiNaC::symbol>(r_a[k])) * r_a_dot[k];
   }
   FreeDynamics<ex> dynamics(s.mechanism());
   const Matrix<ex> M = dynamics.mass_matrix(state);
   const Expressions force = dynamics.forces(state);
-  const Matrix<ex> M_pp = M.block(p.passive, p.passive), M_pa = M.block(p.passive, p.active), M_aa = M.block(p.active, p.active);
+  const Matrix<ex> M_pp = M.block(p.passive, p.passive), M_pa = M.block(p.passive, p.active),
+                   M_aa = M.block(p.active, p.active);
   const Expressions imposed = J * r_a_ddot;
   Expressions at_rest = drift;  // accelerations with nu_dot = 0
   for (std::size_t i = 0; i < at_rest.size(); ++i) at_rest[i] += imposed[i];
   const auto residual = [&](const Expressions& v_p_dot) {  // M v_dot - f on the passive rows
     Expressions sum = M_pp * v_p_dot;
     const Expressions driven = M_pa * r_a_ddot;
-    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += driven[i] - force[static_cast<std::size_t>(p.passive[i])];
+    for (std::size_t i = 0; i < sum.size(); ++i)
+      sum[i] += driven[i] - force[static_cast<std::size_t>(p.passive[i])];
     return sum;
   };
   const Matrix<ex> Ht = H.transposed();
   const Matrix<ex> M_r = Ht * (M_pp * H);
   const Expressions f_r = Ht * residual(at_rest);
   if (H.cols() > 0) {
-    const Matrix<ex> have_M = s.output("reduced_dynamics", "M_r"), have_f = s.output("reduced_dynamics", "f_r");
+    const Matrix<ex> have_M = s.output("reduced_dynamics", "M_r"),
+                     have_f = s.output("reduced_dynamics", "f_r");
     for (int i = 0; i < H.cols(); ++i) {
       EXPECT_TRUE(s.vanishes(have_f(i, 0) + f_r[static_cast<std::size_t>(i)])) << "f_r " << i;
-      for (int j = 0; j < H.cols(); ++j) EXPECT_TRUE(s.vanishes(have_M(i, j) - M_r(i, j))) << "M_r " << i << ' ' << j;
+      for (int j = 0; j < H.cols(); ++j)
+        EXPECT_TRUE(s.vanishes(have_M(i, j) - M_r(i, j))) << "M_r " << i << ' ' << j;
     }
   }
 
@@ -233,11 +243,13 @@ TEST_P(Ginac, ProjectsAsTheTapeDoes) {
   const Expressions own = M_pa.transposed() * v_p_dot, accelerated = M_aa * r_a_ddot;
   Expressions loading(p.active.size(), ex(0));
   if (const Expressions lambda_stat = s.input("lambda_stat"); !lambda_stat.empty())
-    loading = s.output("constraints", "B_a").transposed() * (s.output("constraints", "lambda_stat_basis") * lambda_stat);
+    loading = s.output("constraints", "B_a").transposed() *
+              (s.output("constraints", "lambda_stat_basis") * lambda_stat);
   const Matrix<ex> tau = s.output("inverse_torques", "tau_a");
   ASSERT_EQ(tau.rows(), p.s_a());
   for (std::size_t i = 0; i < p.active.size(); ++i) {
-    const ex want = own[i] + accelerated[i] - force[static_cast<std::size_t>(p.active[i])] + carried[i] - loading[i];
+    const ex want =
+        own[i] + accelerated[i] - force[static_cast<std::size_t>(p.active[i])] + carried[i] - loading[i];
     EXPECT_TRUE(s.vanishes(tau(static_cast<int>(i), 0) - want)) << "tau_a " << i;
   }
 }

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// A second description of a small robot, by the positions of its masses: what the blocks of eq. (1), the energies and the
-// power must be, from d'Alembert's principle on the masses alone. Every description is tried at 100 random states, by the
-// recursion in double and in long double, and by the derived program.
-
-#include <gtest/gtest.h>
+// A second description of a small robot, by the positions of its masses: what the blocks of eq. (1), the
+// energies and the power must be, from d'Alembert's principle on the masses alone. Every description is tried
+// at 100 random states, by the recursion in double and in long double, and by the derived program.
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
@@ -17,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "anholon/reduction.hpp"
 #include "anholon/free_dynamics.hpp"
+#include "anholon/reduction.hpp"
 #include "check/evaluate_program.hpp"
 #include "describe/mechanise.hpp"
 #include "describe/read_model.hpp"
@@ -31,7 +30,8 @@ struct MassPoint {
   Vector at;  // in the world
 };
 
-/// Position and velocity of a robot. The numbers are doubles, but for the rotation, which is orthonormal to the last digit.
+/// Position and velocity of a robot. The numbers are doubles, but for the rotation, which is orthonormal to
+/// the last digit.
 struct Sample {
   State<Real> state;
 };
@@ -52,7 +52,8 @@ struct Witness {
   std::function<std::vector<Load>(const Sample&, const std::vector<Pose>& frames)> loads;
 };
 
-// ---- descriptions of bodies -------------------------------------------------------------------------------------
+// ---- descriptions of bodies
+// -------------------------------------------------------------------------------------
 
 /// Masses fixed in a body: (mass, x, y, z).
 using Cloud = std::vector<std::array<double, 4>>;
@@ -84,18 +85,19 @@ inline std::string inertia(const Cloud& cloud, bool about_com = true) {
   }
   const auto text = [](Real x) { return fmt::format("{:.21g}", x); };
   const std::array<Real, 3>& at = about_com ? origin : first;
-  return fmt::format("{{ mass = {}, {} = [{}, {}, {}], {} = {{ xx = {}, yy = {}, zz = {}, xy = {}, xz = {}, yz = {} }} }}",
-                     text(mass), about_com ? "com" : "first_moment", text(at[0]), text(at[1]), text(at[2]),
-                     about_com ? "about_com" : "about_origin", text(I[0][0]), text(I[1][1]), text(I[2][2]), text(I[0][1]),
-                     text(I[0][2]), text(I[1][2]));
+  return fmt::format(
+      "{{ mass = {}, {} = [{}, {}, {}], {} = {{ xx = {}, yy = {}, zz = {}, xy = {}, xz = {}, yz = {} }} }}",
+      text(mass), about_com ? "com" : "first_moment", text(at[0]), text(at[1]), text(at[2]),
+      about_com ? "about_com" : "about_origin", text(I[0][0]), text(I[1][1]), text(I[2][2]), text(I[0][1]),
+      text(I[0][2]), text(I[1][2]));
 }
 
 inline std::string header(const std::string& group, const std::string& rest = "") {
   return fmt::format("anholon = 1\nname = \"witness\"\ngroup = \"{}\"\n{}\n", group, rest);
 }
 /// @param rest  further lines: pose, joint, beam
-inline std::string body(const std::string& name, const std::string& parent, const Cloud& cloud, const std::string& rest = "",
-                        bool about_com = true) {
+inline std::string body(const std::string& name, const std::string& parent, const Cloud& cloud,
+                        const std::string& rest = "", bool about_com = true) {
   std::string text = fmt::format("[[body]]\nname = \"{}\"\n", name);
   if (!parent.empty()) text += fmt::format("parent = \"{}\"\n", parent);
   if (!cloud.empty()) text += fmt::format("inertia = {}\n", inertia(cloud, about_com));
@@ -111,10 +113,12 @@ inline const Cloud& cloud(std::size_t i) {
   return clouds[i % clouds.size()];
 }
 
-// ---- motions ----------------------------------------------------------------------------------------------------
+// ---- motions
+// ----------------------------------------------------------------------------------------------------
 
 /// The reference body moving with eta + t eta_dot: R_ddot = R (W W + W_dot), p_ddot = R (V_dot + Omega x V).
-inline Pose base_motion(const State<Real>& s, const std::array<Real, 6>& eta, const std::array<Real, 6>& eta_dot) {
+inline Pose base_motion(const State<Real>& s, const std::array<Real, 6>& eta,
+                        const std::array<Real, 6>& eta_dot) {
   const auto hat = [](const Real* w) {
     return std::array<std::array<Real, 3>, 3>{{{0, -w[2], w[1]}, {w[2], 0, -w[0]}, {-w[1], w[0], 0}}};
   };
@@ -144,7 +148,8 @@ struct Path {
   Pose g;
   std::vector<Jet> r;
 };
-inline Path path(GroupKind group, const State<Real>& s, const std::vector<Real>& v, const std::vector<Real>& v_dot) {
+inline Path path(GroupKind group, const State<Real>& s, const std::vector<Real>& v,
+                 const std::vector<Real>& v_dot) {
   std::array<Real, 6> eta{}, eta_dot{};
   const auto components = free_components(group);
   for (std::size_t i = 0; i < components.size(); ++i) {
@@ -152,7 +157,8 @@ inline Path path(GroupKind group, const State<Real>& s, const std::vector<Real>&
     eta_dot[static_cast<std::size_t>(components[i])] = v_dot[i];
   }
   Path p{base_motion(s, eta, eta_dot), {}};
-  for (std::size_t i = 0; i < s.r.size(); ++i) p.r.emplace_back(s.r[i], v[components.size() + i], v_dot[components.size() + i]);
+  for (std::size_t i = 0; i < s.r.size(); ++i)
+    p.r.emplace_back(s.r[i], v[components.size() + i], v_dot[components.size() + i]);
   return p;
 }
 
@@ -165,7 +171,9 @@ inline std::vector<Real> velocity(GroupKind group, const State<Real>& s) {
 
 /// A state within the group: angles to +-3 rad, lengths to +-0.5 m, rates to +-2.
 inline State<Real> random_position_and_velocity(const Model& model, std::mt19937_64& rng) {
-  const auto uniform = [&](double bound) { return std::uniform_real_distribution<double>(-bound, bound)(rng); };
+  const auto uniform = [&](double bound) {
+    return std::uniform_real_distribution<double>(-bound, bound)(rng);
+  };
   State<Real> s;
   s.t = uniform(5);
   const GroupKind group = model.group;
@@ -188,10 +196,11 @@ inline State<Real> random_position_and_velocity(const Model& model, std::mt19937
   return s;
 }
 
-// ---- comparison -------------------------------------------------------------------------------------------------
+// ---- comparison
+// -------------------------------------------------------------------------------------------------
 
-/// Errors of blocks over their natural scale: the largest magnitude in the block at that state, but not below the median
-/// of these over the states.
+/// Errors of blocks over their natural scale: the largest magnitude in the block at that state, but not below
+/// the median of these over the states.
 class BlockErrors {
  public:
   template <class T>
@@ -234,8 +243,9 @@ class BlockErrors {
 
 /// Blocks of the velocity space (eta, r_dot): the parts of M and of the forces have their own units.
 template <class T>
-void add_dynamics(BlockErrors& errors, const std::string& by, std::size_t n, const std::vector<std::vector<Real>>& M,
-                  const std::vector<Real>& force, const Matrix<T>& have_M, const std::vector<T>& have_force) {
+void add_dynamics(BlockErrors& errors, const std::string& by, std::size_t n,
+                  const std::vector<std::vector<Real>>& M, const std::vector<Real>& force,
+                  const Matrix<T>& have_M, const std::vector<T>& have_force) {
   const std::size_t size = force.size();
   ASSERT_EQ(have_M.rows(), static_cast<int>(size));
   ASSERT_EQ(have_force.size(), size);
@@ -268,7 +278,7 @@ inline State<double> rounded(const State<Real>& s) {
 /// What d'Alembert's principle gives at a state.
 struct Expected {
   std::vector<std::vector<Real>> M;
-  std::vector<Real> force;          // (f, Q)
+  std::vector<Real> force;             // (f, Q)
   std::vector<Real> non_conservative;  // its part from `forces` and loads
   Real kinetic = 0, gravity = 0, potential = 0;
 };
@@ -326,7 +336,8 @@ inline Expected expected_dynamics(const Witness& w, GroupKind group, const Sampl
 }
 
 /// d(T + V)/dt of the masses along a motion, and the size of its terms.
-inline std::pair<Real, Real> energy_rate(const Witness& w, GroupKind group, const Sample& sample, const std::vector<Real>& v_dot) {
+inline std::pair<Real, Real> energy_rate(const Witness& w, GroupKind group, const Sample& sample,
+                                         const std::vector<Real>& v_dot) {
   const Path p = path(group, sample.state, velocity(group, sample.state), v_dot);
   Real rate = 0, size = 0;
   const auto add_term = [&](Real x) { rate += x, size += std::abs(x); };
@@ -340,9 +351,10 @@ inline std::pair<Real, Real> energy_rate(const Witness& w, GroupKind group, cons
   return {rate, size};
 }
 
-/// 1e-13 of the natural scale in double: some hundred operations of 1.1e-16 each, with sums that cancel by about ten
-/// (measured: worst 2e-14 over all descriptions). 4e-15 in long double: the given orientation is
-/// orthonormal to double rounding only, which the witness and the recursion use differently (measured: worst 1.7e-15).
+/// 1e-13 of the natural scale in double: some hundred operations of 1.1e-16 each, with sums that cancel by
+/// about ten (measured: worst 2e-14 over all descriptions). 4e-15 in long double: the given orientation is
+/// orthonormal to double rounding only, which the witness and the recursion use differently (measured:
+/// worst 1.7e-15).
 inline void expect_mechanics_of(const Witness& w, std::uint64_t seed = 20130922) {
   const Model model = read_model_text(w.description, "witness.toml");
   const MechanismDescription description = describe_mechanism(model);
@@ -374,30 +386,36 @@ inline void expect_mechanics_of(const Witness& w, std::uint64_t seed = 20130922)
     const Matrix<double> M = dynamics.mass_matrix(input.state);
     const std::vector<double> force = dynamics.forces(input.state);
     add_dynamics(errors, "recursion", n, x.M, x.force, M, force);
-    add_dynamics(long_errors, "recursion in long double", n, x.M, x.force, long_dynamics.mass_matrix(sample.state),
-                 long_dynamics.forces(sample.state));
+    add_dynamics(long_errors, "recursion in long double", n, x.M, x.force,
+                 long_dynamics.mass_matrix(sample.state), long_dynamics.forces(sample.state));
     const Evaluated<double> e = evaluate_program(model, *derivation, call, input);
     add_dynamics(errors, "program", n, x.M, x.force, e.M, e.force);
 
     const auto energies = dynamics.energies(input.state);
     const Real dissipated = w.dissipated_power ? w.dissipated_power(sample) : 0;
-    const auto add_energies = [&](const std::string& by, double kinetic, double gravity, double elastic, double power) {
+    const auto add_energies = [&](const std::string& by, double kinetic, double gravity, double elastic,
+                                  double power) {
       errors.add(by + " kinetic energy", {x.kinetic}, std::vector{kinetic});
       errors.add(by + " energy of gravity", {x.gravity}, std::vector{gravity});
       errors.add(by + " elastic energy", {x.potential}, std::vector{elastic});
       errors.add(by + " dissipated power", {dissipated}, std::vector{power});
     };
-    add_energies("recursion", energies.kinetic, energies.gravity, energies.elastic, energies.dissipated_power);
+    add_energies("recursion", energies.kinetic, energies.gravity, energies.elastic,
+                 energies.dissipated_power);
     add_energies("program", e.kinetic, e.gravity, e.elastic, e.dissipated_power);
 
     // d(T + V)/dt = power of what is not conservative, along the free motion that the recursion gives
     const Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> M_dense = to_eigen(M).cast<Real>();
-    const Eigen::Matrix<Real, Eigen::Dynamic, 1> v_dot = M_dense.ldlt().solve(to_eigen(force).cast<Real>().eval());
-    const auto [rate, size] = energy_rate(w, model.group, sample, {v_dot.data(), v_dot.data() + v_dot.size()});
+    const Eigen::Matrix<Real, Eigen::Dynamic, 1> v_dot =
+        M_dense.ldlt().solve(to_eigen(force).cast<Real>().eval());
+    const auto [rate, size] =
+        energy_rate(w, model.group, sample, {v_dot.data(), v_dot.data() + v_dot.size()});
     const std::vector<Real> v = velocity(model.group, sample.state);
     Real power = 0;
     for (std::size_t k = 0; k < v.size(); ++k) power += x.non_conservative[k] * v[k];
-    EXPECT_NEAR(static_cast<double>(rate), static_cast<double>(power), 1e-13 * static_cast<double>(size + std::abs(power))) << i;
+    EXPECT_NEAR(static_cast<double>(rate), static_cast<double>(power),
+                1e-13 * static_cast<double>(size + std::abs(power)))
+        << i;
   }
   errors.expect_below(1e-13L);
   long_errors.expect_below(4e-15L);
