@@ -145,6 +145,9 @@ Values times(const Matrix<Exact>& G, const Values& v) { return G * v; }
 TEST_P(EveryModel, KeepsItsConstraintsWhateverNuIs) {
   const Robot robot(shipped(GetParam()), {});
   if (robot.partition().passive.empty()) GTEST_SKIP() << "the drives rule every velocity";
+  std::vector<double> parameters;
+  for (const Exact& p : robot.parameters()) parameters.push_back(p.to_double());
+  const auto in_double = interpreting_caller<double>(robot.derivation().program, parameters);
   SampleSource source(7);
   for (int i = 0; i < states_tried; ++i) {
     EvaluationInput<Exact> input = robot.admissible(source);
@@ -160,6 +163,28 @@ TEST_P(EveryModel, KeepsItsConstraintsWhateverNuIs) {
               1e-25 * (1 + largest(robot.velocity(input.state))));
     for (std::size_t k = 0; k < e.nu.size(); ++k)  // and reduced_velocities undoes kinematics
       EXPECT_LT(abs(e.nu[k] - in["nu"][k]).to_double(), 1e-25);
+
+    // in double: to the rounding of the sums in a row: 1e-14 of its largest entry times the largest velocity,
+    // some hundred roundings of 1.1e-16
+    NamedValues<double> rounded;
+    for (const auto& [name, values] : in) {
+      for (const Exact& x : values) rounded[name].push_back(x.to_double());
+    }
+    NamedValues<double> w = in_double("kinematics", rounded);
+    std::vector<double> u = w["eta"];
+    u.resize(static_cast<std::size_t>(e.G.cols()));
+    for (std::size_t k = 0; k < w["r_p_dot"].size(); ++k)
+      u[static_cast<std::size_t>(robot.partition().passive[w["eta"].size() + k])] = w["r_p_dot"][k];
+    for (std::size_t k = 0; k < rounded["r_a_dot"].size(); ++k)
+      u[static_cast<std::size_t>(robot.partition().active[k])] = rounded["r_a_dot"][k];
+    for (int row = 0; row < e.G.rows(); ++row) {
+      double sum = 0, entry = 0, velocity = 0;
+      for (int k = 0; k < e.G.cols(); ++k) {
+        const double g = e.G(row, k).to_double(), x = u[static_cast<std::size_t>(k)];
+        sum += g * x, entry = std::max(entry, std::abs(g)), velocity = std::max(velocity, std::abs(x));
+      }
+      EXPECT_LT(std::abs(sum), 1e-14 * entry * velocity);
+    }
   }
 }
 

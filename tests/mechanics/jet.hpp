@@ -105,4 +105,14 @@ inline std::array<Real, 3> angular_velocity(const Pose& g) {
   return w;
 }
 
+/// Its derivative: the skew part of R_ddot R^T.
+inline std::array<Real, 3> angular_acceleration(const Pose& g) {
+  std::array<Real, 3> w{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
+    for (std::size_t c = 0; c < 3; ++c) w[i] += (g.R[k][c].dd * g.R[j][c].x - g.R[j][c].dd * g.R[k][c].x) / 2;
+  }
+  return w;
+}
+
 }  // namespace anholon::test

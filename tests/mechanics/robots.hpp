@@ -5,20 +5,9 @@
 // the velocity of the contact point. Numbers are typed from the robots' data sheets, not read from the
 // descriptions.
 
-#include "mechanics/witness.hpp"
+#include "mechanics/full_equations.hpp"
 
 namespace anholon::test {
-
-/// (direction . velocity of the point) - roll_dot = 0; all in the world.
-struct Contact {
-  Vector direction, point;
-  Jet roll;
-};
-
-struct Robot {
-  Witness witness;  // its description is left empty
-  std::function<std::vector<Contact>(const Pose& g, const std::vector<Jet>& r)> contacts;
-};
 
 /// Signed masses that have a given mass, mass centre and inertia about it (xx, yy, zz, xy, xz, yz): the
 /// second moments P = tr(I)/2 1 - I lie on pairs of points at +-1 m, which the centre balances. Energies are
@@ -132,7 +121,7 @@ inline Robot wheeled_snake(std::size_t links) {
     for (std::size_t i = 0; i < list.size(); ++i) add(points, list[i], planar(m, i == 0 ? 0 : -a, J));
     return points;
   };
-  robot.contacts = [frames](const Pose& g, const std::vector<Jet>& r) {
+  robot.contacts = [frames](const Pose& g, const std::vector<Jet>& r, const Jet&) {
     std::vector<Contact> contacts;
     const auto list = frames(g, r);
     for (std::size_t i = 0; i < list.size(); ++i) contacts.push_back(blade(list[i], i == 0 ? 0 : -a));
@@ -156,7 +145,7 @@ inline Robot trailer() {
   robot.witness.forces = [](const Sample& s) {
     return std::vector<Real>{0, 0, 0, -0.02L * s.state.r_dot[0], 0};
   };
-  robot.contacts = [hitched](const Pose& g, const std::vector<Jet>& r) {
+  robot.contacts = [hitched](const Pose& g, const std::vector<Jet>& r, const Jet&) {
     return std::vector<Contact>{blade(g, 0), blade(hitched(g, r), -0.4L)};
   };
   return robot;
@@ -175,87 +164,10 @@ inline Robot mobile_pendulum() {
     points.push_back({0.75L, g * Vector(Jet(0.8L) * sin(r[2]), 0, Jet(-0.8L) * cos(r[2]))});
     return points;
   };
-  robot.contacts = [](const Pose& g, const std::vector<Jet>& r) {
+  robot.contacts = [](const Pose& g, const std::vector<Jet>& r, const Jet&) {
     return std::vector<Contact>{{{1, 0, 0}, g.p, Jet(0.12L) * r[0]}, {{1, 0, 0}, g.p, Jet(0.12L) * r[1]}};
   };
   return robot;
-}
-
-// ---- the equations of motion with multipliers
-// --------------------------------------------------------------------
-
-using Dense = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
-using Column = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
-
-/// M v_dot = force + G^T lambda + actuation,   G v_dot = -bias.
-struct Equations {
-  Dense M, G;
-  Column force, bias;
-};
-
-inline Equations equations(const Robot& robot, GroupKind group, const Sample& sample) {
-  const Expected x = expected_dynamics(robot.witness, group, sample);
-  const auto size = static_cast<Eigen::Index>(x.force.size());
-  Equations e{Dense(size, size), Dense(0, size), Column(size), Column(0)};
-  for (Eigen::Index i = 0; i < size; ++i) {
-    e.force(i) = x.force[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < size; ++j)
-      e.M(i, j) = x.M[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-  }
-  if (!robot.contacts) return e;
-  const std::vector<Real> rest(static_cast<std::size_t>(size), 0);
-  const Path moving = path(group, sample.state, velocity(group, sample.state), rest);
-  const std::vector<Contact> contacts = robot.contacts(moving.g, moving.r);
-  const auto rows = static_cast<Eigen::Index>(contacts.size());
-  e.G.setZero(rows, size), e.bias.setZero(rows);
-  for (Eigen::Index i = 0; i < rows; ++i) {
-    const Contact& contact = contacts[static_cast<std::size_t>(i)];
-    e.bias(i) = -contact.roll.dd;
-    for (std::size_t c = 0; c < 3; ++c)
-      e.bias(i) += contact.direction[c].d * contact.point[c].d + contact.direction[c].x * contact.point[c].dd;
-  }
-  for (Eigen::Index k = 0; k < size; ++k) {
-    std::vector<Real> unit = rest;
-    unit[static_cast<std::size_t>(k)] = 1;
-    const Path along = path(group, sample.state, unit, rest);
-    const std::vector<Contact> moved = robot.contacts(along.g, along.r);
-    for (Eigen::Index i = 0; i < rows; ++i) {
-      const Contact& contact = moved[static_cast<std::size_t>(i)];
-      e.G(i, k) = -contact.roll.d;
-      for (std::size_t c = 0; c < 3; ++c) e.G(i, k) += contact.direction[c].x * contact.point[c].d;
-    }
-  }
-  return e;
-}
-
-struct Motion {
-  Column acceleration, multipliers;  // of least norm
-};
-
-/// The saddle-point system of the given unknowns, solved as one; where rows are redundant, the solution of
-/// least norm.
-inline Motion solve_saddle(const Dense& M, const Column& force, const Dense& A, const Column& bias) {
-  const Eigen::Index n = M.rows(), rows = A.rows();
-  if (n + rows == 0) return {Column(0), Column(0)};
-  Dense K = Dense::Zero(n + rows, n + rows);
-  K.topLeftCorner(n, n) = M;
-  K.topRightCorner(n, rows) = -A.transpose();
-  K.bottomLeftCorner(rows, n) = A;
-  Column b(n + rows);
-  b << force, -bias;
-  Eigen::CompleteOrthogonalDecomposition<Dense> solver;
-  solver.setThreshold(1e-13L);
-  const Column x = solver.compute(K).solve(b);
-  return {x.head(n), x.tail(rows)};
-}
-
-inline Dense kernel_of(const Dense& A) {
-  if (A.rows() == 0) return Dense::Identity(A.cols(), A.cols());
-  const Eigen::JacobiSVD<Dense> svd(A, Eigen::ComputeFullV);
-  Eigen::Index rank = 0;
-  for (Eigen::Index i = 0; i < svd.singularValues().size(); ++i)
-    rank += svd.singularValues()(i) > 1e-12L ? 1 : 0;
-  return svd.matrixV().rightCols(A.cols() - rank);
 }
 
 }  // namespace anholon::test
