@@ -85,7 +85,7 @@ build() {
 
 # run_tests FOLDER [CTEST OPTION...] ends with the line "N passed, N failed"; status 1 if a test failed or none ran.
 run_tests() {
-  local folder=$1 status=0 log total failed
+  local folder=$1 status=0 log total failed skipped
   shift
   log=$folder/tests.log
   # Compiled code of earlier runs stays out of it.
@@ -93,7 +93,10 @@ run_tests() {
     --output-on-failure --no-tests=error "$@" 2>&1 | tee "$log" || status=$?
   read -r failed total < <(sed -nE 's/^[0-9]+% tests passed, ([0-9]+) tests? failed out of ([0-9]+)$/\1 \2/p' "$log") ||
     fail "no summary in $log"
-  printf '\n%d passed, %d failed\n' $((total - failed)) "$failed"
+  skipped=$(grep -cE '\*\*\*Skipped ' "$log" || true)
+  printf '\n'
+  if ((skipped > 0)); then printf '%d skipped\n' "$skipped"; fi
+  printf '%d passed, %d failed\n' $((total - failed - skipped)) "$failed"
   if ((status == 0 && failed > 0)); then status=1; fi
   return $((status != 0))
 }
