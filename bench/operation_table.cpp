@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-// Operations of the functions of every robot in a folder of URDF files: additions, multiplications and divisions together,
-// sines and cosines apart. A robot whose name does not begin like an arm's on a pedestal has a free base.
+// Operations of the functions of every robot in a folder of URDF files: additions, multiplications and
+// divisions together, sines and cosines apart. A robot whose name does not begin like an arm's on a pedestal
+// has a free base.
 //
 //   operation_table [--routes] [--fixed NAME]... FOLDER
 
@@ -66,7 +67,8 @@ int main(int argc, char** argv) {
           continue;
         }
         std::vector<NodeId> roots;
-        for (const OutputBlock& b : function->outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+        for (const OutputBlock& b : function->outputs)
+          roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
         const OperationCount count = count_operations(derivation->program.tape, roots);
         angles = std::max(angles, count.trigonometric());
         fmt::print(" {} |", count.total());

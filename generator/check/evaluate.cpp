@@ -11,7 +11,8 @@ using Json = nlohmann::ordered_json;
 
 }  // namespace
 
-nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& states, const EvaluateRequest& request) {
+nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& states,
+                                       const EvaluateRequest& request) {
   Json result;
   result["schema"] = "anholon.evaluate/1";
   result["model"] = model.name;
@@ -20,7 +21,9 @@ nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& sta
   result["coordinates"] = {{"r_p", states.r_p}, {"r_a", states.r_a}};
   Json& list = result["states"] = Json::array();
   const Partition partition = partition_of(model);
-  const auto add = [&](const StatesFile::Entry& entry, Json outputs) { list.push_back({{"label", entry.label}, {"outputs", std::move(outputs)}}); };
+  const auto add = [&](const StatesFile::Entry& entry, Json outputs) {
+    list.push_back({{"label", entry.label}, {"outputs", std::move(outputs)}});
+  };
 
   if (request.method == EvaluationMethod::generated) {
     DeriveRequest wanted;
@@ -49,7 +52,8 @@ nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& sta
   const Mechanism<Exact> mechanism = mechanise<Exact>(description, states.parameters);
   const Exact threshold = Exact(1) / Exact::from_decimal("1e" + std::to_string(request.digits / 2));
   for (const auto& entry : states.states) {
-    add(entry, answer(model, states, evaluate_recursion(mechanism, partition, entry.input, threshold), entry.input, request.digits));
+    add(entry, answer(model, states, evaluate_recursion(mechanism, partition, entry.input, threshold),
+                      entry.input, request.digits));
   }
   return result;
 }

@@ -4,7 +4,6 @@
 // Evaluation of a model at states, by generated code, numeric recursion, or in exact arithmetic.
 
 #include <nlohmann/json.hpp>
-
 #include <string>
 
 #include "check/evaluate_program.hpp"
@@ -22,6 +21,7 @@ struct EvaluateRequest {
 };
 
 /// Answer in the layout of the reference files, schema "anholon.evaluate/1".
-nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& states, const EvaluateRequest& request);
+nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& states,
+                                       const EvaluateRequest& request);
 
 }  // namespace anholon

@@ -8,7 +8,8 @@
 namespace anholon {
 
 template <class S>
-Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call, const EvaluationInput<S>& input) {
+Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call,
+                              const EvaluationInput<S>& input) {
   const Program& program = derivation.program;
   const Partition partition = partition_of(model);
   const int n = partition.n;
@@ -16,14 +17,17 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   NamedValues<S> in = position_inputs(model, partition, input.state);
   const auto components = free_components(model.group);
   for (const int c : components) in["eta"].push_back(input.state.eta[c]);
-  for (std::size_t i = static_cast<std::size_t>(n); i < partition.passive.size(); ++i) in["r_p_dot"].push_back(input.state.r_dot[static_cast<std::size_t>(partition.passive[i] - n)]);
+  for (std::size_t i = static_cast<std::size_t>(n); i < partition.passive.size(); ++i)
+    in["r_p_dot"].push_back(input.state.r_dot[static_cast<std::size_t>(partition.passive[i] - n)]);
   for (const int i : partition.active) {
     const auto a = static_cast<std::size_t>(i - n);
     in["r_a_dot"].push_back(input.state.r_dot[a]);
     in["r_a_ddot"].push_back(input.has_acceleration ? input.r_ddot[a] : S(0));
     in["tau_a"].push_back(input.has_torque ? input.tau[a] : S(0));
   }
-  const auto run = [&](const std::string& name) { return find_function(program, name) != nullptr ? call(name, in) : NamedValues<S>{}; };
+  const auto run = [&](const std::string& name) {
+    return find_function(program, name) != nullptr ? call(name, in) : NamedValues<S>{};
+  };
   const auto matrix = [](const NamedValues<S>& out, const std::string& name, int rows, int cols) {
     Matrix<S> m(rows, cols);
     const auto found = out.find(name);
@@ -44,10 +48,12 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   Evaluated<S> e;
   e.M = Matrix<S>(size, size);
   const NamedValues<S> free = run("free_dynamics");
-  const auto place = [&](const std::string& name, const std::vector<int>& rows, const std::vector<int>& cols) {
+  const auto place = [&](const std::string& name, const std::vector<int>& rows,
+                         const std::vector<int>& cols) {
     const Matrix<S> m = matrix(free, name, static_cast<int>(rows.size()), static_cast<int>(cols.size()));
     for (std::size_t i = 0; i < rows.size(); ++i) {
-      for (std::size_t j = 0; j < cols.size(); ++j) e.M(rows[i], cols[j]) = e.M(cols[j], rows[i]) = m(static_cast<int>(i), static_cast<int>(j));
+      for (std::size_t j = 0; j < cols.size(); ++j)
+        e.M(rows[i], cols[j]) = e.M(cols[j], rows[i]) = m(static_cast<int>(i), static_cast<int>(j));
     }
   };
   place("M_eta_eta", eta, eta), place("M_p", r_p, eta), place("M_a", r_a, eta);
@@ -56,7 +62,8 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     for (std::size_t i = 0; i < from.size(); ++i) to[static_cast<std::size_t>(at[i])] = from[i];
   };
   e.force.assign(static_cast<std::size_t>(size), S(0));
-  scatter_into(e.force, get(free, "f"), eta), scatter_into(e.force, get(free, "Q_p"), r_p), scatter_into(e.force, get(free, "Q_a"), r_a);
+  scatter_into(e.force, get(free, "f"), eta), scatter_into(e.force, get(free, "Q_p"), r_p),
+      scatter_into(e.force, get(free, "Q_a"), r_a);
 
   const int rows = static_cast<int>(model.rows.size());
   const NamedValues<S> constraints = run("constraints");
@@ -83,8 +90,12 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     e.projector = Matrix<S>(passive, passive);
   }
   const NamedValues<S> energies = run("energies");
-  const auto energy = [&](const char* name) { const auto v = get(energies, name); return v.empty() ? S(0) : v[0]; };
-  e.kinetic = energy("kinetic"), e.gravity = energy("gravity"), e.elastic = energy("elastic"), e.dissipated_power = energy("dissipated_power");
+  const auto energy = [&](const char* name) {
+    const auto v = get(energies, name);
+    return v.empty() ? S(0) : v[0];
+  };
+  e.kinetic = energy("kinetic"), e.gravity = energy("gravity"), e.elastic = energy("elastic"),
+  e.dissipated_power = energy("dissipated_power");
 
   if (input.has_acceleration) {
     const NamedValues<S> reduced = run("reduced_dynamics");
@@ -114,7 +125,9 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   return e;
 }
 
-template Evaluated<double> evaluate_program(const Model&, const Derivation&, const ProgramCaller<double>&, const EvaluationInput<double>&);
-template Evaluated<Exact> evaluate_program(const Model&, const Derivation&, const ProgramCaller<Exact>&, const EvaluationInput<Exact>&);
+template Evaluated<double> evaluate_program(const Model&, const Derivation&, const ProgramCaller<double>&,
+                                            const EvaluationInput<double>&);
+template Evaluated<Exact> evaluate_program(const Model&, const Derivation&, const ProgramCaller<Exact>&,
+                                           const EvaluationInput<Exact>&);
 
 }  // namespace anholon

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The functions of a program at one state, through whatever runs them: compiled code, or an interpreter of the tape.
+// The functions of a program at one state, through whatever runs them: compiled code, or an interpreter of
+// the tape.
 
 #include <functional>
 #include <map>
@@ -18,7 +19,8 @@ template <class S>
 using NamedValues = std::map<std::string, std::vector<S>>;
 /// Runs a function by name; answers its output blocks.
 template <class S>
-using ProgramCaller = std::function<NamedValues<S>(const std::string& function, const NamedValues<S>& inputs)>;
+using ProgramCaller =
+    std::function<NamedValues<S>(const std::string& function, const NamedValues<S>& inputs)>;
 
 inline const Function* find_function(const Program& program, const std::string& name) {
   for (const Function& f : program.functions) {
@@ -41,24 +43,29 @@ ProgramCaller<S> interpreting_caller(const Program& program, std::vector<S> para
     auto found = cache->interpreters.find(name);
     if (found == cache->interpreters.end()) {
       std::vector<NodeId> roots;
-      for (const OutputBlock& b : function->outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+      for (const OutputBlock& b : function->outputs)
+        roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
       found = cache->interpreters.emplace(name, Interpreter<S>(program.tape, roots)).first;
     }
     std::vector<S>& inputs = cache->inputs;
     inputs.assign(program.tape.inputs().size(), S(0));
-    for (std::size_t i = 0; i < program.parameters.size(); ++i) inputs[program.tape.node(program.parameters[i].node).a] = parameters[i];
+    for (std::size_t i = 0; i < program.parameters.size(); ++i)
+      inputs[program.tape.node(program.parameters[i].node).a] = parameters[i];
     for (const InputBlock& block : program.inputs) {
       const auto value = named.find(block.name);
       if (value == named.end()) continue;
-      if (value->second.size() != block.nodes.size()) throw std::invalid_argument("input block '" + block.name + "' has the wrong size");
-      for (std::size_t i = 0; i < block.nodes.size(); ++i) inputs[program.tape.node(block.nodes[i]).a] = value->second[i];
+      if (value->second.size() != block.nodes.size())
+        throw std::invalid_argument("input block '" + block.name + "' has the wrong size");
+      for (std::size_t i = 0; i < block.nodes.size(); ++i)
+        inputs[program.tape.node(block.nodes[i]).a] = value->second[i];
     }
     std::vector<S> flat(found->second.output_count(), S(0));
     found->second(inputs, flat);
     NamedValues<S> outputs;
     std::size_t next = 0;
     for (const OutputBlock& b : function->outputs) {
-      outputs[b.name].assign(flat.begin() + static_cast<std::ptrdiff_t>(next), flat.begin() + static_cast<std::ptrdiff_t>(next + b.nodes.size()));
+      outputs[b.name].assign(flat.begin() + static_cast<std::ptrdiff_t>(next),
+                             flat.begin() + static_cast<std::ptrdiff_t>(next + b.nodes.size()));
       next += b.nodes.size();
     }
     return outputs;
@@ -76,16 +83,22 @@ NamedValues<S> position_inputs(const Model& model, const Partition& partition, c
   for (const int c : free_components(model.group)) {
     if (c < 3) in["p"].push_back(state.p[c]);
   }
-  for (std::size_t i = static_cast<std::size_t>(partition.n); i < partition.passive.size(); ++i) in["r_p"].push_back(state.r[static_cast<std::size_t>(partition.passive[i] - partition.n)]);
-  for (const int i : partition.active) in["r_a"].push_back(state.r[static_cast<std::size_t>(i - partition.n)]);
+  for (std::size_t i = static_cast<std::size_t>(partition.n); i < partition.passive.size(); ++i)
+    in["r_p"].push_back(state.r[static_cast<std::size_t>(partition.passive[i] - partition.n)]);
+  for (const int i : partition.active)
+    in["r_a"].push_back(state.r[static_cast<std::size_t>(i - partition.n)]);
   return in;
 }
 
 /// Every function that the program has.
 template <class S>
-Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call, const EvaluationInput<S>& input);
+Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call,
+                              const EvaluationInput<S>& input);
 
-extern template Evaluated<double> evaluate_program(const Model&, const Derivation&, const ProgramCaller<double>&, const EvaluationInput<double>&);
-extern template Evaluated<Exact> evaluate_program(const Model&, const Derivation&, const ProgramCaller<Exact>&, const EvaluationInput<Exact>&);
+extern template Evaluated<double> evaluate_program(const Model&, const Derivation&,
+                                                   const ProgramCaller<double>&,
+                                                   const EvaluationInput<double>&);
+extern template Evaluated<Exact> evaluate_program(const Model&, const Derivation&,
+                                                  const ProgramCaller<Exact>&, const EvaluationInput<Exact>&);
 
 }  // namespace anholon

@@ -27,14 +27,16 @@ Matrix<S> from_eigen(const DynamicMatrix<S>& x) {
 }  // namespace
 
 template <class S>
-Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition, const EvaluationInput<S>& input, const S& threshold) {
+Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition,
+                                const EvaluationInput<S>& input, const S& threshold) {
   FreeDynamics<S> dynamics(mechanism);
   Evaluated<S> e;
   e.M = dynamics.mass_matrix(input.state);
   e.force = dynamics.forces(input.state);
   std::tie(e.G, e.bias) = dynamics.constraints(input.state);
   const auto energies = dynamics.energies(input.state);
-  e.kinetic = energies.kinetic, e.gravity = energies.gravity, e.elastic = energies.elastic, e.dissipated_power = energies.dissipated_power;
+  e.kinetic = energies.kinetic, e.gravity = energies.gravity, e.elastic = energies.elastic,
+  e.dissipated_power = energies.dissipated_power;
 
   const std::vector<int>& passive = partition.passive;
   const std::vector<int>& active = partition.active;
@@ -47,7 +49,8 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
   const DynamicVector<S> bias = to_eigen(e.bias);
   const auto pick = [](const std::vector<S>& v, const std::vector<int>& indices) {
     DynamicVector<S> r(static_cast<Eigen::Index>(indices.size()));
-    for (std::size_t i = 0; i < indices.size(); ++i) r(static_cast<Eigen::Index>(i)) = v[static_cast<std::size_t>(indices[i])];
+    for (std::size_t i = 0; i < indices.size(); ++i)
+      r(static_cast<Eigen::Index>(i)) = v[static_cast<std::size_t>(indices[i])];
     return r;
   };
   const DynamicMatrix<S> Z = ConstraintFactors<S>(A, threshold).kernel();
@@ -55,15 +58,21 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
 
   if (input.has_acceleration) {
     DynamicVector<S> r_a_ddot(static_cast<Eigen::Index>(active.size()));
-    for (std::size_t i = 0; i < active.size(); ++i) r_a_ddot(static_cast<Eigen::Index>(i)) = input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
+    for (std::size_t i = 0; i < active.size(); ++i)
+      r_a_ddot(static_cast<Eigen::Index>(i)) =
+          input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
     const DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
     const auto solution = solve_constrained<S>(M_pp, force, A, bias + B * r_a_ddot, threshold);
     e.acceleration.assign(e.force.size(), S(0));
-    for (std::size_t i = 0; i < passive.size(); ++i) e.acceleration[static_cast<std::size_t>(passive[i])] = solution.acceleration(static_cast<Eigen::Index>(i));
-    for (std::size_t i = 0; i < active.size(); ++i) e.acceleration[static_cast<std::size_t>(active[i])] = r_a_ddot(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < passive.size(); ++i)
+      e.acceleration[static_cast<std::size_t>(passive[i])] =
+          solution.acceleration(static_cast<Eigen::Index>(i));
+    for (std::size_t i = 0; i < active.size(); ++i)
+      e.acceleration[static_cast<std::size_t>(active[i])] = r_a_ddot(static_cast<Eigen::Index>(i));
     e.lambda = from_eigen<S>(solution.multipliers);
     const DynamicMatrix<S> M_aa = to_eigen(e.M.block(active, active));
-    const DynamicVector<S> tau = M_pa.transpose() * solution.acceleration + M_aa * r_a_ddot - pick(e.force, active) - B.transpose() * solution.multipliers;
+    const DynamicVector<S> tau = M_pa.transpose() * solution.acceleration + M_aa * r_a_ddot -
+                                 pick(e.force, active) - B.transpose() * solution.multipliers;
     e.tau_a = from_eigen<S>(tau);
   }
   if (input.has_torque) {
@@ -76,16 +85,20 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
   return e;
 }
 
-template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&, const EvaluationInput<double>&, const double&);
-template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&, const EvaluationInput<Exact>&, const Exact&);
+template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&,
+                                              const EvaluationInput<double>&, const double&);
+template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&,
+                                             const EvaluationInput<Exact>&, const Exact&);
 
 std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b) {
-  return from_eigen<Exact>(ConstraintFactors<Exact>(to_eigen(A), Exact::from_decimal("1e-25")).solve(to_eigen(b)));
+  return from_eigen<Exact>(
+      ConstraintFactors<Exact>(to_eigen(A), Exact::from_decimal("1e-25")).solve(to_eigen(b)));
 }
 
 template <class S>
 Matrix<S> range_projector(const Matrix<S>& H) {
-  const DynamicMatrix<S> Q = DynamicMatrix<S>(Eigen::HouseholderQR<DynamicMatrix<S>>(to_eigen(H)).householderQ()).leftCols(H.cols());
+  const DynamicMatrix<S> Q =
+      DynamicMatrix<S>(Eigen::HouseholderQR<DynamicMatrix<S>>(to_eigen(H)).householderQ()).leftCols(H.cols());
   return from_eigen<S>(DynamicMatrix<S>(Q * Q.transpose()));
 }
 

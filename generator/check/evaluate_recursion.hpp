@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The numeric recursion and numeric reduction at one state, over double or Exact: no code is generated and no kernel
-// basis is differentiated. Instantiated once, since factorisations over Exact are slow to compile.
+// The numeric recursion and numeric reduction at one state, over double or Exact: no code is generated and no
+// kernel basis is differentiated. Instantiated once, since factorisations over Exact are slow to compile.
 
 #include "anholon/mechanism.hpp"
 #include "check/evaluated.hpp"
@@ -13,10 +13,13 @@ namespace anholon {
 
 /// @param threshold  relative size below which a pivot of the constraint matrix counts as zero
 template <class S>
-Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition, const EvaluationInput<S>& input, const S& threshold);
+Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition,
+                                const EvaluationInput<S>& input, const S& threshold);
 
-extern template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&, const EvaluationInput<double>&, const double&);
-extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&, const EvaluationInput<Exact>&, const Exact&);
+extern template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&,
+                                                     const EvaluationInput<double>&, const double&);
+extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&,
+                                                    const EvaluationInput<Exact>&, const Exact&);
 
 /// Minimum-norm least-squares solution of A x = b.
 std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b);

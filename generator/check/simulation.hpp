@@ -14,16 +14,16 @@ namespace anholon {
 struct SimulationResult {
   std::vector<std::string> columns;  // with units: "V_X [m/s]"
   std::vector<std::vector<double>> rows;
-  std::string status;                // "ok", or why the integration stopped
+  std::string status;  // "ok", or why the integration stopped
   bool finished = false;
   long steps = 0, rejected = 0, evaluations = 0;
-  double cpu_seconds = 0;            // of the integration alone
+  double cpu_seconds = 0;  // of the integration alone
   double nanoseconds_per_evaluation = 0;
-  double energy_balance = 0;         // largest |E(t) - E(0) - work + dissipation| / scale of the energies
-  double constraint_residual = 0;    // largest |A eta + B r_dot| relative to what cancels
-  double orthonormality = 0;         // largest ||R^T R - 1||
-  int operations = 0;                // of one evaluation of the field
-  bool was_cached = false;           // the compiled code
+  double energy_balance = 0;       // largest |E(t) - E(0) - work + dissipation| / scale of the energies
+  double constraint_residual = 0;  // largest |A eta + B r_dot| relative to what cancels
+  double orthonormality = 0;       // largest ||R^T R - 1||
+  int operations = 0;              // of one evaluation of the field
+  bool was_cached = false;         // the compiled code
   std::string class_of_table_I;
 };
 

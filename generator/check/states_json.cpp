@@ -26,7 +26,8 @@ class Reader {
       Exact value = p.value;
       if (json.contains("parameters") && json["parameters"].contains(p.name)) {
         const Json& given = json["parameters"][p.name];
-        value = number(given.is_object() ? at(given, "value", "parameter " + p.name) : given, "parameter " + p.name);
+        value = number(given.is_object() ? at(given, "value", "parameter " + p.name) : given,
+                       "parameter " + p.name);
       }
       states.parameters.push_back(value);
     }
@@ -37,10 +38,13 @@ class Reader {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& fact, const std::string& mend) const { throw ModelError({file_, 0, 0}, fact, mend); }
+  [[noreturn]] void fail(const std::string& fact, const std::string& mend) const {
+    throw ModelError({file_, 0, 0}, fact, mend);
+  }
 
   const Json& at(const Json& object, const std::string& key, const std::string& where) const {
-    if (!object.is_object() || !object.contains(key)) fail(fmt::format("{} has no '{}'", where, key), "use the layout of docs/evaluate.md");
+    if (!object.is_object() || !object.contains(key))
+      fail(fmt::format("{} has no '{}'", where, key), "use the layout of docs/evaluate.md");
     return object[key];
   }
 
@@ -51,12 +55,16 @@ class Reader {
       if (json.is_number()) return Exact::from_double(json.get<double>());
     } catch (const std::exception&) {
     }
-    fail(fmt::format("{}: {} is not a finite number", where, json.dump().substr(0, 40)), "write a decimal number or a decimal string");
+    fail(fmt::format("{}: {} is not a finite number", where, json.dump().substr(0, 40)),
+         "write a decimal number or a decimal string");
   }
 
-  std::vector<Exact> numbers(const Json& inputs, const std::string& key, std::size_t size, const std::string& where) const {
+  std::vector<Exact> numbers(const Json& inputs, const std::string& key, std::size_t size,
+                             const std::string& where) const {
     const Json& list = at(inputs, key, where);
-    if (!list.is_array() || list.size() != size) fail(fmt::format("{}: '{}' has {} entries, not {}", where, key, list.size(), size), "give one number for each coordinate");
+    if (!list.is_array() || list.size() != size)
+      fail(fmt::format("{}: '{}' has {} entries, not {}", where, key, list.size(), size),
+           "give one number for each coordinate");
     std::vector<Exact> result;
     for (const Json& e : list) result.push_back(number(e, where + ", " + key));
     return result;
@@ -65,7 +73,8 @@ class Reader {
   std::vector<std::string> names(const Json& coordinates, const std::string& key, Drive drive) const {
     std::vector<std::string> result;
     if (coordinates.contains(key)) {
-      for (const Json& e : coordinates[key]) result.push_back(e.is_string() ? e.get<std::string>() : e.dump());
+      for (const Json& e : coordinates[key])
+        result.push_back(e.is_string() ? e.get<std::string>() : e.dump());
     }
     std::vector<std::string> expected;
     for (const Coordinate& c : model_.coordinates) {
@@ -74,27 +83,32 @@ class Reader {
     if (!std::ranges::is_permutation(result, expected)) {
       std::string list;
       for (const std::string& name : expected) list += (list.empty() ? "" : ", ") + name;
-      fail(fmt::format("coordinates.{} does not name the model's coordinates", key), fmt::format("the model has ({})", list));
+      fail(fmt::format("coordinates.{} does not name the model's coordinates", key),
+           fmt::format("the model has ({})", list));
     }
     return result;
   }
 
   std::size_t index(const std::string& name) const {
-    return static_cast<std::size_t>(std::ranges::find(model_.coordinates, name, &Coordinate::name) - model_.coordinates.begin());
+    return static_cast<std::size_t>(std::ranges::find(model_.coordinates, name, &Coordinate::name) -
+                                    model_.coordinates.begin());
   }
 
   StatesFile::Entry state(const Json& entry, const StatesFile& file) const {
     StatesFile::Entry result;
-    result.label = entry.contains("label") && entry["label"].is_string() ? entry["label"].get<std::string>() : "";
+    result.label =
+        entry.contains("label") && entry["label"].is_string() ? entry["label"].get<std::string>() : "";
     const std::string where = result.label.empty() ? "a state" : "state '" + result.label + "'";
     const Json& inputs = at(entry, "inputs", where);
     State<Exact>& s = result.input.state;
     if (inputs.contains("g")) {
       const Json& g = inputs["g"];
       const Json& R = at(g, "R", where + ", g");
-      if (!R.is_array() || R.size() != 3) fail(where + ": g.R is not a 3x3 matrix", "give three rows of three numbers");
+      if (!R.is_array() || R.size() != 3)
+        fail(where + ": g.R is not a 3x3 matrix", "give three rows of three numbers");
       for (std::size_t i = 0; i < 3; ++i) {
-        if (!R[i].is_array() || R[i].size() != 3) fail(where + ": g.R is not a 3x3 matrix", "give three rows of three numbers");
+        if (!R[i].is_array() || R[i].size() != 3)
+          fail(where + ": g.R is not a 3x3 matrix", "give three rows of three numbers");
         for (std::size_t j = 0; j < 3; ++j) s.R.m[3 * i + j] = number(R[i][j], where + ", g.R");
       }
       const auto p = numbers(g, "p", 3, where + ", g");
@@ -109,12 +123,14 @@ class Reader {
     const std::size_t size = model_.coordinates.size();
     s.r.assign(size, Exact(0)), s.r_dot.assign(size, Exact(0));
     result.input.r_ddot.assign(size, Exact(0)), result.input.tau.assign(size, Exact(0));
-    const auto fill = [&](const std::string& key, const std::vector<std::string>& coordinates, std::vector<Exact>& to) {
+    const auto fill = [&](const std::string& key, const std::vector<std::string>& coordinates,
+                          std::vector<Exact>& to) {
       if (coordinates.empty()) return;
       const auto values = numbers(inputs, key, coordinates.size(), where);
       for (std::size_t i = 0; i < values.size(); ++i) to[index(coordinates[i])] = values[i];
     };
-    fill("r_p", file.r_p, s.r), fill("r_a", file.r_a, s.r), fill("rdot_p", file.r_p, s.r_dot), fill("rdot_a", file.r_a, s.r_dot);
+    fill("r_p", file.r_p, s.r), fill("r_a", file.r_a, s.r), fill("rdot_p", file.r_p, s.r_dot),
+        fill("rdot_a", file.r_a, s.r_dot);
     result.input.has_acceleration = file.r_a.empty() || inputs.contains("rddot_a");
     if (result.input.has_acceleration) fill("rddot_a", file.r_a, result.input.r_ddot);
     result.input.has_torque = !file.r_a.empty() && inputs.contains("tau_a");
@@ -160,7 +176,8 @@ StatesFile read_states(const std::filesystem::path& path, const Model& model) {
   try {
     json = Json::parse(stream);
   } catch (const Json::parse_error& error) {
-    throw ModelError({path.filename().string(), 0, 0}, fmt::format("is not JSON at byte {}", error.byte), "mend the syntax there");
+    throw ModelError({path.filename().string(), 0, 0}, fmt::format("is not JSON at byte {}", error.byte),
+                     "mend the syntax there");
   }
   return Reader(path.filename().string(), model).read(json);
 }
@@ -185,12 +202,16 @@ EvaluationInput<S> rounded_input(const EvaluationInput<Exact>& input) {
 }
 
 template <class S>
-Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e, const EvaluationInput<S>& input, unsigned digits) {
+Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
+            const EvaluationInput<S>& input, unsigned digits) {
   const Partition partition = partition_of(model);
   const int n = partition.n;
   std::vector<int> eta, r_p, r_a, rows;
   for (int i = 0; i < n; ++i) eta.push_back(i);
-  const auto index = [&](const std::string& name) { return n + static_cast<int>(std::ranges::find(model.coordinates, name, &Coordinate::name) - model.coordinates.begin()); };
+  const auto index = [&](const std::string& name) {
+    return n + static_cast<int>(std::ranges::find(model.coordinates, name, &Coordinate::name) -
+                                model.coordinates.begin());
+  };
   for (const std::string& name : file.r_p) r_p.push_back(index(name));
   for (const std::string& name : file.r_a) r_a.push_back(index(name));
   for (int i = 0; i < e.G.rows(); ++i) rows.push_back(i);
@@ -211,10 +232,13 @@ Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e, c
   const std::vector<int> active_at = position(partition.active, r_a);
 
   Json out;
-  out["M_eta_eta"] = j(e.M.block(eta, eta)), out["M_p"] = j(e.M.block(r_p, eta)), out["M_a"] = j(e.M.block(r_a, eta));
-  out["m_pp"] = j(e.M.block(r_p, r_p)), out["m_pa"] = j(e.M.block(r_p, r_a)), out["m_aa"] = j(e.M.block(r_a, r_a));
+  out["M_eta_eta"] = j(e.M.block(eta, eta)), out["M_p"] = j(e.M.block(r_p, eta)),
+  out["M_a"] = j(e.M.block(r_a, eta));
+  out["m_pp"] = j(e.M.block(r_p, r_p)), out["m_pa"] = j(e.M.block(r_p, r_a)),
+  out["m_aa"] = j(e.M.block(r_a, r_a));
   out["f"] = j(pick(e.force, eta)), out["Q_p"] = j(pick(e.force, r_p)), out["Q_a"] = j(pick(e.force, r_a));
-  out["A"] = j(e.G.block(rows, eta)), out["B_p"] = j(e.G.block(rows, r_p)), out["B_a"] = j(e.G.block(rows, r_a));
+  out["A"] = j(e.G.block(rows, eta)), out["B_p"] = j(e.G.block(rows, r_p)),
+  out["B_a"] = j(e.G.block(rows, r_a));
   out["constraint_bias_Gdot_v"] = j(e.bias);
   out["kernel_projector"] = j(e.projector.block(passive_at, passive_at));
   if (input.has_acceleration) {
@@ -229,22 +253,34 @@ Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e, c
   }
   S actuator = S(0);
   if (input.has_acceleration) {
-    for (std::size_t i = 0; i < partition.active.size(); ++i) actuator = actuator + e.tau_a[i] * input.state.r_dot[static_cast<std::size_t>(partition.active[i] - n)];
+    for (std::size_t i = 0; i < partition.active.size(); ++i)
+      actuator = actuator + e.tau_a[i] * input.state.r_dot[static_cast<std::size_t>(partition.active[i] - n)];
   }
-  out["energy"] = {{"kinetic", j(e.kinetic)}, {"gravity", j(e.gravity)}, {"elastic", j(e.elastic)}, {"total", j(e.kinetic + e.gravity + e.elastic)},
-                   {"dissipated_power", j(e.dissipated_power)}, {"actuator_power", j(actuator)}};
+  out["energy"] = {{"kinetic", j(e.kinetic)},
+                   {"gravity", j(e.gravity)},
+                   {"elastic", j(e.elastic)},
+                   {"total", j(e.kinetic + e.gravity + e.elastic)},
+                   {"dissipated_power", j(e.dissipated_power)},
+                   {"actuator_power", j(actuator)}};
   if (!e.basis.empty()) {
     std::vector<int> columns(static_cast<std::size_t>(e.H.cols()));
     for (std::size_t i = 0; i < columns.size(); ++i) columns[i] = static_cast<int>(i);
-    out["reduced"] = {{"basis", e.basis}, {"H", j(e.H.block(passive_at, columns))}, {"J", j(e.J.block(passive_at, active_at))}, {"nu", j(e.nu)},
-                      {"nu_dot", j(e.nu_dot)}, {"M_r", j(e.M_r)}, {"f_r", j(e.f_r)}};
+    out["reduced"] = {{"basis", e.basis},
+                      {"H", j(e.H.block(passive_at, columns))},
+                      {"J", j(e.J.block(passive_at, active_at))},
+                      {"nu", j(e.nu)},
+                      {"nu_dot", j(e.nu_dot)},
+                      {"M_r", j(e.M_r)},
+                      {"f_r", j(e.f_r)}};
   }
   return out;
 }
 
 template EvaluationInput<double> rounded_input(const EvaluationInput<Exact>&);
 template EvaluationInput<Exact> rounded_input(const EvaluationInput<Exact>&);
-template Json answer(const Model&, const StatesFile&, const Evaluated<double>&, const EvaluationInput<double>&, unsigned);
-template Json answer(const Model&, const StatesFile&, const Evaluated<Exact>&, const EvaluationInput<Exact>&, unsigned);
+template Json answer(const Model&, const StatesFile&, const Evaluated<double>&,
+                     const EvaluationInput<double>&, unsigned);
+template Json answer(const Model&, const StatesFile&, const Evaluated<Exact>&, const EvaluationInput<Exact>&,
+                     unsigned);
 
 }  // namespace anholon

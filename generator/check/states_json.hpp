@@ -3,9 +3,8 @@
 
 // The files of `evaluate`: states in, outputs out, both in the layout of the reference files.
 
-#include <nlohmann/json.hpp>
-
 #include <filesystem>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
@@ -29,9 +28,11 @@ struct StatesFile {
 /// @throws ModelError naming the file and the key
 StatesFile read_states(const std::filesystem::path& path, const Model& model);
 
-/// One state's outputs in the file's coordinate order. Doubles become JSON numbers, exact values decimal strings.
+/// One state's outputs in the file's coordinate order. Doubles become JSON numbers, exact values decimal
+/// strings.
 template <class S>
-nlohmann::ordered_json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e, const EvaluationInput<S>& input, unsigned digits);
+nlohmann::ordered_json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
+                              const EvaluationInput<S>& input, unsigned digits);
 
 /// The inputs of a state rounded to S.
 template <class S>

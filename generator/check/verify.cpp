@@ -8,8 +8,8 @@
 #include <limits>
 #include <map>
 
-#include "check/compiled_caller.hpp"
 #include "anholon/free_dynamics.hpp"
+#include "check/compiled_caller.hpp"
 #include "check/evaluate_program.hpp"
 #include "check/evaluate_recursion.hpp"
 #include "describe/mechanise.hpp"
@@ -87,10 +87,12 @@ class Verifier {
     state_ = random_state(model_, source);
     NamedValues<Exact> in = position_inputs(model_, partition_, state_);
     in["g"] = {state_.p.x, state_.p.y, Exact::from_double(atan2(state_.R(1, 0), state_.R(0, 0)).to_double())};
-    if (model_.group == GroupKind::SE2) state_.R = AxisRotation<Exact>{2, cos(in["g"][2]), sin(in["g"][2])}.matrix();
+    if (model_.group == GroupKind::SE2)
+      state_.R = AxisRotation<Exact>{2, cos(in["g"][2]), sin(in["g"][2])}.matrix();
     for (const InputBlock& block : program_.inputs) {
       if (in.contains(block.name)) continue;
-      for (std::size_t i = 0; i < block.nodes.size(); ++i) in[block.name].push_back(source.uniform(Exact(-1), Exact(1)));
+      for (std::size_t i = 0; i < block.nodes.size(); ++i)
+        in[block.name].push_back(source.uniform(Exact(-1), Exact(1)));
     }
     make_compatible(in);
     return in;
@@ -109,7 +111,8 @@ class Verifier {
         NamedValues<Exact> moved = in;
         moved[input][j] = x[j] + Exact(1);
         const std::vector<Exact> column = exact_("compatibility", moved).at(name);
-        for (std::size_t i = 0; i < residual.size(); ++i) C(static_cast<int>(i), static_cast<int>(j)) = column[i] - residual[i];
+        for (std::size_t i = 0; i < residual.size(); ++i)
+          C(static_cast<int>(i), static_cast<int>(j)) = column[i] - residual[i];
       }
       const std::vector<Exact> step = minimum_norm_solution(C, residual);
       for (std::size_t j = 0; j < x.size(); ++j) x[j] = Exact::from_double((x[j] - step[j]).to_double());
@@ -141,8 +144,11 @@ class Verifier {
   }
 
   /// The basis-free outputs by the exact recursion, at the velocities that nu and r_a_dot mean.
-  void check_formulas(const Mechanism<Exact>& mechanism, const Mechanism<double>& rounded, const NamedValues<Exact>& in) {
-    const auto run = [&](const std::string& name, const NamedValues<Exact>& at) { return find_function(program_, name) != nullptr ? exact_(name, at) : NamedValues<Exact>{}; };
+  void check_formulas(const Mechanism<Exact>& mechanism, const Mechanism<double>& rounded,
+                      const NamedValues<Exact>& in) {
+    const auto run = [&](const std::string& name, const NamedValues<Exact>& at) {
+      return find_function(program_, name) != nullptr ? exact_(name, at) : NamedValues<Exact>{};
+    };
     const NamedValues<Exact> kinematics = run("kinematics", in);
     EvaluationInput<Exact> input;
     input.state = state_;
@@ -154,8 +160,10 @@ class Verifier {
     const auto components = free_components(model_.group);
     const std::vector<Exact> eta = block(kinematics, "eta", n);
     for (std::size_t i = 0; i < n; ++i) input.state.eta[components[i]] = eta[i];
-    const std::vector<Exact> r_p_dot = block(kinematics, "r_p_dot", static_cast<std::size_t>(partition_.s_p()));
-    for (std::size_t i = 0; i < r_p_dot.size(); ++i) input.state.r_dot[static_cast<std::size_t>(partition_.passive[n + i]) - n] = r_p_dot[i];
+    const std::vector<Exact> r_p_dot =
+        block(kinematics, "r_p_dot", static_cast<std::size_t>(partition_.s_p()));
+    for (std::size_t i = 0; i < r_p_dot.size(); ++i)
+      input.state.r_dot[static_cast<std::size_t>(partition_.passive[n + i]) - n] = r_p_dot[i];
     input.r_ddot.assign(model_.coordinates.size(), Exact(0));
     const std::vector<Exact> r_a_dot = block(in, "r_a_dot", partition_.active.size());
     const std::vector<Exact> r_a_ddot = block(in, "r_a_ddot", partition_.active.size());
@@ -166,7 +174,8 @@ class Verifier {
     }
     input.has_acceleration = true;
     ++formula_count_;
-    const Evaluated<Exact> expected = evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"));
+    const Evaluated<Exact> expected =
+        evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"));
     const Evaluated<double> numeric = evaluate_recursion(rounded, partition_, double_input(input), 1e-9);
 
     NamedValues<Exact> at = in;
@@ -178,7 +187,9 @@ class Verifier {
       for (const int i : indices) r.push_back(values[static_cast<std::size_t>(i)]);
       return r;
     };
-    const auto agree = [&](const std::string& function, const std::string& output, const std::vector<Exact>& got, const std::vector<Exact>& want, const std::vector<double>& by_double) {
+    const auto agree = [&](const std::string& function, const std::string& output,
+                           const std::vector<Exact>& got, const std::vector<Exact>& want,
+                           const std::vector<double>& by_double) {
       const double scale = std::max(size_of(want), 1e-3);
       const double error = distance(got, want) / scale;
       if (error > formula_worst_) formula_worst_ = error, formula_at_ = function + "." + output;
@@ -186,10 +197,17 @@ class Verifier {
     };
     std::vector<int> eta_at(n), r_p_at(partition_.passive.begin() + partition_.n, partition_.passive.end());
     for (std::size_t i = 0; i < n; ++i) eta_at[i] = static_cast<int>(i);
-    if (forward.contains("eta_dot")) agree("forward_dynamics", "eta_dot", forward.at("eta_dot"), pick(expected.acceleration, eta_at), pick(numeric.acceleration, eta_at));
-    if (forward.contains("r_p_ddot")) agree("forward_dynamics", "r_p_ddot", forward.at("r_p_ddot"), pick(expected.acceleration, r_p_at), pick(numeric.acceleration, r_p_at));
-    if (find_function(program_, "inverse_torques") != nullptr) agree("inverse_torques", "tau_a", exact_("inverse_torques", at).at("tau_a"), expected.tau_a, numeric.tau_a);
-    if (find_function(program_, "multipliers") != nullptr) agree("multipliers", "lambda", exact_("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
+    if (forward.contains("eta_dot"))
+      agree("forward_dynamics", "eta_dot", forward.at("eta_dot"), pick(expected.acceleration, eta_at),
+            pick(numeric.acceleration, eta_at));
+    if (forward.contains("r_p_ddot"))
+      agree("forward_dynamics", "r_p_ddot", forward.at("r_p_ddot"), pick(expected.acceleration, r_p_at),
+            pick(numeric.acceleration, r_p_at));
+    if (find_function(program_, "inverse_torques") != nullptr)
+      agree("inverse_torques", "tau_a", exact_("inverse_torques", at).at("tau_a"), expected.tau_a,
+            numeric.tau_a);
+    if (find_function(program_, "multipliers") != nullptr)
+      agree("multipliers", "lambda", exact_("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
     balance_energy(mechanism, input, expected, at);
   }
 
@@ -205,9 +223,10 @@ class Verifier {
     return d;
   }
 
-  /// d(T + V_gravity)/dt = tau_a . r_a_dot + power of what is applied; the derivative by central differences, whose error
-  /// of 1e-24 is far below double rounding. Torques are those of the compiled code.
-  void balance_energy(const Mechanism<Exact>& mechanism, const EvaluationInput<Exact>& input, const Evaluated<Exact>& e, const NamedValues<Exact>& at) {
+  /// d(T + V_gravity)/dt = tau_a . r_a_dot + power of what is applied; the derivative by central differences,
+  /// whose error of 1e-24 is far below double rounding. Torques are those of the compiled code.
+  void balance_energy(const Mechanism<Exact>& mechanism, const EvaluationInput<Exact>& input,
+                      const Evaluated<Exact>& e, const NamedValues<Exact>& at) {
     Mechanism<Exact> bare = mechanism;
     bare.generalised_forces = {};
     bare.wrenches.clear();
@@ -232,7 +251,8 @@ class Verifier {
     const auto add = [&](double x) { power += x, scale = std::max(scale, std::abs(x)); };
     const auto components = free_components(model_.group);
     for (std::size_t i = 0; i < inertial.size(); ++i) {
-      const Exact& v = i < components.size() ? input.state.eta[components[i]] : input.state.r_dot[i - components.size()];
+      const Exact& v =
+          i < components.size() ? input.state.eta[components[i]] : input.state.r_dot[i - components.size()];
       add(((e.force[i] - inertial[i]) * v).to_double());
     }
     if (find_function(program_, "inverse_torques") != nullptr) {
@@ -242,8 +262,10 @@ class Verifier {
     if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
   }
 
-  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last place.
-  double condition(const std::string& function, const std::string& output, const std::string& label, double scale, SampleSource& source) {
+  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last
+  /// place.
+  double condition(const std::string& function, const std::string& output, const std::string& label,
+                   double scale, SampleSource& source) {
     const NamedValues<Exact>& in = inputs_by_label_.at(label);
     const std::vector<Exact> base = exact_(function, in).at(output);
     double largest = 0;
@@ -287,7 +309,8 @@ class Verifier {
         std::ranges::sort(relative);
         e.median = relative[relative.size() / 2];
         e.p99 = relative[std::min(relative.size() - 1, relative.size() * 99 / 100)];
-        if (!record.recursion_error.empty()) e.recursion_worst = *std::ranges::max_element(record.recursion_error);
+        if (!record.recursion_error.empty())
+          e.recursion_worst = *std::ranges::max_element(record.recursion_error);
         v.passed = v.passed && e.passed;
         v.outputs.push_back(std::move(e));
       }
@@ -307,7 +330,8 @@ class Verifier {
   ProgramCaller<double> compiled_;
   State<Exact> state_;
   std::string label_;
-  std::map<std::string, double> residual_scale_;  // natural scale of the compatibility residuals, which vanish
+  std::map<std::string, double>
+      residual_scale_;  // natural scale of the compatibility residuals, which vanish
   std::map<std::pair<std::string, std::string>, Record> records_;
   std::map<std::string, NamedValues<Exact>> inputs_by_label_;
   double formula_worst_ = 0, energy_balance_ = 0;
@@ -317,7 +341,8 @@ class Verifier {
 
 }  // namespace
 
-Verification verify_program(const Model& model, const Derivation& derivation, int samples, const std::function<void(int)>& progress) {
+Verification verify_program(const Model& model, const Derivation& derivation, int samples,
+                            const std::function<void(int)>& progress) {
   return Verifier(model, derivation).run(samples, progress);
 }
 

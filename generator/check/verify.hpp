@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Generated code against exact evaluation of the same program, and that program against the exact recursion, which
-// knows no kernel basis and no optimiser: the first measures rounding, the second the formulas.
+// Generated code against exact evaluation of the same program, and that program against the exact recursion,
+// which knows no kernel basis and no optimiser: the first measures rounding, the second the formulas.
 
 #include <functional>
 #include <string>
@@ -15,8 +15,8 @@ namespace anholon {
 struct OutputError {
   std::string function, output;
   double median = 0, p99 = 0, worst = 0;  // of |generated - exact| / natural scale
-  double recursion_worst = -1;            // of |double recursion - exact| / natural scale; negative: not computed there
-  double condition = 0;                   // where the worst exceeds the bound: change per relative change of the inputs
+  double recursion_worst = -1;  // of |double recursion - exact| / natural scale; negative: not computed there
+  double condition = 0;         // where the worst exceeds the bound: change per relative change of the inputs
   std::string worst_at;
   bool passed = true;
 };
@@ -35,6 +35,7 @@ inline constexpr double verification_bound = 1e-13;  // of the natural scale; be
 inline constexpr double formula_bound = 1e-30;       // both sides carry 60 digits
 
 /// @param progress  called now and then with the number of samples done; may be empty
-Verification verify_program(const Model& model, const Derivation& derivation, int samples, const std::function<void(int)>& progress);
+Verification verify_program(const Model& model, const Derivation& derivation, int samples,
+                            const std::function<void(int)>& progress);
 
 }  // namespace anholon

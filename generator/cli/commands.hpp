@@ -18,10 +18,10 @@ inline constexpr int unsupported = 4;
 inline constexpr int internal_error = 70;
 
 struct ModelOptions {
-  std::string model;                // path of a description or scene
-  std::string scene;                // path, empty: standard
+  std::string model;  // path of a description or scene
+  std::string scene;  // path, empty: standard
   std::vector<std::string> functions;
-  std::string inverse = "pseudo";   // or "leading:ROW[,ROW...]"
+  std::string inverse = "pseudo";  // or "leading:ROW[,ROW...]"
 };
 
 struct CheckOptions : ModelOptions {
@@ -35,7 +35,7 @@ struct GenerateOptions : ModelOptions {
 struct EvaluateOptions : ModelOptions {
   std::string states;
   std::string method = "generated";
-  std::string output;               // empty: standard output
+  std::string output;  // empty: standard output
   unsigned digits = 50;
 };
 struct VerifyOptions : ModelOptions {

@@ -30,7 +30,9 @@ Model load_model(const ModelOptions& options) {
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   DeriveRequest request;
   request.functions = options.functions;
-  const std::string scene_file = !options.scene.empty() ? options.scene : is_scene(options.model) ? options.model : "";
+  const std::string scene_file = !options.scene.empty()    ? options.scene
+                                 : is_scene(options.model) ? options.model
+                                                           : "";
   if (!scene_file.empty()) {
     const Scene scene = read_scene(scene_file);
     request.scene = scene.name;
@@ -39,7 +41,9 @@ DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   }
   const std::string prefix = "leading:";
   if (options.inverse == "pseudo") return request;
-  if (!options.inverse.starts_with(prefix)) throw std::invalid_argument(fmt::format("--inverse is '{}', not pseudo or leading:ROWS", options.inverse));
+  if (!options.inverse.starts_with(prefix))
+    throw std::invalid_argument(
+        fmt::format("--inverse is '{}', not pseudo or leading:ROWS", options.inverse));
   request.inverse = Inverse::leading;
   const char* at = options.inverse.data() + prefix.size();
   const char* end = options.inverse.data() + options.inverse.size();
@@ -47,7 +51,9 @@ DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   while (at < end) {
     int row = 0;
     const auto [next, error] = std::from_chars(at, end, row);
-    if (error != std::errc() || row < 1 || row > rows) throw std::invalid_argument(fmt::format("--inverse leading: rows are whole numbers from 1 to {}", rows));
+    if (error != std::errc() || row < 1 || row > rows)
+      throw std::invalid_argument(
+          fmt::format("--inverse leading: rows are whole numbers from 1 to {}", rows));
     request.leading_rows.push_back(row - 1);
     at = next < end && *next == ',' ? next + 1 : next;
     if (at == next && next < end) throw std::invalid_argument("--inverse leading: separate rows by commas");

@@ -25,11 +25,13 @@ int generate(const GenerateOptions& options) {
   }
   write_file(file, header);
   if (options.c_abi) {
-    write_file(std::filesystem::path(file).replace_extension(".abi.cpp"), emit_c_abi(program, file.filename().string()));
+    write_file(std::filesystem::path(file).replace_extension(".abi.cpp"),
+               emit_c_abi(program, file.filename().string()));
     write_file(std::filesystem::path(file).replace_extension(".json"), describe_json(program));
   }
 
-  fmt::print("{} ({}), {}\n", program.model, program.scene, derivation->reduction.ranks.table_I_class(derivation->reduction.partition));
+  fmt::print("{} ({}), {}\n", program.model, program.scene,
+             derivation->reduction.ranks.table_I_class(derivation->reduction.partition));
   fmt::print("{:28s} {:>10s} {:>8s}  {}\n", "function", "operations", "sin+cos", "route");
   for (const Function& f : program.functions) {
     std::vector<NodeId> roots;
@@ -48,7 +50,8 @@ int generate(const GenerateOptions& options) {
   }
   if (options.passes) {
     fmt::print("\n{:28s} {:32s} {:>10s}\n", "function", "route", "operations");
-    for (const CandidateReport& c : derivation->candidates) fmt::print("{:28s} {:32s} {:>10d}{}\n", c.function, c.route, c.operations, c.chosen ? "  <- kept" : "");
+    for (const CandidateReport& c : derivation->candidates)
+      fmt::print("{:28s} {:32s} {:>10d}{}\n", c.function, c.route, c.operations, c.chosen ? "  <- kept" : "");
   }
   fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), watch.seconds());
   return ok;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The program `anholon`: reads the command line and calls the verb.
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <functional>
 #include <stdexcept>
@@ -14,21 +14,30 @@
 int main(int argc, char** argv) {
   using namespace anholon;
   namespace cli = anholon::cli;
-  CLI::App app("Symbolic generator of reduced multibody dynamics: from one description of a robot to C++ functions.", "anholon");
+  CLI::App app(
+      "Symbolic generator of reduced multibody dynamics: from one description of a robot to C++ functions.",
+      "anholon");
   app.require_subcommand(1);
   app.set_version_flag("--version", ANHOLON_VERSION);
-  app.footer("Exit status: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 unsupported, 70 a fault of this program.");
+  app.footer(
+      "Exit status: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 unsupported, 70 a fault of this "
+      "program.");
   std::function<int()> run;
 
   const auto model_options = [](CLI::App* verb, cli::ModelOptions& o, bool functions) {
     verb->add_option("MODEL", o.model, "description of the robot (TOML)")->required();
     verb->add_option("--scene", o.scene, "scene file: what is frozen, locked, kept, driven");
-    verb->add_option("--inverse", o.inverse, "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
-    if (functions) verb->add_option("--functions", o.functions, "functions to generate, separated by commas; default: all")->delimiter(',');
+    verb->add_option(
+        "--inverse", o.inverse,
+        "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
+    if (functions)
+      verb->add_option("--functions", o.functions, "functions to generate, separated by commas; default: all")
+          ->delimiter(',');
   };
 
   cli::CheckOptions check;
-  auto* verb = app.add_subcommand("check", "Sizes, class of Table I, kernel and its conditioning, what reading assumed");
+  auto* verb = app.add_subcommand(
+      "check", "Sizes, class of Table I, kernel and its conditioning, what reading assumed");
   model_options(verb, check, false);
   verb->add_flag("--json", check.json, "print JSON, schema anholon.check/1");
   verb->callback([&] { run = [&] { return cli::check(check); }; });
@@ -51,13 +60,16 @@ int main(int argc, char** argv) {
   verb = app.add_subcommand("evaluate", "Evaluate a model at given states");
   model_options(verb, evaluate, false);
   verb->add_option("STATES", evaluate.states, "states (JSON), docs/evaluate.md")->required();
-  verb->add_option("--with", evaluate.method, "generated, recursion or exact")->check(CLI::IsMember({"generated", "recursion", "exact"}));
-  verb->add_option("--digits", evaluate.digits, "decimal digits of the exact method")->check(CLI::Range(15, 1000));
+  verb->add_option("--with", evaluate.method, "generated, recursion or exact")
+      ->check(CLI::IsMember({"generated", "recursion", "exact"}));
+  verb->add_option("--digits", evaluate.digits, "decimal digits of the exact method")
+      ->check(CLI::Range(15, 1000));
   verb->add_option("-o,--output", evaluate.output, "file to write; default: standard output");
   verb->callback([&] { run = [&] { return cli::evaluate(evaluate); }; });
 
   cli::VerifyOptions verify;
-  verb = app.add_subcommand("verify", "Compare generated code with the numeric recursion and exact arithmetic at random states");
+  verb = app.add_subcommand(
+      "verify", "Compare generated code with the numeric recursion and exact arithmetic at random states");
   model_options(verb, verify, false);
   verb->add_option("--samples", verify.samples, "random states")->check(CLI::Range(1, 10000000));
   verb->add_flag("--json", verify.json, "print JSON, schema anholon.verify/1");
@@ -66,8 +78,10 @@ int main(int argc, char** argv) {
   cli::SimulateOptions simulate;
   verb = app.add_subcommand("simulate", "Generate, compile and integrate a scene");
   verb->add_option("SCENE", simulate.scene, "scene file (TOML)")->required();
-  verb->add_option("-o,--output", simulate.output, "folder for the trajectory and its summary; default: out/<scene>");
-  verb->add_flag("--work-precision", simulate.work_precision, "error against CPU time over a ladder of tolerances");
+  verb->add_option("-o,--output", simulate.output,
+                   "folder for the trajectory and its summary; default: out/<scene>");
+  verb->add_flag("--work-precision", simulate.work_precision,
+                 "error against CPU time over a ladder of tolerances");
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
   try {

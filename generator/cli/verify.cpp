@@ -2,12 +2,10 @@
 #include "check/verify.hpp"
 
 #include <fmt/format.h>
-
-#include <nlohmann/json.hpp>
-
 #include <unistd.h>
 
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "cli/common.hpp"
 
@@ -25,8 +23,9 @@ std::string json_text(const Model& model, const Verification& v) {
   j["energy_balance"] = v.energy_balance;
   j["formulas"] = {{"samples", v.formula_samples}, {"worst", v.formula_worst}, {"at", v.formula_at}};
   for (const OutputError& e : v.outputs) {
-    nlohmann::ordered_json entry = {{"function", e.function}, {"output", e.output}, {"median", e.median}, {"p99", e.p99}, {"worst", e.worst},
-                                    {"worst_at", e.worst_at}, {"passed", e.passed}};
+    nlohmann::ordered_json entry = {{"function", e.function}, {"output", e.output}, {"median", e.median},
+                                    {"p99", e.p99},           {"worst", e.worst},   {"worst_at", e.worst_at},
+                                    {"passed", e.passed}};
     if (e.condition > 0) entry["condition"] = e.condition;
     if (e.recursion_worst >= 0) entry["recursion_worst"] = e.recursion_worst;
     j["outputs"].push_back(std::move(entry));
@@ -54,16 +53,25 @@ int verify(const VerifyOptions& options) {
     fmt::print("{}", json_text(model, v));
     return v.passed ? ok : check_failed;
   }
-  fmt::print("{}: generated code against exact evaluation at {} random states of the working range\n", model.name, v.samples);
-  fmt::print("error relative to the natural scale of the output, in ulps of it (2^-52); bound {:.0e} = {:.0f} ulps, beyond it 10 eps kappa\n\n", verification_bound, verification_bound / ulp);
-  fmt::print("{:26s} {:22s} {:>8s} {:>8s} {:>8s} {:>9s} {:>10s}  {}\n", "function", "output", "median", "99 %", "worst", "relative", "recursion", "worst at");
+  fmt::print("{}: generated code against exact evaluation at {} random states of the working range\n",
+             model.name, v.samples);
+  fmt::print(
+      "error relative to the natural scale of the output, in ulps of it (2^-52); bound {:.0e} = {:.0f} ulps, "
+      "beyond it 10 eps kappa\n\n",
+      verification_bound, verification_bound / ulp);
+  fmt::print("{:26s} {:22s} {:>8s} {:>8s} {:>8s} {:>9s} {:>10s}  {}\n", "function", "output", "median",
+             "99 %", "worst", "relative", "recursion", "worst at");
   for (const OutputError& e : v.outputs) {
-    fmt::print("{:26s} {:22s} {:>8.2f} {:>8.2f} {:>8.2f} {:>9.1e} {:>10s}  {}{}{}\n", e.function, e.output, e.median / ulp, e.p99 / ulp, e.worst / ulp, e.worst,
-               e.recursion_worst < 0 ? "" : fmt::format("{:.1e}", e.recursion_worst), e.worst > 0 ? e.worst_at : "",
+    fmt::print("{:26s} {:22s} {:>8.2f} {:>8.2f} {:>8.2f} {:>9.1e} {:>10s}  {}{}{}\n", e.function, e.output,
+               e.median / ulp, e.p99 / ulp, e.worst / ulp, e.worst,
+               e.recursion_worst < 0 ? "" : fmt::format("{:.1e}", e.recursion_worst),
+               e.worst > 0 ? e.worst_at : "",
                e.condition > 0 ? fmt::format(", kappa {:.1e}", e.condition) : "", e.passed ? "" : "  FAILED");
   }
-  fmt::print("\nformulas: the program and the numeric recursion, both exact, differ by {:.1e} at most ({} states{})\n", v.formula_worst, v.formula_samples,
-             v.formula_at.empty() ? "" : ", " + v.formula_at);
+  fmt::print(
+      "\nformulas: the program and the numeric recursion, both exact, differ by {:.1e} at most ({} "
+      "states{})\n",
+      v.formula_worst, v.formula_samples, v.formula_at.empty() ? "" : ", " + v.formula_at);
   fmt::print("energy balance: |dE/dt - power| at most {:.1e} of the largest power\n", v.energy_balance);
   fmt::print("{}\n", v.passed ? "passed" : "FAILED");
   return v.passed ? ok : check_failed;

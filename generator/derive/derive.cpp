@@ -67,13 +67,16 @@ class Deriver {
     program_.source_sha256 = model_.sha256;
     for (const std::string& name : request_.functions) {
       if (std::ranges::find(function_names(), name) == function_names().end()) {
-        throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name, fmt::join(function_names(), ", ")));
+        throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name,
+                                                fmt::join(function_names(), ", ")));
       }
     }
     motion_ = reduce(motion_partition_);
-    nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + motion_.reduction->kernel().description);
+    nu_ = symbols_.block("nu", motion_.k(), "mixed",
+                         "reduced velocities: " + motion_.reduction->kernel().description);
     r_a_dot_ = symbols_.block("r_a_dot", motion_partition_.s_a(), "rad/s or m/s", "rates of r_a");
-    r_a_ddot_ = symbols_.block("r_a_ddot", motion_partition_.s_a(), "rad/s^2 or m/s^2", "second derivatives of r_a");
+    r_a_ddot_ =
+        symbols_.block("r_a_ddot", motion_partition_.s_a(), "rad/s^2 or m/s^2", "second derivatives of r_a");
 
     derive_kinematics();
     derive_constraints();
@@ -91,10 +94,12 @@ class Deriver {
 
  private:
   [[nodiscard]] bool wanted(const std::string& name) const {
-    return request_.functions.empty() || std::ranges::find(request_.functions, name) != request_.functions.end();
+    return request_.functions.empty() ||
+           std::ranges::find(request_.functions, name) != request_.functions.end();
   }
 
-  // ---- outputs -------------------------------------------------------------------------------------------------
+  // ---- outputs
+  // -------------------------------------------------------------------------------------------------
   OutputBlock block(std::string name, std::string unit, std::string meaning, const Matrix<Expr>& m) {
     OutputBlock b{std::move(name), std::move(unit), std::move(meaning), m.rows(), m.cols(), {}};
     for (const Expr& e : m.entries()) b.nodes.push_back(e.id(tape_));
@@ -107,7 +112,8 @@ class Deriver {
   }
 
   /// Keeps the cheapest route; the closed form of the cheapest one is a further candidate.
-  void emit(const std::string& name, const std::string& meaning, std::vector<Route> routes, const std::string& remark = "") {
+  void emit(const std::string& name, const std::string& meaning, std::vector<Route> routes,
+            const std::string& remark = "") {
     for (Route& r : routes) std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
     std::erase_if(routes, [](const Route& r) { return r.outputs.empty(); });
     if (routes.empty()) return;
@@ -131,10 +137,13 @@ class Deriver {
     }
     const auto best = cheapest();
     for (const Route& r : routes) result_->candidates.push_back({name, r.name, cost(r), &r == &*best});
-    program_.functions.push_back({name, meaning, best->outputs, remark.empty() ? "route: " + best->name : remark + "; route: " + best->name});
+    program_.functions.push_back(
+        {name, meaning, best->outputs,
+         remark.empty() ? "route: " + best->name : remark + "; route: " + best->name});
   }
 
-  // ---- reduction -----------------------------------------------------------------------------------------------
+  // ---- reduction
+  // -----------------------------------------------------------------------------------------------
   Reduced reduce(const Partition& partition) {
     Reduced r;
     r.partition = partition;
@@ -144,19 +153,23 @@ class Deriver {
     const std::vector<int> rows = range(G.rows());
     std::vector<int> preferred;
     for (const std::string& name : model_.free_velocities) {
-      const auto at = std::ranges::find(partition.passive, static_cast<int>(std::ranges::find(names_, name) - names_.begin()));
-      if (at != partition.passive.end()) preferred.push_back(static_cast<int>(at - partition.passive.begin()));
+      const auto at = std::ranges::find(partition.passive,
+                                        static_cast<int>(std::ranges::find(names_, name) - names_.begin()));
+      if (at != partition.passive.end())
+        preferred.push_back(static_cast<int>(at - partition.passive.begin()));
     }
     std::vector<std::string> passive_names;
     for (const int i : partition.passive) passive_names.push_back(names_[static_cast<std::size_t>(i)]);
     tape_.section("kernel");
-    r.reduction = std::make_unique<KinematicReduction>(tape_, ConstraintRows{G.block(rows, partition.passive), G.block(rows, partition.active)},
-                                                       r.ranks, request_.inverse, preferred, passive_names, symbols_.sampler(samples_));
+    r.reduction = std::make_unique<KinematicReduction>(
+        tape_, ConstraintRows{G.block(rows, partition.passive), G.block(rows, partition.active)}, r.ranks,
+        request_.inverse, preferred, passive_names, symbols_.sampler(samples_));
     return r;
   }
 
   /// Puts passive and active entries into declared order (n + s).
-  static std::vector<Expr> merged(const Partition& p, const std::vector<Expr>& passive, const std::vector<Expr>& active) {
+  static std::vector<Expr> merged(const Partition& p, const std::vector<Expr>& passive,
+                                  const std::vector<Expr>& active) {
     std::vector<Expr> v(p.passive.size() + p.active.size(), Expr(0));
     for (std::size_t i = 0; i < p.passive.size(); ++i) v[static_cast<std::size_t>(p.passive[i])] = passive[i];
     for (std::size_t i = 0; i < p.active.size(); ++i) v[static_cast<std::size_t>(p.active[i])] = active[i];
@@ -168,7 +181,8 @@ class Deriver {
     return r;
   }
   /// eta, r_p and (torque-driven) r_a parts of the passive entries, as output blocks.
-  std::vector<OutputBlock> split_passive(const Partition& p, const std::vector<Expr>& passive, const std::string& order) {
+  std::vector<OutputBlock> split_passive(const Partition& p, const std::vector<Expr>& passive,
+                                         const std::string& order) {
     const Partition original = partition_of(model_);
     std::vector<Expr> eta(passive.begin(), passive.begin() + p.n);
     std::vector<Expr> r_p, r_a;
@@ -178,12 +192,14 @@ class Deriver {
     }
     const bool acceleration = order == "dot";
     const std::string driven = p.active.empty() && request_.torque_driven.empty() ? "r_a" : "r_d";
-    return {block(acceleration ? "eta_dot" : "eta", acceleration ? "m/s^2, rad/s^2" : "m/s, rad/s", "twist of the reference body in its own axes, linear part first", eta),
+    return {block(acceleration ? "eta_dot" : "eta", acceleration ? "m/s^2, rad/s^2" : "m/s, rad/s",
+                  "twist of the reference body in its own axes, linear part first", eta),
             block(acceleration ? "r_p_ddot" : "r_p_dot", "per r_p", "passive coordinates", r_p),
             block(driven + (acceleration ? "_ddot" : "_dot"), "per r_a", "torque-driven coordinates", r_a)};
   }
 
-  // ---- quantities ----------------------------------------------------------------------------------------------
+  // ---- quantities
+  // ----------------------------------------------------------------------------------------------
   void derive_kinematics() {
     const KinematicReduction& k = *motion_.reduction;
     if (wanted("kinematics")) {
@@ -191,24 +207,35 @@ class Deriver {
       std::vector<OutputBlock> outputs = split_passive(motion_partition_, passive, "");
       outputs.push_back(block("H", "mixed", "kernel of (A, B_p), rows (eta, r_p)", k.kernel().H));
       outputs.push_back(block("J", "mixed", "rows (eta, r_p)", k.kernel().J));
-      emit("kinematics", "Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.", {{"kernel", outputs}});
+      emit("kinematics", "Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.",
+           {{"kernel", outputs}});
     }
     if (wanted("reduced_velocities")) {
       const std::vector<Expr> passive = full_passive();
-      emit("reduced_velocities", "Reduced velocities of admissible ones: the inverse of eq. (11) on its range.",
-           {{"kernel", {block("nu", "mixed", "reduced velocities", k.reduced_velocities(passive, r_a_dot_))}}});
+      emit("reduced_velocities",
+           "Reduced velocities of admissible ones: the inverse of eq. (11) on its range.",
+           {{"kernel",
+             {block("nu", "mixed", "reduced velocities", k.reduced_velocities(passive, r_a_dot_))}}});
     }
   }
 
-  std::vector<Expr> eta_input() { return symbols_.block("eta", motion_partition_.n, "m/s, rad/s", "twist of the reference body in its own axes, linear part first"); }
-  std::vector<Expr> r_p_dot_input() { return symbols_.block("r_p_dot", partition_of(model_).s_p(), "rad/s or m/s", "rates of r_p"); }
+  std::vector<Expr> eta_input() {
+    return symbols_.block("eta", motion_partition_.n, "m/s, rad/s",
+                          "twist of the reference body in its own axes, linear part first");
+  }
+  std::vector<Expr> r_p_dot_input() {
+    return symbols_.block("r_p_dot", partition_of(model_).s_p(), "rad/s or m/s", "rates of r_p");
+  }
   /// eta and all passive rates as inputs, in the order of the motion partition.
   std::vector<Expr> full_passive() {
     std::vector<Expr> passive = eta_input();
     const std::vector<Expr> r_p_dot = r_p_dot_input();
     passive.insert(passive.end(), r_p_dot.begin(), r_p_dot.end());
-    if (motion_partition_.passive.size() > passive.size()) {  // torque-driven coordinates in the reduced dynamics
-      const auto driven = symbols_.block("r_d_dot", static_cast<int>(motion_partition_.passive.size() - passive.size()), "rad/s or m/s", "rates of torque-driven coordinates");
+    if (motion_partition_.passive.size() >
+        passive.size()) {  // torque-driven coordinates in the reduced dynamics
+      const auto driven =
+          symbols_.block("r_d_dot", static_cast<int>(motion_partition_.passive.size() - passive.size()),
+                         "rad/s or m/s", "rates of torque-driven coordinates");
       passive.insert(passive.end(), driven.begin(), driven.end());
     }
     return passive;
@@ -222,11 +249,16 @@ class Deriver {
     const Partition p = partition_of(model_);
     const std::vector<int> rows = range(G.rows());
     std::vector<int> coordinates(p.passive.begin() + p.n, p.passive.end());
-    emit("constraints", "Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot + B_a_dot r_a_dot).",
-         {{"recursion",
-           {block("A", "mixed", "rows x n", G.block(rows, range(p.n))), block("B_p", "mixed", "rows x s_p", G.block(rows, coordinates)),
-            block("B_a", "mixed", "rows x s_a", G.block(rows, p.active)), block("bias", "mixed", "rows", bias),
-            block("lambda_stat_basis", "1", "basis of ker (A, B_p)^T, rows x (rows - rank)", motion_.reduction->static_basis())}}});
+    emit(
+        "constraints",
+        "Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot + "
+        "B_a_dot r_a_dot).",
+        {{"recursion",
+          {block("A", "mixed", "rows x n", G.block(rows, range(p.n))),
+           block("B_p", "mixed", "rows x s_p", G.block(rows, coordinates)),
+           block("B_a", "mixed", "rows x s_a", G.block(rows, p.active)), block("bias", "mixed", "rows", bias),
+           block("lambda_stat_basis", "1", "basis of ker (A, B_p)^T, rows x (rows - rank)",
+                 motion_.reduction->static_basis())}}});
   }
 
   void derive_free_dynamics() {
@@ -237,25 +269,31 @@ class Deriver {
     const Partition p = partition_of(model_);
     const std::vector<int> eta = range(p.n);
     const std::vector<int> r_p(p.passive.begin() + p.n, p.passive.end());
-    emit("free_dynamics", "Blocks of eq. (1) with lambda = 0 and tau_a = 0, by sweeps of the recursion (section V.B).",
+    emit("free_dynamics",
+         "Blocks of eq. (1) with lambda = 0 and tau_a = 0, by sweeps of the recursion (section V.B).",
          {{"unit sweeps",
-           {block("M_eta_eta", "kg, kg m, kg m^2", "n x n", M.block(eta, eta)), block("M_p", "mixed", "s_p x n", M.block(r_p, eta)),
-            block("M_a", "mixed", "s_a x n", M.block(p.active, eta)), block("m_pp", "mixed", "s_p x s_p", M.block(r_p, r_p)),
-            block("m_pa", "mixed", "s_p x s_a", M.block(r_p, p.active)), block("m_aa", "mixed", "s_a x s_a", M.block(p.active, p.active)),
-            block("f", "N, N m", "n", picked(f, eta)), block("Q_p", "N m or N", "s_p", picked(f, r_p)), block("Q_a", "N m or N", "s_a", picked(f, p.active))}}});
+           {block("M_eta_eta", "kg, kg m, kg m^2", "n x n", M.block(eta, eta)),
+            block("M_p", "mixed", "s_p x n", M.block(r_p, eta)),
+            block("M_a", "mixed", "s_a x n", M.block(p.active, eta)),
+            block("m_pp", "mixed", "s_p x s_p", M.block(r_p, r_p)),
+            block("m_pa", "mixed", "s_p x s_a", M.block(r_p, p.active)),
+            block("m_aa", "mixed", "s_a x s_a", M.block(p.active, p.active)),
+            block("f", "N, N m", "n", picked(f, eta)), block("Q_p", "N m or N", "s_p", picked(f, r_p)),
+            block("Q_a", "N m or N", "s_a", picked(f, p.active))}}});
   }
 
   /// Reduced mass matrix, forces and drift of one partition.
   struct ReducedDynamics {
-    std::vector<Expr> velocity;        // n + s
+    std::vector<Expr> velocity;           // n + s
     std::vector<Expr> bias_acceleration;  // n + s: at nu_dot = 0
     Matrix<Expr> M_r;
     std::vector<Expr> f_r;
   };
   /// @param input_force  (passive) given forces on passive velocities, e.g. torques
   /// @param project  run the recursion on admissible motions; else form (66)-(68) from all blocks
-  ReducedDynamics reduced_dynamics(const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
-                                   const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project) {
+  ReducedDynamics reduced_dynamics(const Reduced& of, const std::vector<Expr>& nu,
+                                   const std::vector<Expr>& r_a_dot, const std::vector<Expr>& r_a_ddot,
+                                   const std::vector<Expr>& input_force, bool project) {
     const KinematicReduction& k = *of.reduction;
     const Partition& p = of.partition;
     ReducedDynamics d;
@@ -274,7 +312,8 @@ class Deriver {
     const Matrix<Expr> Ht = H.transposed();
     d.M_r = Matrix<Expr>(H.cols(), H.cols());
     if (project) {
-      const std::vector<Expr> residual = picked(dynamics_.inverse_dynamics(state, d.bias_acceleration), p.passive);
+      const std::vector<Expr> residual =
+          picked(dynamics_.inverse_dynamics(state, d.bias_acceleration), p.passive);
       tape_.section("reduced forces");
       std::vector<Expr> force = input_force;
       for (std::size_t i = 0; i < force.size(); ++i) force[i] -= residual[i];
@@ -282,7 +321,9 @@ class Deriver {
       for (int c = 0; c < H.cols(); ++c) {
         std::vector<Expr> h;
         for (int i = 0; i < H.rows(); ++i) h.push_back(H(i, c));
-        const std::vector<Expr> Mh = picked(dynamics_.mass_times(state, merged(p, h, std::vector<Expr>(p.active.size(), Expr(0)))), p.passive);
+        const std::vector<Expr> Mh =
+            picked(dynamics_.mass_times(state, merged(p, h, std::vector<Expr>(p.active.size(), Expr(0)))),
+                   p.passive);
         tape_.section("reduced mass matrix");
         const std::vector<Expr> column = Ht * Mh;
         for (int i = c; i < H.cols(); ++i) d.M_r(i, c) = d.M_r(c, i) = column[static_cast<std::size_t>(i)];
@@ -299,13 +340,16 @@ class Deriver {
       std::vector<Expr> force = input_force;  // (68)
       const std::vector<Expr> carried = M.block(p.passive, p.passive) * gamma;
       const std::vector<Expr> driven = M.block(p.passive, p.active) * r_a_ddot;
-      for (std::size_t i = 0; i < force.size(); ++i) force[i] += f[static_cast<std::size_t>(p.passive[i])] - driven[i] - carried[i];
+      for (std::size_t i = 0; i < force.size(); ++i)
+        force[i] += f[static_cast<std::size_t>(p.passive[i])] - driven[i] - carried[i];
       d.f_r = Ht * force;  // (67)
     }
     return d;
   }
 
-  std::vector<Expr> no_force(const Partition& p) const { return std::vector<Expr>(p.passive.size(), Expr(0)); }
+  std::vector<Expr> no_force(const Partition& p) const {
+    return std::vector<Expr>(p.passive.size(), Expr(0));
+  }
 
   /// Torques on the coordinates of a partition that are torque-driven, as forces on its passive velocities.
   std::vector<Expr> driving_force(const Partition& p) {
@@ -317,12 +361,14 @@ class Deriver {
     }
     if (driven.empty()) return force;
     const bool all = driven.size() == original.active.size();
-    const auto tau = symbols_.block(all ? "tau_a" : "tau_d", static_cast<int>(driven.size()), "N m or N", "torques of the torque-driven coordinates");
+    const auto tau = symbols_.block(all ? "tau_a" : "tau_d", static_cast<int>(driven.size()), "N m or N",
+                                    "torques of the torque-driven coordinates");
     for (std::size_t i = 0; i < driven.size(); ++i) force[driven[i]] = tau[i];
     return force;
   }
 
-  std::vector<Expr> accelerations(const Reduced& of, const ReducedDynamics& d, const std::vector<Expr>& nu_dot) const {
+  std::vector<Expr> accelerations(const Reduced& of, const ReducedDynamics& d,
+                                  const std::vector<Expr>& nu_dot) const {
     std::vector<Expr> v = d.bias_acceleration;
     const std::vector<Expr> h = of.reduction->kernel().H * nu_dot;
     for (std::size_t i = 0; i < h.size(); ++i) v[static_cast<std::size_t>(of.partition.passive[i])] += h[i];
@@ -330,14 +376,18 @@ class Deriver {
   }
 
   void derive_reduced_dynamics() {
-    const bool reduced = wanted("reduced_dynamics"), forward = wanted("forward_dynamics"), split = wanted("split_dynamics");
+    const bool reduced = wanted("reduced_dynamics"), forward = wanted("forward_dynamics"),
+               split = wanted("split_dynamics");
     if (!reduced && !forward && !split) return;
     std::vector<Route> reduced_routes, forward_routes, split_routes;
     const std::vector<Expr> force = driving_force(motion_partition_);
     for (const bool project : {true, false}) {
       const std::string name = project ? "projected recursion" : "all blocks, (66)-(68)";
       const ReducedDynamics d = reduced_dynamics(motion_, nu_, r_a_dot_, r_a_ddot_, force, project);
-      reduced_routes.push_back({name, {block("M_r", "mixed", "reduced mass matrix, symmetric positive definite", d.M_r), block("f_r", "mixed", "reduced forces", d.f_r)}});
+      reduced_routes.push_back(
+          {name,
+           {block("M_r", "mixed", "reduced mass matrix, symmetric positive definite", d.M_r),
+            block("f_r", "mixed", "reduced forces", d.f_r)}});
       if (forward) {
         tape_.section("reduced accelerations");
         std::vector<Expr> nu_dot;
@@ -345,14 +395,22 @@ class Deriver {
         tape_.section("passive accelerations");
         const std::vector<Expr> v_dot = accelerations(motion_, d, nu_dot);
         std::vector<OutputBlock> outputs = {block("nu_dot", "mixed", "derivative of nu", nu_dot)};
-        for (OutputBlock& b : split_passive(motion_partition_, picked(v_dot, motion_partition_.passive), "dot")) outputs.push_back(std::move(b));
+        for (OutputBlock& b :
+             split_passive(motion_partition_, picked(v_dot, motion_partition_.passive), "dot"))
+          outputs.push_back(std::move(b));
         forward_routes.push_back({name, std::move(outputs)});
       }
       if (split) split_routes.push_back({name, split_blocks(d)});
     }
-    if (reduced) emit("reduced_dynamics", "Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).", reduced_routes);
-    if (split) emit("split_dynamics", "Forward dynamics by blocks, eqs. (4)-(5), of external and internal reduced velocities.", split_routes);
-    if (forward) emit("forward_dynamics", "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).", forward_routes);
+    if (reduced)
+      emit("reduced_dynamics", "Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).", reduced_routes);
+    if (split)
+      emit("split_dynamics",
+           "Forward dynamics by blocks, eqs. (4)-(5), of external and internal reduced velocities.",
+           split_routes);
+    if (forward)
+      emit("forward_dynamics",
+           "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).", forward_routes);
   }
 
   /// (4)-(5), where H is block triangular with both an external and an internal part.
@@ -378,7 +436,8 @@ class Deriver {
     const auto solved = solve_symmetric(e(internal, internal), sides);  // m_pp,r^-1 (Q, M_p,r)
     Matrix<Expr> coupling(M_pr.rows(), M_pr.cols());
     for (int i = 0; i < M_pr.rows(); ++i) {
-      for (int j = 0; j < M_pr.cols(); ++j) coupling(i, j) = solved[static_cast<std::size_t>(1 + j)][static_cast<std::size_t>(i)];
+      for (int j = 0; j < M_pr.cols(); ++j)
+        coupling(i, j) = solved[static_cast<std::size_t>(1 + j)][static_cast<std::size_t>(i)];
     }
     const Matrix<Expr> M_tilde = e(external, external) - M_pr.transposed() * coupling;
     std::vector<Expr> F_tilde = f;
@@ -388,8 +447,10 @@ class Deriver {
     std::vector<Expr> Q_tilde = Q;
     const std::vector<Expr> reaction = M_pr * nu_e_dot;
     for (std::size_t i = 0; i < Q_tilde.size(); ++i) Q_tilde[i] -= reaction[i];
-    return {block("M_tilde_r", "mixed", "modified external mass matrix of (4)", M_tilde), block("F_tilde_r", "mixed", "modified external forces of (4)", F_tilde),
-            block("m_pp_r", "mixed", "internal mass matrix of (5)", e(internal, internal)), block("Q_tilde_p_r", "mixed", "modified internal forces of (5)", Q_tilde)};
+    return {block("M_tilde_r", "mixed", "modified external mass matrix of (4)", M_tilde),
+            block("F_tilde_r", "mixed", "modified external forces of (4)", F_tilde),
+            block("m_pp_r", "mixed", "internal mass matrix of (5)", e(internal, internal)),
+            block("Q_tilde_p_r", "mixed", "modified internal forces of (5)", Q_tilde)};
   }
 
   /// Residual M v_dot - (f, Q) - tau (n + s) at given accelerations.
@@ -401,7 +462,9 @@ class Deriver {
     const Partition& p = motion_partition_;
     const auto nu_dot = symbols_.block("nu_dot", motion_.k(), "mixed", "derivative of nu");
     const int redundant = k.static_basis().cols();
-    const auto lambda_stat = symbols_.block("lambda_stat", redundant, "mixed", "coordinates of the static loading in lambda_stat_basis; zero is the generalised inverse's share");
+    const auto lambda_stat = symbols_.block(
+        "lambda_stat", redundant, "mixed",
+        "coordinates of the static loading in lambda_stat_basis; zero is the generalised inverse's share");
     const std::vector<Expr> force = driving_force(p);
     tape_.section("admissible velocities");
     const std::vector<Expr> passive = k.velocities(r_a_dot_, nu_);
@@ -429,7 +492,9 @@ class Deriver {
     if (multipliers) {
       tape_.section("multipliers");
       emit("multipliers", "Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.",
-           {{"projected recursion", {block("lambda", "mixed", "one for each row of eq. (2)", k.multipliers(passive_residual, lambda_stat))}}});
+           {{"projected recursion",
+             {block("lambda", "mixed", "one for each row of eq. (2)",
+                    k.multipliers(passive_residual, lambda_stat))}}});
     }
   }
 
@@ -439,20 +504,29 @@ class Deriver {
     tape_.section("compatibility");
     const Matrix<Expr> Nt = k.static_basis().transposed();
     const std::vector<Expr> velocity = Nt * (k.rows().B * r_a_dot_);
-    const State<Expr> state = symbols_.moving(merged(motion_partition_, k.velocities(r_a_dot_, nu_), r_a_dot_));
+    const State<Expr> state =
+        symbols_.moving(merged(motion_partition_, k.velocities(r_a_dot_, nu_), r_a_dot_));
     std::vector<Expr> sum = k.rows().B * r_a_ddot_;
     const std::vector<Expr> bias = dynamics_.constraints(state).second;
     for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += bias[i];
-    emit("compatibility", "Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must vanish.",
-         {{"kernel", {block("velocity_residual", "mixed", "N^T B_a r_a_dot", velocity), block("acceleration_residual", "mixed", "N^T (B_a r_a_ddot + bias)", Nt * sum)}}});
+    emit("compatibility",
+         "Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must "
+         "vanish.",
+         {{"kernel",
+           {block("velocity_residual", "mixed", "N^T B_a r_a_dot", velocity),
+            block("acceleration_residual", "mixed", "N^T (B_a r_a_ddot + bias)", Nt * sum)}}});
   }
 
   void derive_torque_driven() {
-    const std::vector<std::string> family = {"torque_driven_dynamics", "torque_driven_kinematics", "torque_driven_velocities", "torque_driven_multipliers"};
-    if (std::ranges::none_of(family, [this](const std::string& f) { return wanted(f); }) || partition_of(model_).s_a() == 0 || !request_.torque_driven.empty()) return;
+    const std::vector<std::string> family = {"torque_driven_dynamics", "torque_driven_kinematics",
+                                             "torque_driven_velocities", "torque_driven_multipliers"};
+    if (std::ranges::none_of(family, [this](const std::string& f) { return wanted(f); }) ||
+        partition_of(model_).s_a() == 0 || !request_.torque_driven.empty())
+      return;
     Reduced all = reduce(partition_of(model_, {"*"}));
     const KinematicReduction& k = *all.reduction;
-    const auto w = symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + k.kernel().description);
+    const auto w =
+        symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + k.kernel().description);
     if (wanted(family[1])) {
       std::vector<OutputBlock> outputs = split_passive(all.partition, k.velocities({}, w), "");
       outputs.push_back(block("H_w", "mixed", "kernel of (A, B_p, B_a), rows (eta, r_p, r_a)", k.kernel().H));
@@ -462,7 +536,8 @@ class Deriver {
       std::vector<Expr> passive = eta_input();
       for (const Expr& e : r_p_dot_input()) passive.push_back(e);
       for (const Expr& e : r_a_dot_) passive.push_back(e);
-      emit(family[2], "Reduced velocities of admissible ones, active joints free.", {{"kernel", {block("w", "mixed", "reduced velocities", k.reduced_velocities(passive, {}))}}});
+      emit(family[2], "Reduced velocities of admissible ones, active joints free.",
+           {{"kernel", {block("w", "mixed", "reduced velocities", k.reduced_velocities(passive, {}))}}});
     }
     const std::vector<Expr> force = driving_force(all.partition);
     if (wanted(family[0]) && all.k() > 0) {
@@ -473,19 +548,30 @@ class Deriver {
         const std::vector<Expr> w_dot = solve_symmetric(d.M_r, {d.f_r}).front();
         tape_.section("accelerations");
         std::vector<OutputBlock> outputs = {block("w_dot", "mixed", "derivative of w", w_dot)};
-        for (OutputBlock& b : split_passive(all.partition, picked(accelerations(all, d, w_dot), all.partition.passive), "dot")) outputs.push_back(std::move(b));
+        for (OutputBlock& b :
+             split_passive(all.partition, picked(accelerations(all, d, w_dot), all.partition.passive), "dot"))
+          outputs.push_back(std::move(b));
         routes.push_back({project ? "projected recursion" : "all blocks, (66)-(68)", std::move(outputs)});
       }
-      emit(family[0], "Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.", routes);
+      emit(
+          family[0],
+          "Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.",
+          routes);
     }
     if (wanted(family[3]) && !mechanism_.rows.empty()) {
       const auto w_dot = symbols_.block("w_dot", all.k(), "mixed", "derivative of w");
       const ReducedDynamics d = reduced_dynamics(all, w, {}, {}, force, true);
-      std::vector<Expr> residual = picked(dynamics_.inverse_dynamics(symbols_.moving(d.velocity), accelerations(all, d, w_dot)), all.partition.passive);
+      std::vector<Expr> residual =
+          picked(dynamics_.inverse_dynamics(symbols_.moving(d.velocity), accelerations(all, d, w_dot)),
+                 all.partition.passive);
       for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= force[i];
       tape_.section("multipliers");
       emit(family[3], "Constraint forces with the torques given, least norm.",
-           {{"projected recursion", {block("lambda", "mixed", "one for each row of eq. (2)", k.multipliers(residual, std::vector<Expr>(static_cast<std::size_t>(k.static_basis().cols()), Expr(0))))}}});
+           {{"projected recursion",
+             {block(
+                 "lambda", "mixed", "one for each row of eq. (2)",
+                 k.multipliers(residual, std::vector<Expr>(static_cast<std::size_t>(k.static_basis().cols()),
+                                                           Expr(0))))}}});
     }
     result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel()};
   }
@@ -493,11 +579,17 @@ class Deriver {
   void derive_energies() {
     if (!wanted("energies")) return;
     const auto e = dynamics_.energies(symbols_.moving(full_velocity()));
-    emit("energies", "Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy; power lost and power of applied forces.",
-         {{"recursion", {block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}), block("gravity", "J", "potential of gravity", std::vector{e.gravity}),
-                         block("elastic", "J", "springs, modes and the described potential", std::vector{e.elastic}),
-                         block("dissipated_power", "W", "velocities times the gradient of the dissipation function", std::vector{e.dissipated_power}),
-                         block("applied_power", "W", "of the described forces and wrenches", std::vector{e.applied_power})}}});
+    emit("energies",
+         "Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential "
+         "energy; power lost and power of applied forces.",
+         {{"recursion",
+           {block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}),
+            block("gravity", "J", "potential of gravity", std::vector{e.gravity}),
+            block("elastic", "J", "springs, modes and the described potential", std::vector{e.elastic}),
+            block("dissipated_power", "W", "velocities times the gradient of the dissipation function",
+                  std::vector{e.dissipated_power}),
+            block("applied_power", "W", "of the described forces and wrenches",
+                  std::vector{e.applied_power})}}});
   }
 
   void derive_poses() {
@@ -511,16 +603,19 @@ class Deriver {
       for (int i = 0; i < 3; ++i) {
         for (int j = 0; j < 3; ++j) rotation(i, j) = R[b](i, j);
       }
-      outputs.push_back(block("R_" + model_.bodies[b].name, "1", "orientation in the world, row-major", rotation));
-      outputs.push_back(block("p_" + model_.bodies[b].name, "m", "origin in the world", std::vector{p[b].x, p[b].y, p[b].z}));
+      outputs.push_back(
+          block("R_" + model_.bodies[b].name, "1", "orientation in the world, row-major", rotation));
+      outputs.push_back(block("p_" + model_.bodies[b].name, "m", "origin in the world",
+                              std::vector{p[b].x, p[b].y, p[b].z}));
     }
     emit("body_poses", "Poses of the body frames in the world, eq. (70).", {{"recursion", outputs}});
   }
 
   void note_header() {
     const RankAnalysis& r = motion_.ranks;
-    program_.notes.push_back(fmt::format("group {}: n = {}, s_p = {}, s_a = {}, rows = {}, m = {}, m_locked = {}", name(model_.group), motion_partition_.n,
-                                         motion_partition_.s_p(), motion_partition_.s_a(), r.rows, r.m, r.m_locked));
+    program_.notes.push_back(fmt::format(
+        "group {}: n = {}, s_p = {}, s_a = {}, rows = {}, m = {}, m_locked = {}", name(model_.group),
+        motion_partition_.n, motion_partition_.s_p(), motion_partition_.s_a(), r.rows, r.m, r.m_locked));
     program_.notes.push_back("Table I: " + r.table_I_class(motion_partition_));
     program_.notes.push_back("kernel: " + motion_.reduction->kernel().description);
   }
@@ -562,13 +657,27 @@ OperationCount operations_per_call(const Program& program, const std::vector<Nod
 }
 
 const std::vector<std::string>& function_names() {
-  static const std::vector<std::string> names = {
-      "kinematics", "reduced_velocities", "constraints", "free_dynamics", "reduced_dynamics", "split_dynamics", "forward_dynamics",
-      "inverse_torques", "multipliers", "compatibility", "torque_driven_kinematics", "torque_driven_velocities",
-      "torque_driven_dynamics", "torque_driven_multipliers", "energies", "body_poses"};
+  static const std::vector<std::string> names = {"kinematics",
+                                                 "reduced_velocities",
+                                                 "constraints",
+                                                 "free_dynamics",
+                                                 "reduced_dynamics",
+                                                 "split_dynamics",
+                                                 "forward_dynamics",
+                                                 "inverse_torques",
+                                                 "multipliers",
+                                                 "compatibility",
+                                                 "torque_driven_kinematics",
+                                                 "torque_driven_velocities",
+                                                 "torque_driven_dynamics",
+                                                 "torque_driven_multipliers",
+                                                 "energies",
+                                                 "body_poses"};
   return names;
 }
 
-std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request) { return Deriver(model, request).run(); }
+std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request) {
+  return Deriver(model, request).run();
+}
 
 }  // namespace anholon

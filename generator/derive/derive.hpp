@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// From a description to a program: the wanted functions, derived on one tape. Each comes from the routes that exist for
-// it; the one with the fewest operations is kept.
+// From a description to a program: the wanted functions, derived on one tape. Each comes from the routes that
+// exist for it; the one with the fewest operations is kept.
 
 #include <functional>
 #include <memory>
@@ -20,11 +20,11 @@ namespace anholon {
 
 struct DeriveRequest {
   std::string scene = "standard";
-  std::vector<std::string> functions;    // wanted; empty: every one that the model has
-  std::set<std::string> torque_driven;   // active coordinates whose torque is given in the reduced dynamics
+  std::vector<std::string> functions;   // wanted; empty: every one that the model has
+  std::set<std::string> torque_driven;  // active coordinates whose torque is given in the reduced dynamics
   Inverse inverse = Inverse::pseudo;
-  std::vector<int> leading_rows;         // for Inverse::leading; row indices
-  bool closed_forms = true;              // also try GiNaC's simplified closed form of each function
+  std::vector<int> leading_rows;  // for Inverse::leading; row indices
+  bool closed_forms = true;       // also try GiNaC's simplified closed form of each function
 };
 
 /// What a route to a function costs.
@@ -44,7 +44,7 @@ struct ReductionReport {
 
 struct Derivation {
   Program program;
-  ReductionReport reduction;                   // motion-driven
+  ReductionReport reduction;                     // motion-driven
   std::optional<ReductionReport> torque_driven;  // all active coordinates by torque, where it was wanted
   std::vector<CandidateReport> candidates;
 };

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "derive/symbols.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>
-
-#include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "tape/interpret.hpp"
 
 namespace anholon {
 
-ProgramSymbols::ProgramSymbols(const Model& model, const Partition& partition, Program& program) : model_(model), program_(program) {
+ProgramSymbols::ProgramSymbols(const Model& model, const Partition& partition, Program& program)
+    : model_(model), program_(program) {
   Tape& tape = program.tape;
   for (const Parameter& p : model.parameters) {
     const NodeId node = tape.input(p.name);
@@ -31,7 +32,8 @@ ProgramSymbols::ProgramSymbols(const Model& model, const Partition& partition, P
     case GroupKind::R1:
     case GroupKind::R2:
     case GroupKind::R3: {
-      const int size = static_cast<int>(std::ranges::count_if(free_components(model.group), [](int c) { return c < 3; }));
+      const int size =
+          static_cast<int>(std::ranges::count_if(free_components(model.group), [](int c) { return c < 3; }));
       const auto p = block("p", size, "m", "position of the reference body in the world");
       for (int i = 0; i < size; ++i) position_.p[i] = p[static_cast<std::size_t>(i)];
       break;
@@ -42,7 +44,8 @@ ProgramSymbols::ProgramSymbols(const Model& model, const Partition& partition, P
       position_.R = AxisRotation<Expr>{2, cos(planar_[2]), sin(planar_[2])}.matrix();
       break;
     }
-    case GroupKind::fixed: break;
+    case GroupKind::fixed:
+      break;
   }
   const auto names = [&](const std::vector<int>& indices) {
     std::vector<std::string> list;
@@ -54,12 +57,17 @@ ProgramSymbols::ProgramSymbols(const Model& model, const Partition& partition, P
   position_.r.assign(model.coordinates.size(), Expr(0));
   const auto r_p = block("r_p", partition.s_p(), "rad or m", names(partition.passive));
   const auto r_a = block("r_a", partition.s_a(), "rad or m", names(partition.active));
-  for (int i = 0; i < partition.s_p(); ++i) position_.r[static_cast<std::size_t>(partition.passive[static_cast<std::size_t>(partition.n + i)] - partition.n)] = r_p[static_cast<std::size_t>(i)];
-  for (int i = 0; i < partition.s_a(); ++i) position_.r[static_cast<std::size_t>(partition.active[static_cast<std::size_t>(i)] - partition.n)] = r_a[static_cast<std::size_t>(i)];
+  for (int i = 0; i < partition.s_p(); ++i)
+    position_.r[static_cast<std::size_t>(partition.passive[static_cast<std::size_t>(partition.n + i)] -
+                                         partition.n)] = r_p[static_cast<std::size_t>(i)];
+  for (int i = 0; i < partition.s_a(); ++i)
+    position_.r[static_cast<std::size_t>(partition.active[static_cast<std::size_t>(i)] - partition.n)] =
+        r_a[static_cast<std::size_t>(i)];
   position_.r_dot.assign(model.coordinates.size(), Expr(0));
 }
 
-std::vector<Expr> ProgramSymbols::block(const std::string& name, int size, const std::string& unit, const std::string& meaning) {
+std::vector<Expr> ProgramSymbols::block(const std::string& name, int size, const std::string& unit,
+                                        const std::string& meaning) {
   auto found = std::ranges::find(program_.inputs, name, &InputBlock::name);
   if (found == program_.inputs.end()) {
     InputBlock block{name, unit, meaning, size, 1, {}};
@@ -84,7 +92,9 @@ std::vector<std::pair<NodeId, NodeId>> ProgramSymbols::motion(const std::vector<
   Tape& tape = program_.tape;
   const State<Expr> state = moving(v);
   std::vector<std::pair<NodeId, NodeId>> rates;
-  const auto add = [&](const Expr& input, const Expr& rate) { rates.emplace_back(input.id(tape), rate.id(tape)); };
+  const auto add = [&](const Expr& input, const Expr& rate) {
+    rates.emplace_back(input.id(tape), rate.id(tape));
+  };
   add(position_.t, 1);
   const Vec3<Expr> p_dot = state.R * state.eta.linear;
   if (model_.group == GroupKind::SE2) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The inputs of a program: parameters, pose, shape, velocities. Pose is R (row-major) and p for SE3, (x, y, theta) for
-// SE2, R for SO3, p for translations.
+// The inputs of a program: parameters, pose, shape, velocities. Pose is R (row-major) and p for SE3, (x, y,
+// theta) for SE2, R for SO3, p for translations.
 
 #include <string>
 #include <vector>
@@ -25,7 +25,8 @@ class ProgramSymbols {
   /// Pose and shape, with zero velocities.
   [[nodiscard]] const State<Expr>& position() const { return position_; }
   /// The entries of a new or existing input block.
-  std::vector<Expr> block(const std::string& name, int size, const std::string& unit, const std::string& meaning);
+  std::vector<Expr> block(const std::string& name, int size, const std::string& unit,
+                          const std::string& meaning);
 
   /// Position with velocities v (n + s).
   [[nodiscard]] State<Expr> moving(const std::vector<Expr>& v) const;
@@ -38,12 +39,15 @@ class ProgramSymbols {
   template <class S>
   void fill_position(const State<S>& state, const std::vector<S>& parameters, std::vector<S>& inputs) const {
     using std::atan2;
-    const auto set = [&](const Expr& e, const S& value) { inputs[program_.tape.node(e.id(program_.tape)).a] = value; };
+    const auto set = [&](const Expr& e, const S& value) {
+      inputs[program_.tape.node(e.id(program_.tape)).a] = value;
+    };
     for (std::size_t i = 0; i < parameters_.size(); ++i) set(parameters_[i], parameters[i]);
     set(position_.t, state.t);
     for (std::size_t i = 0; i < position_.r.size(); ++i) set(position_.r[i], state.r[i]);
     if (model_.group == GroupKind::SE2) {
-      set(planar_[0], state.p.x), set(planar_[1], state.p.y), set(planar_[2], atan2(state.R(1, 0), state.R(0, 0)));
+      set(planar_[0], state.p.x), set(planar_[1], state.p.y),
+          set(planar_[2], atan2(state.R(1, 0), state.R(0, 0)));
       return;
     }
     if (model_.group == GroupKind::SE3 || model_.group == GroupKind::SO3) {

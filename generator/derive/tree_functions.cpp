@@ -41,7 +41,12 @@ struct Route {
 class TreeDeriver {
  public:
   TreeDeriver(const Model& model, const TreeRequest& request)
-      : model_(model), request_(request), result_(std::make_unique<TreeDerivation>()), program_(result_->program), tape_(program_.tape), in_(model, program_) {}
+      : model_(model),
+        request_(request),
+        result_(std::make_unique<TreeDerivation>()),
+        program_(result_->program),
+        tape_(program_.tape),
+        in_(model, program_) {}
 
   std::unique_ptr<TreeDerivation> run() {
     program_.model = model_.name;
@@ -51,25 +56,33 @@ class TreeDeriver {
     program_.source_sha256 = model_.sha256;
     for (const std::string& name : request_.functions) {
       if (std::ranges::find(tree_function_names(), name) == tree_function_names().end())
-        throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name, fmt::join(tree_function_names(), ", ")));
+        throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name,
+                                                fmt::join(tree_function_names(), ", ")));
     }
     make_frames();
     for (const std::string& name : tree_function_names()) {
-      const std::vector<std::string>& wanted = request_.functions.empty() ? standard_tree_functions() : request_.functions;
+      const std::vector<std::string>& wanted =
+          request_.functions.empty() ? standard_tree_functions() : request_.functions;
       if (std::ranges::find(wanted, name) != wanted.end()) derive(name);
     }
     return std::move(result_);
   }
 
  private:
-  // ---- frames --------------------------------------------------------------------------------------------------
+  // ---- frames
+  // --------------------------------------------------------------------------------------------------
   void make_frames() {
     const MechanismDescription description = describe_mechanism(model_);
     if (!description.rows.empty() || !description.wrenches.empty())
-      throw UnsupportedError(fmt::format("model '{}' has constraints or external wrenches: its functions are those of derive()", model_.name));
+      throw UnsupportedError(
+          fmt::format("model '{}' has constraints or external wrenches: its functions are those of derive()",
+                      model_.name));
     Mechanism<Expr> mechanism = mechanise<Expr>(description, in_.parameters, FromExact<Expr>{&tape_});
     for (const Body<Expr>& b : mechanism.bodies) {
-      if (!b.modes.empty()) throw UnsupportedError(fmt::format("body '{}' is compliant: the functions of model '{}' are those of derive()", b.name, model_.name));
+      if (!b.modes.empty())
+        throw UnsupportedError(
+            fmt::format("body '{}' is compliant: the functions of model '{}' are those of derive()", b.name,
+                        model_.name));
     }
     mechanism.open_section = [this](const std::string& title) { tape_.section(title); };
     described_ = mechanism;
@@ -93,7 +106,8 @@ class TreeDeriver {
     add("slid to the tips", to_tips, false, false);
   }
 
-  // ---- routes --------------------------------------------------------------------------------------------------
+  // ---- routes
+  // --------------------------------------------------------------------------------------------------
   OutputBlock block(std::string name, std::string unit, std::string meaning, const std::vector<Expr>& v) {
     OutputBlock b{std::move(name), std::move(unit), std::move(meaning), static_cast<int>(v.size()), 1, {}};
     for (const Expr& e : v) b.nodes.push_back(e.id(tape_));
@@ -149,13 +163,15 @@ class TreeDeriver {
       cost[order[i]] = count_operations(tape_, shared).total();
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
-    for (std::size_t i = 0; i < routes.size(); ++i) result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
+    for (std::size_t i = 0; i < routes.size(); ++i)
+      result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
     program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
   }
 
   /// Passes over the program itself; they are costly, so only the cheapest routes see them.
   static constexpr std::size_t finalists = 2;
-  static constexpr std::size_t largest_shared = 200000;  // nodes of the tape beyond which the passes would dominate the time
+  static constexpr std::size_t largest_shared =
+      200000;  // nodes of the tape beyond which the passes would dominate the time
   std::vector<NodeId> share(std::vector<NodeId> roots) {
     if (tape_.size() > largest_shared) return roots;
     roots = merge_opposite_differences(tape_, std::move(roots));
@@ -171,41 +187,60 @@ class TreeDeriver {
   };
   std::vector<Algorithm> algorithms_of(const std::string& name) {
     using M = const Mechanism<Expr>&;
-    if (name == "inverse_dynamics") return {{"", [this](M m) { return inverse_dynamics(m, in_.eta, in_.eta_dot, in_.r_dot, in_.r_ddot, true); }}};
-    if (name == "bias_forces") return {{"", [this](M m) { return inverse_dynamics(m, in_.eta, {}, in_.r_dot, zeros(), true); }}};
-    if (name == "gravity_forces") return {{"", [this](M m) { return inverse_dynamics(m, {}, {}, zeros(), zeros(), false); }}};
+    if (name == "inverse_dynamics")
+      return {{"", [this](M m) {
+                 return inverse_dynamics(m, in_.eta, in_.eta_dot, in_.r_dot, in_.r_ddot, true);
+               }}};
+    if (name == "bias_forces")
+      return {{"", [this](M m) { return inverse_dynamics(m, in_.eta, {}, in_.r_dot, zeros(), true); }}};
+    if (name == "gravity_forces")
+      return {{"", [this](M m) { return inverse_dynamics(m, {}, {}, zeros(), zeros(), false); }}};
     if (name == "mass_matrix")
-      return {{"", [this](M m) { return std::vector{block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))}; }}};
+      return {{"", [this](M m) {
+                 return std::vector{block("M", "kg, kg m, kg m^2", "(eta, r) x (eta, r)", mass_matrix(m))};
+               }}};
     if (name == "forward_dynamics") {
-      return {{"articulated bodies", [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
-              {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
+      return {
+          {"articulated bodies",
+           [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
+          {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
     }
     if (name == "mass_factor") {
       return {{"composite bodies", [this](M m) {
                  const LtdlFactor<Expr> f = ltdl(mass_matrix(m));
                  Matrix<Expr> L = f.L;
                  for (int i = 0; i < L.rows(); ++i) L(i, i) = 1;
-                 return std::vector{block("L", "mixed", "unit lower triangular", L), block("D", "mixed", "diagonal", f.D)};
+                 return std::vector{block("L", "mixed", "unit lower triangular", L),
+                                    block("D", "mixed", "diagonal", f.D)};
                }}};
     }
-    if (name == "inverse_mass_matrix") return {{"LTDL factor, unit columns", [this](M m) { return inverse_mass_matrix(m); }}};
+    if (name == "inverse_mass_matrix")
+      return {{"LTDL factor, unit columns", [this](M m) { return inverse_mass_matrix(m); }}};
     if (name == "centroidal_momentum") {
       return {{"composite bodies", [this](M m) {
                  const CentroidalMomentum<Expr> c = centroidal_momentum(m, in_.state());
-                 return std::vector{block("momentum", "kg m/s, kg m^2/s", "linear, and angular about the centre of mass, world axes", six(c.momentum)),
-                                    block("centre", "m", "centre of mass in the world", std::vector{c.centre.x, c.centre.y, c.centre.z})};
+                 return std::vector{
+                     block("momentum", "kg m/s, kg m^2/s",
+                           "linear, and angular about the centre of mass, world axes", six(c.momentum)),
+                     block("centre", "m", "centre of mass in the world",
+                           std::vector{c.centre.x, c.centre.y, c.centre.z})};
                }}};
     }
     if (name == "energies") {
       return {{"", [this](M m) {
                  const auto e = FreeDynamics<Expr>(m).energies(in_.state());
-                 return std::vector{block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}),
-                                    block("gravity", "J", "potential energy of gravity, zero at the origin of the world", std::vector{e.gravity})};
+                 return std::vector{
+                     block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}),
+                     block("gravity", "J", "potential energy of gravity, zero at the origin of the world",
+                           std::vector{e.gravity})};
                }}};
     }
-    if (name == "forward_kinematics") return {{"", [this](M m) { return is_first(m) ? forward_kinematics() : std::vector<OutputBlock>{}; }}};
-    if (name == "jacobians") return {{"", [this](M m) { return is_first(m) ? jacobians() : std::vector<OutputBlock>{}; }}};
-    if (name == "regressor") return {{"", [this](M m) { return is_first(m) ? regressors() : std::vector<OutputBlock>{}; }}};
+    if (name == "forward_kinematics")
+      return {{"", [this](M m) { return is_first(m) ? forward_kinematics() : std::vector<OutputBlock>{}; }}};
+    if (name == "jacobians")
+      return {{"", [this](M m) { return is_first(m) ? jacobians() : std::vector<OutputBlock>{}; }}};
+    if (name == "regressor")
+      return {{"", [this](M m) { return is_first(m) ? regressors() : std::vector<OutputBlock>{}; }}};
     throw std::logic_error("a function without a derivation");
   }
   [[nodiscard]] bool independent(const Mechanism<Expr>& m) const {
@@ -215,8 +250,11 @@ class TreeDeriver {
   }
 
   static std::string meaning(const std::string& name) {
-    if (name == "inverse_dynamics") return "Joint forces and, for a moving reference body, the wrench on it that a motion needs.";
-    if (name == "bias_forces") return "What inverse dynamics needs without accelerations: Coriolis, centrifugal and gravity forces, friction.";
+    if (name == "inverse_dynamics")
+      return "Joint forces and, for a moving reference body, the wrench on it that a motion needs.";
+    if (name == "bias_forces")
+      return "What inverse dynamics needs without accelerations: Coriolis, centrifugal and gravity forces, "
+             "friction.";
     if (name == "gravity_forces") return "What inverse dynamics needs at rest.";
     if (name == "mass_matrix") return "Mass matrix M of (eta, r_dot).";
     if (name == "forward_dynamics") return "Accelerations under joint forces tau.";
@@ -225,12 +263,17 @@ class TreeDeriver {
     if (name == "centroidal_momentum") return "Momentum of the robot about its centre of mass.";
     if (name == "energies") return "Kinetic and potential energy.";
     if (name == "forward_kinematics") return "Poses of all links in the world, R row-major and p.";
-    if (name == "jacobians") return "Twists of the links at the tips in their own axes: J (eta, r_dot); their derivative is J (eta_dot, r_ddot) + bias.";
-    if (name == "regressor") return "Inverse dynamics without springs, dampers and friction as Y pi, linear in the inertial figures pi of the bodies.";
+    if (name == "jacobians")
+      return "Twists of the links at the tips in their own axes: J (eta, r_dot); their derivative is J "
+             "(eta_dot, r_ddot) + bias.";
+    if (name == "regressor")
+      return "Inverse dynamics without springs, dampers and friction as Y pi, linear in the inertial figures "
+             "pi of the bodies.";
     return "";
   }
 
-  // ---- quantities ----------------------------------------------------------------------------------------------
+  // ---- quantities
+  // ----------------------------------------------------------------------------------------------
   [[nodiscard]] std::vector<Expr> zeros() const { return std::vector<Expr>(in_.r.size(), Expr(0)); }
   [[nodiscard]] int n() const { return static_cast<int>(free_components(model_.group).size()); }
   [[nodiscard]] std::vector<Expr> free_part(const Spatial<Expr>& x) const {
@@ -240,7 +283,8 @@ class TreeDeriver {
   }
 
   /// Springs, dampers and friction: generalised forces of the coordinates; empty where there are none.
-  std::vector<Expr> own_forces(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const std::vector<Expr>& r_dot) const {
+  std::vector<Expr> own_forces(const Mechanism<Expr>& m, const Spatial<Expr>& eta,
+                               const std::vector<Expr>& r_dot) const {
     if (!m.generalised_forces) return {};
     State<Expr> state = in_.state();
     state.eta = eta;
@@ -252,8 +296,10 @@ class TreeDeriver {
   }
 
   /// Generalised forces in the order (reference body, coordinates) of a motion whose base acceleration is a.
-  std::pair<Spatial<Expr>, std::vector<Expr>> sweep(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const Vec3<Expr>& wd, const Vec3<Expr>& a,
-                                                    const std::vector<Expr>& r_dot, const std::vector<Expr>& r_ddot, bool own) {
+  std::pair<Spatial<Expr>, std::vector<Expr>> sweep(const Mechanism<Expr>& m, const Spatial<Expr>& eta,
+                                                    const Vec3<Expr>& wd, const Vec3<Expr>& a,
+                                                    const std::vector<Expr>& r_dot,
+                                                    const std::vector<Expr>& r_ddot, bool own) {
     RigidTree<Expr> tree(m);
     tree.position(in_.r);
     tree.move_base(eta.angular, wd, a);
@@ -269,12 +315,14 @@ class TreeDeriver {
     return {base, force};
   }
 
-  std::vector<OutputBlock> inverse_dynamics(const Mechanism<Expr>& m, const Spatial<Expr>& eta, const Spatial<Expr>& eta_dot,
-                                            const std::vector<Expr>& r_dot, const std::vector<Expr>& r_ddot, bool own) {
+  std::vector<OutputBlock> inverse_dynamics(const Mechanism<Expr>& m, const Spatial<Expr>& eta,
+                                            const Spatial<Expr>& eta_dot, const std::vector<Expr>& r_dot,
+                                            const std::vector<Expr>& r_ddot, bool own) {
     m.section(m.bodies[0].name + ": acceleration");
     const Vec3<Expr> a = eta_dot.linear + cross(eta.angular, eta.linear) - transposed_times(in_.R, m.gravity);
     const auto [base, force] = sweep(m, eta, eta_dot.angular, a, r_dot, r_ddot, own);
-    return {block("base_wrench", "N, N m", "on the reference body about its origin, in its own axes", free_part(base)),
+    return {block("base_wrench", "N, N m", "on the reference body about its origin, in its own axes",
+                  free_part(base)),
             block("tau", "N m or N", "forces of the joints", force)};
   }
 
@@ -311,9 +359,11 @@ class TreeDeriver {
     std::vector<OutputBlock> outputs;
     for (std::size_t k = 0; k < R.size(); ++k) {
       const std::string& name = described_.bodies[k].name;
-      outputs.push_back(block("R_" + name, "1", "orientation of link " + name, std::vector<Expr>(R[k].m.begin(), R[k].m.end())));
+      outputs.push_back(block("R_" + name, "1", "orientation of link " + name,
+                              std::vector<Expr>(R[k].m.begin(), R[k].m.end())));
       outputs.back().rows = outputs.back().cols = 3;
-      outputs.push_back(block("p_" + name, "m", "origin of link " + name, std::vector{p[k].x, p[k].y, p[k].z}));
+      outputs.push_back(
+          block("p_" + name, "m", "origin of link " + name, std::vector{p[k].x, p[k].y, p[k].z}));
     }
     return outputs;
   }
@@ -321,7 +371,8 @@ class TreeDeriver {
   std::vector<OutputBlock> jacobians() {
     std::vector<int> tips;
     for (std::size_t k = 0; k < described_.bodies.size(); ++k) {
-      const bool is_parent = std::ranges::any_of(described_.bodies, [&](const Body<Expr>& b) { return b.parent == static_cast<int>(k); });
+      const bool is_parent = std::ranges::any_of(
+          described_.bodies, [&](const Body<Expr>& b) { return b.parent == static_cast<int>(k); });
       if (!is_parent) tips.push_back(static_cast<int>(k));
     }
     const std::vector<FrameJacobian<Expr>> frames = frame_jacobians(described_, in_.state(), tips);
@@ -338,15 +389,18 @@ class TreeDeriver {
     RigidTree<Expr> tree(merged_);
     tree.position(in_.r);
     tree.move_base(in_.eta.angular, in_.eta_dot.angular,
-                   in_.eta_dot.linear + cross(in_.eta.angular, in_.eta.linear) - transposed_times(in_.R, merged_.gravity));
+                   in_.eta_dot.linear + cross(in_.eta.angular, in_.eta.linear) -
+                       transposed_times(in_.R, merged_.gravity));
     tree.move(in_.r_dot, in_.r_ddot);
     std::string names;
     for (const Body<Expr>& b : merged_.bodies) names += (names.empty() ? "" : ", ") + b.name;
-    return {block("Y", "mixed", "columns m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of " + names, regressor(tree))};
+    return {block("Y", "mixed", "columns m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of " + names,
+                  regressor(tree))};
   }
 
-  /// With A = eta_dot.linear + Omega x V - R^T gravity as the unknown of a free reference body, gravity drops out of all but
-  /// the last line; a reference body that cannot accelerate everywhere carries gravity as its own acceleration.
+  /// With A = eta_dot.linear + Omega x V - R^T gravity as the unknown of a free reference body, gravity drops
+  /// out of all but the last line; a reference body that cannot accelerate everywhere carries gravity as its
+  /// own acceleration.
   std::vector<OutputBlock> forward_dynamics(const Mechanism<Expr>& m, bool articulated_bodies) {
     m.section(m.bodies[0].name + ": acceleration");
     const Vec3<Expr> drift = cross(in_.eta.angular, in_.eta.linear) - transposed_times(in_.R, m.gravity);
@@ -378,7 +432,8 @@ class TreeDeriver {
       r_ddot.assign(x.begin() + n(), x.end());
     }
     if (is_free) eta_dot.linear -= drift;
-    return {block("eta_dot", "m/s^2, rad/s^2", "derivative of eta", free_part(eta_dot)), block("r_ddot", "rad/s^2 or m/s^2", "second derivatives of r", r_ddot)};
+    return {block("eta_dot", "m/s^2, rad/s^2", "derivative of eta", free_part(eta_dot)),
+            block("r_ddot", "rad/s^2 or m/s^2", "second derivatives of r", r_ddot)};
   }
 
   const Model& model_;
@@ -395,17 +450,21 @@ class TreeDeriver {
 }  // namespace
 
 const std::vector<std::string>& tree_function_names() {
-  static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces",         "gravity_forces",      "mass_matrix",
-                                                 "forward_dynamics", "mass_factor",         "inverse_mass_matrix", "centroidal_momentum",
-                                                 "energies",         "forward_kinematics",  "jacobians",           "regressor"};
+  static const std::vector<std::string> names = {
+      "inverse_dynamics", "bias_forces",        "gravity_forces",      "mass_matrix",
+      "forward_dynamics", "mass_factor",        "inverse_mass_matrix", "centroidal_momentum",
+      "energies",         "forward_kinematics", "jacobians",           "regressor"};
   return names;
 }
 
 const std::vector<std::string>& standard_tree_functions() {
-  static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces", "gravity_forces", "mass_matrix", "forward_dynamics"};
+  static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces", "gravity_forces",
+                                                 "mass_matrix", "forward_dynamics"};
   return names;
 }
 
-std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request) { return TreeDeriver(model, request).run(); }
+std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request) {
+  return TreeDeriver(model, request).run();
+}
 
 }  // namespace anholon

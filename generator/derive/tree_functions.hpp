@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The functions of an unconstrained tree of rigid bodies, all of whose coordinates are driven: inverse and forward dynamics,
-// mass matrix and their like. Each is derived in several frames and by several algorithms; the cheapest program is kept.
+// The functions of an unconstrained tree of rigid bodies, all of whose coordinates are driven: inverse and
+// forward dynamics, mass matrix and their like. Each is derived in several frames and by several algorithms;
+// the cheapest program is kept.
 
 #include <memory>
 #include <string>
@@ -17,7 +18,7 @@ namespace anholon {
 struct TreeRequest {
   std::string scene = "standard";
   std::vector<std::string> functions;  // wanted; empty: standard_tree_functions()
-  bool search = true;                  // try every choice of frames and algorithm; else only the first of each
+  bool search = true;  // try every choice of frames and algorithm; else only the first of each
 };
 
 struct TreeDerivation {
@@ -32,8 +33,9 @@ const std::vector<std::string>& tree_function_names();
 /// Those that are derived where none are named: inverse and forward dynamics, bias, gravity, mass matrix.
 const std::vector<std::string>& standard_tree_functions();
 
-/// Inputs are R (orientation of the reference body, for a group that turns), eta, eta_dot, r, r_dot, r_ddot, tau; twists and
-/// wrenches are those of the described reference body in its own axes, (V, Omega) and (force, torque).
+/// Inputs are R (orientation of the reference body, for a group that turns), eta, eta_dot, r, r_dot, r_ddot,
+/// tau; twists and wrenches are those of the described reference body in its own axes, (V, Omega) and (force,
+/// torque).
 /// @throws UnsupportedError where the model has constraints, external wrenches or compliant bodies
 std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request = {});
 

@@ -14,7 +14,8 @@ TreeInputs::TreeInputs(const Model& model, Program& program) {
     program.parameters.push_back({p.name, p.unit, p.meaning, p.value, node});
     parameters.emplace_back(tape, node);
   }
-  const auto block = [&](const std::string& name, std::size_t size, const std::string& unit, const std::string& meaning) {
+  const auto block = [&](const std::string& name, std::size_t size, const std::string& unit,
+                         const std::string& meaning) {
     InputBlock b{name, unit, meaning, static_cast<int>(size), 1, {}};
     std::vector<Expr> entries;
     for (std::size_t i = 0; i < size; ++i) {
@@ -25,12 +26,15 @@ TreeInputs::TreeInputs(const Model& model, Program& program) {
     return entries;
   };
   const auto components = free_components(model.group);
-  const auto twist = [&](Spatial<Expr>& to, const std::string& name, const std::string& unit, const std::string& meaning) {
+  const auto twist = [&](Spatial<Expr>& to, const std::string& name, const std::string& unit,
+                         const std::string& meaning) {
     const auto entries = block(name, components.size(), unit, meaning);
     for (std::size_t i = 0; i < components.size(); ++i) to[components[i]] = entries[i];
   };
   const bool can_turn = std::ranges::any_of(components, [](int c) { return c >= 3; });
-  if (can_turn) std::ranges::copy(block("R", 9, "1", "orientation of the reference body in the world, row-major"), R.m.begin());
+  if (can_turn)
+    std::ranges::copy(block("R", 9, "1", "orientation of the reference body in the world, row-major"),
+                      R.m.begin());
   if (!components.empty()) {
     const auto entries = block("p", 3, "m", "position of the reference body in the world");
     p = {entries[0], entries[1], entries[2]};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Quantities of a tree that need no solution of equations, over any scalar: momentum about the centre of mass, Jacobians of
-// frames and the regressor, which is linear in the inertial figures of the bodies.
+// Quantities of a tree that need no solution of equations, over any scalar: momentum about the centre of
+// mass, Jacobians of frames and the regressor, which is linear in the inertial figures of the bodies.
 
 #include <string>
 #include <vector>
@@ -18,8 +18,8 @@ struct CentroidalMomentum {
   Vec3<S> centre;       // of mass, in the world
 };
 
-/// Momentum of the whole tree (Orin, Goswami and Lee 2013): the rows of a free reference body in the mass matrix give it about
-/// that body's origin; it is moved to the centre of mass.
+/// Momentum of the whole tree (Orin, Goswami and Lee 2013): the rows of a free reference body in the mass
+/// matrix give it about that body's origin; it is moved to the centre of mass.
 template <class S>
 CentroidalMomentum<S> centroidal_momentum(const Mechanism<S>& mechanism, const State<S>& state) {
   Mechanism<S> free = mechanism;
@@ -31,24 +31,26 @@ CentroidalMomentum<S> centroidal_momentum(const Mechanism<S>& mechanism, const S
   Spatial<S> h;
   for (int row = 0; row < 6; ++row) {
     for (int i = 0; i < 6; ++i) h[row] = h[row] + M(row, i) * state.eta[i];
-    for (std::size_t i = 0; i < state.r_dot.size(); ++i) h[row] = h[row] + M(row, 6 + static_cast<int>(i)) * state.r_dot[i];
+    for (std::size_t i = 0; i < state.r_dot.size(); ++i)
+      h[row] = h[row] + M(row, 6 + static_cast<int>(i)) * state.r_dot[i];
   }
   const Vec3<S> arm = (S(1) / all.mass) * all.first;
   h.angular -= cross(arm, h.linear);
   return {{state.R * h.linear, state.R * h.angular}, state.p + state.R * arm};
 }
 
-/// Twist of a body's described frame in its own axes, as a matrix on (eta, r_dot), and the bias of its acceleration:
-/// d/dt twist = J (eta_dot, r_ddot) + bias.
+/// Twist of a body's described frame in its own axes, as a matrix on (eta, r_dot), and the bias of its
+/// acceleration: d/dt twist = J (eta_dot, r_ddot) + bias.
 template <class S>
 struct FrameJacobian {
-  Matrix<S> J;           // 6 x (n + s)
-  std::vector<S> bias;   // 6
+  Matrix<S> J;          // 6 x (n + s)
+  std::vector<S> bias;  // 6
 };
 
 /// For the bodies with the given indices.
 template <class S>
-std::vector<FrameJacobian<S>> frame_jacobians(const Mechanism<S>& mechanism, const State<S>& state, const std::vector<int>& bodies) {
+std::vector<FrameJacobian<S>> frame_jacobians(const Mechanism<S>& mechanism, const State<S>& state,
+                                              const std::vector<int>& bodies) {
   Recursion<S> recursion(mechanism);
   const int size = velocity_size(mechanism);
   std::vector<FrameJacobian<S>> result(bodies.size());
@@ -80,8 +82,9 @@ std::vector<FrameJacobian<S>> frame_jacobians(const Mechanism<S>& mechanism, con
   return result;
 }
 
-/// Matrix Y of (base wrench, joint forces) = Y pi, where pi lists m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of every body
-/// about its origin in the axes of its described frame (Atkeson, An and Hollerbach 1986). Needs position() and move().
+/// Matrix Y of (base wrench, joint forces) = Y pi, where pi lists m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz
+/// of every body about its origin in the axes of its described frame (Atkeson, An and Hollerbach 1986). Needs
+/// position() and move().
 template <class S>
 Matrix<S> regressor(const RigidTree<S>& tree) {
   const Mechanism<S>& mechanism = tree.mechanism();
@@ -105,7 +108,8 @@ Matrix<S> regressor(const RigidTree<S>& tree) {
       Spatial<S> f = tree.body_wrench(unit_moments, tree.motion(k));
       for (std::size_t i = k; i > 0; i = tree.parent_of(i)) {
         const S force = tree.joint_force(tree.body(i), f);
-        tree.for_each_share(i, [&](int c, const S& share) { Y(n + c, column) = Y(n + c, column) + share * force; });
+        tree.for_each_share(
+            i, [&](int c, const S& share) { Y(n + c, column) = Y(n + c, column) + share * force; });
         f = tree.joint(i).to_parent(f);
       }
       for (int c = 0; c < n; ++c) Y(c, column) = f[base[static_cast<std::size_t>(c)]];

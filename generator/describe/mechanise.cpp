@@ -69,7 +69,8 @@ class Describer {
  public:
   explicit Describer(const Model& model) : model_(model), tape_(*model.tape) {
     inputs_.assign(tape_.inputs().size(), Exact(0));
-    for (std::size_t i = 0; i < model.parameters.size(); ++i) inputs_[tape_.node(model.symbols.parameters[i]).a] = model.parameters[i].value;
+    for (std::size_t i = 0; i < model.parameters.size(); ++i)
+      inputs_[tape_.node(model.symbols.parameters[i]).a] = model.parameters[i].value;
   }
 
   MechanismDescription run() {
@@ -97,8 +98,11 @@ class Describer {
     body.kind = b.joint.kind;
     Alignment alignment;
     const bool constant = !depends_on_state(b.joint.displacement);
-    if (body.kind != JointKind::fixed) alignment = align(vector(b.joint.axis), [this](const Expr& e) { return value(e); });
-    const Mat3<Expr> parent_axes = b.parent < 0 ? Mat3<Expr>::identity() : alignments_[static_cast<std::size_t>(b.parent)].A.transposed();
+    if (body.kind != JointKind::fixed)
+      alignment = align(vector(b.joint.axis), [this](const Expr& e) { return value(e); });
+    const Mat3<Expr> parent_axes = b.parent < 0
+                                       ? Mat3<Expr>::identity()
+                                       : alignments_[static_cast<std::size_t>(b.parent)].A.transposed();
     const Mat3<Expr> to_body = alignment.A.transposed();
     body.axis = alignment.axis;
     body.pitch = b.joint.pitch;
@@ -136,7 +140,9 @@ class Describer {
   [[nodiscard]] bool depends_on_state(const Expr& e) const {
     const NodeId root = e.id(tape_);
     for (const NodeId id : tape_.reachable({root})) {
-      if (tape_.node(id).op == Op::input && std::ranges::find(model_.symbols.parameters, id) == model_.symbols.parameters.end()) return true;
+      if (tape_.node(id).op == Op::input &&
+          std::ranges::find(model_.symbols.parameters, id) == model_.symbols.parameters.end())
+        return true;
     }
     return false;
   }
@@ -145,7 +151,8 @@ class Describer {
   static void lock(Body<Expr>& body, const Expr& q) {
     if (body.kind == JointKind::prismatic) body.p += body.R * (q * unit<Expr>(body.axis));
     if (body.kind == JointKind::helical) body.p += body.R * (body.pitch * q * unit<Expr>(body.axis));
-    if (body.kind != JointKind::prismatic && !q.is_zero()) body.R = body.R * AxisRotation<Expr>{body.axis, cos(q), sin(q)}.matrix();
+    if (body.kind != JointKind::prismatic && !q.is_zero())
+      body.R = body.R * AxisRotation<Expr>{body.axis, cos(q), sin(q)}.matrix();
     body.kind = JointKind::fixed;
   }
 
@@ -167,7 +174,8 @@ class Describer {
     coupling.roots = {root};
     coupling.roots.insert(coupling.roots.end(), gradient.begin(), gradient.end());
     for (const NodeId d : gradient) {
-      for (const int i : coupling.on) coupling.roots.push_back(derivative(tape_, d, model_.symbols.r[static_cast<std::size_t>(i)]));
+      for (const int i : coupling.on)
+        coupling.roots.push_back(derivative(tape_, d, model_.symbols.r[static_cast<std::size_t>(i)]));
     }
     body.coupling = static_cast<int>(result_.couplings.size());
     result_.couplings.push_back(std::move(coupling));
@@ -218,8 +226,8 @@ class Describer {
     for (const Expr& e : w.torque) result_.wrench_roots.push_back(e.id(tape_));
   }
 
-  /// Q = -dU/dr - dD/dr_dot, eq. (21), plus the user's own; likewise for the reference body, whose directions are those
-  /// of its own axes.
+  /// Q = -dU/dr - dD/dr_dot, eq. (21), plus the user's own; likewise for the reference body, whose directions
+  /// are those of its own axes.
   void add_forces() {
     const StateSymbols& s = model_.symbols;
     const NodeId U = model_.potential.id(tape_);
@@ -233,7 +241,8 @@ class Describer {
       const Vec3<Expr> e = unit<Expr>(static_cast<int>(c % 3));
       if (c < 3) {
         const Vec3<Expr> p_dot = R * e;
-        for (std::size_t i = 0; i < 3; ++i) direction.emplace_back(s.p[i], p_dot[static_cast<int>(i)].id(tape_));
+        for (std::size_t i = 0; i < 3; ++i)
+          direction.emplace_back(s.p[i], p_dot[static_cast<int>(i)].id(tape_));
       } else {
         const Mat3<Expr> R_dot = R * skew(e);
         for (std::size_t i = 0; i < 9; ++i) direction.emplace_back(s.R[i], R_dot.m[i].id(tape_));
@@ -256,7 +265,8 @@ class Describer {
     if (std::ranges::any_of(force, [](const Expr& e) { return !e.is_zero(); })) {
       for (const Expr& e : force) result_.force_roots.push_back(e.id(tape_));
     }
-    if (!model_.potential.is_zero() || !power.is_zero() || !applied.is_zero()) result_.energy_roots = {U, power.id(tape_), applied.id(tape_)};
+    if (!model_.potential.is_zero() || !power.is_zero() || !applied.is_zero())
+      result_.energy_roots = {U, power.id(tape_), applied.id(tape_)};
   }
 
   const Model& model_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// From a description to a Mechanism over any scalar. The description is first brought to the mechanism's form on its own
-// tape (joint axes along coordinate axes; forces, rows and couplings differentiated); that form is then run over the
-// scalar: numbers for the constants, a callable for what depends on the state.
+// From a description to a Mechanism over any scalar. The description is first brought to the mechanism's form
+// on its own tape (joint axes along coordinate axes; forces, rows and couplings differentiated); that form is
+// then run over the scalar: numbers for the constants, a callable for what depends on the state.
 
 #include <algorithm>
 #include <memory>
@@ -35,9 +35,10 @@ struct MechanismDescription {
   std::vector<RowRoots> rows;
   Vec3<Expr> gravity;
   std::vector<AppliedWrench<Expr>> wrenches;
-  std::vector<NodeId> wrench_roots;    // 6 each
-  std::vector<NodeId> force_roots;     // 6 + s, empty where all vanish
-  std::vector<NodeId> energy_roots;    // potential, dissipated power, power of generalised forces; empty where all vanish
+  std::vector<NodeId> wrench_roots;  // 6 each
+  std::vector<NodeId> force_roots;   // 6 + s, empty where all vanish
+  std::vector<NodeId>
+      energy_roots;  // potential, dissipated power, power of generalised forces; empty where all vanish
 };
 
 /// Brings a description to mechanism form. Adds derivative nodes to the model's tape.
@@ -49,7 +50,8 @@ namespace detail {
 template <class S>
 class StateFunction {
  public:
-  StateFunction(const MechanismDescription& d, std::vector<NodeId> roots, std::vector<S> parameters, FromExact<S> constant)
+  StateFunction(const MechanismDescription& d, std::vector<NodeId> roots, std::vector<S> parameters,
+                FromExact<S> constant)
       : symbols_(d.symbols), interpreter_(*d.tape, roots, constant), inputs_(d.tape->inputs().size(), S(0)) {
     for (std::size_t i = 0; i < parameters.size(); ++i) set(*d.tape, symbols_.parameters[i], parameters[i]);
     const auto index = [&](NodeId id) { return static_cast<std::size_t>(d.tape->node(id).a); };
@@ -90,17 +92,24 @@ class StateFunction {
 /// Mechanism over S. The description must outlive nothing: the callables keep what they need.
 /// @param parameters  one value for each parameter of the model
 template <class S>
-Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& parameters, FromExact<S> constant = {}) {
+Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& parameters,
+                       FromExact<S> constant = {}) {
   std::vector<S> inputs(d.tape->inputs().size(), S(0));
-  for (std::size_t i = 0; i < parameters.size(); ++i) inputs[d.tape->node(d.symbols.parameters[i]).a] = parameters[i];
+  for (std::size_t i = 0; i < parameters.size(); ++i)
+    inputs[d.tape->node(d.symbols.parameters[i]).a] = parameters[i];
   std::vector<NodeId> roots;  // every constant of the mechanism, evaluated in one pass
   const auto want = [&](const Expr& e) { roots.push_back(e.id(*d.tape)); };
-  const auto want3 = [&](const Vec3<Expr>& v) { for (int i = 0; i < 3; ++i) want(v[i]); };
-  const auto want9 = [&](const Mat3<Expr>& m) { for (const Expr& e : m.m) want(e); };
+  const auto want3 = [&](const Vec3<Expr>& v) {
+    for (int i = 0; i < 3; ++i) want(v[i]);
+  };
+  const auto want9 = [&](const Mat3<Expr>& m) {
+    for (const Expr& e : m.m) want(e);
+  };
   const auto visit = [&](auto&& scalar, auto&& vector, auto&& matrix) {
     for (std::size_t k = 0; k < d.bodies.size(); ++k) {
       const Body<Expr>& b = d.bodies[k];
-      scalar(b.pitch), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass), vector(b.first_moment), matrix(b.inertia);
+      scalar(b.pitch), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass), vector(b.first_moment),
+          matrix(b.inertia);
       for (const Mode<Expr>& mode : b.modes) {
         vector(mode.S_j), matrix(mode.X_phi);
         for (const Mat3<Expr>& m : mode.phi_phi) matrix(m);
@@ -117,8 +126,16 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
 
   std::size_t next = 0;
   const auto scalar = [&] { return values[next++]; };
-  const auto vector = [&] { Vec3<S> v; for (int i = 0; i < 3; ++i) v[i] = scalar(); return v; };
-  const auto matrix = [&] { Mat3<S> m; for (S& e : m.m) e = scalar(); return m; };
+  const auto vector = [&] {
+    Vec3<S> v;
+    for (int i = 0; i < 3; ++i) v[i] = scalar();
+    return v;
+  };
+  const auto matrix = [&] {
+    Mat3<S> m;
+    for (S& e : m.m) e = scalar();
+    return m;
+  };
   Mechanism<S> mechanism;
   mechanism.group = d.group;
   mechanism.coordinates = d.coordinates;
@@ -142,7 +159,8 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     mechanism.bodies.push_back(std::move(body));
   }
   const auto state_function = [&](const std::vector<NodeId>& of) {
-    return [f = std::make_shared<detail::StateFunction<S>>(d, of, parameters, constant)](const auto& at, std::span<S> out) { (*f)(at, out); };
+    return [f = std::make_shared<detail::StateFunction<S>>(d, of, parameters, constant)](
+               const auto& at, std::span<S> out) { (*f)(at, out); };
   };
   for (const auto& c : d.couplings) mechanism.couplings.push_back({c.on, state_function(c.roots)});
   for (const auto& r : d.rows) {

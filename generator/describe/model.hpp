@@ -21,7 +21,7 @@ namespace anholon {
 struct Parameter {
   std::string name;
   Exact value;
-  std::string unit;     // as written: "kg m^2"; coherent SI
+  std::string unit;  // as written: "kg m^2"; coherent SI
   std::string meaning;
   Location where;
 };
@@ -43,33 +43,34 @@ struct JointDescription {
   JointKind kind = JointKind::fixed;
   std::array<Expr, 3> axis = {0, 0, 1};  // unit vector, in the body's frame
   Expr pitch = 0;                        // of a helical joint, m/rad
-  Expr displacement = 0;                 // an independent coordinate, or an expression of several (a coupling)
-  std::string coordinate;                // name as written; empty for a fixed joint
+  Expr displacement = 0;   // an independent coordinate, or an expression of several (a coupling)
+  std::string coordinate;  // name as written; empty for a fixed joint
 };
 
-/// Mode j of a compliant body: p = X + sum_j phi_j(X) r_ej (design of the deformation field), all in the body's frame.
+/// Mode j of a compliant body: p = X + sum_j phi_j(X) r_ej (design of the deformation field), all in the
+/// body's frame.
 struct ModeDescription {
-  int coordinate = 0;            // index of r_ej in Model::coordinates
-  std::array<Expr, 3> S;         // integral of phi_j dm
-  std::array<Expr, 9> X_phi;     // integral of X phi_j^T dm, row-major
+  int coordinate = 0;                        // index of r_ej in Model::coordinates
+  std::array<Expr, 3> S;                     // integral of phi_j dm
+  std::array<Expr, 9> X_phi;                 // integral of X phi_j^T dm, row-major
   std::vector<std::array<Expr, 9>> phi_phi;  // integral of phi_j phi_l^T dm for each mode l of this body
 };
 
 struct BodyDescription {
   std::string name;
-  int parent = -1;                            // -1: the reference body
+  int parent = -1;                                      // -1: the reference body
   std::array<Expr, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // pose in the parent's frame at zero displacement
   std::array<Expr, 3> p = {0, 0, 0};
   JointDescription joint;
   Expr mass = 0;
-  std::array<Expr, 3> first_moment = {0, 0, 0};             // about the body's origin
-  std::array<Expr, 6> inertia = {0, 0, 0, 0, 0, 0};         // xx yy zz xy xz yz about the origin, matrix entries
-  std::vector<ModeDescription> modes;                       // empty: rigid
+  std::array<Expr, 3> first_moment = {0, 0, 0};      // about the body's origin
+  std::array<Expr, 6> inertia = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz about the origin, matrix entries
+  std::vector<ModeDescription> modes;                // empty: rigid
   Location where;
 };
 
-/// One term of a declared row: linear . (velocity of a point fixed in the body) + angular . (angular velocity), all in
-/// the body's own axes.
+/// One term of a declared row: linear . (velocity of a point fixed in the body) + angular . (angular
+/// velocity), all in the body's own axes.
 struct RowTermDescription {
   int body = 0;
   std::array<Expr, 3> point = {0, 0, 0};
@@ -88,7 +89,7 @@ struct RowDescription {
 /// External wrench on a body: expressions of state, parameters and time.
 struct WrenchDescription {
   int body = 0;
-  bool in_world_axes = false;         // else in the body's axes
+  bool in_world_axes = false;             // else in the body's axes
   std::array<Expr, 3> point = {0, 0, 0};  // application point, body frame
   std::array<Expr, 3> force = {0, 0, 0};
   std::array<Expr, 3> torque = {0, 0, 0};
@@ -103,18 +104,18 @@ struct GeneralisedForceDescription {
 struct StateSymbols {
   std::vector<NodeId> parameters;  // in the order of Model::parameters
   NodeId t = 0;
-  std::array<NodeId, 9> R{};       // orientation of the reference body in the world, row-major
-  std::array<NodeId, 3> p{};       // position of the reference body in the world
-  std::vector<NodeId> r;           // in the order of Model::coordinates
-  std::array<NodeId, 6> eta{};     // V, Omega in body axes
+  std::array<NodeId, 9> R{};    // orientation of the reference body in the world, row-major
+  std::array<NodeId, 3> p{};    // position of the reference body in the world
+  std::vector<NodeId> r;        // in the order of Model::coordinates
+  std::array<NodeId, 6> eta{};  // V, Omega in body axes
   std::vector<NodeId> r_dot;
 };
 
 struct Model {
   std::string name;
-  std::string title;         // one line, for reports
-  std::string file;          // base name of the description
-  std::string sha256;        // of its bytes
+  std::string title;   // one line, for reports
+  std::string file;    // base name of the description
+  std::string sha256;  // of its bytes
   GroupKind group = GroupKind::fixed;
   std::shared_ptr<Tape> tape = std::make_shared<Tape>();
   StateSymbols symbols;
@@ -124,11 +125,11 @@ struct Model {
   std::vector<RowDescription> rows;
   std::vector<WrenchDescription> wrenches;
   std::vector<GeneralisedForceDescription> forces;
-  std::array<Expr, 3> gravity = {0, 0, 0};  // acceleration of gravity in the world
-  Expr potential = 0;                       // joint springs, modal stiffness and the user's; without gravity
-  Expr dissipation = 0;                     // Rayleigh function of the velocities, eq. (21)
-  std::vector<std::string> free_velocities; // user's choice of kernel coordinates; may be empty
-  std::vector<std::string> notes;           // what reading assumed, for `check`
+  std::array<Expr, 3> gravity = {0, 0, 0};   // acceleration of gravity in the world
+  Expr potential = 0;                        // joint springs, modal stiffness and the user's; without gravity
+  Expr dissipation = 0;                      // Rayleigh function of the velocities, eq. (21)
+  std::vector<std::string> free_velocities;  // user's choice of kernel coordinates; may be empty
+  std::vector<std::string> notes;            // what reading assumed, for `check`
 };
 
 }  // namespace anholon

@@ -24,9 +24,10 @@ std::string sha256_of(std::string_view bytes) {
 /// Words that expressions and generated code use for themselves.
 const std::set<std::string>& words_in_use() {
   static const std::set<std::string> words = {
-      "t",    "g",    "R",    "p",    "r",    "pi",   "eta",  "sin", "cos", "tan", "asin", "acos", "atan2", "exp",
-      "log",  "tanh", "abs",  "sign", "sqrt", "dot",  "ddot", "p_X", "p_Y", "p_Z", "R_XX", "R_XY", "R_XZ",  "R_YX",
-      "R_YY", "R_YZ", "R_ZX", "R_ZY", "R_ZZ", "V_X",  "V_Y",  "V_Z", "Omega_X", "Omega_Y", "Omega_Z"};
+      "t",    "g",    "R",     "p",   "r",    "pi",   "eta",     "sin",     "cos",    "tan",
+      "asin", "acos", "atan2", "exp", "log",  "tanh", "abs",     "sign",    "sqrt",   "dot",
+      "ddot", "p_X",  "p_Y",   "p_Z", "R_XX", "R_XY", "R_XZ",    "R_YX",    "R_YY",   "R_YZ",
+      "R_ZX", "R_ZY", "R_ZZ",  "V_X", "V_Y",  "V_Z",  "Omega_X", "Omega_Y", "Omega_Z"};
   return words;
 }
 
@@ -42,7 +43,8 @@ std::string identifier_from(std::string_view text, std::string_view prefix) {
   }
   name = name.substr(0, longest);
   while (!name.empty() && name.back() == '_') name.pop_back();
-  if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = fmt::format("{}{}{}", prefix, name.empty() ? "" : "_", name);
+  if (name.empty() || (name[0] >= '0' && name[0] <= '9'))
+    name = fmt::format("{}{}{}", prefix, name.empty() ? "" : "_", name);
   if (!objection_to_name(name).empty()) name += "_";
   return name;
 }
@@ -76,13 +78,17 @@ std::string quarters_of_pi(int k) {
 }
 
 bool is_zero(const UrdfInertial& inertial) {
-  return inertial.mass.is_zero() && std::ranges::all_of(inertial.inertia, [](const Exact& x) { return x.is_zero(); });
+  return inertial.mass.is_zero() &&
+         std::ranges::all_of(inertial.inertia, [](const Exact& x) { return x.is_zero(); });
 }
 
 class UrdfReader {
  public:
   UrdfReader(std::string_view text, const std::string& file_name, const UrdfOptions& options)
-      : options_(options), source_(text, file_name), file_(read_urdf_elements(source_)), tree_(urdf_tree(file_, {file_name, 0, 0})) {
+      : options_(options),
+        source_(text, file_name),
+        file_(read_urdf_elements(source_)),
+        tree_(urdf_tree(file_, {file_name, 0, 0})) {
     model_.file = std::filesystem::path(file_name).filename().string();
     model_.sha256 = sha256_of(text);
   }
@@ -103,7 +109,9 @@ class UrdfReader {
 
  private:
   Expr constant(const Exact& x) { return {*model_.tape, model_.tape->constant(x)}; }
-  [[nodiscard]] const UrdfLink& link(std::size_t node) const { return file_.links[static_cast<std::size_t>(tree_.nodes[node].link)]; }
+  [[nodiscard]] const UrdfLink& link(std::size_t node) const {
+    return file_.links[static_cast<std::size_t>(tree_.nodes[node].link)];
+  }
   [[nodiscard]] const UrdfJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
   void note(std::string text) { model_.notes.push_back(std::move(text)); }
 
@@ -114,8 +122,9 @@ class UrdfReader {
     const bool one_child = std::ranges::count(tree_.nodes, 0, &UrdfNode::parent) == 1;
     const UrdfJoint& first = joint(tree_.nodes[1].joint);
     if (first.type != UrdfJointType::floating || !one_child || (inertial && !is_zero(*inertial))) return;
-    note(fmt::format("floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world", first.name,
-                     link(1).name, link(0).name));
+    note(fmt::format(
+        "floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world",
+        first.name, link(1).name, link(0).name));
     model_.group = GroupKind::SE3;
     tree_.nodes.erase(tree_.nodes.begin());
     for (UrdfNode& node : tree_.nodes) --node.parent;
@@ -137,7 +146,8 @@ class UrdfReader {
       if (j.limit && !is_chain) c.lower = (*j.limit)[0], c.upper = (*j.limit)[1];
       if (!j.limit && j.type == UrdfJointType::revolute)
         note(fmt::format("joint '{}' has no limits: range [-pi, pi]", j.name));
-      if (!is_angle && (is_chain || !j.limit)) note(fmt::format("joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
+      if (!is_angle && (is_chain || !j.limit))
+        note(fmt::format("joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
       model_.coordinates.push_back(std::move(c));
     };
     for (const UrdfNode& node : tree_.nodes) {
@@ -147,21 +157,27 @@ class UrdfReader {
       if (described.mimic || described.type == UrdfJointType::fixed) continue;
       first_coordinate_[j] = static_cast<int>(model_.coordinates.size());
       if (described.type == UrdfJointType::planar) {
-        for (const char* part : {"x", "y"}) add(described, fmt::format("{}_{}", described.name, part), false, true);
+        for (const char* part : {"x", "y"})
+          add(described, fmt::format("{}_{}", described.name, part), false, true);
         add(described, described.name + "_angle", true, true);
       } else if (described.type == UrdfJointType::floating) {
-        for (const char* part : {"x", "y", "z"}) add(described, fmt::format("{}_{}", described.name, part), false, true);
-        for (const char* part : {"yaw", "pitch", "roll"}) add(described, fmt::format("{}_{}", described.name, part), true, true);
-        note(fmt::format("floating joint '{}' inside the tree became three slides and three turns (yaw, pitch, roll): singular "
-                         "at a pitch of pi/2",
-                         described.name));
+        for (const char* part : {"x", "y", "z"})
+          add(described, fmt::format("{}_{}", described.name, part), false, true);
+        for (const char* part : {"yaw", "pitch", "roll"})
+          add(described, fmt::format("{}_{}", described.name, part), true, true);
+        note(
+            fmt::format("floating joint '{}' inside the tree became three slides and three turns (yaw, "
+                        "pitch, roll): singular "
+                        "at a pitch of pi/2",
+                        described.name));
       } else {
         add(described, described.name, described.type != UrdfJointType::prismatic, false);
       }
     }
   }
 
-  /// Mass, first moment and inertia of every link about its own origin, in its own axes; parameters where wanted.
+  /// Mass, first moment and inertia of every link about its own origin, in its own axes; parameters where
+  /// wanted.
   void read_inertias() {
     NameGiver body_name("link", model_.notes);
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) {
@@ -175,13 +191,15 @@ class UrdfReader {
       }
       figures_.push_back(figures);
       if (!options_.symbolic_inertia) continue;
-      constexpr std::array<const char*, 10> suffix = {"m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
+      constexpr std::array<const char*, 10> suffix = {"m",   "mx",  "my",  "mz",  "Ixx",
+                                                      "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
       for (std::size_t i = 0; i < 10; ++i) {
         if (figures[i].is_zero()) continue;
         const char* unit = i == 0 ? "kg" : i < 4 ? "kg m" : "kg m^2";
-        model_.parameters.push_back({fmt::format("{}{}{}", names_[n], names_[n].back() == '_' ? "" : "_", suffix[i]), figures[i], unit,
-                                     fmt::format("{} of link {} about its origin, in its own axes", suffix[i], link(n).name),
-                                     inertial->where});
+        model_.parameters.push_back(
+            {fmt::format("{}{}{}", names_[n], names_[n].back() == '_' ? "" : "_", suffix[i]), figures[i],
+             unit, fmt::format("{} of link {} about its origin, in its own axes", suffix[i], link(n).name),
+             inertial->where});
       }
     }
   }
@@ -195,11 +213,13 @@ class UrdfReader {
     const Exact half_trace = (central[0] + central[4] + central[8]) / Exact(2);
     for (std::size_t k = 0; k < 3; ++k) {
       if (half_trace - central[4 * k] < -half_trace * Exact::from_decimal("1e-9")) {
-        note(fmt::format("{} breaks the triangle rule: one principal moment exceeds the sum of the others", what));
+        note(fmt::format("{} breaks the triangle rule: one principal moment exceeds the sum of the others",
+                         what));
         break;
       }
     }
-    bool turned = false;  // a product with the identity would keep the values but not their exactness as zeros
+    bool turned =
+        false;  // a product with the identity would keep the values but not their exactness as zeros
     for (const Exact& a : i.origin.rpy) turned = turned || !a.is_zero();
     const ExactMatrix I = turned ? product(product(R, central), transposed(R)) : central;
     const Exact& m = i.mass;
@@ -222,7 +242,9 @@ class UrdfReader {
       constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
       for (std::size_t i = 0; i < 3; ++i) {
         const auto turns = rpy[i].is_zero() ? std::nullopt : eighth_turns(rpy[i]);
-        if (turns) note(fmt::format("{} {} of {} taken as {}", names[i], rpy[i].decimal(20), of, quarters_of_pi(*turns)));
+        if (turns)
+          note(fmt::format("{} {} of {} taken as {}", names[i], rpy[i].decimal(20), of,
+                           quarters_of_pi(*turns)));
       }
     }
     return rotation_from_rpy(rpy, !options_.as_written);
@@ -271,7 +293,7 @@ class UrdfReader {
   void set_inertia(BodyDescription& body, std::size_t n) {
     std::array<Expr, 10> f;
     for (std::size_t i = 0; i < 10; ++i) {
-      f[i] = figures_[n][i].is_zero() ? Expr(0)
+      f[i] = figures_[n][i].is_zero()    ? Expr(0)
              : options_.symbolic_inertia ? Expr(*model_.tape, model_.symbols.parameters[next_parameter_++])
                                          : constant(figures_[n][i]);
     }
@@ -283,13 +305,15 @@ class UrdfReader {
   std::array<Expr, 3> axis(const UrdfJoint& j) {
     const ExactVector a = unit_vector(j.axis, !options_.as_written);
     if (a != j.axis)
-      note(fmt::format("axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8), a[1].decimal(8), a[2].decimal(8)));
+      note(fmt::format("axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8), a[1].decimal(8),
+                       a[2].decimal(8)));
     return {constant(a[0]), constant(a[1]), constant(a[2])};
   }
 
   void add_joint(BodyDescription& body, const UrdfJoint& j, int index) {
     const UrdfFollower& follower = tree_.followers[static_cast<std::size_t>(index)];
-    const auto coordinate = static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(follower.leader)]);
+    const auto coordinate =
+        static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(follower.leader)]);
     body.joint.kind = j.type == UrdfJointType::prismatic ? JointKind::prismatic : JointKind::revolute;
     body.joint.axis = axis(j);
     body.joint.coordinate = model_.coordinates[coordinate].name;
@@ -318,15 +342,19 @@ class UrdfReader {
     std::vector<std::pair<JointKind, std::array<Expr, 3>>> steps;
     if (planar) {
       const ExactVector normal = unit_vector(j.axis, !options_.as_written);
-      std::size_t least = 0;  // the coordinate axis that is least along the normal: the next two make a right-handed frame
+      std::size_t least =
+          0;  // the coordinate axis that is least along the normal: the next two make a right-handed frame
       for (std::size_t k = 1; k < 3; ++k) {
         if (abs(normal[k]) < abs(normal[least])) least = k;
       }
       ExactVector x;
-      for (std::size_t k = 0; k < 3; ++k) x[k] = (k == least ? Exact(1) : Exact(0)) - normal[least] * normal[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        x[k] = (k == least ? Exact(1) : Exact(0)) - normal[least] * normal[k];
       x = unit_vector(x, true);
-      const ExactVector y = {normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2], normal[0] * x[1] - normal[1] * x[0]};
-      for (const ExactVector& a : {x, y}) steps.push_back({JointKind::prismatic, {constant(a[0]), constant(a[1]), constant(a[2])}});
+      const ExactVector y = {normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2],
+                             normal[0] * x[1] - normal[1] * x[0]};
+      for (const ExactVector& a : {x, y})
+        steps.push_back({JointKind::prismatic, {constant(a[0]), constant(a[1]), constant(a[2])}});
       steps.push_back({JointKind::revolute, axis(j)});
     } else {
       const std::array<std::array<Expr, 3>, 3> e = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -334,7 +362,8 @@ class UrdfReader {
       for (std::size_t k = 3; k-- > 0;) steps.push_back({JointKind::revolute, e[k]});
     }
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      const auto coordinate = static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(index)]) + i;
+      const auto coordinate =
+          static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(index)]) + i;
       BodyDescription part;
       const bool last = i + 1 == steps.size();
       if (last) part = body;
@@ -357,10 +386,10 @@ class UrdfReader {
   UrdfFile file_;
   UrdfTree tree_;
   Model model_;
-  std::vector<int> first_coordinate_;          // of each joint, in Model::coordinates
-  std::vector<std::string> names_;             // of the nodes' links
-  std::vector<std::array<Exact, 10>> figures_; // inertial figures of the nodes' links
-  std::vector<int> body_of_;                   // of each node, in Model::bodies
+  std::vector<int> first_coordinate_;           // of each joint, in Model::coordinates
+  std::vector<std::string> names_;              // of the nodes' links
+  std::vector<std::array<Exact, 10>> figures_;  // inertial figures of the nodes' links
+  std::vector<int> body_of_;                    // of each node, in Model::bodies
   std::size_t next_parameter_ = 0;
 };
 
@@ -374,7 +403,8 @@ Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
   std::ifstream file(path, std::ios::binary);
   std::ostringstream bytes;
   bytes << file.rdbuf();
-  if (!file) throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
+  if (!file)
+    throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
   return read_urdf_text(bytes.str(), path.string(), options);
 }
 

@@ -31,7 +31,8 @@ class ElementReader {
                        "a URDF file is one <robot>");
     check_attributes(root, "the robot", {"name", "version", "xmlns:xacro"});
     file_.name = required(root, "name", "the robot");
-    check_children(root, "the robot", {"link", "joint"}, {"material", "transmission", "gazebo", "sensor"}, true);
+    check_children(root, "the robot", {"link", "joint"}, {"material", "transmission", "gazebo", "sensor"},
+                   true);
     for (const XMLElement* e = root.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
       if (std::string_view(e->Name()) == "link") read_link(*e);
       if (std::string_view(e->Name()) == "joint") read_joint(*e);
@@ -49,37 +50,42 @@ class ElementReader {
   }
 
   /// @param ignored  attributes that are read over, with a note
-  void check_attributes(const XMLElement& e, const std::string& what, const Names& known, const Names& ignored = {}) {
+  void check_attributes(const XMLElement& e, const std::string& what, const Names& known,
+                        const Names& ignored = {}) {
     for (const auto* a = e.FirstAttribute(); a != nullptr; a = a->Next()) {
       if (std::ranges::find(known, a->Name()) != known.end()) continue;
       if (std::ranges::find(ignored, a->Name()) != ignored.end()) {
         ++ignored_[fmt::format("attribute(s) '{}' of <{}>", a->Name(), e.Name())];
         continue;
       }
-      error(source_.place(e, a->Name()), fmt::format("{} has an unknown attribute '{}'", what, a->Name()),
-            did_you_mean(a->Name(), known,
-                         known.empty() ? "it has no attributes" : fmt::format("known are {}", listed(known))));
+      error(
+          source_.place(e, a->Name()), fmt::format("{} has an unknown attribute '{}'", what, a->Name()),
+          did_you_mean(a->Name(), known,
+                       known.empty() ? "it has no attributes" : fmt::format("known are {}", listed(known))));
     }
   }
 
   /// @param repeated  whether known elements may come more than once
-  void check_children(const XMLElement& e, const std::string& what, const Names& known, const Names& ignored = {},
-                      bool repeated = false) {
+  void check_children(const XMLElement& e, const std::string& what, const Names& known,
+                      const Names& ignored = {}, bool repeated = false) {
     Names seen;
     Names all = known;
     all.insert(all.end(), ignored.begin(), ignored.end());
     for (const auto* node = e.FirstChild(); node != nullptr; node = node->NextSibling()) {
       if (node->ToText() != nullptr)
-        error(source_.place(e), fmt::format("{} has text in it", what), "remove the text; data stands in attributes");
+        error(source_.place(e), fmt::format("{} has text in it", what),
+              "remove the text; data stands in attributes");
       const XMLElement* child = node->ToElement();
       if (child == nullptr) continue;
       if (std::ranges::find(ignored, child->Name()) != ignored.end()) {
         ++ignored_[fmt::format("<{}>", child->Name())];
       } else if (std::ranges::find(known, child->Name()) == known.end()) {
         error(source_.place(*child), fmt::format("{} has an unknown element <{}>", what, child->Name()),
-              did_you_mean(child->Name(), all, all.empty() ? "it has no elements" : fmt::format("known are {}", listed(all))));
+              did_you_mean(child->Name(), all,
+                           all.empty() ? "it has no elements" : fmt::format("known are {}", listed(all))));
       } else if (!repeated && std::ranges::find(seen, child->Name()) != seen.end()) {
-        error(source_.place(*child), fmt::format("{} has a second <{}>", what, child->Name()), "remove one of them");
+        error(source_.place(*child), fmt::format("{} has a second <{}>", what, child->Name()),
+              "remove one of them");
       }
       seen.emplace_back(child->Name());
     }
@@ -88,18 +94,22 @@ class ElementReader {
   std::string required(const XMLElement& e, const char* attribute, const std::string& what) {
     const char* value = e.Attribute(attribute);
     if (value != nullptr && *value != '\0') return value;
-    error(source_.place(e, attribute), fmt::format("{} has {} '{}'", what, value == nullptr ? "no" : "an empty", attribute),
+    error(source_.place(e, attribute),
+          fmt::format("{} has {} '{}'", what, value == nullptr ? "no" : "an empty", attribute),
           fmt::format("write {}=\"...\"", attribute));
     return "";
   }
 
-  Exact number_in(const XMLElement& e, const char* attribute, std::string_view text, const std::string& what) {
+  Exact number_in(const XMLElement& e, const char* attribute, std::string_view text,
+                  const std::string& what) {
     try {
       const Exact x = Exact::from_decimal(text);
       if (abs(x) <= largest_number()) return x;
-      error(source_.place(e, attribute), fmt::format("{} of {} is {}", attribute, what, text), "no number may exceed 1e30");
+      error(source_.place(e, attribute), fmt::format("{} of {} is {}", attribute, what, text),
+            "no number may exceed 1e30");
     } catch (const std::invalid_argument&) {
-      error(source_.place(e, attribute), fmt::format("{} of {} is '{}', not a finite decimal number", attribute, what, text),
+      error(source_.place(e, attribute),
+            fmt::format("{} of {} is '{}', not a finite decimal number", attribute, what, text),
             "write a number like -0.25 or 1.5e-3");
     }
     return 0;
@@ -108,7 +118,8 @@ class ElementReader {
   static std::vector<std::string_view> words(std::string_view text) {
     std::vector<std::string_view> result;
     constexpr std::string_view spaces = " \t\n\r";
-    for (std::size_t at = text.find_first_not_of(spaces); at < text.size(); at = text.find_first_not_of(spaces, at)) {
+    for (std::size_t at = text.find_first_not_of(spaces); at < text.size();
+         at = text.find_first_not_of(spaces, at)) {
       const std::size_t end = std::min(text.find_first_of(spaces, at), text.size());
       result.push_back(text.substr(at, end - at));
       at = end;
@@ -121,7 +132,8 @@ class ElementReader {
     if (text.empty()) return 0;
     const auto parts = words(text);
     if (parts.size() == 1) return number_in(e, attribute, parts[0], what);
-    error(source_.place(e, attribute), fmt::format("{} of {} is '{}'", attribute, what, text), "write one number");
+    error(source_.place(e, attribute), fmt::format("{} of {} is '{}'", attribute, what, text),
+          "write one number");
     return 0;
   }
 
@@ -129,12 +141,14 @@ class ElementReader {
     return e.Attribute(attribute) == nullptr ? otherwise : number(e, attribute, what);
   }
 
-  ExactVector vector(const XMLElement& e, const char* attribute, const std::string& what, const ExactVector& otherwise) {
+  ExactVector vector(const XMLElement& e, const char* attribute, const std::string& what,
+                     const ExactVector& otherwise) {
     const char* text = e.Attribute(attribute);
     if (text == nullptr) return otherwise;
     const auto parts = words(text);
     if (parts.size() != 3) {
-      error(source_.place(e, attribute), fmt::format("{} of {} has {} numbers", attribute, what, parts.size()), "write three");
+      error(source_.place(e, attribute),
+            fmt::format("{} of {} has {} numbers", attribute, what, parts.size()), "write three");
       return otherwise;
     }
     ExactVector v;
@@ -160,7 +174,8 @@ class ElementReader {
     const std::string what = fmt::format("link '{}'", link.name);
     check_attributes(e, what, {"name"}, {"type"});
     check_children(e, what, {"inertial"}, {"visual", "collision", "contact", "self_collision_checking"});
-    if (const XMLElement* inertial = e.FirstChildElement("inertial")) link.inertial = read_inertial(*inertial, what);
+    if (const XMLElement* inertial = e.FirstChildElement("inertial"))
+      link.inertial = read_inertial(*inertial, what);
     file_.links.push_back(std::move(link));
   }
 
@@ -176,8 +191,8 @@ class ElementReader {
       check_children(*mass, fmt::format("the mass of {}", link), {});
       result.mass = number(*mass, "value", fmt::format("the mass of {}", link));
       if (result.mass < Exact(0))
-        error(source_.place(*mass, "value"), fmt::format("the mass of {} is {}", link, result.mass.decimal(8)),
-              "it must not be negative");
+        error(source_.place(*mass, "value"),
+              fmt::format("the mass of {} is {}", link, result.mass.decimal(8)), "it must not be negative");
     } else {
       error(result.where, fmt::format("{} has no <mass>", what), "write <mass value=\"...\"/>");
     }
@@ -242,7 +257,8 @@ class ElementReader {
       joint.axis = vector(*axis, "xyz", of, joint.axis);
       const bool is_zero = std::ranges::all_of(joint.axis, [](const Exact& x) { return x.is_zero(); });
       if (is_zero && findings_.size() == before && joint.type != UrdfJointType::fixed)
-        error(source_.place(*axis, "xyz"), fmt::format("{} is zero", of), "write its direction, for example \"0 0 1\"");
+        error(source_.place(*axis, "xyz"), fmt::format("{} is zero", of),
+              "write its direction, for example \"0 0 1\"");
     }
     read_limit(e, what, joint);
     if (const XMLElement* dynamics = e.FirstChildElement("dynamics")) {
@@ -278,7 +294,8 @@ class ElementReader {
     const std::array<Exact, 2> range = {number(*limit, "lower", of, 0), number(*limit, "upper", of, 0)};
     for (const char* attribute : {"effort", "velocity"}) number(*limit, attribute, of, 0);
     if (range[1] < range[0]) {
-      error(source_.place(*limit, "lower"), fmt::format("{} has lower {} above upper {}", of, range[0].decimal(8), range[1].decimal(8)),
+      error(source_.place(*limit, "lower"),
+            fmt::format("{} has lower {} above upper {}", of, range[0].decimal(8), range[1].decimal(8)),
             "exchange them");
     } else if (bounded && range[0] < range[1]) {
       joint.limit = range;
@@ -288,7 +305,8 @@ class ElementReader {
   Exact not_negative(const XMLElement& e, const char* attribute, const std::string& what) {
     const Exact x = number(e, attribute, what, 0);
     if (x < Exact(0))
-      error(source_.place(e, attribute), fmt::format("{} of {} is {}", attribute, what, x.decimal(8)), "it must not be negative");
+      error(source_.place(e, attribute), fmt::format("{} of {} is {}", attribute, what, x.decimal(8)),
+            "it must not be negative");
     return x;
   }
 

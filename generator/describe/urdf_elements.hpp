@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The links and joints of a URDF file as it writes them, after strict reading: every element and attribute is known, every
-// number is exact. What they mean together is read_urdf's matter.
+// The links and joints of a URDF file as it writes them, after strict reading: every element and attribute is
+// known, every number is exact. What they mean together is read_urdf's matter.
 
 #include <optional>
 #include <string>

@@ -20,7 +20,8 @@ Index index_of(const Items& items, const char* what, Findings& findings) {
     const auto [found, is_new] = index.try_emplace(items[i].name, static_cast<int>(i));
     if (!is_new)
       findings.error(items[i].where, fmt::format("there is a second {} '{}'", what, items[i].name),
-                     fmt::format("the first stands in line {}; rename one", items[static_cast<std::size_t>(found->second)].where.line));
+                     fmt::format("the first stands in line {}; rename one",
+                                 items[static_cast<std::size_t>(found->second)].where.line));
   }
   return index;
 }
@@ -42,7 +43,8 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
   for (std::size_t j = 0; j < file.joints.size(); ++j) {
     const UrdfJoint& joint = file.joints[j];
     bool known = true;
-    for (const auto& [name, where] : {std::pair{joint.parent, joint.parent_where}, std::pair{joint.child, joint.child_where}}) {
+    for (const auto& [name, where] :
+         {std::pair{joint.parent, joint.parent_where}, std::pair{joint.child, joint.child_where}}) {
       if (links.contains(name)) continue;
       known = false;
       findings.error(where, fmt::format("joint '{}' names a link '{}' that does not exist", joint.name, name),
@@ -51,10 +53,12 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
     if (!known) continue;
     const auto child = static_cast<std::size_t>(links.at(joint.child));
     if (joint.parent == joint.child) {
-      findings.error(joint.child_where, fmt::format("joint '{}' joins link '{}' to itself", joint.name, joint.child),
+      findings.error(joint.child_where,
+                     fmt::format("joint '{}' joins link '{}' to itself", joint.name, joint.child),
                      "name two links");
     } else if (carrier[child] >= 0) {
-      findings.error(joint.child_where, fmt::format("link '{}' is the child of a second joint '{}'", joint.child, joint.name),
+      findings.error(joint.child_where,
+                     fmt::format("link '{}' is the child of a second joint '{}'", joint.child, joint.name),
                      fmt::format("it is that of '{}' already; loops need a constraint, not a joint",
                                  file.joints[static_cast<std::size_t>(carrier[child])].name));
     } else {
@@ -72,7 +76,8 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
     if (root < 0) root = static_cast<int>(i);
   }
   if (roots.empty())
-    throw ModelError(whole_file, "every link is the child of some joint: the joints form a cycle", "let one link be the root");
+    throw ModelError(whole_file, "every link is the child of some joint: the joints form a cycle",
+                     "let one link be the root");
   if (roots.size() > 1)
     throw ModelError(file.links[static_cast<std::size_t>(links.at(roots[1]))].where,
                      fmt::format("there are {} root links: {}", roots.size(), listed(roots)),
@@ -90,7 +95,8 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
   visit(root, -1, -1);
   for (std::size_t i = 0; i < file.links.size(); ++i) {
     if (reached[i] == 0)
-      throw ModelError(file.links[i].where, fmt::format("link '{}' hangs on a cycle of joints", file.links[i].name),
+      throw ModelError(file.links[i].where,
+                       fmt::format("link '{}' hangs on a cycle of joints", file.links[i].name),
                        fmt::format("join it to the tree of '{}'", roots[0]));
   }
 
@@ -101,20 +107,26 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
       const auto leader = joints.find(joint->mimic->joint);
       const Location& where = joint->mimic->where;
       if (leader == joints.end()) {
-        findings.error(where, fmt::format("joint '{}' mimics a joint '{}' that does not exist", joint->name, joint->mimic->joint),
+        findings.error(where,
+                       fmt::format("joint '{}' mimics a joint '{}' that does not exist", joint->name,
+                                   joint->mimic->joint),
                        did_you_mean(joint->mimic->joint, keys(joints), "name another joint"));
         break;
       }
       if (steps > file.joints.size()) {
-        findings.error(where, fmt::format("joint '{}' mimics itself in the end", joint->name), "let one joint of the circle be free");
+        findings.error(where, fmt::format("joint '{}' mimics itself in the end", joint->name),
+                       "let one joint of the circle be free");
         break;
       }
       follower.offset += follower.multiplier * joint->mimic->offset;
       follower.multiplier *= joint->mimic->multiplier;
       follower.leader = leader->second;
       joint = &file.joints[static_cast<std::size_t>(leader->second)];
-      if (joint->type != UrdfJointType::revolute && joint->type != UrdfJointType::continuous && joint->type != UrdfJointType::prismatic)
-        findings.error(where, fmt::format("joint '{}' mimics '{}', which has no single displacement", file.joints[j].name, joint->name),
+      if (joint->type != UrdfJointType::revolute && joint->type != UrdfJointType::continuous &&
+          joint->type != UrdfJointType::prismatic)
+        findings.error(where,
+                       fmt::format("joint '{}' mimics '{}', which has no single displacement",
+                                   file.joints[j].name, joint->name),
                        "let it mimic a revolute, continuous or prismatic joint");
     }
     tree.followers.push_back(follower);

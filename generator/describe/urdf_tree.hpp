@@ -24,8 +24,8 @@ struct UrdfFollower {
 };
 
 struct UrdfTree {
-  std::vector<UrdfNode> nodes;             // parents first, children in the order of the file
-  std::vector<UrdfFollower> followers;     // one for each joint; its own leader where it does not mimic
+  std::vector<UrdfNode> nodes;          // parents first, children in the order of the file
+  std::vector<UrdfFollower> followers;  // one for each joint; its own leader where it does not mimic
 };
 
 /// @throws ModelError where the file is no tree or mimics go round in a circle

@@ -9,13 +9,12 @@
 #include <cln/rational.h>
 #include <cln/rational_ring.h>
 #include <cln/real.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
-
-#include <fmt/format.h>
 
 namespace anholon {
 namespace {
@@ -33,7 +32,7 @@ unsigned& digits_in_use() {
 cln::float_format_t working_format() { return cln::float_format(digits_in_use()); }
 
 cln::cl_F to_float(const cln::cl_R& x) {
-  if (cln::instanceof(x, cln::cl_RA_ring)) return cln::cl_float(x, working_format());
+  if (cln:: instanceof (x, cln::cl_RA_ring)) return cln::cl_float(x, working_format());
   return cln::the<cln::cl_F>(x);
 }
 
@@ -41,26 +40,30 @@ cln::cl_RA to_rational(const cln::cl_R& x) { return cln::rational(x); }
 
 /// A rational that has outgrown its bound becomes a float.
 cln::cl_R bounded(const cln::cl_R& x) {
-  if (!cln::instanceof(x, cln::cl_RA_ring)) return x;
+  if (!cln:: instanceof (x, cln::cl_RA_ring)) return x;
   const auto q = cln::the<cln::cl_RA>(x);
   const auto bits = cln::integer_length(cln::numerator(q)) + cln::integer_length(cln::denominator(q));
-  return bits <= 2 * rational_bits ? x : cln::cl_R(cln::cl_float(x, cln::float_format(std::max(default_digits, digits_in_use()))));
+  return bits <= 2 * rational_bits
+             ? x
+             : cln::cl_R(cln::cl_float(x, cln::float_format(std::max(default_digits, digits_in_use()))));
 }
 
-/// Values of sin and cos at the exact angles (pi/6, pi/2, ...) come back as the rationals that they are. A small angle is
-/// none of these, and its sine is small without being 0.
+/// Values of sin and cos at the exact angles (pi/6, pi/2, ...) come back as the rationals that they are. A
+/// small angle is none of these, and its sine is small without being 0.
 Exact snapped(const cln::cl_R& angle, const cln::cl_F& x) {
   if (cln::abs(angle) < cln::cl_RA(1) / 10) return Exact(cln::cl_R(x));
   for (const long twice : {-2L, -1L, 0L, 1L, 2L}) {
     const cln::cl_RA candidate = cln::cl_RA(twice) / 2;
-    const cln::cl_F noise = cln::cl_float(cln::expt(cln::cl_RA(10), -static_cast<long>(digits_in_use()) + 12), x);
+    const cln::cl_F noise =
+        cln::cl_float(cln::expt(cln::cl_RA(10), -static_cast<long>(digits_in_use()) + 12), x);
     if (cln::abs(x - cln::cl_float(candidate, x)) < noise) return Exact(cln::cl_R(candidate));
   }
   return Exact(cln::cl_R(x));
 }
 
 cln::cl_I power_of_ten(long exponent) {
-  return exponent == 0 ? cln::cl_I(1) : cln::expt_pos(cln::cl_I(10), cln::cl_I(exponent));  // expt_pos needs > 0
+  return exponent == 0 ? cln::cl_I(1)
+                       : cln::expt_pos(cln::cl_I(10), cln::cl_I(exponent));  // expt_pos needs > 0
 }
 
 }  // namespace
@@ -86,7 +89,8 @@ Exact Exact::from_decimal(std::string_view text) {
   std::string digits;
   long point_shift = 0;
   bool seen_point = false;
-  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.'); ++at) {
+  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) != 0 || text[at] == '.');
+       ++at) {
     if (text[at] == '.') {
       if (seen_point) throw fail();
       seen_point = true;
@@ -104,7 +108,8 @@ Exact Exact::from_decimal(std::string_view text) {
     if (at == text.size()) throw fail();
     for (; at < text.size() && std::isdigit(static_cast<unsigned char>(text[at])) != 0; ++at) {
       exponent = 10 * exponent + (text[at] - '0');
-      if (exponent > exponent_limit) throw std::invalid_argument(fmt::format("the exponent of '{}' is beyond {}", text, exponent_limit));
+      if (exponent > exponent_limit)
+        throw std::invalid_argument(fmt::format("the exponent of '{}' is beyond {}", text, exponent_limit));
     }
     if (negative_exponent) exponent = -exponent;
   }
@@ -128,8 +133,8 @@ Exact Exact::from_double(double value) {
 
 Exact Exact::pi() { return Exact(cln::cl_R(cln::pi(working_format()))); }
 
-bool Exact::is_rational() const { return cln::instanceof(value_, cln::cl_RA_ring); }
-bool Exact::is_integer() const { return cln::instanceof(value_, cln::cl_I_ring); }
+bool Exact::is_rational() const { return cln:: instanceof (value_, cln::cl_RA_ring); }
+bool Exact::is_integer() const { return cln:: instanceof (value_, cln::cl_I_ring); }
 bool Exact::is_zero() const { return cln::zerop(value_); }
 Exact Exact::as_float() const {
   Exact result;
@@ -164,17 +169,21 @@ std::string Exact::decimal(unsigned digits) const {
   const std::string sign = cln::minusp(value_) ? "-" : "";
   const auto size = static_cast<long>(text.size());
   if (exponent >= 0 && exponent < 16) {
-    if (size <= exponent + 1) return sign + text + std::string(static_cast<std::size_t>(exponent + 1 - size), '0');
-    return sign + text.substr(0, static_cast<std::size_t>(exponent + 1)) + "." + text.substr(static_cast<std::size_t>(exponent + 1));
+    if (size <= exponent + 1)
+      return sign + text + std::string(static_cast<std::size_t>(exponent + 1 - size), '0');
+    return sign + text.substr(0, static_cast<std::size_t>(exponent + 1)) + "." +
+           text.substr(static_cast<std::size_t>(exponent + 1));
   }
-  if (exponent < 0 && exponent >= -5) return sign + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + text;
+  if (exponent < 0 && exponent >= -5)
+    return sign + "0." + std::string(static_cast<std::size_t>(-exponent - 1), '0') + text;
   return fmt::format("{}{}{}{}e{}", sign, text.substr(0, 1), size > 1 ? "." : "", text.substr(1), exponent);
 }
 
 std::string Exact::key() const {
   if (!is_rational()) return "f" + decimal(120);
   std::ostringstream stream;
-  stream << cln::numerator(cln::the<cln::cl_RA>(value_)) << '/' << cln::denominator(cln::the<cln::cl_RA>(value_));
+  stream << cln::numerator(cln::the<cln::cl_RA>(value_)) << '/'
+         << cln::denominator(cln::the<cln::cl_RA>(value_));
   return stream.str();
 }
 
@@ -189,7 +198,9 @@ Exact operator-(const Exact& a) { return Exact(-a.value_); }
 bool operator==(const Exact& a, const Exact& b) { return cln::zerop(a.value_ - b.value_); }
 std::strong_ordering operator<=>(const Exact& a, const Exact& b) {
   const int order = static_cast<int>(cln::compare(a.value_, b.value_));
-  return order < 0 ? std::strong_ordering::less : order > 0 ? std::strong_ordering::greater : std::strong_ordering::equal;
+  return order < 0   ? std::strong_ordering::less
+         : order > 0 ? std::strong_ordering::greater
+                     : std::strong_ordering::equal;
 }
 
 Exact sqrt(const Exact& x) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Exact numbers. A value is a rational as long as it fits in 256 bits, else a binary float that carries its own
-// digits. Decimal text is read exactly; sines and roots are computed to the working digits.
+// Exact numbers. A value is a rational as long as it fits in 256 bits, else a binary float that carries its
+// own digits. Decimal text is read exactly; sines and roots are computed to the working digits.
 
 #include <cln/real.h>
 
@@ -13,7 +13,8 @@
 
 namespace anholon {
 
-/// Decimal digits, at least 40, that transcendental functions of exact arguments are computed to; restored at scope end.
+/// Decimal digits, at least 40, that transcendental functions of exact arguments are computed to; restored at
+/// scope end.
 class WorkingDigits {
  public:
   explicit WorkingDigits(unsigned digits);

@@ -19,7 +19,9 @@ Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& col
       for (int j = 0; j < U_.cols(); ++j) nodes.push_back(U_(i, j).id(tape));
     }
     const auto values = sampler(nodes);
-    const auto at = [&](std::size_t sample, int i, int j) { return std::abs(values[sample][static_cast<std::size_t>(i * U_.cols() + j)]); };
+    const auto at = [&](std::size_t sample, int i, int j) {
+      return std::abs(values[sample][static_cast<std::size_t>(i * U_.cols() + j)]);
+    };
     // smallest size of an entry over the samples, relative to its row's largest candidate there
     const auto strength = [&](int i, int j) {
       double smallest = std::numeric_limits<double>::infinity();
@@ -37,7 +39,8 @@ Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& col
     const auto fill = [&](int i, int j) {
       int in_row = -1, in_col = -1;
       for (int c = 0; c < U_.cols(); ++c) in_row += U_(i, c).is_zero() ? 0 : 1;
-      for (int r = 0; r < U_.rows(); ++r) in_col += row_done[static_cast<std::size_t>(r)] != 0 || U_(r, j).is_zero() ? 0 : 1;
+      for (int r = 0; r < U_.rows(); ++r)
+        in_col += row_done[static_cast<std::size_t>(r)] != 0 || U_(r, j).is_zero() ? 0 : 1;
       return in_row * in_col;
     };
     struct Choice {
@@ -73,7 +76,8 @@ Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& col
       if (row_done[static_cast<std::size_t>(i)] != 0 || U_(i, best.col).is_zero()) continue;
       const Expr factor = U_(i, best.col) * inverse;
       factors_.push_back({i, best.row, factor});
-      for (int j = 0; j < U_.cols(); ++j) U_(i, j) = j == best.col ? Expr(0) : U_(i, j) - factor * U_(best.row, j);
+      for (int j = 0; j < U_.cols(); ++j)
+        U_(i, j) = j == best.col ? Expr(0) : U_(i, j) - factor * U_(best.row, j);
     }
   }
 }
@@ -92,11 +96,13 @@ std::vector<Expr> Elimination::column(int j) const {
 }
 
 std::vector<Expr> Elimination::solve(std::vector<Expr> b) const {
-  for (const Factor& f : factors_) b[static_cast<std::size_t>(f.target)] -= f.value * b[static_cast<std::size_t>(f.row)];
+  for (const Factor& f : factors_)
+    b[static_cast<std::size_t>(f.target)] -= f.value * b[static_cast<std::size_t>(f.row)];
   std::vector<Expr> x(static_cast<std::size_t>(U_.cols()), Expr(0));
   for (std::size_t k = pivots_.size(); k-- > 0;) {
     Expr sum = b[static_cast<std::size_t>(pivots_[k].row)];
-    for (std::size_t l = k + 1; l < pivots_.size(); ++l) sum -= U_(pivots_[k].row, pivots_[l].col) * x[static_cast<std::size_t>(pivots_[l].col)];
+    for (std::size_t l = k + 1; l < pivots_.size(); ++l)
+      sum -= U_(pivots_[k].row, pivots_[l].col) * x[static_cast<std::size_t>(pivots_[l].col)];
     x[static_cast<std::size_t>(pivots_[k].col)] = sum * pivots_[k].inverse;
   }
   return x;
@@ -106,14 +112,18 @@ std::vector<Expr> Elimination::solve_transposed(const std::vector<Expr>& c) cons
   std::vector<Expr> y(static_cast<std::size_t>(U_.rows()), Expr(0));
   for (std::size_t k = 0; k < pivots_.size(); ++k) {
     Expr sum = c[static_cast<std::size_t>(pivots_[k].col)];
-    for (std::size_t l = 0; l < k; ++l) sum -= U_(pivots_[l].row, pivots_[k].col) * y[static_cast<std::size_t>(pivots_[l].row)];
+    for (std::size_t l = 0; l < k; ++l)
+      sum -= U_(pivots_[l].row, pivots_[k].col) * y[static_cast<std::size_t>(pivots_[l].row)];
     y[static_cast<std::size_t>(pivots_[k].row)] = sum * pivots_[k].inverse;
   }
-  for (std::size_t k = factors_.size(); k-- > 0;) y[static_cast<std::size_t>(factors_[k].row)] -= factors_[k].value * y[static_cast<std::size_t>(factors_[k].target)];
+  for (std::size_t k = factors_.size(); k-- > 0;)
+    y[static_cast<std::size_t>(factors_[k].row)] -=
+        factors_[k].value * y[static_cast<std::size_t>(factors_[k].target)];
   return y;
 }
 
-std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K, const std::vector<std::vector<Expr>>& right_hand_sides) {
+std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K,
+                                               const std::vector<std::vector<Expr>>& right_hand_sides) {
   const int n = K.rows();
   Matrix<Expr> L(n, n);
   std::vector<Expr> inverse(static_cast<std::size_t>(n));

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Gaussian elimination on a tape: factors a full-row-rank matrix of expressions once and writes solutions for further
-// right-hand sides, so that the drift of a kernel is one augmented column instead of a differentiated matrix.
+// Gaussian elimination on a tape: factors a full-row-rank matrix of expressions once and writes solutions for
+// further right-hand sides, so that the drift of a kernel is one augmented column instead of a differentiated
+// matrix.
 
 #include <functional>
 #include <vector>
@@ -17,8 +18,8 @@ using Sampler = std::function<std::vector<std::vector<double>>(const std::vector
 
 class Elimination {
  public:
-  /// Pivots: constants of unit size first, then constants, then what stays away from zero at the samples, with the
-  /// least fill-in.
+  /// Pivots: constants of unit size first, then constants, then what stays away from zero at the samples,
+  /// with the least fill-in.
   /// @param A  rows x cols of full row rank
   /// @param columns  columns that may hold pivots
   Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& columns, const Sampler& sampler);
@@ -51,6 +52,7 @@ class Elimination {
 };
 
 /// Solves the symmetric positive definite system K x = b by LDL^T on the tape.
-std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K, const std::vector<std::vector<Expr>>& right_hand_sides);
+std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K,
+                                               const std::vector<std::vector<Expr>>& right_hand_sides);
 
 }  // namespace anholon

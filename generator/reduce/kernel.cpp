@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "reduce/kernel.hpp"
 
-#include <Eigen/Dense>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -49,7 +49,8 @@ std::vector<std::vector<int>> combinations(int n, int k) {
     while (i >= 0 && pick[static_cast<std::size_t>(i)] == n - k + i) --i;
     if (i < 0) return all;
     ++pick[static_cast<std::size_t>(i)];
-    for (int j = i + 1; j < k; ++j) pick[static_cast<std::size_t>(j)] = pick[static_cast<std::size_t>(j - 1)] + 1;
+    for (int j = i + 1; j < k; ++j)
+      pick[static_cast<std::size_t>(j)] = pick[static_cast<std::size_t>(j - 1)] + 1;
   }
 }
 
@@ -70,7 +71,8 @@ std::vector<std::vector<NodeId>> rows_of(Tape& tape, const Matrix<Expr>& m) {
 Matrix<Expr> matrix_of(Tape& tape, const std::vector<std::vector<NodeId>>& rows, int cols) {
   Matrix<Expr> m(static_cast<int>(rows.size()), cols);
   for (int i = 0; i < m.rows(); ++i) {
-    for (int j = 0; j < cols; ++j) m(i, j) = Expr(tape, rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
+    for (int j = 0; j < cols; ++j)
+      m(i, j) = Expr(tape, rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)]);
   }
   return m;
 }
@@ -89,8 +91,9 @@ std::vector<Eigen::MatrixXd> sampled(Tape& tape, const Matrix<Expr>& m, const Sa
 
 }  // namespace
 
-KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
-                                       const std::vector<int>& preferred_free, const std::vector<std::string>& names, const Sampler& sampler)
+KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks,
+                                       Inverse inverse, const std::vector<int>& preferred_free,
+                                       const std::vector<std::string>& names, const Sampler& sampler)
     : tape_(tape), sampler_(sampler), rows_(std::move(rows)), leading_(ranks.leading_rows) {
   A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
   split_redundant_rows(inverse);
@@ -119,14 +122,15 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
     return;
   }
   if (independent == 0) return;
-  // Least squares over all rows: A_P^T A‡ x = A_P^T b on independent columns P. No choice of rows can go singular, and
-  // its transpose gives the multipliers of least norm, lambda = A_P mu.
+  // Least squares over all rows: A_P^T A‡ x = A_P^T b on independent columns P. No choice of rows can go
+  // singular, and its transpose gives the multipliers of least norm, lambda = A_P mu.
   C_ = rows_.A.block(range(count), elimination_->pivot_columns()).transposed();
   A_1_ = C_ * rows_.A;
   elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
 }
 
-std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free, bool content_divided) const {
+std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free,
+                                                    bool content_divided) const {
   const int passive = A_1_.cols();
   Kernel kernel;
   kernel.free = free;
@@ -170,12 +174,14 @@ void KinematicReduction::judge(Kernel& kernel) const {
   std::vector<double> medians;
   for (int c = 0; c < kernel.H.cols(); ++c) {
     std::vector<double> norms;
-    for (const auto& h : H) norms.push_back(h.allFinite() ? h.col(c).norm() : std::numeric_limits<double>::infinity());
+    for (const auto& h : H)
+      norms.push_back(h.allFinite() ? h.col(c).norm() : std::numeric_limits<double>::infinity());
     std::ranges::nth_element(norms, norms.begin() + static_cast<std::ptrdiff_t>(norms.size() / 2));
     medians.push_back(norms[norms.size() / 2]);
   }
   for (std::size_t s = 0; s < H.size(); ++s) {
-    bool regular = H[s].allFinite() && J[s].allFinite() && (J[s].size() == 0 || J[s].cwiseAbs().maxCoeff() < 1e9);
+    bool regular =
+        H[s].allFinite() && J[s].allFinite() && (J[s].size() == 0 || J[s].cwiseAbs().maxCoeff() < 1e9);
     if (regular && kernel.H.cols() > 0) {
       Eigen::MatrixXd h = H[s];
       for (int c = 0; c < h.cols() && regular; ++c) {
@@ -194,7 +200,8 @@ void KinematicReduction::judge(Kernel& kernel) const {
   }
 }
 
-void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, const std::vector<std::string>& names) {
+void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
+                                       const std::vector<std::string>& names) {
   const int passive = A_1_.cols();
   const int k = passive - A_1_.rows();
   // numeric worth of a free set: how far the other columns stay from singular, relative to all columns
@@ -228,9 +235,11 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, c
       const double w = worth(set);
       ranked.emplace_back(std::isfinite(w) ? w : 0, std::move(set));
     }
-    std::ranges::stable_sort(ranked, [](const auto& a, const auto& b) {  // equal to 1 %: keep the declared order
-      return std::floor(std::log(std::max(a.first, 1e-300)) * 100) > std::floor(std::log(std::max(b.first, 1e-300)) * 100);
-    });
+    std::ranges::stable_sort(ranked,
+                             [](const auto& a, const auto& b) {  // equal to 1 %: keep the declared order
+                               return std::floor(std::log(std::max(a.first, 1e-300)) * 100) >
+                                      std::floor(std::log(std::max(b.first, 1e-300)) * 100);
+                             });
     for (auto& [w, set] : ranked) {
       if (static_cast<int>(free_sets.size()) < derivation_limit) free_sets.push_back(set);
     }
@@ -251,7 +260,8 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, c
       const std::vector<NodeId> j = nodes_of(tape_, kernel->J);
       roots.insert(roots.end(), j.begin(), j.end());
       const OperationCount count = count_operations(tape_, roots);
-      const int operations = count.total() + 10 * count.divisions;  // a division takes about as long as ten products
+      const int operations =
+          count.total() + 10 * count.divisions;  // a division takes about as long as ten products
       const bool better = !best || kernel->irregular < best->irregular ||
                           (kernel->irregular == best->irregular && operations < best_operations);
       if (better) best = kernel, best_operations = operations;
@@ -259,7 +269,8 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, c
   }
   if (!best) throw UnsupportedError("no kernel basis could be derived");
   kernel_ = *best;
-  if (!kernel_.content_divided && A_1_.rows() > 0) kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
+  if (!kernel_.content_divided && A_1_.rows() > 0)
+    kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
 
   std::vector<std::string> free_names;
   for (const int c : kernel_.free) free_names.push_back(names[static_cast<std::size_t>(c)]);
@@ -268,20 +279,24 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free, c
   } else if (A_1_.rows() == 0) {
     kernel_.description = "no constraints: nu are the passive velocities themselves";
   } else {
-    kernel_.description = kernel_.content_divided
-                              ? fmt::format("denominator-free basis, content divided out, built on free velocities ({})", fmt::join(free_names, ", "))
-                              : fmt::format("pivoted basis, nu = ({})", fmt::join(free_names, ", "));
+    kernel_.description =
+        kernel_.content_divided
+            ? fmt::format("denominator-free basis, content divided out, built on free velocities ({})",
+                          fmt::join(free_names, ", "))
+            : fmt::format("pivoted basis, nu = ({})", fmt::join(free_names, ", "));
   }
 }
 
-std::vector<Expr> KinematicReduction::velocities(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu) const {
+std::vector<Expr> KinematicReduction::velocities(const std::vector<Expr>& r_a_dot,
+                                                 const std::vector<Expr>& nu) const {
   std::vector<Expr> v = kernel_.J * r_a_dot;
   const std::vector<Expr> h = kernel_.H * nu;
   for (std::size_t i = 0; i < v.size(); ++i) v[i] += h[i];
   return v;
 }
 
-std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu, const std::vector<Expr>& bias,
+std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu,
+                                            const std::vector<Expr>& bias,
                                             const std::vector<std::pair<NodeId, NodeId>>& motion) const {
   if (kernel_.content_divided) {
     std::vector<NodeId> roots;
@@ -296,7 +311,8 @@ std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, co
   return kernel_elimination_->solve(b);
 }
 
-std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& residual, const std::vector<Expr>& lambda_stat) const {
+std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& residual,
+                                                  const std::vector<Expr>& lambda_stat) const {
   std::vector<Expr> lambda(static_cast<std::size_t>(rows_.A.rows()), Expr(0));
   if (elimination_) lambda = C_.transposed() * elimination_->solve_transposed(residual);
   const std::vector<Expr> extra = N_ * lambda_stat;
@@ -304,7 +320,8 @@ std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& resid
   return lambda;
 }
 
-std::vector<Expr> KinematicReduction::reduced_velocities(const std::vector<Expr>& passive, const std::vector<Expr>& r_a_dot) const {
+std::vector<Expr> KinematicReduction::reduced_velocities(const std::vector<Expr>& passive,
+                                                         const std::vector<Expr>& r_a_dot) const {
   std::vector<Expr> difference = kernel_.J * r_a_dot;
   for (std::size_t i = 0; i < difference.size(); ++i) difference[i] = passive[i] - difference[i];
   if (k() == 0) return {};

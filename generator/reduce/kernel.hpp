@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The kinematic model eta‡ = J r_a_dot + H nu, eq. (11), with a basis H that stays regular in the working range, its
-// drift, and the multipliers of eq. (26). One generalised inverse serves both, as (27) needs.
+// The kinematic model eta‡ = J r_a_dot + H nu, eq. (11), with a basis H that stays regular in the working
+// range, its drift, and the multipliers of eq. (26). One generalised inverse serves both, as (27) needs.
 
 #include <optional>
 #include <string>
@@ -24,39 +24,44 @@ struct ConstraintRows {
 };
 
 struct Kernel {
-  Matrix<Expr> H;  // passive x k
-  Matrix<Expr> J;  // passive x active
-  std::vector<int> free;            // passive columns that nu names, or that the content-divided basis was built on
-  bool content_divided = false;     // else nu are the free velocities themselves
-  double worst_condition = 1;       // of H over the samples
-  std::string description;          // one sentence for reports
-  int irregular = 0;                // samples at which H or J is not finite, vanishes or loses rank
+  Matrix<Expr> H;         // passive x k
+  Matrix<Expr> J;         // passive x active
+  std::vector<int> free;  // passive columns that nu names, or that the content-divided basis was built on
+  bool content_divided = false;  // else nu are the free velocities themselves
+  double worst_condition = 1;    // of H over the samples
+  std::string description;       // one sentence for reports
+  int irregular = 0;             // samples at which H or J is not finite, vanishes or loses rank
 };
 
 class KinematicReduction {
  public:
   /// @param preferred_free  names of velocities that the description wants as nu
-  KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse, const std::vector<int>& preferred_free,
-                     const std::vector<std::string>& names, const Sampler& sampler);
+  KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
+                     const std::vector<int>& preferred_free, const std::vector<std::string>& names,
+                     const Sampler& sampler);
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   [[nodiscard]] int k() const { return kernel_.H.cols(); }
   [[nodiscard]] const ConstraintRows& rows() const { return rows_; }
 
   /// eta‡ = J r_a_dot + H nu
-  [[nodiscard]] std::vector<Expr> velocities(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu) const;
-  /// J_dot r_a_dot + H_dot nu as one vector. A pivoted basis solves for it as an augmented column; a content-divided one
-  /// is differentiated along the motion, which keeps it regular where A loses rank.
+  [[nodiscard]] std::vector<Expr> velocities(const std::vector<Expr>& r_a_dot,
+                                             const std::vector<Expr>& nu) const;
+  /// J_dot r_a_dot + H_dot nu as one vector. A pivoted basis solves for it as an augmented column; a
+  /// content-divided one is differentiated along the motion, which keeps it regular where A loses rank.
   /// @param bias  (rows) A‡_dot eta‡ + B_a_dot r_a_dot
   /// @param motion  (input, rate) of every position input of the tape
-  [[nodiscard]] std::vector<Expr> drift(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu, const std::vector<Expr>& bias,
+  [[nodiscard]] std::vector<Expr> drift(const std::vector<Expr>& r_a_dot, const std::vector<Expr>& nu,
+                                        const std::vector<Expr>& bias,
                                         const std::vector<std::pair<NodeId, NodeId>>& motion) const;
   /// lambda of eq. (26) from the residual M‡ eta‡_dot + M_a‡^T r_a_ddot - f‡, plus N s.
-  [[nodiscard]] std::vector<Expr> multipliers(const std::vector<Expr>& residual, const std::vector<Expr>& lambda_stat) const;
+  [[nodiscard]] std::vector<Expr> multipliers(const std::vector<Expr>& residual,
+                                              const std::vector<Expr>& lambda_stat) const;
   /// N: basis of ker A‡^T, rows x (rows - m°).
   [[nodiscard]] const Matrix<Expr>& static_basis() const { return N_; }
   /// nu from passive velocities that satisfy the constraints.
-  [[nodiscard]] std::vector<Expr> reduced_velocities(const std::vector<Expr>& passive, const std::vector<Expr>& r_a_dot) const;
+  [[nodiscard]] std::vector<Expr> reduced_velocities(const std::vector<Expr>& passive,
+                                                     const std::vector<Expr>& r_a_dot) const;
 
  private:
   void split_redundant_rows(Inverse inverse);
@@ -68,10 +73,10 @@ class KinematicReduction {
   Sampler sampler_;
   ConstraintRows rows_;
   std::vector<int> leading_;
-  Matrix<Expr> A_1_;        // C A‡: m° independent rows, m° x passive
-  Matrix<Expr> C_;     // C: picks the leading rows, or weighs all of them, m° x rows
+  Matrix<Expr> A_1_;  // C A‡: m° independent rows, m° x passive
+  Matrix<Expr> C_;    // C: picks the leading rows, or weighs all of them, m° x rows
   Matrix<Expr> N_;
-  Matrix<Expr> B_1_;        // C B_a
+  Matrix<Expr> B_1_;                               // C B_a
   std::optional<Elimination> elimination_;         // for the multipliers
   std::optional<Elimination> kernel_elimination_;  // on the kernel's own pivots, for its drift
   Kernel kernel_;

@@ -21,7 +21,8 @@ struct Partition {
   [[nodiscard]] int s_a() const { return static_cast<int>(active.size()); }
 };
 
-/// @param torque_driven  active coordinates whose torque is given, reduced like passive ones; "*" for all of them
+/// @param torque_driven  active coordinates whose torque is given, reduced like passive ones; "*" for all of
+/// them
 inline Partition partition_of(const Model& model, const std::set<std::string>& torque_driven = {}) {
   Partition p;
   p.n = static_cast<int>(free_components(model.group).size());
@@ -45,7 +46,8 @@ inline Partition partition_of(const Model& model, const std::set<std::string>& t
 /// Names of velocities: V_X, ..., and the coordinates.
 inline std::vector<std::string> velocity_names(const Model& model) {
   std::vector<std::string> names;
-  for (const int c : free_components(model.group)) names.emplace_back(twist_component_names[static_cast<std::size_t>(c)]);
+  for (const int c : free_components(model.group))
+    names.emplace_back(twist_component_names[static_cast<std::size_t>(c)]);
   for (const Coordinate& c : model.coordinates) names.push_back(c.name);
   return names;
 }

@@ -2,7 +2,6 @@
 #include "reduce/rank.hpp"
 
 #include <Eigen/Dense>
-
 #include <algorithm>
 #include <numeric>
 
@@ -13,8 +12,8 @@ namespace {
 
 constexpr unsigned digits = 50;
 
-/// Rank by elimination with complete pivoting; what is below 1e-25 of the largest entry is zero. The samples are exact
-/// doubles, so an entry that vanishes at a special angle is about 1e-17 there and still counts.
+/// Rank by elimination with complete pivoting; what is below 1e-25 of the largest entry is zero. The samples
+/// are exact doubles, so an entry that vanishes at a special angle is about 1e-17 there and still counts.
 int rank_of(Matrix<Exact> a, const Exact& tolerance) {
   Exact largest = 0;
   for (const Exact& e : a.entries()) largest = std::max(largest, abs(e));
@@ -25,7 +24,8 @@ int rank_of(Matrix<Exact> a, const Exact& tolerance) {
     Exact best = largest * tolerance;
     for (int i = rank; i < a.rows(); ++i) {
       for (int j = 0; j < a.cols(); ++j) {
-        if (used[static_cast<std::size_t>(j)] == 0 && abs(a(i, j)) > best) best = abs(a(i, j)), pivot_row = i, pivot_col = j;
+        if (used[static_cast<std::size_t>(j)] == 0 && abs(a(i, j)) > best)
+          best = abs(a(i, j)), pivot_row = i, pivot_col = j;
       }
     }
     if (pivot_row < 0) break;
@@ -53,12 +53,14 @@ Eigen::MatrixXd to_double(const Matrix<Exact>& a) {
 std::string RankAnalysis::table_I_class(const Partition& partition) const {
   const bool has_kernel = static_cast<int>(partition.passive.size()) > m_locked;
   const bool hyperstatic = m > m_locked;
-  return std::string(has_kernel ? "H nonzero" : "H empty") + (hyperstatic ? ", lambda_stat undetermined" : ", lambda_stat = 0") +
+  return std::string(has_kernel ? "H nonzero" : "H empty") +
+         (hyperstatic ? ", lambda_stat undetermined" : ", lambda_stat = 0") +
          (has_kernel ? " (dynamic)" : " (kinematic)");
 }
 
-RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters, const Partition& partition,
-                           const std::vector<SampleState>& samples, const std::vector<int>& preferred_rows) {
+RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters,
+                           const Partition& partition, const std::vector<SampleState>& samples,
+                           const std::vector<int>& preferred_rows) {
   const WorkingDigits precision(digits);
   const Mechanism<Exact> mechanism = mechanise<Exact>(description, parameters);
   FreeDynamics<Exact> dynamics(mechanism);
@@ -79,7 +81,8 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
   Matrix<Exact> generic;  // at a random sample of full rank
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const int locked = rank_of(matrices[s].block(all_rows, partition.passive), zero_tolerance);
-    if (locked > analysis.m_locked || generic.rows() == 0) generic = matrices[s].block(all_rows, partition.passive);
+    if (locked > analysis.m_locked || generic.rows() == 0)
+      generic = matrices[s].block(all_rows, partition.passive);
     analysis.m_locked = std::max(analysis.m_locked, locked);
     analysis.m = std::max(analysis.m, rank_of(matrices[s].block(all_rows, all_columns), zero_tolerance));
   }
@@ -93,7 +96,8 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
   for (const int row : order) {
     std::vector<int> tried = analysis.leading_rows;
     tried.push_back(row);
-    if (rank_of(generic.block(tried, every), zero_tolerance) == static_cast<int>(tried.size())) analysis.leading_rows = tried;
+    if (rank_of(generic.block(tried, every), zero_tolerance) == static_cast<int>(tried.size()))
+      analysis.leading_rows = tried;
   }
 
   for (std::size_t s = 0; s < samples.size(); ++s) {
@@ -105,10 +109,12 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(to_double(locked), Eigen::ComputeFullV);
     if (analysis.m_locked == 0) continue;
     const double condition = svd.singularValues()(0) / svd.singularValues()(analysis.m_locked - 1);
-    if (condition > analysis.worst_condition) analysis.worst_condition = condition, analysis.worst_at = samples[s].label;
+    if (condition > analysis.worst_condition)
+      analysis.worst_condition = condition, analysis.worst_at = samples[s].label;
     const auto kernel = svd.matrixV().rightCols(locked.cols() - analysis.m_locked);
     for (int i = 0; i < partition.s_p(); ++i) {
-      if (kernel.cols() > 0 && kernel.row(partition.n + i).norm() > 1e-9) analysis.kinematic[static_cast<std::size_t>(i)] = false;
+      if (kernel.cols() > 0 && kernel.row(partition.n + i).norm() > 1e-9)
+        analysis.kinematic[static_cast<std::size_t>(i)] = false;
     }
   }
   return analysis;

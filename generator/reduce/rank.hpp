@@ -14,16 +14,16 @@ namespace anholon {
 
 struct RankAnalysis {
   int rows = 0;
-  int m_locked = 0;              // m°: rank of (A, B_p)
-  int m = 0;                     // rank of (A, B_p, B_a)
-  std::vector<int> leading_rows; // first m° rows of (A, B_p) that are independent
-  std::vector<bool> kinematic;   // for each passive coordinate: fixed by the constraints alone
+  int m_locked = 0;               // m°: rank of (A, B_p)
+  int m = 0;                      // rank of (A, B_p, B_a)
+  std::vector<int> leading_rows;  // first m° rows of (A, B_p) that are independent
+  std::vector<bool> kinematic;    // for each passive coordinate: fixed by the constraints alone
   struct Drop {
     std::string where;
     int rank;
   };
-  std::vector<Drop> drops;       // special configurations at which (A, B_p) loses rank
-  double worst_condition = 1;    // of (A, B_p) over the samples that keep the rank
+  std::vector<Drop> drops;     // special configurations at which (A, B_p) loses rank
+  double worst_condition = 1;  // of (A, B_p) over the samples that keep the rank
   std::string worst_at;
 
   /// e.g. "H nonzero, lambda_stat = 0 (dynamic)"
@@ -31,7 +31,8 @@ struct RankAnalysis {
 };
 
 /// @param preferred_rows  rows to take as the leading ones, may be empty
-RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters, const Partition& partition,
-                           const std::vector<SampleState>& samples, const std::vector<int>& preferred_rows = {});
+RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters,
+                           const Partition& partition, const std::vector<SampleState>& samples,
+                           const std::vector<int>& preferred_rows = {});
 
 }  // namespace anholon

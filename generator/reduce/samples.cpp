@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "reduce/samples.hpp"
 
-#include <cmath>
 #include <fmt/format.h>
+
+#include <cmath>
 
 namespace anholon {
 namespace {
@@ -13,9 +14,9 @@ Exact rounded(const Exact& x) { return Exact::from_double(x.to_double()); }
 Mat3<Exact> rotation(const Exact& w, const Exact& x, const Exact& y, const Exact& z) {
   const Exact n = Exact(1) / (w * w + x * x + y * y + z * z);
   const Exact two = Exact(2) * n;
-  return {{Exact(1) - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y), two * (x * y + w * z),
-           Exact(1) - two * (x * x + z * z), two * (y * z - w * x), two * (x * z - w * y), two * (y * z + w * x),
-           Exact(1) - two * (x * x + y * y)}};
+  return {{Exact(1) - two * (y * y + z * z), two * (x * y - w * z), two * (x * z + w * y),
+           two * (x * y + w * z), Exact(1) - two * (x * x + z * z), two * (y * z - w * x),
+           two * (x * z - w * y), two * (y * z + w * x), Exact(1) - two * (x * x + y * y)}};
 }
 
 /// Angles at which constraints tend to lose rank.
@@ -77,7 +78,8 @@ State<Exact> random_state(const Model& model, SampleSource& source) {
 std::vector<SampleState> sample_states(const Model& model, int random_count) {
   SampleSource source;
   std::vector<SampleState> samples;
-  for (int i = 0; i < random_count; ++i) samples.push_back({fmt::format("random {}", i + 1), false, random_state(model, source)});
+  for (int i = 0; i < random_count; ++i)
+    samples.push_back({fmt::format("random {}", i + 1), false, random_state(model, source)});
 
   std::vector<std::size_t> angles;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
@@ -96,11 +98,14 @@ std::vector<SampleState> sample_states(const Model& model, int random_count) {
   const auto special = special_angles();
   for (const auto& [text, angle] : special) {
     add(fmt::format("all angles {}", text), [&](std::size_t) { return angle; });
-    if (angles.size() > 1) add(fmt::format("angles alternately +-{}", text), [&](std::size_t k) { return k % 2 == 0 ? angle : -angle; });
+    if (angles.size() > 1)
+      add(fmt::format("angles alternately +-{}", text),
+          [&](std::size_t k) { return k % 2 == 0 ? angle : -angle; });
   }
   for (std::size_t i = 0; i < angles.size(); ++i) {  // one angle special, the others random
     for (const auto& [text, angle] : special) {
-      SampleState sample{fmt::format("{} = {}", model.coordinates[angles[i]].name, text), true, random_state(model, source)};
+      SampleState sample{fmt::format("{} = {}", model.coordinates[angles[i]].name, text), true,
+                         random_state(model, source)};
       const Coordinate& c = model.coordinates[angles[i]];
       if (angle < c.lower || angle > c.upper) continue;
       sample.state.r[angles[i]] = angle;

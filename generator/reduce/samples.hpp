@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Configurations at which ranks and conditioning are judged: random ones in the working range, and the special ones
-// (multiples of pi/4; all equal, opposite, straight) that random sampling misses.
+// Configurations at which ranks and conditioning are judged: random ones in the working range, and the
+// special ones (multiples of pi/4; all equal, opposite, straight) that random sampling misses.
 
 #include <string>
 #include <vector>
@@ -18,7 +18,8 @@ struct SampleState {
   State<Exact> state;  // exact binary values, so that double and exact evaluation see the same numbers
 };
 
-/// Reproducible on every machine: own mapping from a fixed 64-bit generator, no distribution of the standard library.
+/// Reproducible on every machine: own mapping from a fixed 64-bit generator, no distribution of the standard
+/// library.
 class SampleSource {
  public:
   explicit SampleSource(std::uint64_t seed = 20130922) : state_(seed) {}

@@ -12,7 +12,9 @@ NodeId Expr::id(Tape& tape) const {
   return static_cast<NodeId>(numerator_);
 }
 
-bool Expr::is_zero() const { return tape_ == nullptr ? numerator_ == 0 : tape_->is_zero(static_cast<NodeId>(numerator_)); }
+bool Expr::is_zero() const {
+  return tape_ == nullptr ? numerator_ == 0 : tape_->is_zero(static_cast<NodeId>(numerator_));
+}
 
 std::optional<Exact> Expr::constant_value() const {
   if (tape_ == nullptr) return Exact::ratio(numerator_, denominator_);
@@ -30,11 +32,20 @@ Expr Expr::binary(Op op, const Expr& x, const Expr& y) {
   std::int64_t n = 0;
   std::int64_t m = 1;
   switch (op) {
-    case Op::add: n = a * d + c * b, m = b * d; break;
-    case Op::sub: n = a * d - c * b, m = b * d; break;
-    case Op::mul: n = a * c, m = b * d; break;
-    case Op::div: n = a * d, m = b * c; break;
-    default: throw std::logic_error("a function of literals needs a tape");
+    case Op::add:
+      n = a * d + c * b, m = b * d;
+      break;
+    case Op::sub:
+      n = a * d - c * b, m = b * d;
+      break;
+    case Op::mul:
+      n = a * c, m = b * d;
+      break;
+    case Op::div:
+      n = a * d, m = b * c;
+      break;
+    default:
+      throw std::logic_error("a function of literals needs a tape");
   }
   if (m == 0) throw std::domain_error("division by a constant zero");
   if (m < 0) n = -n, m = -m;

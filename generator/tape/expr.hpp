@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Scalar that writes a tape. An Expr is a node of a tape, or a small rational that belongs to none yet, so that
-// generic code may write S(0), S(1) / S(2). It has no order and no truth value: code that branches on a number cannot
-// be derived symbolically and does not compile.
+// Scalar that writes a tape. An Expr is a node of a tape, or a small rational that belongs to none yet, so
+// that generic code may write S(0), S(1) / S(2). It has no order and no truth value: code that branches on a
+// number cannot be derived symbolically and does not compile.
 
 #include <cstdint>
 #include <optional>
@@ -19,7 +19,8 @@ class Expr {
   Expr(Tape& tape, NodeId id) : tape_(&tape), numerator_(static_cast<std::int32_t>(id)) {}
 
   [[nodiscard]] Tape* tape() const { return tape_; }
-  /// Node on `tape`, made there if this is a rational. @throws std::logic_error if this is a node of another tape
+  /// Node on `tape`, made there if this is a rational. @throws std::logic_error if this is a node of another
+  /// tape
   [[nodiscard]] NodeId id(Tape& tape) const;
   /// Structural zero: what emission would print as 0.
   [[nodiscard]] bool is_zero() const;

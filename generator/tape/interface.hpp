@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// A program: one tape and the ordered functions over it. The C++ header, the flat C interface, the JSON and the
-// documentation are all written from this table.
+// A program: one tape and the ordered functions over it. The C++ header, the flat C interface, the JSON and
+// the documentation are all written from this table.
 
 #include <optional>
 #include <string>
@@ -42,18 +42,19 @@ struct OutputBlock {
 
 struct Function {
   std::string name;
-  std::string meaning;                // one sentence and the equation, becomes the docstring
-  std::vector<OutputBlock> outputs;   // blocks of size 0 are left out before emission
-  std::string remark;                 // e.g. which candidate won, singular configurations
+  std::string meaning;               // one sentence and the equation, becomes the docstring
+  std::vector<OutputBlock> outputs;  // blocks of size 0 are left out before emission
+  std::string remark;                // e.g. which candidate won, singular configurations
 };
 
 struct Program {
-  std::string name_space;  // <model>::<scene>[::<mode>][::chart<i>]
-  std::string model;       // name of the model
-  std::string scene;       // name of the scene, "standard" where none is given
+  std::string name_space;     // <model>::<scene>[::<mode>][::chart<i>]
+  std::string model;          // name of the model
+  std::string scene;          // name of the scene, "standard" where none is given
   std::string source_file;    // base name of the description
   std::string source_sha256;  // of its bytes
-  std::vector<std::string> notes;  // lines of the header comment: class in Table I, kernel, state layout, candidates
+  std::vector<std::string>
+      notes;  // lines of the header comment: class in Table I, kernel, state layout, candidates
   Tape tape;
   std::vector<ParameterInfo> parameters;
   std::vector<InputBlock> inputs;  // in the order of arguments; functions take those that they use

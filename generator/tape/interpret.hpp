@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Runs a part of a tape over any scalar: double for numeric checks, Exact for the oracle, Expr to copy it onto another
-// tape, and GiNaC's ex through the converter.
+// Runs a part of a tape over any scalar: double for numeric checks, Exact for the oracle, Expr to copy it
+// onto another tape, and GiNaC's ex through the converter.
 
 #include <span>
 #include <vector>
@@ -23,7 +23,9 @@ struct FromExact<Exact> {
 };
 template <>
 struct FromExact<long double> {
-  long double operator()(const Exact& value) const { return std::strtold(value.decimal(30).c_str(), nullptr); }
+  long double operator()(const Exact& value) const {
+    return std::strtold(value.decimal(30).c_str(), nullptr);
+  }
 };
 template <>
 struct FromExact<Expr> {
@@ -43,7 +45,8 @@ class Interpreter {
       slot[id] = static_cast<std::uint32_t>(values_.size());
       values_.push_back(n.op == Op::constant ? constant(tape.value(id)) : S(0));
       if (n.op == Op::input) inputs_.push_back({slot[id], n.a});
-      if (info(n.op).arity > 0) steps_.push_back({n.op, slot[id], slot[n.a], info(n.op).arity == 2 ? slot[n.b] : slot[n.a]});
+      if (info(n.op).arity > 0)
+        steps_.push_back({n.op, slot[id], slot[n.a], info(n.op).arity == 2 ? slot[n.b] : slot[n.a]});
     }
     for (const NodeId id : roots) roots_.push_back(slot[id]);
   }
@@ -70,7 +73,8 @@ class Interpreter {
 };
 
 template <class S>
-std::vector<S> interpret(const Tape& tape, const std::vector<NodeId>& roots, std::span<const S> inputs, FromExact<S> constant = {}) {
+std::vector<S> interpret(const Tape& tape, const std::vector<NodeId>& roots, std::span<const S> inputs,
+                         FromExact<S> constant = {}) {
   std::vector<S> outputs(roots.size(), S(0));
   Interpreter<S>(tape, roots, constant)(inputs, outputs);
   return outputs;

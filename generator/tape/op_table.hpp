@@ -12,11 +12,38 @@
 namespace anholon {
 
 enum class Op : std::uint8_t {
-  constant, input, add, sub, mul, div, neg, sqrt, sin, cos, tan, asin, acos, atan2, exp, log, tanh, abs, sign
+  constant,
+  input,
+  add,
+  sub,
+  mul,
+  div,
+  neg,
+  sqrt,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan2,
+  exp,
+  log,
+  tanh,
+  abs,
+  sign
 };
 
 /// How an operation is counted in reports: additions and multiplications apart from everything else.
-enum class CostClass : std::uint8_t { none, addition, multiplication, division, negation, root, trigonometric, other };
+enum class CostClass : std::uint8_t {
+  none,
+  addition,
+  multiplication,
+  division,
+  negation,
+  root,
+  trigonometric,
+  other
+};
 
 struct OpInfo {
   Op op;
@@ -51,36 +78,53 @@ inline constexpr std::array op_table = {
 constexpr const OpInfo& info(Op op) { return op_table[static_cast<std::size_t>(op)]; }
 
 template <class S>
-S sign(const S& x)
-  requires std::is_floating_point_v<S>
-{
+S sign(const S& x) requires std::is_floating_point_v<S> {
   return x > 0 ? S(1) : x < 0 ? S(-1) : S(0);
 }
 
 /// Value of an operation over any scalar; `b` is ignored by unary operations.
 template <class S>
 S apply(Op op, const S& a, const S& b) {
-  using std::abs, std::acos, std::asin, std::atan2, std::cos, std::exp, std::log, std::sin, std::sqrt, std::tan, std::tanh;
+  using std::abs, std::acos, std::asin, std::atan2, std::cos, std::exp, std::log, std::sin, std::sqrt,
+      std::tan, std::tanh;
   switch (op) {
-    case Op::add: return a + b;
-    case Op::sub: return a - b;
-    case Op::mul: return a * b;
-    case Op::div: return a / b;
-    case Op::neg: return -a;
-    case Op::sqrt: return sqrt(a);
-    case Op::sin: return sin(a);
-    case Op::cos: return cos(a);
-    case Op::tan: return tan(a);
-    case Op::asin: return asin(a);
-    case Op::acos: return acos(a);
-    case Op::atan2: return atan2(a, b);
-    case Op::exp: return exp(a);
-    case Op::log: return log(a);
-    case Op::tanh: return tanh(a);
-    case Op::abs: return abs(a);
-    case Op::sign: return sign(a);
+    case Op::add:
+      return a + b;
+    case Op::sub:
+      return a - b;
+    case Op::mul:
+      return a * b;
+    case Op::div:
+      return a / b;
+    case Op::neg:
+      return -a;
+    case Op::sqrt:
+      return sqrt(a);
+    case Op::sin:
+      return sin(a);
+    case Op::cos:
+      return cos(a);
+    case Op::tan:
+      return tan(a);
+    case Op::asin:
+      return asin(a);
+    case Op::acos:
+      return acos(a);
+    case Op::atan2:
+      return atan2(a, b);
+    case Op::exp:
+      return exp(a);
+    case Op::log:
+      return log(a);
+    case Op::tanh:
+      return tanh(a);
+    case Op::abs:
+      return abs(a);
+    case Op::sign:
+      return sign(a);
     case Op::constant:
-    case Op::input: break;
+    case Op::input:
+      break;
   }
   throw std::logic_error("a leaf of the tape has no operation to apply");
 }

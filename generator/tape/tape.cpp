@@ -62,7 +62,8 @@ NodeId Tape::constant(const Exact& value) {
   const auto [found, is_new] = constant_index_.try_emplace(text, 0);
   if (is_new) {
     constants_.push_back(value);
-    found->second = push({Op::constant, static_cast<std::uint32_t>(constants_.size() - 1), 0}, key_of_text(1, text));
+    found->second =
+        push({Op::constant, static_cast<std::uint32_t>(constants_.size() - 1), 0}, key_of_text(1, text));
   }
   return found->second;
 }
@@ -73,21 +74,29 @@ NodeId Tape::intern(Op op, NodeId a, NodeId b) {
   const auto [found, is_new] = index_.try_emplace(node, 0);
   if (is_new) {
     const bool binary = info(op).arity == 2;
-    found->second = push(node, combined(100 + static_cast<std::uint64_t>(op), keys_[a], binary ? keys_[b] : StructuralKey{}));
+    found->second = push(
+        node, combined(100 + static_cast<std::uint64_t>(op), keys_[a], binary ? keys_[b] : StructuralKey{}));
   }
   return found->second;
 }
 
 NodeId Tape::apply(Op op, NodeId a, NodeId b) {
   switch (op) {
-    case Op::add: return add(a, b);
-    case Op::sub: return sub(a, b);
-    case Op::mul: return mul(a, b);
-    case Op::div: return div(a, b);
-    case Op::neg: return neg(a);
+    case Op::add:
+      return add(a, b);
+    case Op::sub:
+      return sub(a, b);
+    case Op::mul:
+      return mul(a, b);
+    case Op::div:
+      return div(a, b);
+    case Op::neg:
+      return neg(a);
     case Op::constant:
-    case Op::input: throw std::logic_error("a leaf is not made by apply");
-    default: break;
+    case Op::input:
+      throw std::logic_error("a leaf is not made by apply");
+    default:
+      break;
   }
   if (is_constant(a) && (info(op).arity == 1 || is_constant(b))) {
     return constant(anholon::apply(op, value(a), info(op).arity == 2 ? value(b) : Exact()));
@@ -95,7 +104,8 @@ NodeId Tape::apply(Op op, NodeId a, NodeId b) {
   if (is(a, Op::neg) && info(op).arity == 1) {  // odd and even functions
     const NodeId positive = nodes_[a].a;
     if (op == Op::cos || op == Op::abs) return apply(op, positive);
-    if (op == Op::sin || op == Op::tan || op == Op::asin || op == Op::tanh || op == Op::sign) return neg(apply(op, positive));
+    if (op == Op::sin || op == Op::tan || op == Op::asin || op == Op::tanh || op == Op::sign)
+      return neg(apply(op, positive));
   }
   return intern(op, a, b);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The straight-line program: a hash-consed list of nodes in which every operand precedes its user. Algebraic folding
-// happens while a node is made and looks at the operands' structure alone, so the program does not depend on the order
-// in which a compiler evaluates the operands of a C++ expression.
+// The straight-line program: a hash-consed list of nodes in which every operand precedes its user. Algebraic
+// folding happens while a node is made and looks at the operands' structure alone, so the program does not
+// depend on the order in which a compiler evaluates the operands of a C++ expression.
 
 #include <cstdint>
 #include <string>
@@ -24,7 +24,8 @@ struct Node {
   std::uint32_t b;  // second operand of a binary operation, else 0
 };
 
-/// Key of a node's structure: equal on every run, machine and compiler for the same expression over the same inputs.
+/// Key of a node's structure: equal on every run, machine and compiler for the same expression over the same
+/// inputs.
 struct StructuralKey {
   std::uint64_t high = 0;
   std::uint64_t low = 0;
@@ -74,12 +75,15 @@ class Tape {
 
   struct NodeHash {
     std::size_t operator()(const Node& n) const noexcept {
-      return (static_cast<std::size_t>(n.op) * 0x9E3779B97F4A7C15ULL) ^ (static_cast<std::size_t>(n.a) * 0xC2B2AE3D27D4EB4FULL) ^
+      return (static_cast<std::size_t>(n.op) * 0x9E3779B97F4A7C15ULL) ^
+             (static_cast<std::size_t>(n.a) * 0xC2B2AE3D27D4EB4FULL) ^
              (static_cast<std::size_t>(n.b) * 0x165667B19E3779F9ULL);
     }
   };
   struct NodeEqual {
-    bool operator()(const Node& x, const Node& y) const noexcept { return x.op == y.op && x.a == y.a && x.b == y.b; }
+    bool operator()(const Node& x, const Node& y) const noexcept {
+      return x.op == y.op && x.a == y.a && x.b == y.b;
+    }
   };
 
   std::vector<Node> nodes_;

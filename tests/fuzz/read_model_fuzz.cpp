@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // libFuzzer target: any bytes give a model or a ModelError. Build with clang and -DANHOLON_FUZZ=ON, then
-//   ASAN_OPTIONS=detect_leaks=0 read_model_fuzz -max_total_time=600 -timeout=10 CORPUS models/*/ tests/describe/bad
+//   ASAN_OPTIONS=detect_leaks=0 read_model_fuzz -max_total_time=600 -timeout=10 CORPUS models/*/
+//   tests/describe/bad
 // Leaks are not looked for: CLN keeps its own constants until the end.
 #include <cstddef>
 #include <cstdint>

@@ -57,8 +57,9 @@ TEST_P(EveryModel, IsReproducedByteForByte) {
   const Model model = read_model(root / "models" / GetParam() / (GetParam() + ".toml"));
   const std::string expected = bytes_of(kept);
   const std::string text = emit_header(derive(model)->program);
-  EXPECT_TRUE(text == expected) << "generated code changed at " << first_difference(expected, text)
-                                << "\nif this is meant, run scripts/regenerate and commit the result with its cause";
+  EXPECT_TRUE(text == expected)
+      << "generated code changed at " << first_difference(expected, text)
+      << "\nif this is meant, run scripts/regenerate and commit the result with its cause";
   EXPECT_TRUE(text == emit_header(derive(model)->program)) << "two derivations in one process differ";
 }
 

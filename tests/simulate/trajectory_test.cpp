@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Whole motions: against the reference trajectories, against the conservation of energy, and along the tolerance.
+// Whole motions: against the reference trajectories, against the conservation of energy, and along the
+// tolerance.
 
 #include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "check/simulation.hpp"
 
@@ -33,7 +33,8 @@ class ReferenceTrajectory : public testing::TestWithParam<Case> {};
 TEST_P(ReferenceTrajectory, EndsWhereTheReferenceEnds) {
   const SimulationResult result = simulate_scene(read_scene(root + "/models/" + GetParam().scene));
   ASSERT_TRUE(result.finished) << result.status;
-  const auto reference = nlohmann::json::parse(std::ifstream(root + "/tests/reference/" + GetParam().reference));
+  const auto reference =
+      nlohmann::json::parse(std::ifstream(root + "/tests/reference/" + GetParam().reference));
   const auto& final = reference["trajectory"]["final"];
   const auto number = [](const nlohmann::json& j) { return std::stod(j.get<std::string>()); };
   // the scenes ask for 1e-12; the unstable roll of the bicycle loses three digits
@@ -45,10 +46,12 @@ TEST_P(ReferenceTrajectory, EndsWhereTheReferenceEnds) {
   }
   for (const char* kind : {"r_p", "eta"}) {
     for (std::size_t i = 0; i < final[kind].size(); ++i) {
-      EXPECT_NEAR(column(result, reference["coordinates"][kind][i].get<std::string>()), number(final[kind][i]), bound);
+      EXPECT_NEAR(column(result, reference["coordinates"][kind][i].get<std::string>()),
+                  number(final[kind][i]), bound);
     }
   }
-  EXPECT_NEAR(column(result, "kinetic") + column(result, "potential"), number(final["total_energy"]), bound * 10);
+  EXPECT_NEAR(column(result, "kinetic") + column(result, "potential"), number(final["total_energy"]),
+              bound * 10);
   EXPECT_NEAR(column(result, "work"), number(final["actuator_work_since_start"]), bound * 10);
   EXPECT_NEAR(column(result, "dissipated"), number(final["dissipated_energy_since_start"]), bound);
   EXPECT_LT(result.energy_balance, 1e-9);
@@ -56,9 +59,13 @@ TEST_P(ReferenceTrajectory, EndsWhereTheReferenceEnds) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paper, ReferenceTrajectory,
-                         testing::Values(Case{"mobile_pendulum/swing.scene.toml", "A_mobile_pendulum.json"}, Case{"bicycle/weave.scene.toml", "B_bicycle.json"},
-                                         Case{"rigid_snakeboard/gait.scene.toml", "C_rigid_snakeboard.json"}, Case{"soft_snakeboard/gait.scene.toml", "C_soft_snakeboard.json"}),
-                         [](const auto& info) { return info.param.reference.substr(0, 1) + std::to_string(info.index); });
+                         testing::Values(Case{"mobile_pendulum/swing.scene.toml", "A_mobile_pendulum.json"},
+                                         Case{"bicycle/weave.scene.toml", "B_bicycle.json"},
+                                         Case{"rigid_snakeboard/gait.scene.toml", "C_rigid_snakeboard.json"},
+                                         Case{"soft_snakeboard/gait.scene.toml", "C_soft_snakeboard.json"}),
+                         [](const auto& info) {
+                           return info.param.reference.substr(0, 1) + std::to_string(info.index);
+                         });
 
 TEST(SoftSnakeboardGait, LosesEnergyInProportionToTheTolerance) {
   Scene scene = read_scene(root + "/models/soft_snakeboard/gait.scene.toml");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-// Arms against the Orocos Kinematics and Dynamics Library, on the very same numbers: its chain is built from the mechanism.
+// Arms against the Orocos Kinematics and Dynamics Library, on the very same numbers: its chain is built from
+// the mechanism.
 
 #ifdef ANHOLON_HAVE_KDL
 
@@ -31,16 +32,20 @@ KDL::Chain chain_of(const Mechanism<double>& m) {
     const auto& R = b.R.m;
     const KDL::Frame tip(KDL::Rotation(R[0], R[1], R[2], R[3], R[4], R[5], R[6], R[7], R[8]), vector(b.p));
     const KDL::Vector axis = vector(b.R * unit<double>(b.axis));
-    const KDL::Joint joint = b.kind == JointKind::fixed       ? KDL::Joint(b.name, KDL::Joint::None)
-                             : b.kind == JointKind::prismatic ? KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::TransAxis)
-                                                              : KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::RotAxis);
+    const KDL::Joint joint = b.kind == JointKind::fixed ? KDL::Joint(b.name, KDL::Joint::None)
+                             : b.kind == JointKind::prismatic
+                                 ? KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::TransAxis)
+                                 : KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::RotAxis);
     const Vec3<double> c = b.mass == 0 ? Vec3<double>{} : (1 / b.mass) * b.first_moment;
     const double square = dot(c, c);
-    const auto central = [&](int i, int j) { return b.inertia(i, j) - b.mass * ((i == j ? square : 0.0) - c[i] * c[j]); };
-    chain.addSegment(KDL::Segment(b.name, joint, tip,
-                                  KDL::RigidBodyInertia(b.mass, vector(c),
-                                                        KDL::RotationalInertia(central(0, 0), central(1, 1), central(2, 2), central(0, 1),
-                                                                               central(0, 2), central(1, 2)))));
+    const auto central = [&](int i, int j) {
+      return b.inertia(i, j) - b.mass * ((i == j ? square : 0.0) - c[i] * c[j]);
+    };
+    chain.addSegment(KDL::Segment(
+        b.name, joint, tip,
+        KDL::RigidBodyInertia(b.mass, vector(c),
+                              KDL::RotationalInertia(central(0, 0), central(1, 1), central(2, 2),
+                                                     central(0, 1), central(0, 2), central(1, 2)))));
   }
   return chain;
 }
@@ -66,8 +71,10 @@ void compare(const Model& model) {
   for (int trial = 0; trial < 20; ++trial) {
     const auto x = testing::random_state<double>(derivation->program, random, [](double v) { return v; });
     KDL::JntArray q(n), qd(n), qdd(n), tau(n), gravity(n);
-    for (unsigned i = 0; i < n; ++i) q(i) = x.state.r[i], qd(i) = x.state.r_dot[i], qdd(i) = x.acceleration[i];
-    ASSERT_EQ(inverse.CartToJnt(q, qd, qdd, KDL::Wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()), tau), 0);
+    for (unsigned i = 0; i < n; ++i)
+      q(i) = x.state.r[i], qd(i) = x.state.r_dot[i], qdd(i) = x.acceleration[i];
+    ASSERT_EQ(inverse.CartToJnt(q, qd, qdd, KDL::Wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()), tau),
+              0);
     ASSERT_EQ(parameters.JntToGravity(q, gravity), 0);
     KDL::JntSpaceInertiaMatrix M(n);
     ASSERT_EQ(parameters.JntToMass(q, M), 0);
@@ -78,7 +85,8 @@ void compare(const Model& model) {
     for (unsigned i = 0; i < n; ++i) {
       EXPECT_NEAR(got_tau[i], tau(i), 1e-12 * scale);
       EXPECT_NEAR(got_gravity[i], gravity(i), 1e-12 * scale);
-      for (unsigned j = 0; j < n; ++j) EXPECT_NEAR(got_M[i * n + j], M(i, j), 1e-12 * M.data.cwiseAbs().maxCoeff());
+      for (unsigned j = 0; j < n; ++j)
+        EXPECT_NEAR(got_M[i * n + j], M(i, j), 1e-12 * M.data.cwiseAbs().maxCoeff());
     }
   }
 }
@@ -87,11 +95,14 @@ void compare(const Model& model) {
 std::string frictionless_chain() {
   using testing::joint, testing::link;
   return "<robot name='chain'>\n" + link("base", "3", "0.1 0 0.02") + link("one", "2.5", "0.01 -0.03 0.2") +
-         link("two", "2", "0.15 0.02 0.01", "0.1 -0.2 0.3") + link("three", "1.5", "0 0.11 0.05") + link("four", "1.1", "0.02 0.01 0.09") +
-         link("five", "0.7", "0.03 -0.02 0.04") + link("tool", "0.4", "0 0.01 0.03") +
-         joint("j1", "revolute", "base", "one", "0 0 0.3", "0 0 0", "0 0 1") + joint("j2", "continuous", "one", "two", "0.05 0.02 0.1", "-1.57079632679 0 0", "0 0 1") +
+         link("two", "2", "0.15 0.02 0.01", "0.1 -0.2 0.3") + link("three", "1.5", "0 0.11 0.05") +
+         link("four", "1.1", "0.02 0.01 0.09") + link("five", "0.7", "0.03 -0.02 0.04") +
+         link("tool", "0.4", "0 0.01 0.03") +
+         joint("j1", "revolute", "base", "one", "0 0 0.3", "0 0 0", "0 0 1") +
+         joint("j2", "continuous", "one", "two", "0.05 0.02 0.1", "-1.57079632679 0 0", "0 0 1") +
          joint("j3", "prismatic", "two", "three", "0.2 0.1 -0.05", "0 0.785398163397 0.2", "1 0 0") +
-         joint("j4", "revolute", "three", "four", "0.01 0.2 0.03", "1.57079632679 0 3.14159265359", "0 -1 0") +
+         joint("j4", "revolute", "three", "four", "0.01 0.2 0.03", "1.57079632679 0 3.14159265359",
+               "0 -1 0") +
          joint("j5", "revolute", "four", "five", "0.02 0.1 0.3", "0.3 -0.4 0.5", "0.6 0 0.8") +
          joint("weld", "fixed", "five", "tool", "0 0 0.1", "0.2 0.1 -0.3", "0 0 1") + "</robot>\n";
 }
@@ -100,7 +111,8 @@ TEST(Kdl, ChainOfOurOwn) { compare(read_urdf_text(frictionless_chain(), "chain.u
 
 TEST(Kdl, Iiwa) {
   const std::filesystem::path file = std::filesystem::path(ANHOLON_ROBOTS) / "iiwa.urdf";
-  if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file)) GTEST_SKIP() << "ANHOLON_ROBOTS has no iiwa";
+  if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file))
+    GTEST_SKIP() << "ANHOLON_ROBOTS has no iiwa";
   compare(read_urdf(file));
 }
 

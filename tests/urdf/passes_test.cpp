@@ -26,14 +26,16 @@ namespace {
 Mechanism<Exact> floating_arm() {
   UrdfOptions options;
   options.floating = true;
-  return mechanise<Exact>(describe_mechanism(read_urdf_text(testing::arm(), "arm.urdf", options)), std::vector<Exact>{});
+  return mechanise<Exact>(describe_mechanism(read_urdf_text(testing::arm(), "arm.urdf", options)),
+                          std::vector<Exact>{});
 }
 
 /// Forces at one state, base wrench first.
 std::vector<Exact> forces(const Mechanism<Exact>& m) {
   State<Exact> state;
   std::vector<Exact> acceleration;
-  for (int i = 0; i < 6; ++i) state.eta[i] = Exact::ratio(3 * i - 7, 5), acceleration.push_back(Exact::ratio(2 * i - 5, 3));
+  for (int i = 0; i < 6; ++i)
+    state.eta[i] = Exact::ratio(3 * i - 7, 5), acceleration.push_back(Exact::ratio(2 * i - 5, 3));
   for (int i = 0; i < m.coordinates; ++i) {
     state.r.push_back(Exact::ratio(i + 2, 7));
     state.r_dot.push_back(Exact::ratio(2 - i, 3));
@@ -121,14 +123,21 @@ void check_pass(const Pass& pass) {
     for (int i = 0; i < 5; ++i) inputs.push_back(Exact::ratio(static_cast<int>(random() % 19) - 9, 7));
     const auto x = interpret<Exact>(tape, before, inputs);
     const auto y = interpret<Exact>(tape, after, inputs);
-    for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT(abs(x[i] - y[i]), Exact::from_decimal("1e-90") * (Exact(1) + abs(x[i])));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_LT(abs(x[i] - y[i]), Exact::from_decimal("1e-90") * (Exact(1) + abs(x[i])));
   }
   EXPECT_GT(gain, 0);
 }
 
-TEST(TapePasses, OppositeDifferences) { check_pass([](Tape& t, const std::vector<NodeId>& r) { return merge_opposite_differences(t, r); }); }
-TEST(TapePasses, CommonFactors) { check_pass([](Tape& t, const std::vector<NodeId>& r) { return extract_common_factors(t, r); }); }
-TEST(TapePasses, CommonSums) { check_pass([](Tape& t, const std::vector<NodeId>& r) { return share_common_sums(t, r); }); }
+TEST(TapePasses, OppositeDifferences) {
+  check_pass([](Tape& t, const std::vector<NodeId>& r) { return merge_opposite_differences(t, r); });
+}
+TEST(TapePasses, CommonFactors) {
+  check_pass([](Tape& t, const std::vector<NodeId>& r) { return extract_common_factors(t, r); });
+}
+TEST(TapePasses, CommonSums) {
+  check_pass([](Tape& t, const std::vector<NodeId>& r) { return share_common_sums(t, r); });
+}
 
 }  // namespace
 }  // namespace anholon

@@ -27,7 +27,8 @@ RandomState<S> random_state(const Program& program, std::mt19937& random, const 
   std::uniform_real_distribution<double> uniform(-2, 2);
   RandomState<S> x;
   x.inputs.assign(program.tape.inputs().size(), S(0));
-  for (const ParameterInfo& p : program.parameters) x.inputs[program.tape.node(p.node).a] = FromExact<S>{}(p.value);
+  for (const ParameterInfo& p : program.parameters)
+    x.inputs[program.tape.node(p.node).a] = FromExact<S>{}(p.value);
   const auto fill = [&](const std::string& name, const auto& take) {
     for (const InputBlock& b : program.inputs) {
       if (b.name != name) continue;
@@ -38,9 +39,10 @@ RandomState<S> random_state(const Program& program, std::mt19937& random, const 
   std::uniform_int_distribution<int> digit(-9, 9);
   const S a = S(digit(random)), b = S(digit(random)), c = S(digit(random)), d = S(11);
   const S n = a * a + b * b + c * c + d * d;
-  const Mat3<S> R = {{(d * d + a * a - b * b - c * c) / n, S(2) * (a * b - c * d) / n, S(2) * (a * c + b * d) / n,
-                      S(2) * (a * b + c * d) / n, (d * d - a * a + b * b - c * c) / n, S(2) * (b * c - a * d) / n,
-                      S(2) * (a * c - b * d) / n, S(2) * (b * c + a * d) / n, (d * d - a * a - b * b + c * c) / n}};
+  const Mat3<S> R = {
+      {(d * d + a * a - b * b - c * c) / n, S(2) * (a * b - c * d) / n, S(2) * (a * c + b * d) / n,
+       S(2) * (a * b + c * d) / n, (d * d - a * a + b * b - c * c) / n, S(2) * (b * c - a * d) / n,
+       S(2) * (a * c - b * d) / n, S(2) * (b * c + a * d) / n, (d * d - a * a - b * b + c * c) / n}};
   const auto remember = [&](std::vector<S>& to) {
     return [&](std::size_t) {
       to.push_back(convert(uniform(random)));

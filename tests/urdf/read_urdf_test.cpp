@@ -16,12 +16,15 @@ using testing::joint;
 using testing::link;
 
 bool notes_contain(const Model& model, const std::string& text) {
-  return std::ranges::any_of(model.notes, [&](const std::string& n) { return n.find(text) != std::string::npos; });
+  return std::ranges::any_of(model.notes,
+                             [&](const std::string& n) { return n.find(text) != std::string::npos; });
 }
 
 /// Two links and a joint of the given kind.
-std::string two(const std::string& type, const std::string& rpy, const std::string& axis, const std::string& more = "") {
-  return "<robot name='two'>" + link("a", "1", "0 0 0") + link("b", "2", "0.1 0.2 0.3") + joint("j", type, "a", "b", "1 2 3", rpy, axis, more) + "</robot>";
+std::string two(const std::string& type, const std::string& rpy, const std::string& axis,
+                const std::string& more = "") {
+  return "<robot name='two'>" + link("a", "1", "0 0 0") + link("b", "2", "0.1 0.2 0.3") +
+         joint("j", type, "a", "b", "1 2 3", rpy, axis, more) + "</robot>";
 }
 
 Mechanism<Exact> mechanism_of(const Model& model) {
@@ -97,9 +100,10 @@ TEST(ReadUrdf, MimicIsACoupling) {
 }
 
 TEST(ReadUrdf, FloatingRootJointMakesTheGroup) {
-  const Model model = read_urdf_text("<robot name='f'><link name='world'/>" + link("a", "1", "0 0 0") +
-                                         "<joint name='free' type='floating'><parent link='world'/><child link='a'/></joint></robot>",
-                                     "f.urdf");
+  const Model model = read_urdf_text(
+      "<robot name='f'><link name='world'/>" + link("a", "1", "0 0 0") +
+          "<joint name='free' type='floating'><parent link='world'/><child link='a'/></joint></robot>",
+      "f.urdf");
   EXPECT_EQ(model.group, GroupKind::SE3);
   EXPECT_EQ(model.bodies.size(), 1U);
   EXPECT_TRUE(model.coordinates.empty());
@@ -116,10 +120,11 @@ TEST(ReadUrdf, PlanarJointIsAChain) {
 }
 
 TEST(ReadUrdf, NamesBecomeIdentifiers) {
-  const Model model = read_urdf_text("<robot name='2 legs &quot;x&quot;'>" + link("a-b", "1", "0 0 0") + link("a b", "1", "0 0 0") + link("class", "1", "0 0 0") +
-                                         joint("t", "revolute", "a-b", "a b", "0 0 0", "0 0 0", "0 0 1") +
-                                         joint("return", "revolute", "a b", "class", "0 0 0", "0 0 0", "0 0 1") + "</robot>",
-                                     "x.urdf");
+  const Model model = read_urdf_text(
+      "<robot name='2 legs &quot;x&quot;'>" + link("a-b", "1", "0 0 0") + link("a b", "1", "0 0 0") +
+          link("class", "1", "0 0 0") + joint("t", "revolute", "a-b", "a b", "0 0 0", "0 0 0", "0 0 1") +
+          joint("return", "revolute", "a b", "class", "0 0 0", "0 0 0", "0 0 1") + "</robot>",
+      "x.urdf");
   EXPECT_EQ(model.name, "robot_2_legs_x");
   EXPECT_EQ(model.bodies[0].name, "a_b");
   EXPECT_EQ(model.bodies[1].name, "a_b_2");
@@ -136,7 +141,10 @@ TEST(ReadUrdf, LimitsAreTheRange) {
 }
 
 TEST(ReadUrdf, VisualsAreLeftOutWithANote) {
-  const Model model = read_urdf_text("<robot name='v'><link name='a'><visual><geometry><mesh filename='x'/></geometry></visual></link></robot>", "v.urdf");
+  const Model model = read_urdf_text(
+      "<robot name='v'><link name='a'><visual><geometry><mesh "
+      "filename='x'/></geometry></visual></link></robot>",
+      "v.urdf");
   EXPECT_TRUE(notes_contain(model, "left out: 1 <visual>"));
   EXPECT_TRUE(notes_contain(model, "link 'a' has no inertial: massless"));
 }

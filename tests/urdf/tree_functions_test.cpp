@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-// The derived functions against the numeric recursion on the mechanism as described, in double and in exact numbers.
+// The derived functions against the numeric recursion on the mechanism as described, in double and in exact
+// numbers.
 
 #include "derive/tree_functions.hpp"
 
@@ -39,17 +40,23 @@ S error(const std::vector<S>& got, const std::vector<S>& reference) {
 
 /// Compares every function with the recursion; forward dynamics by putting its answer into the recursion.
 template <class S>
-void compare(const Mechanism<S>& mechanism, const Program& program, const RandomState<S>& x, const S& tolerance) {
+void compare(const Mechanism<S>& mechanism, const Program& program, const RandomState<S>& x,
+             const S& tolerance) {
   FreeDynamics<S> dynamics(mechanism);
   State<S> rest = x.state;
   rest.eta = {};
   for (S& rate : rest.r_dot) rate = S(0);
   const std::vector<S> zero(x.acceleration.size(), S(0));
-  EXPECT_LT(error(run(program, "inverse_dynamics", x.inputs), dynamics.inverse_dynamics(x.state, x.acceleration)), tolerance);
-  EXPECT_LT(error(run(program, "bias_forces", x.inputs), dynamics.inverse_dynamics(x.state, zero)), tolerance);
-  EXPECT_LT(error(run(program, "gravity_forces", x.inputs), dynamics.inverse_dynamics(rest, zero)), tolerance);
+  EXPECT_LT(
+      error(run(program, "inverse_dynamics", x.inputs), dynamics.inverse_dynamics(x.state, x.acceleration)),
+      tolerance);
+  EXPECT_LT(error(run(program, "bias_forces", x.inputs), dynamics.inverse_dynamics(x.state, zero)),
+            tolerance);
+  EXPECT_LT(error(run(program, "gravity_forces", x.inputs), dynamics.inverse_dynamics(rest, zero)),
+            tolerance);
   EXPECT_LT(error(run(program, "mass_matrix", x.inputs), dynamics.mass_matrix(x.state).entries()), tolerance);
-  const std::vector<S> applied = dynamics.inverse_dynamics(x.state, run(program, "forward_dynamics", x.inputs));
+  const std::vector<S> applied =
+      dynamics.inverse_dynamics(x.state, run(program, "forward_dynamics", x.inputs));
   std::vector<S> expected(applied.size() - x.tau.size(), S(0));
   expected.insert(expected.end(), x.tau.begin(), x.tau.end());
   const std::vector<S> M = dynamics.mass_matrix(x.state).entries();
@@ -64,16 +71,21 @@ void compare(const Mechanism<S>& mechanism, const Program& program, const Random
 void verify(const Model& model, const TreeRequest& request = {}) {
   const auto derivation = derive_tree(model, request);
   const Program& program = derivation->program;
-  ASSERT_EQ(program.functions.size(), request.functions.empty() ? standard_tree_functions().size() : request.functions.size());
+  ASSERT_EQ(program.functions.size(),
+            request.functions.empty() ? standard_tree_functions().size() : request.functions.size());
   const MechanismDescription description = describe_mechanism(model);
   std::vector<double> parameters;
   std::vector<Exact> exact_parameters;
-  for (const Parameter& p : model.parameters) parameters.push_back(p.value.to_double()), exact_parameters.push_back(p.value);
+  for (const Parameter& p : model.parameters)
+    parameters.push_back(p.value.to_double()), exact_parameters.push_back(p.value);
   const Mechanism<double> mechanism = mechanise<double>(description, parameters);
   std::mt19937 random(7);
-  for (int i = 0; i < 20; ++i) compare(mechanism, program, random_state<double>(program, random, [](double v) { return v; }), 1e-13);
+  for (int i = 0; i < 20; ++i)
+    compare(mechanism, program, random_state<double>(program, random, [](double v) { return v; }), 1e-13);
   const Mechanism<Exact> exact = mechanise<Exact>(description, exact_parameters);
-  compare(exact, program, random_state<Exact>(program, random, [](double v) { return Exact::from_double(v); }), Exact::from_decimal("1e-60"));
+  compare(exact, program,
+          random_state<Exact>(program, random, [](double v) { return Exact::from_double(v); }),
+          Exact::from_decimal("1e-60"));
 }
 
 TEST(TreeFunctions, ArmWithEveryKindOfJoint) { verify(read_urdf_text(testing::serial_arm(), "arm.urdf")); }
@@ -125,7 +137,9 @@ void verify_others(const Model& model) {
   EXPECT_LT(error((L.transposed() * D * L).entries(), M.entries()), 1e-13);
   Matrix<double> identity(n, n);
   for (int i = 0; i < n; ++i) identity(i, i) = 1;
-  EXPECT_LT(error((M * as_matrix(run(program, "inverse_mass_matrix", x.inputs), 0, n, n)).entries(), identity.entries()), 1e-11);
+  EXPECT_LT(error((M * as_matrix(run(program, "inverse_mass_matrix", x.inputs), 0, n, n)).entries(),
+                  identity.entries()),
+            1e-11);
 
   const auto energies = dynamics.energies(x.state);
   EXPECT_LT(error(run(program, "energies", x.inputs), {energies.kinetic, energies.gravity}), 1e-13);
@@ -157,7 +171,9 @@ void verify_others(const Model& model) {
   }
   centre = (1 / mass) * centre;
   H -= cross(centre, P);
-  EXPECT_LT(error(run(program, "centroidal_momentum", x.inputs), {P.x, P.y, P.z, H.x, H.y, H.z, centre.x, centre.y, centre.z}), 1e-13);
+  EXPECT_LT(error(run(program, "centroidal_momentum", x.inputs),
+                  {P.x, P.y, P.z, H.x, H.y, H.z, centre.x, centre.y, centre.z}),
+            1e-13);
 
   // the tips' twists and accelerations
   std::vector<double> velocity;
@@ -198,7 +214,8 @@ TEST(TreeFunctions, OthersOfTheArm) { verify_others(read_urdf_text(testing::arm(
 TEST(TreeFunctions, RegressorTimesFiguresIsInverseDynamics) {
   UrdfOptions options;
   options.floating = true;
-  const Model model = read_urdf_text(testing::walker(), "walker.urdf", options);  // no dampers, no fixed joints
+  const Model model =
+      read_urdf_text(testing::walker(), "walker.urdf", options);  // no dampers, no fixed joints
   TreeRequest request;
   request.functions = {"inverse_dynamics", "regressor"};
   const auto derivation = derive_tree(model, request);
@@ -248,11 +265,13 @@ class Robots : public ::testing::TestWithParam<std::string> {
  protected:
   void SetUp() override {
     file_ = std::filesystem::path(ANHOLON_ROBOTS) / (GetParam() + ".urdf");
-    if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file_)) GTEST_SKIP() << "ANHOLON_ROBOTS has no " << GetParam();
+    if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file_))
+      GTEST_SKIP() << "ANHOLON_ROBOTS has no " << GetParam();
   }
   [[nodiscard]] Model model() const {
     UrdfOptions options;
-    options.floating = GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" && GetParam() != "double_pendulum";
+    options.floating = GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" &&
+                       GetParam() != "double_pendulum";
     return read_urdf(file_, options);
   }
   std::filesystem::path file_;
@@ -279,7 +298,9 @@ TEST_P(Robots, KeepTheirOperationCounts) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Robots, ::testing::Values("double_pendulum", "ur5", "iiwa", "panda", "anymal_b", "hyq", "talos_reduced", "talos_full"),
+INSTANTIATE_TEST_SUITE_P(All, Robots,
+                         ::testing::Values("double_pendulum", "ur5", "iiwa", "panda", "anymal_b", "hyq",
+                                           "talos_reduced", "talos_full"),
                          [](const auto& info) { return info.param; });
 
 }  // namespace

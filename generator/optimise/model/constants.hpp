@@ -17,7 +17,9 @@ inline std::optional<Exact> constant_value(const Expr& x) { return x.constant_va
 
 /// A constant as a scalar of the same kind as `like`, which has a tape where its kind has one.
 inline Exact constant_like(const Exact& /*like*/, const Exact& value) { return value; }
-inline Expr constant_like(const Expr& like, const Exact& value) { return {*like.tape(), like.tape()->constant(value)}; }
+inline Expr constant_like(const Expr& like, const Exact& value) {
+  return {*like.tape(), like.tape()->constant(value)};
+}
 
 template <class S>
 MassMoments<S> moments_of(const Body<S>& b) {
@@ -39,7 +41,8 @@ MassMoments<S> moments_in(const Mat3<S>& R, const Vec3<S>& p, const MassMoments<
 /// @throws std::logic_error where a mechanism has what the passes do not carry along
 template <class S>
 void require_rigid_tree(const Mechanism<S>& mechanism) {
-  if (!mechanism.rows.empty() || !mechanism.wrenches.empty()) throw std::logic_error("frames that rows or wrenches refer to do not move");
+  if (!mechanism.rows.empty() || !mechanism.wrenches.empty())
+    throw std::logic_error("frames that rows or wrenches refer to do not move");
   for (const Body<S>& b : mechanism.bodies) {
     if (!b.modes.empty()) throw std::logic_error("frames of a compliant body do not move");
   }

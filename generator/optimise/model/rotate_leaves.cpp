@@ -25,7 +25,8 @@ void turn_frame(Mechanism<S>& mechanism, std::size_t k, const S& angle, const S&
     };
   } else {
     shifted.on = {body.coordinate};
-    shifted.evaluate = [angle, at = static_cast<std::size_t>(body.coordinate)](std::span<const S> r, std::span<S> out) {
+    shifted.evaluate = [angle, at = static_cast<std::size_t>(body.coordinate)](std::span<const S> r,
+                                                                               std::span<S> out) {
       out[0] = r[at] + angle;
       out[1] = S(1);
       out[2] = S(0);

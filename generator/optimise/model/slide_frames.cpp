@@ -54,14 +54,17 @@ int slide_frames(Mechanism<S>& mechanism, SlideTowards towards) {
     ++moved;
   };
   std::vector<std::vector<std::size_t>> children(size);
-  for (std::size_t k = 1; k < size; ++k) children[static_cast<std::size_t>(mechanism.bodies[k].parent)].push_back(k);
+  for (std::size_t k = 1; k < size; ++k)
+    children[static_cast<std::size_t>(mechanism.bodies[k].parent)].push_back(k);
   if (towards == SlideTowards::base) {
     for (std::size_t k = size; k-- > 1;) {
-      if (children[k].size() == 1) move(k, to_shorten_child(mechanism.bodies[k], mechanism.bodies[children[k][0]]));
+      if (children[k].size() == 1)
+        move(k, to_shorten_child(mechanism.bodies[k], mechanism.bodies[children[k][0]]));
     }
   }
   for (std::size_t k = 1; k < size; ++k) {
-    if (towards == SlideTowards::tips || children[k].size() != 1) move(k, to_shorten_own(mechanism.bodies[k]));
+    if (towards == SlideTowards::tips || children[k].size() != 1)
+      move(k, to_shorten_own(mechanism.bodies[k]));
   }
   return moved;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// A body's origin may lie anywhere on the axis of its revolute joint, and anywhere at all on a prismatic one. It is put where
-// the offset from the parent has the fewest components.
+// A body's origin may lie anywhere on the axis of its revolute joint, and anywhere at all on a prismatic one.
+// It is put where the offset from the parent has the fewest components.
 
 #include "anholon/mechanism.hpp"
 
@@ -13,7 +13,8 @@ template <class S>
 void slide(Mechanism<S>& mechanism, std::size_t k, const Vec3<S>& t);
 
 enum class SlideTowards {
-  tips,  // a body's offset from its parent loses its component along the body's own axis; the children take it over
+  tips,  // a body's offset from its parent loses its component along the body's own axis; the children take
+         // it over
   base,  // a body with one child takes over the component of the child's offset along its own axis
 };
 

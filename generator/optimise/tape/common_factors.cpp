@@ -18,7 +18,8 @@ struct Term {
 
 class FactorPass {
  public:
-  FactorPass(Tape& tape, const std::vector<NodeId>& roots) : tape_(tape), uses_(tape.size(), 0), inner_(tape.size(), 0) {
+  FactorPass(Tape& tape, const std::vector<NodeId>& roots)
+      : tape_(tape), uses_(tape.size(), 0), inner_(tape.size(), 0) {
     const std::vector<NodeId> needed = needed_nodes(tape, roots);
     for (const NodeId id : needed) {
       const Node& n = tape.node(id);
@@ -46,7 +47,9 @@ class FactorPass {
       if (members.size() < 2) break;
       factors.push_back(factor);
       groups.push_back(members);
-      std::erase_if(terms, [&](const Term& t) { return std::ranges::any_of(members, [&](const Term& m) { return m.node == t.node; }); });
+      std::erase_if(terms, [&](const Term& t) {
+        return std::ranges::any_of(members, [&](const Term& m) { return m.node == t.node; });
+      });
     }
     if (groups.empty()) return copied(tape_, old, image);
     std::vector<Term> sum;
@@ -63,7 +66,9 @@ class FactorPass {
   }
 
  private:
-  [[nodiscard]] bool is_sum(NodeId id) const { return tape_.node(id).op == Op::add || tape_.node(id).op == Op::sub; }
+  [[nodiscard]] bool is_sum(NodeId id) const {
+    return tape_.node(id).op == Op::add || tape_.node(id).op == Op::sub;
+  }
 
   void flatten(NodeId id, bool negative, std::vector<Term>& terms) const {
     const Node n = tape_.node(id);
@@ -78,7 +83,8 @@ class FactorPass {
     descend(n.b, negative != (n.op == Op::sub));
   }
 
-  /// The factor that most products share; of equals, the first by structure. Only products without another use count.
+  /// The factor that most products share; of equals, the first by structure. Only products without another
+  /// use count.
   [[nodiscard]] std::pair<NodeId, std::vector<Term>> best_factor(const std::vector<Term>& terms) const {
     std::map<StructuralKey, std::pair<NodeId, std::vector<Term>>> by_factor;
     for (const Term& t : terms) {
@@ -105,7 +111,8 @@ class FactorPass {
       for (std::size_t i = 0; i + 1 < terms.size(); i += 2) {
         const Term& x = terms[i];
         const Term& y = terms[i + 1];
-        next.push_back({tape_.apply(x.negative == y.negative ? Op::add : Op::sub, x.node, y.node), x.negative});
+        next.push_back(
+            {tape_.apply(x.negative == y.negative ? Op::add : Op::sub, x.node, y.node), x.negative});
       }
       if (terms.size() % 2 == 1) next.push_back(terms.back());
       terms = std::move(next);
@@ -123,7 +130,8 @@ class FactorPass {
 std::vector<NodeId> extract_common_factors(Tape& tape, std::vector<NodeId> roots) {
   for (int round = 0; round < 8; ++round) {
     FactorPass pass(tape, roots);
-    const std::vector<NodeId> next = rebuild(tape, roots, [&](NodeId old, const std::vector<NodeId>& image) { return pass(old, image); });
+    const std::vector<NodeId> next =
+        rebuild(tape, roots, [&](NodeId old, const std::vector<NodeId>& image) { return pass(old, image); });
     if (count_operations(tape, next).total() >= count_operations(tape, roots).total()) break;
     roots = next;
   }

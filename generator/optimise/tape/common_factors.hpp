@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Sums of products with a common factor: c x + c y + ... becomes c (x + y) + ..., where nothing else uses the products.
+// Sums of products with a common factor: c x + c y + ... becomes c (x + y) + ..., where nothing else uses the
+// products.
 
 #include <vector>
 
@@ -9,7 +10,8 @@
 
 namespace anholon {
 
-/// @return nodes with the values of the roots; never more additions, multiplications and divisions than before
+/// @return nodes with the values of the roots; never more additions, multiplications and divisions than
+/// before
 std::vector<NodeId> extract_common_factors(Tape& tape, std::vector<NodeId> roots);
 
 }  // namespace anholon

@@ -29,7 +29,8 @@ struct Pair {
 /// The sums of three terms or more whose inner nodes nothing else uses, and the pairs that they share.
 class SharedSums {
  public:
-  SharedSums(Tape& tape, const std::vector<NodeId>& roots) : tape_(tape), inner_(tape.size(), 0), first_pair_(static_cast<NodeId>(tape.size())) {
+  SharedSums(Tape& tape, const std::vector<NodeId>& roots)
+      : tape_(tape), inner_(tape.size(), 0), first_pair_(static_cast<NodeId>(tape.size())) {
     const std::vector<NodeId> needed = needed_nodes(tape, roots);
     std::vector<int> uses(tape.size(), 0);
     for (const NodeId id : needed) {
@@ -64,15 +65,20 @@ class SharedSums {
     for (const Term& t : sum->second) terms.push_back({value(t.node, image), t.negative});
     std::ranges::stable_sort(terms, {}, [](const Term& t) { return t.negative; });
     NodeId total = terms[0].negative ? tape_.apply(Op::neg, terms[0].node) : terms[0].node;
-    for (std::size_t i = 1; i < terms.size(); ++i) total = tape_.apply(terms[i].negative ? Op::sub : Op::add, total, terms[i].node);
+    for (std::size_t i = 1; i < terms.size(); ++i)
+      total = tape_.apply(terms[i].negative ? Op::sub : Op::add, total, terms[i].node);
     return total;
   }
 
  private:
   static constexpr std::size_t most_terms = 24;
 
-  [[nodiscard]] bool is_sum(NodeId id) const { return tape_.node(id).op == Op::add || tape_.node(id).op == Op::sub; }
-  [[nodiscard]] StructuralKey key(NodeId id) const { return id < first_pair_ ? tape_.key(id) : StructuralKey{~0ULL, id}; }
+  [[nodiscard]] bool is_sum(NodeId id) const {
+    return tape_.node(id).op == Op::add || tape_.node(id).op == Op::sub;
+  }
+  [[nodiscard]] StructuralKey key(NodeId id) const {
+    return id < first_pair_ ? tape_.key(id) : StructuralKey{~0ULL, id};
+  }
 
   void flatten(NodeId id, bool negative, std::vector<Term>& terms) const {
     const Node n = tape_.node(id);
@@ -90,7 +96,8 @@ class SharedSums {
     return {ordered ? a.node : b.node, ordered ? b.node : a.node, a.negative != b.negative};
   }
 
-  [[nodiscard]] std::pair<std::size_t, std::size_t> occurrence(const std::vector<Term>& terms, const Pair& pair) const {
+  [[nodiscard]] std::pair<std::size_t, std::size_t> occurrence(const std::vector<Term>& terms,
+                                                               const Pair& pair) const {
     for (std::size_t i = 0; i < terms.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         if (terms[i].node != terms[j].node && pair_of(terms[i], terms[j]) == pair) return {i, j};
@@ -99,7 +106,8 @@ class SharedSums {
     throw std::logic_error("a pair is not in its sum");
   }
 
-  /// Takes the pair that most sums have, puts a new term in its place, and goes on while a pair stands in two sums.
+  /// Takes the pair that most sums have, puts a new term in its place, and goes on while a pair stands in two
+  /// sums.
   void find_pairs() {
     std::map<Pair, std::set<NodeId>> where;
     const auto enter = [&](NodeId sum, bool add) {
@@ -122,8 +130,11 @@ class SharedSums {
       const Pair* best = nullptr;
       std::size_t most = 1;
       for (const auto& [pair, users] : where) {
-        const auto earlier = [&] { return std::pair(key(pair.x), key(pair.y)) < std::pair(key(best->x), key(best->y)); };
-        if (users.size() > most || (best != nullptr && users.size() == most && earlier())) best = &pair, most = users.size();
+        const auto earlier = [&] {
+          return std::pair(key(pair.x), key(pair.y)) < std::pair(key(best->x), key(best->y));
+        };
+        if (users.size() > most || (best != nullptr && users.size() == most && earlier()))
+          best = &pair, most = users.size();
       }
       if (best == nullptr) return;
       const Pair pair = *best;
@@ -165,7 +176,8 @@ std::vector<NodeId> share_common_sums(Tape& tape, std::vector<NodeId> roots) {
   for (int round = 0; round < 4; ++round) {
     SharedSums pass(tape, roots);
     if (!pass.found()) break;
-    const std::vector<NodeId> next = rebuild(tape, roots, [&](NodeId old, const std::vector<NodeId>& image) { return pass(old, image); });
+    const std::vector<NodeId> next =
+        rebuild(tape, roots, [&](NodeId old, const std::vector<NodeId>& image) { return pass(old, image); });
     if (count_operations(tape, next).total() >= count_operations(tape, roots).total()) break;
     roots = next;
   }

@@ -7,7 +7,8 @@
 namespace anholon {
 namespace {
 
-/// A value as a node and a sign. The sign travels to the users until a sum, an output or a function takes it up.
+/// A value as a node and a sign. The sign travels to the users until a sum, an output or a function takes it
+/// up.
 struct Signed {
   NodeId node = 0;
   bool negative = false;
@@ -28,17 +29,23 @@ class SignPass {
  private:
   Signed image_of(const Node n, NodeId id, const std::vector<Signed>& image) {
     switch (n.op) {
-      case Op::input: return {id, false};
-      case Op::constant: return positive(id);
-      case Op::neg: return {image[n.a].node, !image[n.a].negative};
-      case Op::add: return sum(image[n.a], image[n.b]);
-      case Op::sub: return sum(image[n.a], {image[n.b].node, !image[n.b].negative});
+      case Op::input:
+        return {id, false};
+      case Op::constant:
+        return positive(id);
+      case Op::neg:
+        return {image[n.a].node, !image[n.a].negative};
+      case Op::add:
+        return sum(image[n.a], image[n.b]);
+      case Op::sub:
+        return sum(image[n.a], {image[n.b].node, !image[n.b].negative});
       case Op::mul:
       case Op::div: {
         const Signed product = positive(tape_.apply(n.op, image[n.a].node, image[n.b].node));
         return {product.node, product.negative != (image[n.a].negative != image[n.b].negative)};
       }
-      default: break;
+      default:
+        break;
     }
     const bool binary = info(n.op).arity == 2;
     return positive(tape_.apply(n.op, plain(image[n.a]), binary ? plain(image[n.b]) : 0));

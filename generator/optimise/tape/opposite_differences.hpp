@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// a - b and b - a are one operation: signs are taken out of products and differences and carried to the users, so that values
-// that differ in sign alone are computed once.
+// a - b and b - a are one operation: signs are taken out of products and differences and carried to the
+// users, so that values that differ in sign alone are computed once.
 
 #include <vector>
 
@@ -10,7 +10,8 @@
 
 namespace anholon {
 
-/// @return nodes with the values of the roots; never more additions, multiplications and divisions than before
+/// @return nodes with the values of the roots; never more additions, multiplications and divisions than
+/// before
 std::vector<NodeId> merge_opposite_differences(Tape& tape, std::vector<NodeId> roots);
 
 }  // namespace anholon

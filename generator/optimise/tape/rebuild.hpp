@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Copies what some roots need onto the end of their own tape, node by node, so that a pass may put other nodes in the place
-// of single ones and the folding rules of the tape act on the result.
+// Copies what some roots need onto the end of their own tape, node by node, so that a pass may put other
+// nodes in the place of single ones and the folding rules of the tape act on the result.
 
 #include <functional>
 #include <vector>

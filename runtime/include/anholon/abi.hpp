@@ -5,13 +5,14 @@
 //
 //   const anholon_program* anholon_program_table(void);
 //
-// and everything else hangs on that table: parameters, functions, names, units and shapes. Arrays are row-major and
-// dense, all numbers are double and in coherent SI units. Nothing here allocates or throws; the table and all that it
-// points to live as long as the library is loaded.
+// and everything else hangs on that table: parameters, functions, names, units and shapes. Arrays are
+// row-major and dense, all numbers are double and in coherent SI units. Nothing here allocates or throws; the
+// table and all that it points to live as long as the library is loaded.
 //
 //   1. void* prepared = storage of prepared_size bytes, aligned for any scalar type (malloc will do);
 //   2. program->prepare(parameters, prepared), once per set of parameter values;
-//   3. function->call(prepared, inputs, outputs): one pointer per block, in the order of the table. Inputs may be
+//   3. function->call(prepared, inputs, outputs): one pointer per block, in the order of the table. Inputs
+//   may be
 //      outputs too: a function reads all before it writes. Calls may run in parallel.
 
 #include <stddef.h>

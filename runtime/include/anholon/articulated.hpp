@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Forward dynamics by articulated bodies, Featherstone 2008, Table 7.1, in body frames. The velocity-dependent terms come from
-// a pass of the Newton-Euler recursion without joint accelerations, so that the articulated bodies carry no bias accelerations.
-// The reference body moves as its group allows: its own acceleration minus gravity is an unknown, so gravity never enters.
+// Forward dynamics by articulated bodies, Featherstone 2008, Table 7.1, in body frames. The
+// velocity-dependent terms come from a pass of the Newton-Euler recursion without joint accelerations, so
+// that the articulated bodies carry no bias accelerations. The reference body moves as its group allows: its
+// own acceleration minus gravity is an unknown, so gravity never enters.
 
 #include <vector>
 
@@ -72,13 +73,16 @@ ReleasedJoint<S> release(const Body<S>& b, const ArticulatedInertia<S>& A) {
   for (int i = 0; i < 3; ++i) {
     if (b.kind != JointKind::prismatic) U.linear[i] = A.H(i, z), U.angular[i] = A.I(i, z);
     if (b.kind == JointKind::prismatic) U.linear[i] = A.M(i, z), U.angular[i] = A.H(z, i);
-    if (!pure) U.linear[i] = U.linear[i] + b.pitch * A.M(i, z), U.angular[i] = U.angular[i] + b.pitch * A.H(z, i);
+    if (!pure)
+      U.linear[i] = U.linear[i] + b.pitch * A.M(i, z), U.angular[i] = U.angular[i] + b.pitch * A.H(z, i);
   }
   const S d = RigidTree<S>::joint_force(b, U);
   r.inverse_d = S(1) / d;
   const int own = b.kind == JointKind::prismatic ? z : 3 + z;
   for (int i = 0; i < 6; ++i) r.W[i] = pure && i == own ? S(1) : r.inverse_d * U[i];
-  const auto rest = [&](const S& x, int i, int j) { return pure && (i == own || j == own) ? S(0) : x - U[i] * r.W[j]; };
+  const auto rest = [&](const S& x, int i, int j) {
+    return pure && (i == own || j == own) ? S(0) : x - U[i] * r.W[j];
+  };
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) r.rest.H(i, j) = rest(A.H(i, j), i, 3 + j);
     for (int j = i; j < 3; ++j) {
@@ -92,7 +96,7 @@ ReleasedJoint<S> release(const Body<S>& b, const ArticulatedInertia<S>& A) {
 /// Acceleration of a body and of the coordinates.
 template <class S>
 struct TreeAcceleration {
-  Spatial<S> base;           // (a, wd) of the reference body, the former minus gravity where it is free
+  Spatial<S> base;  // (a, wd) of the reference body, the former minus gravity where it is free
   std::vector<S> r_ddot;
 };
 
@@ -109,8 +113,8 @@ bool joints_are_independent(const RigidTree<S>& tree) {
   return true;
 }
 
-/// Accelerations that joint forces and the wrenches of the motion at hand leave. Needs position() and move() with zero
-/// accelerations of the coordinates and, for a free reference body, of its frame.
+/// Accelerations that joint forces and the wrenches of the motion at hand leave. Needs position() and move()
+/// with zero accelerations of the coordinates and, for a free reference body, of its frame.
 /// @param force  (coordinates) applied generalised forces
 /// Every joint must have a coordinate of its own (joints_are_independent).
 template <class S>
@@ -142,7 +146,8 @@ TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std
     }
     const JointTransform<S>& x = tree.joint(k);
     const ArticulatedInertia<S>& rest = joint[k].rest;
-    const ArticulatedInertia<S> turned_rest{turned(x.R, turned(x.rotation, rest.M)), turned(x.R, turned(x.rotation, rest.H)),
+    const ArticulatedInertia<S> turned_rest{turned(x.R, turned(x.rotation, rest.M)),
+                                            turned(x.R, turned(x.rotation, rest.H)),
                                             turned(x.R, turned(x.rotation, rest.I))};
     const std::size_t parent = tree.parent_of(k);
     A[parent] = A[parent] + turned_rest.moved(x.offset);
@@ -163,11 +168,15 @@ TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std
       f.push_back(-p[0][ci]);
       for (int j = 0; j < n; ++j) {
         const int cj = free[static_cast<std::size_t>(j)];
-        M(i, j) = ci < 3 && cj < 3 ? A[0].M(ci, cj) : ci >= 3 && cj >= 3 ? A[0].I(ci - 3, cj - 3) : ci < 3 ? A[0].H(ci, cj - 3) : A[0].H(cj, ci - 3);
+        M(i, j) = ci < 3 && cj < 3     ? A[0].M(ci, cj)
+                  : ci >= 3 && cj >= 3 ? A[0].I(ci - 3, cj - 3)
+                  : ci < 3             ? A[0].H(ci, cj - 3)
+                                       : A[0].H(cj, ci - 3);
       }
     }
     const std::vector<S> a = ltdl(M).solve(f);
-    for (int i = 0; i < n; ++i) result.base[free[static_cast<std::size_t>(i)]] = a[static_cast<std::size_t>(i)];
+    for (int i = 0; i < n; ++i)
+      result.base[free[static_cast<std::size_t>(i)]] = a[static_cast<std::size_t>(i)];
   }
   std::vector<Spatial<S>> a(size);
   a[0] = result.base;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// The mass matrix by composite rigid bodies, Walker and Orin 1982 (Featherstone 2008, Table 6.2), with the second moment in
-// place of the inertia matrix and turns about coordinate axes as one step (second_moment.hpp).
+// The mass matrix by composite rigid bodies, Walker and Orin 1982 (Featherstone 2008, Table 6.2), with the
+// second moment in place of the inertia matrix and turns about coordinate axes as one step
+// (second_moment.hpp).
 
 #include <vector>
 
@@ -20,14 +21,16 @@ std::vector<MassMoments<S>> composite_moments(const RigidTree<S>& tree) {
     tree.mechanism().section(tree.body(k).name + ": composite body");
     const JointTransform<S>& joint = tree.joint(k);
     const MassMoments<S>& own = composite[k];
-    const MassMoments<S> turned_moments{own.mass, joint.to_parent(own.first), turned(joint.R, turned(joint.rotation, own.second))};
+    const MassMoments<S> turned_moments{own.mass, joint.to_parent(own.first),
+                                        turned(joint.R, turned(joint.rotation, own.second))};
     MassMoments<S>& parent = composite[tree.parent_of(k)];
     parent = turned_moments.moved(joint.offset) + parent;
   }
   return composite;
 }
 
-/// Wrench about its origin that a body of these moments needs for the angular acceleration wd and acceleration a.
+/// Wrench about its origin that a body of these moments needs for the angular acceleration wd and
+/// acceleration a.
 template <class S>
 Spatial<S> inertial_wrench(const MassMoments<S>& b, const Vec3<S>& a, const Vec3<S>& wd) {
   const Vec3<S> N = inertia_matrix(b.second) * wd;

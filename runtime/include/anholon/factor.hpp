@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// M = L^T D L of a mass matrix, L unit lower triangular, from the tips to the base: the zeros that branches leave in M stay
-// zeros in L (Featherstone 2008, section 6.4). Zeros are those of structure, or of value where the scalar is a number.
+// M = L^T D L of a mass matrix, L unit lower triangular, from the tips to the base: the zeros that branches
+// leave in M stay zeros in L (Featherstone 2008, section 6.4). Zeros are those of structure, or of value
+// where the scalar is a number.
 
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace anholon {
 
 template <class S>
 struct LtdlFactor {
-  Matrix<S> L;                     // unit lower triangular; the diagonal is not stored
+  Matrix<S> L;  // unit lower triangular; the diagonal is not stored
   std::vector<S> D;
   std::vector<S> inverse_D;
 
@@ -39,7 +40,8 @@ struct LtdlFactor {
 template <class S>
 LtdlFactor<S> ltdl(Matrix<S> M) {
   const int n = M.rows();
-  LtdlFactor<S> f{Matrix<S>(n, n), std::vector<S>(static_cast<std::size_t>(n), S(0)), std::vector<S>(static_cast<std::size_t>(n), S(0))};
+  LtdlFactor<S> f{Matrix<S>(n, n), std::vector<S>(static_cast<std::size_t>(n), S(0)),
+                  std::vector<S>(static_cast<std::size_t>(n), S(0))};
   for (int k = n; k-- > 0;) {
     f.D[static_cast<std::size_t>(k)] = M(k, k);
     const S inverse = S(1) / M(k, k);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// The blocks of eq. (1) by sweeps of the recursion (section V.B), the rows of eq. (2), and the energies. Velocities and
-// forces are vectors of size n + s: the free components of the reference twist, then every coordinate in declared order.
+// The blocks of eq. (1) by sweeps of the recursion (section V.B), the rows of eq. (2), and the energies.
+// Velocities and forces are vectors of size n + s: the free components of the reference twist, then every
+// coordinate in declared order.
 
 #include <utility>
 #include <vector>
@@ -74,7 +75,8 @@ class FreeDynamics {
     return M;
   }
 
-  /// (A, B) of eq. (2) with B for all coordinates in declared order, rows x (n + s), and the bias (A_dot, B_dot) v.
+  /// (A, B) of eq. (2) with B for all coordinates in declared order, rows x (n + s), and the bias (A_dot,
+  /// B_dot) v.
   std::pair<Matrix<S>, std::vector<S>> constraints(const State<S>& state) {
     const int size = velocity_size(mechanism_);
     const int rows = static_cast<int>(mechanism_.rows.size());
@@ -93,7 +95,8 @@ class FreeDynamics {
       const auto components = free_components(mechanism_.group);
       int column = 0;
       for (const int c : components) G(i, column++) = values[static_cast<std::size_t>(c)];
-      for (int c = 0; c < mechanism_.coordinates; ++c) G(i, column++) = values[static_cast<std::size_t>(6 + c)];
+      for (int c = 0; c < mechanism_.coordinates; ++c)
+        G(i, column++) = values[static_cast<std::size_t>(6 + c)];
       bias[static_cast<std::size_t>(i)] = values.back();
     }
     if (!declared) return {G, bias};
@@ -128,8 +131,8 @@ class FreeDynamics {
   struct Energies {
     S kinetic, gravity, elastic, dissipated_power, applied_power;  // J, J, J, W, W
   };
-  /// Kinetic energy; potential of gravity (zero at the world's origin); user, spring and modal energy; power lost to the
-  /// dissipation function; power of the user's generalised forces and wrenches.
+  /// Kinetic energy; potential of gravity (zero at the world's origin); user, spring and modal energy; power
+  /// lost to the dissipation function; power of the user's generalised forces and wrenches.
   Energies energies(const State<S>& state) {
     Energies e{S(0), S(0), S(0), S(0), S(0)};
     recursion_.position(state);
@@ -139,7 +142,8 @@ class FreeDynamics {
       const int body = static_cast<int>(k);
       mechanism_.section(mechanism_.bodies[k].name + ": energy");
       const BodyInertia<S>& inertia = recursion_.inertia(body);
-      e.kinetic = e.kinetic + kinetic_energy(mechanism_.bodies[k], inertia, recursion_.motion(body), std::span<const S>(state.r_dot));
+      e.kinetic = e.kinetic + kinetic_energy(mechanism_.bodies[k], inertia, recursion_.motion(body),
+                                             std::span<const S>(state.r_dot));
       e.gravity = e.gravity - dot(mechanism_.gravity, inertia.mass * p_[k] + R_[k] * inertia.first_moment);
     }
     if (mechanism_.user_energies) {
@@ -149,7 +153,8 @@ class FreeDynamics {
       e.dissipated_power = user[1];
       e.applied_power = user[2];
     }
-    if (!mechanism_.wrenches.empty()) e.applied_power = e.applied_power + recursion_.applied_wrench_power(state);
+    if (!mechanism_.wrenches.empty())
+      e.applied_power = e.applied_power + recursion_.applied_wrench_power(state);
     return e;
   }
 
@@ -173,7 +178,8 @@ class FreeDynamics {
   [[nodiscard]] std::vector<S> gathered() const {
     std::vector<S> forces;
     for (const int c : free_components(mechanism_.group)) forces.push_back(recursion_.base_wrench()[c]);
-    forces.insert(forces.end(), recursion_.generalised_forces().begin(), recursion_.generalised_forces().end());
+    forces.insert(forces.end(), recursion_.generalised_forces().begin(),
+                  recursion_.generalised_forces().end());
     return forces;
   }
 

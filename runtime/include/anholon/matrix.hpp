@@ -12,7 +12,10 @@ template <class S>
 class Matrix {
  public:
   Matrix() = default;
-  Matrix(int rows, int cols) : rows_(rows), cols_(cols), entries_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), S(0)) {}
+  Matrix(int rows, int cols)
+      : rows_(rows),
+        cols_(cols),
+        entries_(static_cast<std::size_t>(rows) * static_cast<std::size_t>(cols), S(0)) {}
 
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] int cols() const { return cols_; }
@@ -31,7 +34,8 @@ class Matrix {
   [[nodiscard]] Matrix block(const std::vector<int>& rows, const std::vector<int>& cols) const {
     Matrix r(static_cast<int>(rows.size()), static_cast<int>(cols.size()));
     for (int i = 0; i < r.rows_; ++i) {
-      for (int j = 0; j < r.cols_; ++j) r(i, j) = (*this)(rows[static_cast<std::size_t>(i)], cols[static_cast<std::size_t>(j)]);
+      for (int j = 0; j < r.cols_; ++j)
+        r(i, j) = (*this)(rows[static_cast<std::size_t>(i)], cols[static_cast<std::size_t>(j)]);
     }
     return r;
   }
@@ -58,7 +62,9 @@ class Matrix {
   }
 
  private:
-  [[nodiscard]] std::size_t index(int i, int j) const { return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(j); }
+  [[nodiscard]] std::size_t index(int i, int j) const {
+    return static_cast<std::size_t>(i) * static_cast<std::size_t>(cols_) + static_cast<std::size_t>(j);
+  }
   int rows_ = 0;
   int cols_ = 0;
   std::vector<S> entries_;
@@ -68,7 +74,9 @@ template <class S>
 std::vector<S> operator*(const Matrix<S>& a, const std::vector<S>& x) {
   std::vector<S> y(static_cast<std::size_t>(a.rows()), S(0));
   for (int i = 0; i < a.rows(); ++i) {
-    for (int j = 0; j < a.cols(); ++j) y[static_cast<std::size_t>(i)] = y[static_cast<std::size_t>(i)] + a(i, j) * x[static_cast<std::size_t>(j)];
+    for (int j = 0; j < a.cols(); ++j)
+      y[static_cast<std::size_t>(i)] =
+          y[static_cast<std::size_t>(i)] + a(i, j) * x[static_cast<std::size_t>(j)];
   }
   return y;
 }

@@ -2,7 +2,8 @@
 #pragma once
 
 // A mechanism over any scalar: the plain data that the recursion works on. Every joint moves about or along a
-// coordinate axis of its own frame; what a description says about other axes is folded into the constant poses.
+// coordinate axis of its own frame; what a description says about other axes is folded into the constant
+// poses.
 
 #include <functional>
 #include <span>
@@ -16,14 +17,15 @@ namespace anholon {
 
 enum class JointKind { fixed, revolute, prismatic, helical };
 
-/// Position and velocity of a mechanism. r and r_dot hold every independent internal coordinate, in declared order.
+/// Position and velocity of a mechanism. r and r_dot hold every independent internal coordinate, in declared
+/// order.
 template <class S>
 struct State {
   Mat3<S> R = Mat3<S>::identity();  // orientation of the reference body in the world
   Vec3<S> p;                        // position of the reference body in the world, m
   std::vector<S> r, r_dot;
-  Spatial<S> eta;                   // (V, Omega) of the reference body in its own axes; zero where the group has none
-  S t = S(0);                       // s
+  Spatial<S> eta;  // (V, Omega) of the reference body in its own axes; zero where the group has none
+  S t = S(0);      // s
 };
 
 /// Mode j of a compliant body; integrals over the body in its own axes.
@@ -40,17 +42,18 @@ struct Body {
   std::string name;
   int parent = -1;
   JointKind kind = JointKind::fixed;
-  int axis = 2;                          // of the joint, in the body's frame
-  S pitch = S(0);                        // helical: translation per angle, m/rad
-  int coordinate = -1;                   // independent coordinate that moves the joint alone, or -1
-  int coupling = -1;                     // index into Mechanism::couplings, or -1
-  Mat3<S> R = Mat3<S>::identity();       // pose in the parent's frame at zero displacement
+  int axis = 2;                     // of the joint, in the body's frame
+  S pitch = S(0);                   // helical: translation per angle, m/rad
+  int coordinate = -1;              // independent coordinate that moves the joint alone, or -1
+  int coupling = -1;                // index into Mechanism::couplings, or -1
+  Mat3<S> R = Mat3<S>::identity();  // pose in the parent's frame at zero displacement
   Vec3<S> p;
-  Mat3<S> R_frame = Mat3<S>::identity(); // the described frame, in the body's: same origin, constant rotation
+  Mat3<S> R_frame =
+      Mat3<S>::identity();  // the described frame, in the body's: same origin, constant rotation
   S mass = S(0);
-  Vec3<S> first_moment;                  // integral of X dm about the origin
-  Mat3<S> inertia;                       // about the origin
-  std::vector<Mode<S>> modes;            // empty: rigid
+  Vec3<S> first_moment;        // integral of X dm about the origin
+  Mat3<S> inertia;             // about the origin
+  std::vector<Mode<S>> modes;  // empty: rigid
 };
 
 /// Displacement of a coupled joint, with its derivatives by the independent coordinates that it depends on.
@@ -96,7 +99,8 @@ struct Mechanism {
   std::vector<AppliedWrench<S>> wrenches;
   /// writes (force, torque) of every applied wrench, 6 numbers each
   std::function<void(const State<S>&, std::span<S> out)> evaluate_wrenches;
-  /// writes the 6 + s generalised forces of potential, dissipation and the user's own; empty where there are none
+  /// writes the 6 + s generalised forces of potential, dissipation and the user's own; empty where there are
+  /// none
   std::function<void(const State<S>&, std::span<S> out)> generalised_forces;
   /// writes (potential energy without gravity, dissipated power, power of the user's generalised forces)
   std::function<void(const State<S>&, std::span<S> out)> user_energies;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// The generalised recursive Newton-Euler algorithm, eqs. (69)-(72): twists and accelerations from the reference body to
-// the tips, wrenches back. Modal accelerations are inputs and modal forces outputs, as for joints, so that compliant
-// bodies need no articulated step. Written once for every scalar.
+// The generalised recursive Newton-Euler algorithm, eqs. (69)-(72): twists and accelerations from the
+// reference body to the tips, wrenches back. Modal accelerations are inputs and modal forces outputs, as for
+// joints, so that compliant bodies need no articulated step. Written once for every scalar.
 
 #include <cmath>
 #include <vector>
@@ -17,8 +17,12 @@ template <class S>
 class Recursion {
  public:
   explicit Recursion(const Mechanism<S>& mechanism)
-      : mechanism_(mechanism), joints_(mechanism.bodies.size()), motions_(mechanism.bodies.size()), wrenches_(mechanism.bodies.size()) {
-    for (const Coupling<S>& c : mechanism.couplings) coupling_values_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
+      : mechanism_(mechanism),
+        joints_(mechanism.bodies.size()),
+        motions_(mechanism.bodies.size()),
+        wrenches_(mechanism.bodies.size()) {
+    for (const Coupling<S>& c : mechanism.couplings)
+      coupling_values_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
     applied_.resize(6 * mechanism.wrenches.size(), S(0));
     force_.resize(6 + static_cast<std::size_t>(mechanism.coordinates), S(0));
     generalised_.resize(static_cast<std::size_t>(mechanism.coordinates), S(0));
@@ -29,7 +33,8 @@ class Recursion {
   void position(const State<S>& state) {
     using std::cos, std::sin;
     mechanism_.section("joint angles");
-    for (std::size_t c = 0; c < mechanism_.couplings.size(); ++c) mechanism_.couplings[c].evaluate(state.r, coupling_values_[c]);
+    for (std::size_t c = 0; c < mechanism_.couplings.size(); ++c)
+      mechanism_.couplings[c].evaluate(state.r, coupling_values_[c]);
     for (std::size_t k = 0; k < mechanism_.bodies.size(); ++k) {
       const Body<S>& body = mechanism_.bodies[k];
       Joint& joint = joints_[k];
@@ -68,7 +73,8 @@ class Recursion {
   /// @param eta_dot  derivative of the reference body's twist components
   /// @param r_ddot  (s) second derivatives of the coordinates
   /// @param gravity  whether the bodies fall with the acceleration of gravity taken off
-  void accelerations(const State<S>& state, const Spatial<S>& eta_dot, std::span<const S> r_ddot, bool gravity) {
+  void accelerations(const State<S>& state, const Spatial<S>& eta_dot, std::span<const S> r_ddot,
+                     bool gravity) {
     BodyMotion<S>& base = motions_[0];
     mechanism_.section(mechanism_.bodies[0].name + ": acceleration");
     base.a = eta_dot.linear + cross(base.w, base.v);
@@ -84,7 +90,8 @@ class Recursion {
       const auto [linear, angular] = along_axis(body, acceleration(body, state, r_ddot));
       const Vec3<S> axis = unit<S>(body.axis);
       const Vec3<S> carried = to_body(k, parent.w);
-      motion.a = to_body(k, parent.a + parent.U * joints_[k].offset) + S(2) * cross(carried, linear_rate * axis);
+      motion.a =
+          to_body(k, parent.a + parent.U * joints_[k].offset) + S(2) * cross(carried, linear_rate * axis);
       motion.a[body.axis] = motion.a[body.axis] + linear;
       motion.wd = to_body(k, parent.wd) + cross(carried, angular_rate * axis);
       motion.wd[body.axis] = motion.wd[body.axis] + angular;
@@ -94,13 +101,15 @@ class Recursion {
 
   /// Forces that the motion needs beyond those that are applied. Needs accelerations().
   /// @param applied  whether user wrenches, springs, dampers and generalised forces act
-  /// Afterwards base_wrench() is f_reac and generalised_forces() is tau of eq. (28), one for every coordinate.
+  /// Afterwards base_wrench() is f_reac and generalised_forces() is tau of eq. (28), one for every
+  /// coordinate.
   void wrenches(const State<S>& state, std::span<const S> r_ddot, bool applied) {
     for (S& force : generalised_) force = S(0);
     for (std::size_t k = 0; k < mechanism_.bodies.size(); ++k) {
       const Body<S>& body = mechanism_.bodies[k];
       mechanism_.section(body.name + ": wrench");
-      wrenches_[k] = body_wrench(body, joints_[k].inertia, motions_[k], std::span<const S>(state.r_dot), r_ddot, modal_);
+      wrenches_[k] =
+          body_wrench(body, joints_[k].inertia, motions_[k], std::span<const S>(state.r_dot), r_ddot, modal_);
       for (std::size_t j = 0; j < modal_.size(); ++j) add_force(body.modes[j].coordinate, modal_[j]);
     }
     if (applied && !mechanism_.wrenches.empty()) {
@@ -138,8 +147,12 @@ class Recursion {
 
   [[nodiscard]] const Spatial<S>& base_wrench() const { return base_wrench_; }
   [[nodiscard]] const std::vector<S>& generalised_forces() const { return generalised_; }
-  [[nodiscard]] const BodyMotion<S>& motion(int body) const { return motions_[static_cast<std::size_t>(body)]; }
-  [[nodiscard]] const BodyInertia<S>& inertia(int body) const { return joints_[static_cast<std::size_t>(body)].inertia; }
+  [[nodiscard]] const BodyMotion<S>& motion(int body) const {
+    return motions_[static_cast<std::size_t>(body)];
+  }
+  [[nodiscard]] const BodyInertia<S>& inertia(int body) const {
+    return joints_[static_cast<std::size_t>(body)].inertia;
+  }
   [[nodiscard]] std::span<const S> no_acceleration() const { return zeros_; }
 
   /// Orientation and position of every body's frame in the world, eq. (70). Needs position().
@@ -178,7 +191,8 @@ class Recursion {
     if (body.coupling < 0) return sum;
     const Coupling<S>& c = mechanism_.couplings[static_cast<std::size_t>(body.coupling)];
     const auto& value = coupling_values_[static_cast<std::size_t>(body.coupling)];
-    for (std::size_t i = 0; i < c.on.size(); ++i) sum = sum + value[1 + i] * r_dot[static_cast<std::size_t>(c.on[i])];
+    for (std::size_t i = 0; i < c.on.size(); ++i)
+      sum = sum + value[1 + i] * r_dot[static_cast<std::size_t>(c.on[i])];
     return sum;
   }
   [[nodiscard]] S acceleration(const Body<S>& body, const State<S>& state, std::span<const S> r_ddot) const {
@@ -188,8 +202,8 @@ class Recursion {
     const auto& value = coupling_values_[static_cast<std::size_t>(body.coupling)];
     for (std::size_t i = 0; i < c.on.size(); ++i) {
       for (std::size_t j = 0; j < c.on.size(); ++j) {
-        sum = sum + value[1 + c.on.size() * (1 + i) + j] *
-                        (state.r_dot[static_cast<std::size_t>(c.on[i])] * state.r_dot[static_cast<std::size_t>(c.on[j])]);
+        sum = sum + value[1 + c.on.size() * (1 + i) + j] * (state.r_dot[static_cast<std::size_t>(c.on[i])] *
+                                                            state.r_dot[static_cast<std::size_t>(c.on[j])]);
       }
     }
     return sum;
@@ -197,10 +211,14 @@ class Recursion {
   /// (translation along, rotation about) the axis for a joint rate or acceleration.
   [[nodiscard]] std::pair<S, S> along_axis(const Body<S>& body, const S& x) const {
     switch (body.kind) {
-      case JointKind::revolute: return {S(0), x};
-      case JointKind::prismatic: return {x, S(0)};
-      case JointKind::helical: return {body.pitch * x, x};
-      case JointKind::fixed: break;
+      case JointKind::revolute:
+        return {S(0), x};
+      case JointKind::prismatic:
+        return {x, S(0)};
+      case JointKind::helical:
+        return {body.pitch * x, x};
+      case JointKind::fixed:
+        break;
     }
     return {S(0), S(0)};
   }
@@ -213,11 +231,13 @@ class Recursion {
     S force = S(0);
     if (body.kind == JointKind::revolute) force = wrench.angular[body.axis];
     if (body.kind == JointKind::prismatic) force = wrench.linear[body.axis];
-    if (body.kind == JointKind::helical) force = wrench.angular[body.axis] + body.pitch * wrench.linear[body.axis];
+    if (body.kind == JointKind::helical)
+      force = wrench.angular[body.axis] + body.pitch * wrench.linear[body.axis];
     if (body.coordinate >= 0) add_force(body.coordinate, force);
     if (body.coupling < 0) return;
     const Coupling<S>& c = mechanism_.couplings[static_cast<std::size_t>(body.coupling)];
-    for (std::size_t i = 0; i < c.on.size(); ++i) add_force(c.on[i], coupling_values_[static_cast<std::size_t>(body.coupling)][1 + i] * force);
+    for (std::size_t i = 0; i < c.on.size(); ++i)
+      add_force(c.on[i], coupling_values_[static_cast<std::size_t>(body.coupling)][1 + i] * force);
   }
   /// Calls f(body, wrench about the body's origin in its axes) for every applied wrench.
   template <class F>

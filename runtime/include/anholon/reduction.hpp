@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Numeric reduction at one state: rank decisions by pivoted orthogonal factorisation, accelerations from the projection
-// onto the kernel (section III), minimum-norm multipliers (26) and torques (27). Basis-free: no derivative of a kernel
-// is taken. Works over double, long double and any scalar that Eigen can factorise.
+// Numeric reduction at one state: rank decisions by pivoted orthogonal factorisation, accelerations from the
+// projection onto the kernel (section III), minimum-norm multipliers (26) and torques (27). Basis-free: no
+// derivative of a kernel is taken. Works over double, long double and any scalar that Eigen can factorise.
 
 #include <Eigen/Dense>
-
 #include <vector>
 
 #include "anholon/matrix.hpp"
@@ -33,7 +32,8 @@ DynamicVector<S> to_eigen(const std::vector<S>& a) {
   return r;
 }
 
-/// Complete orthogonal factorisations of a constraint matrix A (rows x cols): kernel, particular and dual solutions.
+/// Complete orthogonal factorisations of a constraint matrix A (rows x cols): kernel, particular and dual
+/// solutions.
 template <class S>
 class ConstraintFactors {
  public:
@@ -51,7 +51,8 @@ class ConstraintFactors {
   /// Orthonormal basis of ker A, cols x (cols - rank).
   [[nodiscard]] DynamicMatrix<S> kernel() const {
     if (rank_ == 0) return DynamicMatrix<S>::Identity(cols_, cols_);
-    return DynamicMatrix<S>(dual_.householderQ()).rightCols(cols_ - rank_);  // the first columns span the row space
+    return DynamicMatrix<S>(dual_.householderQ())
+        .rightCols(cols_ - rank_);  // the first columns span the row space
   }
   /// A^+ b: minimum-norm least-squares solution of A x = b.
   [[nodiscard]] DynamicVector<S> solve(const DynamicVector<S>& b) const {
@@ -78,8 +79,9 @@ struct ConstrainedSolution {
 };
 
 template <class S>
-ConstrainedSolution<S> solve_constrained(const DynamicMatrix<S>& M, const DynamicVector<S>& force, const DynamicMatrix<S>& A,
-                                         const DynamicVector<S>& bias, const S& threshold) {
+ConstrainedSolution<S> solve_constrained(const DynamicMatrix<S>& M, const DynamicVector<S>& force,
+                                         const DynamicMatrix<S>& A, const DynamicVector<S>& bias,
+                                         const S& threshold) {
   const ConstraintFactors<S> factors(A, threshold);
   ConstrainedSolution<S> solution;
   solution.rank = factors.rank();

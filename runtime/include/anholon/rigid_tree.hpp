@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Dynamics of a tree of rigid bodies in as few operations as are known: the recursion of Luh, Walker and Paul about joint
-// frames, in the form of Khalil and Kleinfinger 1987 with U = [wd] + [w][w], and two steps beyond it:
+// Dynamics of a tree of rigid bodies in as few operations as are known: the recursion of Luh, Walker and Paul
+// about joint frames, in the form of Khalil and Kleinfinger 1987 with U = [wd] + [w][w], and two steps beyond
+// it:
 //
-// - The second derivative of a joint's axis n is U n, the same in the parent and in the body. One column of U comes from the
-//   parent's by the turn of a vector, and the others follow from it and w; wd is never formed across the axis.
-// - The body's moment is taken from the second moment Sigma (second_moment.hpp), where Sigma_nn = 0 after regrouping.
+// - The second derivative of a joint's axis n is U n, the same in the parent and in the body. One column of U
+// comes from the
+//   parent's by the turn of a vector, and the others follow from it and w; wd is never formed across the
+//   axis.
+// - The body's moment is taken from the second moment Sigma (second_moment.hpp), where Sigma_nn = 0 after
+// regrouping.
 //
 // Bodies have no modes here. What the tape does not need, it does not keep; numbers pay for all components.
 
@@ -26,7 +30,9 @@ struct JointTransform {
   AxisRotation<S> rotation;
   Vec3<S> offset;  // of the body's origin in the parent's frame
 
-  [[nodiscard]] Vec3<S> to_body(const Vec3<S>& v) const { return rotation.apply_inverse(transposed_times(R, v)); }
+  [[nodiscard]] Vec3<S> to_body(const Vec3<S>& v) const {
+    return rotation.apply_inverse(transposed_times(R, v));
+  }
   [[nodiscard]] Vec3<S> to_parent(const Vec3<S>& v) const { return R * rotation.apply(v); }
   /// A wrench about the body's origin as one about the parent's.
   [[nodiscard]] Spatial<S> to_parent(const Spatial<S>& f) const {
@@ -57,7 +63,8 @@ class RigidTree {
       if (!body.modes.empty()) throw std::invalid_argument("body '" + body.name + "' is not rigid");
       moments_.push_back({body.mass, body.first_moment, second_moment(body.inertia)});
     }
-    for (const Coupling<S>& c : mechanism.couplings) couplings_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
+    for (const Coupling<S>& c : mechanism.couplings)
+      couplings_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
     joints_.resize(mechanism.bodies.size());
     motions_.resize(mechanism.bodies.size());
   }
@@ -78,7 +85,8 @@ class RigidTree {
     }
   }
 
-  /// Motion of the reference body: angular velocity, its derivative, acceleration of the origin minus gravity.
+  /// Motion of the reference body: angular velocity, its derivative, acceleration of the origin minus
+  /// gravity.
   void move_base(const Vec3<S>& w, const Vec3<S>& wd, const Vec3<S>& a) {
     Motion& base = motions_[0];
     base.w = w;
@@ -95,7 +103,8 @@ class RigidTree {
     }
   }
 
-  /// Motions of all bodies for the rates and accelerations of the coordinates. Needs position() and move_base().
+  /// Motions of all bodies for the rates and accelerations of the coordinates. Needs position() and
+  /// move_base().
   void move(const std::vector<S>& r_dot, const std::vector<S>& r_ddot) {
     for (std::size_t k = 1; k < size(); ++k) {
       const Body<S>& b = body(k);
@@ -154,12 +163,15 @@ class RigidTree {
   [[nodiscard]] std::size_t size() const { return mechanism_.bodies.size(); }
   [[nodiscard]] const Mechanism<S>& mechanism() const { return mechanism_; }
   [[nodiscard]] const Body<S>& body(std::size_t k) const { return mechanism_.bodies[k]; }
-  [[nodiscard]] std::size_t parent_of(std::size_t k) const { return static_cast<std::size_t>(body(k).parent); }
+  [[nodiscard]] std::size_t parent_of(std::size_t k) const {
+    return static_cast<std::size_t>(body(k).parent);
+  }
   [[nodiscard]] const JointTransform<S>& joint(std::size_t k) const { return joints_[k]; }
   [[nodiscard]] const MassMoments<S>& moments(std::size_t k) const { return moments_[k]; }
   [[nodiscard]] const Motion& motion(std::size_t k) const { return motions_[k]; }
   [[nodiscard]] bool moves(std::size_t k) const { return body(k).coordinate >= 0 || body(k).coupling >= 0; }
-  /// The coordinate whose rate is that of body k's joint, where no other coordinate moves it; else -1. Needs position().
+  /// The coordinate whose rate is that of body k's joint, where no other coordinate moves it; else -1. Needs
+  /// position().
   [[nodiscard]] int own_coordinate(std::size_t k) const {
     int coordinate = -1;
     int shares = 0;
@@ -173,10 +185,14 @@ class RigidTree {
   /// Component of a wrench that does work on the joint.
   [[nodiscard]] static S joint_force(const Body<S>& b, const Spatial<S>& f) {
     switch (b.kind) {
-      case JointKind::revolute: return f.angular[b.axis];
-      case JointKind::prismatic: return f.linear[b.axis];
-      case JointKind::helical: return f.angular[b.axis] + b.pitch * f.linear[b.axis];
-      case JointKind::fixed: break;
+      case JointKind::revolute:
+        return f.angular[b.axis];
+      case JointKind::prismatic:
+        return f.linear[b.axis];
+      case JointKind::helical:
+        return f.angular[b.axis] + b.pitch * f.linear[b.axis];
+      case JointKind::fixed:
+        break;
     }
     return S(0);
   }
@@ -194,11 +210,14 @@ class RigidTree {
     if (b.coordinate >= 0) use(b.coordinate, S(1));
     if (b.coupling < 0) return;
     const Coupling<S>& c = mechanism_.couplings[static_cast<std::size_t>(b.coupling)];
-    for (std::size_t i = 0; i < c.on.size(); ++i) use(c.on[i], couplings_[static_cast<std::size_t>(b.coupling)][1 + i]);
+    for (std::size_t i = 0; i < c.on.size(); ++i)
+      use(c.on[i], couplings_[static_cast<std::size_t>(b.coupling)][1 + i]);
   }
 
  private:
-  static bool turns(const Body<S>& b) { return b.kind == JointKind::revolute || b.kind == JointKind::helical; }
+  static bool turns(const Body<S>& b) {
+    return b.kind == JointKind::revolute || b.kind == JointKind::helical;
+  }
 
   /// The parent's angular motion in the body's axes.
   static void carry(const JointTransform<S>& joint, const Motion& parent, Motion& m) {
@@ -216,7 +235,8 @@ class RigidTree {
   }
 
   /// Adds the joint's own turning, with the column of U along the axis as a vector fixed to parent and body.
-  void turn(const Body<S>& b, std::size_t k, const Motion& parent, const S& rate, const S& acceleration, Motion& m) const {
+  void turn(const Body<S>& b, std::size_t k, const Motion& parent, const S& rate, const S& acceleration,
+            Motion& m) const {
     const int z = b.axis;
     const int x = (z + 1) % 3;
     const int y = (z + 2) % 3;
@@ -249,8 +269,8 @@ class RigidTree {
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
       const int k = (i + 2) % 3;
-      N[i] = Sigma(j, j) * m.U(k, j) - Sigma(k, k) * m.U(j, k) + Sigma(i, j) * m.U(k, i) - Sigma(i, k) * m.U(j, i) +
-             Sigma(j, k) * (m.squares[k] - m.squares[j]);
+      N[i] = Sigma(j, j) * m.U(k, j) - Sigma(k, k) * m.U(j, k) + Sigma(i, j) * m.U(k, i) -
+             Sigma(i, k) * m.U(j, i) + Sigma(j, k) * (m.squares[k] - m.squares[j]);
     }
     return N;
   }

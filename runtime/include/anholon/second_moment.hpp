@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Symmetric 3x3 matrices and the second moment Sigma = integral of X X^T dm, which carries a body's rotational inertia with
-// fewer operations than I = tr(Sigma) 1 - Sigma: a mass on a joint's axis has one entry in it where I has two.
+// Symmetric 3x3 matrices and the second moment Sigma = integral of X X^T dm, which carries a body's
+// rotational inertia with fewer operations than I = tr(Sigma) 1 - Sigma: a mass on a joint's axis has one
+// entry in it where I has two.
 
 #include "anholon/spatial.hpp"
 
@@ -30,7 +31,8 @@ struct Symmetric3 {
     return {a.diagonal + b.diagonal, a.mixed + b.mixed};
   }
   friend Vec3<S> operator*(const Symmetric3& a, const Vec3<S>& v) {
-    return {a.diagonal.x * v.x + a.mixed.z * v.y + a.mixed.y * v.z, a.mixed.z * v.x + a.diagonal.y * v.y + a.mixed.x * v.z,
+    return {a.diagonal.x * v.x + a.mixed.z * v.y + a.mixed.y * v.z,
+            a.mixed.z * v.x + a.diagonal.y * v.y + a.mixed.x * v.z,
             a.mixed.y * v.x + a.mixed.x * v.y + a.diagonal.z * v.z};
   }
   [[nodiscard]] S trace() const { return diagonal.x + diagonal.y + diagonal.z; }
@@ -40,17 +42,18 @@ struct Symmetric3 {
 template <class S>
 Symmetric3<S> second_moment(const Mat3<S>& I) {
   const S half = S(1) / S(2);
-  return {{half * (I(1, 1) + I(2, 2) - I(0, 0)), half * (I(0, 0) + I(2, 2) - I(1, 1)), half * (I(0, 0) + I(1, 1) - I(2, 2))},
+  return {{half * (I(1, 1) + I(2, 2) - I(0, 0)), half * (I(0, 0) + I(2, 2) - I(1, 1)),
+           half * (I(0, 0) + I(1, 1) - I(2, 2))},
           {-I(1, 2), -I(0, 2), -I(0, 1)}};
 }
 template <class S>
 Mat3<S> inertia_matrix(const Symmetric3<S>& a) {
-  return {{a.diagonal.y + a.diagonal.z, -a.mixed.z, -a.mixed.y, -a.mixed.z, a.diagonal.x + a.diagonal.z, -a.mixed.x, -a.mixed.y,
-           -a.mixed.x, a.diagonal.x + a.diagonal.y}};
+  return {{a.diagonal.y + a.diagonal.z, -a.mixed.z, -a.mixed.y, -a.mixed.z, a.diagonal.x + a.diagonal.z,
+           -a.mixed.x, -a.mixed.y, -a.mixed.x, a.diagonal.x + a.diagonal.y}};
 }
 
-/// R a R^T for the turn R about a coordinate axis, in 16 operations: with k = s (a_ii - a_jj) + 2 c a_ij the turned block is
-/// a_ii - s k, a_jj + s k, c k - a_ij, since c^2 + s^2 = 1.
+/// R a R^T for the turn R about a coordinate axis, in 16 operations: with k = s (a_ii - a_jj) + 2 c a_ij the
+/// turned block is a_ii - s k, a_jj + s k, c k - a_ij, since c^2 + s^2 = 1.
 template <class S>
 Symmetric3<S> turned(const AxisRotation<S>& R, const Symmetric3<S>& a) {
   const int z = R.axis;
@@ -67,7 +70,8 @@ Symmetric3<S> turned(const AxisRotation<S>& R, const Symmetric3<S>& a) {
   return r;
 }
 
-/// R a R^T for a general matrix a, in 23 operations: of the 2x2 block across the axis, the antisymmetric part and the trace stay.
+/// R a R^T for a general matrix a, in 23 operations: of the 2x2 block across the axis, the antisymmetric part
+/// and the trace stay.
 template <class S>
 Mat3<S> turned(const AxisRotation<S>& R, const Mat3<S>& a) {
   const int z = R.axis;
@@ -91,7 +95,7 @@ template <class S>
 struct AxisFactors {
   bool exist = false;
   AxisRotation<S> turn;
-  int shift = 0;                    // axis i of the result is axis i + shift of what P turns
+  int shift = 0;  // axis i of the result is axis i + shift of what P turns
   std::array<S, 3> sign = {S(1), S(1), S(1)};
 
   explicit AxisFactors(const Mat3<S>& R) {
@@ -108,7 +112,8 @@ struct AxisFactors {
   /// Entry (i, j) of P a P^T.
   template <class Matrix>
   [[nodiscard]] S permuted(const Matrix& a, int i, int j) const {
-    return sign[static_cast<std::size_t>(i)] * a((i + shift) % 3, (j + shift) % 3) * sign[static_cast<std::size_t>(j)];
+    return sign[static_cast<std::size_t>(i)] * a((i + shift) % 3, (j + shift) % 3) *
+           sign[static_cast<std::size_t>(j)];
   }
 };
 
@@ -150,7 +155,8 @@ struct MassMoments {
   friend MassMoments operator+(const MassMoments& a, const MassMoments& b) {
     return {a.mass + b.mass, a.first + b.first, a.second + b.second};
   }
-  /// About an origin from which the old one is at p: Sigma + p h^T + h p^T + m p p^T, in the form that uses p (h + m p/2) twice.
+  /// About an origin from which the old one is at p: Sigma + p h^T + h p^T + m p p^T, in the form that uses p
+  /// (h + m p/2) twice.
   [[nodiscard]] MassMoments moved(const Vec3<S>& p) const {
     MassMoments r = *this;
     const Vec3<S> mp = mass * p;

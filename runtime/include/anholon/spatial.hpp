@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// Three-vectors and 3x3 matrices over any scalar, and rotations about a coordinate axis. They are kept this small
-// because a symbolic scalar needs nothing else, and because rotations about one axis are where operations are saved.
+// Three-vectors and 3x3 matrices over any scalar, and rotations about a coordinate axis. They are kept this
+// small because a symbolic scalar needs nothing else, and because rotations about one axis are where
+// operations are saved.
 
 #include <array>
 #include <cstddef>

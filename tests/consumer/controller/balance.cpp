@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
 //
-// A 1 kHz control loop keeps a bicycle upright by steer for ten seconds, at constant speed, through two pushes.
-// The controller calls generated code for the torques that its motors need; the bicycle itself is the generated forward
-// dynamics, integrated by Runge-Kutta-Munthe-Kaas on SE(3). Nothing allocates in the loop.
+// A 1 kHz control loop keeps a bicycle upright by steer for ten seconds, at constant speed, through two
+// pushes. The controller calls generated code for the torques that its motors need; the bicycle itself is the
+// generated forward dynamics, integrated by Runge-Kutta-Munthe-Kaas on SE(3). Nothing allocates in the loop.
 //
-// Exit status: 0 if the bicycle stands still upright at the end, falls without control, and nothing was allocated.
+// Exit status: 0 if the bicycle stands still upright at the end, falls without control, and nothing was
+// allocated.
 
 // Eigen allocates by malloc: its own check stands in for a count.
 #include <cstdlib>
 #define EIGEN_RUNTIME_NO_MALLOC
-#define eigen_assert(condition) \
-  do {                          \
+#define eigen_assert(condition)     \
+  do {                              \
     if (!(condition)) std::abort(); \
   } while (false)
 
@@ -45,9 +46,9 @@ using SE3 = anholon::lie::SE3<double>;
 using Stages = anholon::integrate::Rkmk4<SE3>;
 using Vector = Stages::Vector;
 
-constexpr double dt = 1e-3;        // [s]
-constexpr double duration = 10;    // [s]
-constexpr double rear_spin = 12;   // r3_dot [rad/s]: 3.96 m/s
+constexpr double dt = 1e-3;       // [s]
+constexpr double duration = 10;   // [s]
+constexpr double rear_spin = 12;  // r3_dot [rad/s]: 3.96 m/s
 
 /// What the sensors of the bicycle give.
 struct Measured {
@@ -84,13 +85,14 @@ class Controller {
   Command step(const Measured& now) const {
     const double x = now.roll() - balance_;
     Command command;
-    command.r_a_ddot[0] = -gain_ * (127.13 * x + 26.35 * now.roll_rate[0]) - 135.85 * now.r_a[0] - 25.69 * now.r_a_dot[0];
+    command.r_a_ddot[0] =
+        -gain_ * (127.13 * x + 26.35 * now.roll_rate[0]) - 135.85 * now.r_a[0] - 25.69 * now.r_a_dot[0];
     command.r_a_ddot[1] = 0;  // constant speed
     double nu_dot[1], eta_dot[6], r_p_ddot[1];
-    model::forward_dynamics(par_, now.R, now.r_p, now.r_a, now.roll_rate, now.r_a_dot, command.r_a_ddot, nu_dot, eta_dot,
-                            r_p_ddot);
-    model::inverse_torques(par_, now.R, now.r_p, now.r_a, now.roll_rate, now.r_a_dot, command.r_a_ddot, nu_dot,
-                           command.tau_a);
+    model::forward_dynamics(par_, now.R, now.r_p, now.r_a, now.roll_rate, now.r_a_dot, command.r_a_ddot,
+                            nu_dot, eta_dot, r_p_ddot);
+    model::inverse_torques(par_, now.R, now.r_p, now.r_a, now.roll_rate, now.r_a_dot, command.r_a_ddot,
+                           nu_dot, command.tau_a);
     return command;
   }
 
@@ -104,7 +106,8 @@ class Controller {
 class Bicycle {
  public:
   /// Upright (X up) and heading along world Y, leaning by `roll`.
-  Bicycle(const model::Parameters<double>& parameters, double roll) : par_(model::prepare(parameters)), stages_(6) {
+  Bicycle(const model::Parameters<double>& parameters, double roll)
+      : par_(model::prepare(parameters)), stages_(6) {
     const double quarter = std::acos(-1.0) / 2;
     SE3::Tangent lean;  // about Y, from the pose with Z up
     lean << 0, 0, 0, 0, roll - quarter, 0;
@@ -149,12 +152,14 @@ class Bicycle {
   anholon::integrate::State<SE3> state_;
 };
 
-double microseconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double, std::micro>(d).count(); }
+double microseconds(std::chrono::steady_clock::duration d) {
+  return std::chrono::duration<double, std::micro>(d).count();
+}
 
 void print_times(const char* what, std::vector<double>& times) {
   std::sort(times.begin(), times.end());
-  std::printf("  %s  median %.2f us, 99 %% below %.2f us, worst step %.2f us\n", what, times[times.size() / 2],
-              times[times.size() * 99 / 100], times.back());
+  std::printf("  %s  median %.2f us, 99 %% below %.2f us, worst step %.2f us\n", what,
+              times[times.size() / 2], times[times.size() * 99 / 100], times.back());
 }
 
 /// When the bicycle lies on its side without feedback on roll [s].
