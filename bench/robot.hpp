@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// A robot as every contender sees it: its mechanism in numbers, bodies on fixed joints merged, and random
+// states within the limits of its joints.
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "anholon/mechanism.hpp"
+#include "describe/model.hpp"
+
+namespace anholon::bench {
+
+/// One state with the motion or the forces that go with it. eta and eta_dot are zero for a fixed base.
+struct Sample {
+  State<double> state;
+  Spatial<double> eta_dot;     // derivative of eta's components
+  std::vector<double> r_ddot;  // (s)
+  std::vector<double> tau;     // (s) forces of the joints
+};
+
+struct Robot {
+  std::string name;
+  Model model;                  // without springs, dampers and friction: no peer is asked for them
+  Mechanism<double> mechanism;  // of the described frames
+  std::vector<Sample> samples;
+};
+
+/// @param count  number of samples
+Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t count);
+
+}  // namespace anholon::bench
