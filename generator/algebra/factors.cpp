@@ -14,6 +14,7 @@ namespace anholon {
 namespace {
 
 constexpr std::size_t gcd_term_limit = 200;
+constexpr double gcd_point_limit = 5e4;  // dearer ones are left uncancelled
 constexpr std::size_t factor_term_limit = 24;
 constexpr std::size_t factor_variable_limit = 8;
 constexpr std::size_t factor_degree_limit = 6;
@@ -164,6 +165,15 @@ std::size_t total_degree(const Polynomial& p) {
   return result;
 }
 
+/// Points at which a modular algorithm evaluates two polynomials: the product over the variables of their
+/// degrees plus one. Grows without bound with the number of variables, however few the terms.
+double evaluation_points(const Polynomial& f, const Polynomial& g) {
+  double points = 1;
+  for (std::size_t i = 0; i < std::max(f.variable_count(), g.variable_count()); ++i)
+    points *= 1.0 + std::min(f.degree(i), g.degree(i));
+  return points;
+}
+
 }  // namespace
 
 Polynomial gcd(const Polynomial& p, const Polynomial& q) {
@@ -190,7 +200,8 @@ Polynomial gcd(const Polynomial& p, const Polynomial& q) {
   }
   if (divide(f, g)) return g;
   if (divide(g, f)) return f;
-  if (f.size() > gcd_term_limit || g.size() > gcd_term_limit) return common_monomial(f, g);
+  if (f.size() > gcd_term_limit || g.size() > gcd_term_limit || evaluation_points(f, g) > gcd_point_limit)
+    return common_monomial(f, g);
   Symbols symbols;
   const GiNaC::ex a = symbols.to_ginac(f);
   const GiNaC::ex b = symbols.to_ginac(g);

@@ -97,7 +97,8 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   e.kinetic = energy("kinetic"), e.gravity = energy("gravity"), e.elastic = energy("elastic"),
   e.dissipated_power = energy("dissipated_power");
 
-  if (input.has_acceleration) {
+  const bool passive_alone = partition.s_a() == 0;  // then the motion is the same, whatever is given
+  if (input.has_acceleration || (input.has_torque && passive_alone)) {
     const NamedValues<S> reduced = run("reduced_dynamics");
     e.M_r = matrix(reduced, "M_r", k, k);
     e.f_r = get(reduced, "f_r");
@@ -112,7 +113,10 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     e.tau_a = get(run("inverse_torques"), "tau_a");
     e.lambda = get(run("multipliers"), "lambda");
   }
-  if (input.has_torque) {
+  if (input.has_torque && passive_alone) {
+    e.free_acceleration = e.acceleration;
+    e.free_lambda = e.lambda;
+  } else if (input.has_torque) {
     in["w"] = get(run("torque_driven_velocities"), "w");
     const NamedValues<S> forward = run("torque_driven_dynamics");
     in["w_dot"] = get(forward, "w_dot");

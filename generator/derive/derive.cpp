@@ -85,6 +85,7 @@ class Deriver {
     derive_torques_and_multipliers();
     derive_compatibility();
     derive_torque_driven();
+    derive_position_conditions();
     derive_energies();
     derive_poses();
     result_->reduction = {motion_.partition, motion_.ranks, motion_.reduction->kernel()};
@@ -576,6 +577,21 @@ class Deriver {
     result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel()};
   }
 
+  void derive_position_conditions() {
+    if (!wanted("position_conditions") || model_.positions.empty()) return;
+    tape_.section("conditions on the position");
+    const auto [values, slopes] = dynamics_.conditions(symbols_.position());
+    emit("position_conditions",
+         "Conditions on the position that the constraint rows keep: zero, or their value where the contact "
+         "began.",
+         {{"recursion",
+           {block("Phi", "m or 1", "values", values),
+            block("Phi_q", "mixed",
+                  "derivatives by the velocities (twist in the reference body's axes, coordinates in "
+                  "declared order)",
+                  slopes)}}});
+  }
+
   void derive_energies() {
     if (!wanted("energies")) return;
     const auto e = dynamics_.energies(symbols_.moving(full_velocity()));
@@ -671,6 +687,7 @@ const std::vector<std::string>& function_names() {
                                                  "torque_driven_velocities",
                                                  "torque_driven_dynamics",
                                                  "torque_driven_multipliers",
+                                                 "position_conditions",
                                                  "energies",
                                                  "body_poses"};
   return names;

@@ -81,6 +81,7 @@ class Describer {
     result_.gravity = vector(model_.gravity);
     for (const BodyDescription& body : model_.bodies) add(body);
     for (const RowDescription& row : model_.rows) add(row);
+    for (const PositionDescription& position : model_.positions) add(position);
     for (const WrenchDescription& wrench : model_.wrenches) add(wrench);
     add_forces();
     return std::move(result_);
@@ -204,6 +205,34 @@ class Describer {
     result_.rows.push_back(std::move(row));
   }
 
+  /// Derivatives by the directions of the twist, in the reference body's axes, and by the coordinates.
+  void add(const PositionDescription& position) {
+    const StateSymbols& s = model_.symbols;
+    const NodeId root = position.value.id(tape_);
+    result_.condition_roots.push_back(root);
+    for (int c = 0; c < 6; ++c)
+      result_.condition_roots.push_back(directional_derivative(tape_, {root}, pose_direction(c)).front());
+    for (const NodeId r : s.r) result_.condition_roots.push_back(derivative(tape_, root, r));
+  }
+
+  /// Tangent of the pose along component c of the twist: R_dot = R [e], p_dot = R e.
+  std::vector<std::pair<NodeId, NodeId>> pose_direction(int c) {
+    const StateSymbols& s = model_.symbols;
+    Mat3<Expr> R;
+    for (std::size_t i = 0; i < 9; ++i) R.m[i] = Expr(tape_, s.R[i]);
+    const Vec3<Expr> e = unit<Expr>(c % 3);
+    std::vector<std::pair<NodeId, NodeId>> direction;
+    if (c < 3) {
+      const Vec3<Expr> p_dot = R * e;
+      for (int i = 0; i < 3; ++i)
+        direction.emplace_back(s.p[static_cast<std::size_t>(i)], p_dot[i].id(tape_));
+    } else {
+      const Mat3<Expr> R_dot = R * skew(e);
+      for (std::size_t i = 0; i < 9; ++i) direction.emplace_back(s.R[i], R_dot.m[i].id(tape_));
+    }
+    return direction;
+  }
+
   /// d/dt at constant velocities: R_dot = R [Omega], p_dot = R V, r_dot, t_dot = 1.
   std::vector<std::pair<NodeId, NodeId>> motion() {
     const StateSymbols& s = model_.symbols;
@@ -233,22 +262,11 @@ class Describer {
     const NodeId U = model_.potential.id(tape_);
     const NodeId D = model_.dissipation.id(tape_);
     std::vector<Expr> force(6 + s.r.size(), Expr(0));
-    Mat3<Expr> R;
-    for (std::size_t i = 0; i < 9; ++i) R.m[i] = Expr(tape_, s.R[i]);
     Expr power = 0;
     for (std::size_t c = 0; c < 6; ++c) {
-      std::vector<std::pair<NodeId, NodeId>> direction;
-      const Vec3<Expr> e = unit<Expr>(static_cast<int>(c % 3));
-      if (c < 3) {
-        const Vec3<Expr> p_dot = R * e;
-        for (std::size_t i = 0; i < 3; ++i)
-          direction.emplace_back(s.p[i], p_dot[static_cast<int>(i)].id(tape_));
-      } else {
-        const Mat3<Expr> R_dot = R * skew(e);
-        for (std::size_t i = 0; i < 9; ++i) direction.emplace_back(s.R[i], R_dot.m[i].id(tape_));
-      }
       const Expr damping(tape_, derivative(tape_, D, s.eta[c]));
-      force[c] = -Expr(tape_, directional_derivative(tape_, {U}, direction).front()) - damping;
+      const NodeId slope = directional_derivative(tape_, {U}, pose_direction(static_cast<int>(c))).front();
+      force[c] = -Expr(tape_, slope) - damping;
       power = power + Expr(tape_, s.eta[c]) * damping;
     }
     for (std::size_t i = 0; i < s.r.size(); ++i) {

@@ -33,6 +33,7 @@ struct MechanismDescription {
   std::vector<Body<Expr>> bodies;
   std::vector<CouplingRoots> couplings;
   std::vector<RowRoots> rows;
+  std::vector<NodeId> condition_roots;  // of each condition on the position: value, 6 + s derivatives
   Vec3<Expr> gravity;
   std::vector<AppliedWrench<Expr>> wrenches;
   std::vector<NodeId> wrench_roots;  // 6 each
@@ -175,6 +176,8 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     if (!r.roots.empty()) row.written = state_function(r.roots);
     mechanism.rows.push_back(std::move(row));
   }
+  mechanism.conditions = static_cast<int>(d.condition_roots.size()) / (7 + d.coordinates);
+  if (!d.condition_roots.empty()) mechanism.position_conditions = state_function(d.condition_roots);
   mechanism.gravity = vector();
   for (const auto& w : d.wrenches) mechanism.wrenches.push_back({w.body, w.in_world_axes, vector()});
   if (!d.wrenches.empty()) mechanism.evaluate_wrenches = state_function(d.wrench_roots);

@@ -81,9 +81,17 @@ struct RowTermDescription {
 /// A constraint row: declared (terms) or written by the user (an expression, linear in the velocities).
 struct RowDescription {
   std::string name;
+  std::string contact;  // the [[constraint]] that it is part of
   std::vector<RowTermDescription> terms;
   std::optional<Expr> expression;
   Location where;
+};
+
+/// A condition on the position, whose derivative is a combination of the rows of its contact.
+struct PositionDescription {
+  std::string contact;
+  Expr value = 0;           // m or 1
+  bool from_start = false;  // keeps the value that it has where the contact begins; else zero
 };
 
 /// External wrench on a body: expressions of state, parameters and time.
@@ -123,6 +131,7 @@ struct Model {
   std::vector<Coordinate> coordinates;
   std::vector<BodyDescription> bodies;  // [0] is the reference body; parents precede children
   std::vector<RowDescription> rows;
+  std::vector<PositionDescription> positions;
   std::vector<WrenchDescription> wrenches;
   std::vector<GeneralisedForceDescription> forces;
   std::array<Expr, 3> gravity = {0, 0, 0};   // acceleration of gravity in the world

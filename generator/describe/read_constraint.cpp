@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Constraint rows: written by the user as an expression linear in the velocities, or declared by what touches
-// the ground.
+// Constraint rows: written by the user as an expression linear in the velocities, declared in the plane, or
+// those of contacts and loops (read_contact.cpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,19 +15,6 @@ namespace {
 
 constexpr Allowed row_symbols = SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::velocity |
                                 SymbolKind::pose | SymbolKind::time;
-
-/// Body named by a key; empty after an error.
-std::optional<int> read_body(TableReader& table, std::string_view key, Reading& reading) {
-  const Value* value = table.required(key, Value::Kind::string, "name a body");
-  if (value == nullptr) return std::nullopt;
-  const int index = body_index(reading.model, value->text);
-  if (index >= 0) return index;
-  std::vector<std::string> names;
-  for (const BodyDescription& body : reading.model.bodies) names.push_back(body.name);
-  reading.findings.error(value->where, fmt::format("'{}' is not a body", value->text),
-                         did_you_mean(value->text, names, fmt::format("bodies are {}", listed(names))));
-  return std::nullopt;
-}
 
 std::array<Expr, 3> times(const std::array<Expr, 9>& R, const std::array<Expr, 3>& v) {
   std::array<Expr, 3> result;
@@ -147,53 +134,73 @@ RowDescription read_rolling(TableReader& table, Reading& reading) {
   return row;
 }
 
-RowDescription read_row(TableReader& table, std::size_t number, Reading& reading) {
-  RowDescription row;
+/// The rows of one [[constraint]]; `name` is the user's own or empty.
+std::vector<RowDescription> read_rows(TableReader& table, std::size_t number, const std::string& name,
+                                      Reading& reading) {
+  static const std::vector<std::string> kinds = {
+      "no_lateral_slip", "rolling", "wheel", "ellipsoid", "rollers", "point", "line", "surface", "loop"};
   const Value* written = table.optional("row");
   const Value* kind = table.optional("kind");
   if (written != nullptr && kind != nullptr) {
     reading.findings.error(kind->where, fmt::format("{} has a row and a kind", table.what()), "keep one");
-  } else if (written != nullptr) {
+    return {};
+  }
+  if (written != nullptr) {
+    RowDescription row;
     const std::size_t before = reading.findings.size();
     row.name = fmt::format("row_{}", number);
     row.expression = reading.number(*written, table.what(), std::nullopt, row_symbols);
     if (reading.findings.size() == before)
       check_linear(*row.expression, written->where, table.what(), reading);
-  } else if (const auto choice = table.required_choice("kind", {"no_lateral_slip", "rolling"})) {
-    row = *choice == 0 ? read_blade(table, reading) : read_rolling(table, reading);
-  } else {
-    table.accept_all_keys();
+    return {row};
   }
-  return row;
+  const auto choice = table.required_choice("kind", kinds);
+  if (!choice) {
+    table.accept_all_keys();
+    return {};
+  }
+  if (*choice == 0) return {read_blade(table, reading)};
+  if (*choice == 1) return {read_rolling(table, reading)};
+  const std::string own = name.empty() ? fmt::format("{}_{}", kinds[*choice], number) : name;
+  return read_contact(table, static_cast<ContactKind>(*choice - 2), own, reading);
 }
 
 }  // namespace
 
 void read_constraints(TableReader& root, Reading& reading) {
   std::vector<RowDescription>& rows = reading.model.rows;
+  const auto is_taken = [&](const std::string& name) {
+    return !name.empty() && std::any_of(rows.begin(), rows.end(), [&](const RowDescription& other) {
+      return other.name == name || other.contact == name;
+    });
+  };
+  std::size_t number = 0;
   for (const Value* value : tables_of(root, "constraint", reading.findings)) {
+    ++number;
     const Value* name = value->find("name");
-    const std::size_t number = rows.size() + 1;
     TableReader table(*value,
                       name != nullptr && name->kind == Value::Kind::string
                           ? fmt::format("constraint '{}'", name->text)
                           : fmt::format("constraint {}", number),
                       reading.findings);
-    const Value* own_name = table.optional("name", Value::Kind::string);
-    RowDescription row = read_row(table, number, reading);
-    if (own_name != nullptr) row.name = reading.new_name(*own_name, "a constraint");
-    row.where = value->where;
-    table.report_unknown_keys();
-    const bool is_taken = std::any_of(rows.begin(), rows.end(), [&](const RowDescription& other) {
-      return !row.name.empty() && other.name == row.name;
-    });
-    if (is_taken && own_name != nullptr) {
-      reading.findings.error(own_name->where, fmt::format("there is a constraint '{}' already", row.name),
-                             "rename one");
-    } else if (is_taken) {
-      row.name += fmt::format("_{}", number);
+    std::string own_name;
+    if (const Value* given = table.optional("name", Value::Kind::string)) {
+      own_name = reading.new_name(*given, "a constraint");
+      if (is_taken(own_name))
+        reading.findings.error(given->where, fmt::format("there is a constraint '{}' already", own_name),
+                               "rename one");
     }
-    rows.push_back(std::move(row));
+    std::vector<RowDescription> read = read_rows(table, number, own_name, reading);
+    table.report_unknown_keys();
+    for (RowDescription& row : read) {
+      if (row.contact.empty()) {  // a single row goes by the name of its table
+        if (!own_name.empty()) row.name = own_name;
+        if (own_name.empty() && is_taken(row.name)) row.name += fmt::format("_{}", number);
+        row.contact = row.name;
+      }
+      row.where = value->where;
+      rows.push_back(std::move(row));
+    }
   }
 }
 

@@ -28,7 +28,18 @@ void read_inertia(BodyOutline& body, BodyDescription& described, Reading& readin
 /// A uniform beam with cantilever modes.
 void read_beam(BodyOutline& body, BodyDescription& described, Reading& reading);
 
-/// Constraint rows: written ones, no_lateral_slip and rolling.
+/// A body named by a value, or by the value of a key; empty after an error.
+std::optional<int> read_body_name(TableReader& table, const Value& value, Reading& reading);
+std::optional<int> read_body(TableReader& table, std::string_view key, Reading& reading);
+
+enum class ContactKind { wheel, ellipsoid, rollers, point, line, surface, loop };
+
+/// Rows of a contact or loop, named after `name`; its conditions on the position go to the model. Empty after
+/// an error.
+std::vector<RowDescription> read_contact(TableReader& table, ContactKind kind, const std::string& name,
+                                         Reading& reading);
+
+/// Constraint rows: written ones, those declared in the plane, and those of contacts.
 void read_constraints(TableReader& root, Reading& reading);
 
 /// Wrenches and generalised forces.

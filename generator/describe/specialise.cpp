@@ -43,6 +43,7 @@ void for_each_expression(Model& model, const Visitor& visit) {
     }
     if (row.expression) visit(*row.expression);
   }
+  for (PositionDescription& position : model.positions) visit(position.value);
   for (WrenchDescription& wrench : model.wrenches) {
     visit_all(wrench.point, visit);
     visit_all(wrench.force, visit);

@@ -249,8 +249,10 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
     }
   }
 
-  std::optional<Kernel> best;
-  int best_operations = 0;
+  // Fewest irregular samples, then fewest operations among the bases that are about as well conditioned as
+  // the best.
+  constexpr double worse = 30;
+  std::vector<std::pair<Kernel, int>> candidates;
   for (const auto& free : free_sets) {
     for (const bool content_divided : {false, true}) {
       if (content_divided && A_1_.rows() == 0) continue;
@@ -262,13 +264,19 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
       const OperationCount count = count_operations(tape_, roots);
       const int operations =
           count.total() + 10 * count.divisions;  // a division takes about as long as ten products
-      const bool better = !best || kernel->irregular < best->irregular ||
-                          (kernel->irregular == best->irregular && operations < best_operations);
-      if (better) best = kernel, best_operations = operations;
+      candidates.emplace_back(*kernel, operations);
     }
   }
-  if (!best) throw UnsupportedError("no kernel basis could be derived");
-  kernel_ = *best;
+  if (candidates.empty()) throw UnsupportedError("no kernel basis could be derived");
+  const auto regularity = [](const auto& c) { return std::pair(c.first.irregular, c.first.worst_condition); };
+  const auto [irregular, condition] = regularity(*std::ranges::min_element(candidates, {}, regularity));
+  const auto cost = [&](const auto& c) {
+    const bool poor = c.first.irregular > irregular || c.first.worst_condition > worse * condition;
+    return std::pair(poor, c.second);
+  };
+  kernel_ = std::ranges::min_element(candidates, {}, cost)->first;
+  if (k > 0 && kernel_.irregular == static_cast<int>(A.size()))
+    throw UnsupportedError("no kernel basis is regular anywhere: the constraints tie the free velocities together");
   if (!kernel_.content_divided && A_1_.rows() > 0)
     kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
 

@@ -128,6 +128,27 @@ class FreeDynamics {
     return {G, bias};
   }
 
+  /// Values of the conditions on the position and their derivatives by the velocities, conditions x (n + s).
+  std::pair<std::vector<S>, Matrix<S>> conditions(const State<S>& state) const {
+    const int count = mechanism_.conditions;
+    const std::size_t width = 7 + static_cast<std::size_t>(mechanism_.coordinates);
+    std::vector<S> written(static_cast<std::size_t>(count) * width, S(0));
+    if (count > 0) mechanism_.position_conditions(state, written);
+    std::vector<S> values;
+    Matrix<S> slopes(count, velocity_size(mechanism_));
+    for (int i = 0; i < count; ++i) {
+      const std::span<const S> row =
+          std::span<const S>(written).subspan(static_cast<std::size_t>(i) * width, width);
+      values.push_back(row[0]);
+      int column = 0;
+      for (const int c : free_components(mechanism_.group))
+        slopes(i, column++) = row[1 + static_cast<std::size_t>(c)];
+      for (int c = 0; c < mechanism_.coordinates; ++c)
+        slopes(i, column++) = row[static_cast<std::size_t>(7 + c)];
+    }
+    return {values, slopes};
+  }
+
   struct Energies {
     S kinetic, gravity, elastic, dissipated_power, applied_power;  // J, J, J, W, W
   };

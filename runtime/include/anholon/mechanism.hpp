@@ -94,6 +94,9 @@ struct Mechanism {
   std::vector<Body<S>> bodies;
   std::vector<Coupling<S>> couplings;
   std::vector<ConstraintRow<S>> rows;
+  int conditions = 0;  // on the position, whose derivatives are combinations of the rows
+  /// writes, for each condition, its value and its derivatives by the 6 + s velocities
+  std::function<void(const State<S>&, std::span<S> out)> position_conditions;
   Vec3<S> gravity;  // acceleration, world axes, m/s^2
 
   std::vector<AppliedWrench<S>> wrenches;

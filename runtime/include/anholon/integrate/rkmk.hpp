@@ -104,7 +104,8 @@ class RkmkStages {
   }
 
   /// Makes the end point the current state and evaluates the first stage there, or reuses the last one where
-  /// the tableau allows it. False if the field is not finite.
+  /// the tableau allows it. False if the field is not finite. A field that has `bool correct(Real t, G& g,
+  /// Vector& y)` may move the state back onto conditions that the motion keeps; it returns whether it did.
   /// @param t_end  time of the end point, from the caller, who knows it without the rounding of a sum
   template <class Field>
   bool commit(Field&& field, Real t_end) {
@@ -112,6 +113,12 @@ class RkmkStages {
     g_begin_ = g_end_;
     y_begin_.swap(y_end_);
     carry_.swap(carry_end_);
+    if constexpr (requires { field.correct(t_begin_, g_begin_, y_begin_); }) {
+      if (field.correct(t_begin_, g_begin_, y_begin_)) {
+        carry_.setZero();
+        return evaluate_first(field);
+      }
+    }
     if constexpr (Tableau::first_same_as_last) {
       theta_rate_[0] = eta_end_;  // theta = 0 on the next step, where dexp^-1 is the identity
       y_rate_[0].swap(y_rate_[stages - 1]);
