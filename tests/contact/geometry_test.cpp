@@ -5,6 +5,7 @@
 // along a motion.
 #include <gtest/gtest.h>
 
+#include <Eigen/Dense>
 #include <functional>
 
 #include "anholon/free_dynamics.hpp"
@@ -61,10 +62,41 @@ Values rows_at(FreeDynamics<Exact>& dynamics, const State<Exact>& at, const Stat
   return result;
 }
 
-class ContactGeometryOf : public testing::TestWithParam<std::string> {
+/// Arms with a loop, a foot or a wheel of each kind; the contact is put in.
+std::string described(const std::string& contact) {
+  return R"(anholon = 1
+name  = "arms"
+group = "SE3"
+[[body]]
+name = "hull"
+inertia = { mass = 2, about_com = { xx = 1, yy = 1.5, zz = 1.2 } }
+[[body]]
+name = "left"
+parent = "hull"
+pose = { translation = [0.3, 0.1, -0.2], rotation = { axis = "x", angle = 0.4 } }
+joint = { kind = "revolute", axis = [0, 3, 4], coordinate = "a", drive = "active" }
+inertia = { mass = 1, com = [0.1, 0, 0.2], about_com = { xx = 0.2, yy = 0.3, zz = 0.25 } }
+[[body]]
+name = "right"
+parent = "hull"
+pose = { translation = [-0.2, 0.1, 0.1] }
+joint = { kind = "revolute", axis = [0, 1, 0], coordinate = "b" }
+inertia = { mass = 1, com = [0, 0.1, 0.2], about_com = { xx = 0.2, yy = 0.3, zz = 0.25 } }
+[[constraint]]
+)" + contact;
+}
+
+struct Case {
+  std::string name, text;  // of a model; empty: a shipped one
+};
+
+class ContactGeometryOf : public testing::TestWithParam<Case> {
  protected:
-  Model model =
-      read_model(std::string(ANHOLON_SOURCE_DIR) + "/models/" + GetParam() + "/" + GetParam() + ".toml");
+  static Model read(const Case& c) {
+    if (!c.text.empty()) return read_model_text(described(c.text), c.name + ".toml");
+    return read_model(std::string(ANHOLON_SOURCE_DIR) + "/models/" + c.name + "/" + c.name + ".toml");
+  }
+  Model model = read(GetParam());
   Mechanism<Exact> mechanism = mechanise<Exact>(describe_mechanism(model), parameters_of(model));
   FreeDynamics<Exact> dynamics{mechanism};
   SampleSource source;
@@ -103,9 +135,50 @@ TEST_P(ContactGeometryOf, ConditionsOnThePositionMoveWithTheRows) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, ContactGeometryOf,
-                         testing::Values("rolling_disc", "rattleback", "ball_on_incline", "whipple_bicycle"),
-                         [](const auto& info) { return info.param; });
+INSTANTIATE_TEST_SUITE_P(
+    Contacts, ContactGeometryOf,
+    testing::Values(
+        Case{"rolling_disc", ""}, Case{"rattleback", ""}, Case{"ball_on_incline", ""},
+        Case{"whipple_bicycle", ""},
+        Case{"crowned_wheel", "kind = 'wheel'\nwheel = 'right'\nradius = 0.2\ncrown = 0.03"},
+        Case{"mecanum_wheel", "kind = 'rollers'\nwheel = 'right'\nradius = 0.2\nroller_angle = 'pi/4'"},
+        Case{"point", "kind = 'point'\nbody = 'left'\npoint = [0.1, 0.2, 0.3]"},
+        Case{"line", "kind = 'line'\nbody = 'left'\npoint = [0.1, 0.2, 0.3]\nalong = [1, 2, 2]"},
+        Case{"surface", "kind = 'surface'\nbody = 'left'\npoint = [0.1, 0.2, 0.3]"},
+        Case{"ball_loop",
+             "kind = 'loop'\njoint = 'ball'\nbody = 'left'\nother = 'right'\npoint = [0.1, 0.2, 0.3]"},
+        Case{"hinge_loop",
+             "kind = 'loop'\njoint = 'revolute'\nbody = 'left'\nother = 'right'\naxis = [0, 3, "
+             "4]\nother_axis = [0, 1, 0]"},
+        Case{"fixed_loop", "kind = 'loop'\njoint = 'fixed'\nbody = 'left'\nother = 'right'"},
+        Case{"rod",
+             "kind = 'loop'\njoint = 'rod'\nlength = 0.6\nbody = 'left'\nother = 'right'\nother_point = [0, "
+             "0, 0.3]"}),
+    [](const auto& info) { return info.param.name; });
+
+// A motion that the rows allow keeps the conditions: the slopes are combinations of the rows.
+TEST_P(ContactGeometryOf, MotionsThatTheRowsAllowKeepTheConditions) {
+  for (int sample = 0; sample < 5; ++sample) {
+    const State<Exact> state = random_state(model, source);
+    const auto [G, bias] = dynamics.constraints(state);
+    const auto slopes = dynamics.conditions(state).second;
+    Eigen::MatrixXd rows(G.rows(), G.cols()), both(G.rows() + slopes.rows(), G.cols());
+    for (int i = 0; i < G.rows(); ++i) {
+      for (int j = 0; j < G.cols(); ++j) rows(i, j) = G(i, j).to_double();
+    }
+    both.topRows(rows.rows()) = rows;
+    for (int i = 0; i < slopes.rows(); ++i) {
+      for (int j = 0; j < G.cols(); ++j) both(G.rows() + i, j) = slopes(i, j).to_double();
+    }
+    const auto rank = [](const Eigen::MatrixXd& m) {
+      Eigen::JacobiSVD<Eigen::MatrixXd> svd(m);
+      svd.setThreshold(
+          1e-10);  // entries are of size one, rounding 1e-16; orientations are orthogonal to 1e-16
+      return svd.rank();
+    };
+    EXPECT_EQ(rank(both), rank(rows));
+  }
+}
 
 using Point = std::array<long double, 3>;
 
