@@ -68,6 +68,9 @@ Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& col
       return std::pair(a.row, a.col) < std::pair(b.row, b.col);
     });
     smallest_pivot_ = std::min(smallest_pivot_, best.tier <= 1 ? 1.0 : best.strength);
+    for (std::size_t s = 0; s < values.size() && best.tier > 1; ++s) {  // the rows lose rank there
+      if (at(s, best.row, best.col) < 1e-12) smallest_pivot_ = 0;
+    }
     row_done[static_cast<std::size_t>(best.row)] = 1;
     col_done[static_cast<std::size_t>(best.col)] = 1;
     const Expr inverse = Expr(1) / U_(best.row, best.col);

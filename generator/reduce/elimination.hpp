@@ -26,7 +26,8 @@ class Elimination {
 
   /// Columns that hold the pivots, in ascending order.
   [[nodiscard]] std::vector<int> pivot_columns() const;
-  /// Smallest pivot relative to the largest entry of its row, over the samples that kept it finite.
+  /// Smallest pivot relative to the largest entry of its row, over the samples; zero where the rows lose rank
+  /// at one of them.
   [[nodiscard]] double smallest_pivot() const { return smallest_pivot_; }
   /// x (cols) with A x = b and zeros outside the pivot columns.
   [[nodiscard]] std::vector<Expr> solve(std::vector<Expr> b) const;

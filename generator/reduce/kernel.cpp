@@ -20,7 +20,9 @@ namespace {
 constexpr int combination_limit = 400;   // free sets that are tried one by one
 constexpr int derivation_limit = 12;     // of these, how many are derived and counted
 constexpr double condition_limit = 1e8;  // beyond it a basis counts as irregular at a sample
-constexpr double vanishing = 1e-9;       // a column this much smaller than its median has vanished
+constexpr double dependable_pivot =
+    1e-3;                           // least pivot of the leading rows, for a static basis that divides by it
+constexpr double vanishing = 1e-9;  // a column this much smaller than its median has vanished
 
 std::vector<int> range(int n) {
   std::vector<int> r(static_cast<std::size_t>(n));
@@ -97,7 +99,7 @@ KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const Ra
     : tape_(tape), sampler_(sampler), rows_(std::move(rows)), leading_(ranks.leading_rows) {
   A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
   split_redundant_rows(inverse);
-  B_1_ = C_ * rows_.B;
+  B_1_ = weights_.times(rows_.B);
   choose_kernel(preferred_free, names);
 }
 
@@ -105,7 +107,6 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
   const int count = rows_.A.rows();
   const int independent = static_cast<int>(leading_.size());
   N_ = Matrix<Expr>(count, count - independent);
-  C_ = Matrix<Expr>(independent, count);
   if (independent > 0) elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
   const std::vector<int> dependent = complement(leading_, count);
   for (std::size_t d = 0; d < dependent.size(); ++d) {  // row = w A_1
@@ -117,15 +118,26 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
       N_(leading_[static_cast<std::size_t>(i)], static_cast<int>(d)) = -w[static_cast<std::size_t>(i)];
     }
   }
-  if (inverse == Inverse::leading || dependent.empty()) {
-    for (int i = 0; i < independent; ++i) C_(i, leading_[static_cast<std::size_t>(i)]) = 1;
+  if (inverse == Inverse::leading || dependent.empty() || independent == 0) {
+    weights_ = RowWeights(count, leading_);
     return;
   }
-  if (independent == 0) return;
-  // Least squares over all rows: A_P^T A‡ x = A_P^T b on independent columns P. No choice of rows can go
-  // singular, and its transpose gives the multipliers of least norm, lambda = A_P mu.
-  C_ = rows_.A.block(range(count), elimination_->pivot_columns()).transposed();
-  A_1_ = C_ * rows_.A;
+  // All rows by least squares on independent columns P: no choice of rows can go singular, and the transpose
+  // gives the multipliers of least norm.
+  const std::vector<int> P = elimination_->pivot_columns();
+  weights_ = RowWeights(rows_.A.block(range(count), P));
+  A_1_ = weights_.times(rows_.A);
+  if (elimination_->smallest_pivot() < dependable_pivot) {  // the leading rows are dependent somewhere
+    for (std::size_t d = 0; d < dependent.size(); ++d) {
+      std::vector<Expr> e(static_cast<std::size_t>(count), Expr(0));
+      e[static_cast<std::size_t>(dependent[d])] = 1;
+      const std::vector<Expr> n = weights_.residual(e);
+      for (int i = 0; i < count; ++i) N_(i, static_cast<int>(d)) = n[static_cast<std::size_t>(i)];
+    }
+  }
+  for (int j = 0; j < independent; ++j) {  // what Gram-Schmidt makes zero and one is so exactly
+    for (int i = j; i < independent; ++i) A_1_(i, P[static_cast<std::size_t>(j)]) = i == j ? 1 : 0;
+  }
   elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
 }
 
@@ -276,7 +288,8 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
   };
   kernel_ = std::ranges::min_element(candidates, {}, cost)->first;
   if (k > 0 && kernel_.irregular == static_cast<int>(A.size()))
-    throw UnsupportedError("no kernel basis is regular anywhere: the constraints tie the free velocities together");
+    throw UnsupportedError(
+        "no kernel basis is regular anywhere: the constraints tie the free velocities together");
   if (!kernel_.content_divided && A_1_.rows() > 0)
     kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
 
@@ -314,7 +327,7 @@ std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, co
     return result;
   }
   if (!kernel_elimination_) return std::vector<Expr>(static_cast<std::size_t>(A_1_.cols()), Expr(0));
-  std::vector<Expr> b = C_ * bias;
+  std::vector<Expr> b = weights_.times(bias);
   for (Expr& e : b) e = -e;
   return kernel_elimination_->solve(b);
 }
@@ -322,7 +335,7 @@ std::vector<Expr> KinematicReduction::drift(const std::vector<Expr>& r_a_dot, co
 std::vector<Expr> KinematicReduction::multipliers(const std::vector<Expr>& residual,
                                                   const std::vector<Expr>& lambda_stat) const {
   std::vector<Expr> lambda(static_cast<std::size_t>(rows_.A.rows()), Expr(0));
-  if (elimination_) lambda = C_.transposed() * elimination_->solve_transposed(residual);
+  if (elimination_) lambda = weights_.transposed_times(elimination_->solve_transposed(residual));
   const std::vector<Expr> extra = N_ * lambda_stat;
   for (std::size_t i = 0; i < lambda.size(); ++i) lambda[i] += extra[i];
   return lambda;

@@ -11,6 +11,7 @@
 #include "reduce/elimination.hpp"
 #include "reduce/partition.hpp"
 #include "reduce/rank.hpp"
+#include "reduce/row_weights.hpp"
 
 namespace anholon {
 
@@ -73,10 +74,10 @@ class KinematicReduction {
   Sampler sampler_;
   ConstraintRows rows_;
   std::vector<int> leading_;
-  Matrix<Expr> A_1_;  // C A‡: m° independent rows, m° x passive
-  Matrix<Expr> C_;    // C: picks the leading rows, or weighs all of them, m° x rows
+  RowWeights weights_;  // C: picks the leading rows, or weighs all of them, m° x rows
+  Matrix<Expr> A_1_;    // C A‡: m° independent rows, m° x passive
+  Matrix<Expr> B_1_;    // C B_a
   Matrix<Expr> N_;
-  Matrix<Expr> B_1_;                               // C B_a
   std::optional<Elimination> elimination_;         // for the multipliers
   std::optional<Elimination> kernel_elimination_;  // on the kernel's own pivots, for its drift
   Kernel kernel_;
