@@ -25,7 +25,7 @@ class GinacConverter {
   /// and multiples of angles expanded). Rationals stay exact; floats are symbols too, since GiNaC's gcd
   /// refuses them. Beware: a tape shares its subexpressions, GiNaC's automatic flattening does not. For small
   /// programs only.
-  GiNaC::ex to_ginac(NodeId id);
+  GiNaC::ex to_ginac(NodeId root);
 
   /// The expression as a node. Operands are sorted by a text made of the symbols' numbers and of the
   /// structure, the leading sign is pulled out of every sum, integer powers are squared repeatedly: GiNaC's

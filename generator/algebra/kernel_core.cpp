@@ -211,7 +211,7 @@ std::size_t weight(const Row& entries) {
 
 /// The column divided by what its entries have in common, looked for in every direction of c^2 + s^2 = 1.
 Row without_content(const Ring& ring, Row column) {
-  Row best = column;
+  Row best = std::move(column);
   std::size_t least = weight(best) + 1;  // a constant factor alone is worth dividing out
   for (bool improved = true; improved;) {
     improved = false;

@@ -173,7 +173,7 @@ std::optional<Polynomial> divide(const Polynomial& p, const Polynomial& q) {
     if (!step) return std::nullopt;
     const cln::cl_RA factor = coefficient / divisor_coefficient;
     result.add_term(*step, factor);
-    const Monomial shift = *step;
+    const Monomial& shift = *step;
     for (const auto& [m, c] : q.terms()) rest.add_term(product(m, shift), -factor * c);
   }
   return result;

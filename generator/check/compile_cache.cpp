@@ -24,7 +24,7 @@
 #include "emit/provenance.hpp"
 #include "emit/write_file.hpp"
 
-extern char** environ;
+extern char** environ;  // POSIX leaves it to its users. NOLINT(readability-redundant-declaration)
 
 namespace anholon {
 namespace {

@@ -83,7 +83,7 @@ class CompiledProgram {
   }
   /// Convenient call: blocks by name. Inputs that the function doesn't read are ignored.
   /// @throws std::out_of_range for a block that is missing, std::invalid_argument for one of wrong size
-  [[nodiscard]] Blocks call(std::string_view function, const Blocks& inputs) const;
+  [[nodiscard]] Blocks call(std::string_view name, const Blocks& inputs) const;
 
  private:
   struct CloseLibrary {

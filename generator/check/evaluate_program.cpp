@@ -17,7 +17,7 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   NamedValues<S> in = position_inputs(model, partition, input.state);
   const auto components = free_components(model.group);
   for (const int c : components) in["eta"].push_back(input.state.eta[c]);
-  for (std::size_t i = static_cast<std::size_t>(n); i < partition.passive.size(); ++i)
+  for (auto i = static_cast<std::size_t>(n); i < partition.passive.size(); ++i)
     in["r_p_dot"].push_back(input.state.r_dot[static_cast<std::size_t>(partition.passive[i] - n)]);
   for (const int i : partition.active) {
     const auto a = static_cast<std::size_t>(i - n);

@@ -83,7 +83,7 @@ NamedValues<S> position_inputs(const Model& model, const Partition& partition, c
   for (const int c : free_components(model.group)) {
     if (c < 3) in["p"].push_back(state.p[c]);
   }
-  for (std::size_t i = static_cast<std::size_t>(partition.n); i < partition.passive.size(); ++i)
+  for (auto i = static_cast<std::size_t>(partition.n); i < partition.passive.size(); ++i)
     in["r_p"].push_back(state.r[static_cast<std::size_t>(partition.passive[i] - partition.n)]);
   for (const int i : partition.active)
     in["r_a"].push_back(state.r[static_cast<std::size_t>(i - partition.n)]);

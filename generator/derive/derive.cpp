@@ -187,7 +187,7 @@ class Deriver {
     const Partition original = partition_of(model_);
     std::vector<Expr> eta(passive.begin(), passive.begin() + p.n);
     std::vector<Expr> r_p, r_a;
-    for (std::size_t i = static_cast<std::size_t>(p.n); i < p.passive.size(); ++i) {
+    for (auto i = static_cast<std::size_t>(p.n); i < p.passive.size(); ++i) {
       const bool is_active = std::ranges::find(original.active, p.passive[i]) != original.active.end();
       (is_active ? r_a : r_p).push_back(passive[i]);
     }

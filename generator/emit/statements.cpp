@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-constexpr std::size_t nowhere = static_cast<std::size_t>(-1);
+constexpr auto nowhere = static_cast<std::size_t>(-1);
 
 /// Writes one function; knows for each node in which block it is made and where it is kept.
 class Writer {

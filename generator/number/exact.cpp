@@ -74,7 +74,7 @@ WorkingDigits::WorkingDigits(unsigned digits) : previous_(digits_in_use()) {
 WorkingDigits::~WorkingDigits() { digits_in_use() = previous_; }
 unsigned WorkingDigits::current() { return digits_in_use(); }
 
-Exact::Exact(cln::cl_R value) : value_(bounded(value)) {}
+Exact::Exact(const cln::cl_R& value) : value_(bounded(value)) {}
 
 Exact Exact::ratio(long numerator, long denominator) {
   if (denominator == 0) throw std::domain_error("division by zero");

@@ -31,7 +31,7 @@ class Exact {
  public:
   Exact() = default;
   Exact(int value) : value_(value) {}  // NOLINT: integers are exact, the conversion loses nothing
-  explicit Exact(cln::cl_R value);
+  explicit Exact(const cln::cl_R& value);
 
   static Exact ratio(long numerator, long denominator);
   /// Reads [+-]digits[.digits][e[+-]digits] exactly. @throws std::invalid_argument on any other text and on

@@ -43,7 +43,7 @@ class Interpreter {
     for (const NodeId id : tape.reachable(roots)) {
       const Node& n = tape.node(id);
       slot[id] = static_cast<std::uint32_t>(values_.size());
-      values_.push_back(n.op == Op::constant ? constant(tape.value(id)) : S(0));
+      values_.emplace_back(n.op == Op::constant ? constant(tape.value(id)) : S(0));
       if (n.op == Op::input) inputs_.push_back({slot[id], n.a});
       if (info(n.op).arity > 0)
         steps_.push_back({n.op, slot[id], slot[n.a], info(n.op).arity == 2 ? slot[n.b] : slot[n.a]});

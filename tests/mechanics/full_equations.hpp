@@ -177,7 +177,7 @@ inline void expect_reduced_motion_of(const Model& model, const Robot& robot, boo
   for (const Parameter& p : model.parameters) parameters.push_back(p.value.to_double());
   const auto call = interpreting_caller<double>(derivation->program, parameters);
   const Partition partition = partition_of(model);
-  const std::size_t n = static_cast<std::size_t>(partition.n);
+  const auto n = static_cast<std::size_t>(partition.n);
   std::vector<int> every_row;
 
   std::mt19937_64 rng(20130922);

@@ -295,7 +295,8 @@ TEST_P(EveryModel, DoesNotKnowWhereTheWorldIsWithoutGravity) {
     const EvaluationInput<Exact> here = robot.admissible(source);
     EvaluationInput<Exact> there = here;
     State<Exact> change = random_state(robot.model(), source);
-    if (!robot.model().positions.empty()) {  // the ground is part of the world: moves within the plane z = 0 remain
+    if (!robot.model()
+             .positions.empty()) {  // the ground is part of the world: moves within the plane z = 0 remain
       change.R = AxisRotation<Exact>{2, cos(change.p.z), sin(change.p.z)}.matrix();
       change.p.z = 0;
     }

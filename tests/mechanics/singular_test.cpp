@@ -38,7 +38,7 @@ TEST_P(SnakeboardAtRightAngle, KeepsAllDigitsOfAccelerationsAndTorques) {
   const WorkingDigits precision(60);
   const Mechanism<Exact> mechanism = mechanise<Exact>(describe_mechanism(model), parameters);
   const Partition partition = partition_of(model);
-  const std::size_t modes = static_cast<std::size_t>(partition.s_p());
+  const auto modes = static_cast<std::size_t>(partition.s_p());
 
   for (const double offset : {0.0, 1e-8, -1e-8, 1e-12, -1e-4}) {
     SCOPED_TRACE(offset);

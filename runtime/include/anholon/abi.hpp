@@ -15,6 +15,7 @@
 //   may be
 //      outputs too: a function reads all before it writes. Calls may run in parallel.
 
+// NOLINTBEGIN(modernize-*): C reads it too.
 #include <stddef.h>
 
 #ifdef __cplusplus
@@ -68,3 +69,4 @@ typedef const struct anholon_program* (*anholon_program_table_function)(void);
 #ifdef __cplusplus
 }
 #endif
+// NOLINTEND(modernize-*)
