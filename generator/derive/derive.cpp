@@ -12,6 +12,7 @@
 #include "algebra/closed_form.hpp"
 #include "anholon/free_dynamics.hpp"
 #include "derive/symbols.hpp"
+#include "describe/function_names.hpp"
 #include "describe/mechanise.hpp"
 #include "optimise/tape/count.hpp"
 
@@ -670,27 +671,6 @@ OperationCount operations_per_call(const Program& program, const std::vector<Nod
     prepared.push_back(id);
   }
   return count_operations(tape, roots, prepared);
-}
-
-const std::vector<std::string>& function_names() {
-  static const std::vector<std::string> names = {"kinematics",
-                                                 "reduced_velocities",
-                                                 "constraints",
-                                                 "free_dynamics",
-                                                 "reduced_dynamics",
-                                                 "split_dynamics",
-                                                 "forward_dynamics",
-                                                 "inverse_torques",
-                                                 "multipliers",
-                                                 "compatibility",
-                                                 "torque_driven_kinematics",
-                                                 "torque_driven_velocities",
-                                                 "torque_driven_dynamics",
-                                                 "torque_driven_multipliers",
-                                                 "position_conditions",
-                                                 "energies",
-                                                 "body_poses"};
-  return names;
 }
 
 std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request) {

@@ -52,9 +52,6 @@ struct Derivation {
 /// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.
 OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots);
 
-/// Names of all functions, in the order in which programs list them.
-const std::vector<std::string>& function_names();
-
 /// @throws UnsupportedError, std::invalid_argument for a function name that does not exist
 std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request = {});
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "describe/function_names.hpp"
 #include "describe/names.hpp"
 #include "describe/outline.hpp"
 #include "describe/read_model.hpp"
@@ -208,6 +209,15 @@ void read_header(TableReader& root, Scene& scene, Reading& reading) {
       if (item.kind != Value::Kind::string) {
         reading.findings.error(item.where, fmt::format("a function is {}", item.kind_name()),
                                "write its name");
+      } else if (std::ranges::find(function_names(), item.text) == function_names().end()) {
+        const std::string near = closest_name(item.text, function_names());
+        reading.findings.error(
+            item.where, fmt::format("there is no function '{}'", item.text),
+            fmt::format("{}choose from {}", near.empty() ? "" : fmt::format("did you mean '{}'? ", near),
+                        listed(function_names())));
+      } else if (std::ranges::find(scene.functions, item.text) != scene.functions.end()) {
+        reading.findings.error(item.where, fmt::format("function '{}' is named twice", item.text),
+                               "remove one");
       } else {
         scene.functions.push_back(item.text);
       }

@@ -153,6 +153,15 @@ TEST(Scene, SaysWhatIsWrong) {
        "5:20: error: 'beam_3' of the modes is 2; it needs to be an integer from 0 to 1"},
       {"modes = { hub = 0 }\n",
        "5:11: error: unknown key 'hub' in the modes; keys here are beam_3 and beam_4"},
+      {"functions = [\"kinematics\", \"multiplier\"]\n",
+       "5:28: error: there is no function 'multiplier'; did you mean 'multipliers'? choose from kinematics, "
+       "reduced_velocities, constraints, free_dynamics, reduced_dynamics, split_dynamics, forward_dynamics, "
+       "inverse_torques, multipliers, compatibility, torque_driven_kinematics, torque_driven_velocities, "
+       "torque_driven_dynamics, torque_driven_multipliers, position_conditions, energies and body_poses"},
+      {"functions = [\"x\"]\n", "5:14: error: there is no function 'x'; choose from kinematics, "},
+      {"functions = [\"energies\", \"energies\"]\n",
+       "5:26: error: function 'energies' is named twice; remove one"},
+      {"functions = [1]\n", "5:14: error: a function is a number; write its name"},
       {"gravity = 0\n", "5:11: error: 'gravity' of the scene is a number; it needs to be a boolean"},
       {"torque_driven = [\"re3\"]\n",
        "5:18: error: 're3' is not a torque-driven coordinate of the model; did you mean 'r3'?"},

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "describe/function_names.hpp"
+
+namespace anholon {
+
+const std::vector<std::string>& function_names() {
+  static const std::vector<std::string> names = {"kinematics",
+                                                 "reduced_velocities",
+                                                 "constraints",
+                                                 "free_dynamics",
+                                                 "reduced_dynamics",
+                                                 "split_dynamics",
+                                                 "forward_dynamics",
+                                                 "inverse_torques",
+                                                 "multipliers",
+                                                 "compatibility",
+                                                 "torque_driven_kinematics",
+                                                 "torque_driven_velocities",
+                                                 "torque_driven_dynamics",
+                                                 "torque_driven_multipliers",
+                                                 "position_conditions",
+                                                 "energies",
+                                                 "body_poses"};
+  return names;
+}
+
+}  // namespace anholon
