@@ -46,6 +46,7 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   const std::vector<int>& r_a = partition.active;
 
   Evaluated<S> e;
+  e.least_norm = derivation.reduction.inverse == Inverse::pseudo;
   e.M = Matrix<S>(size, size);
   const NamedValues<S> free = run("free_dynamics");
   const auto place = [&](const std::string& name, const std::vector<int>& rows,
@@ -109,7 +110,10 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     scatter_into(e.acceleration, get(forward, "r_p_ddot"), r_p);
     scatter_into(e.acceleration, in["r_a_ddot"], r_a);
     const auto& stat = std::ranges::find(program.inputs, "lambda_stat", &InputBlock::name);
-    if (stat != program.inputs.end()) in["lambda_stat"].assign(stat->nodes.size(), S(0));
+    if (stat != program.inputs.end()) {
+      in["lambda_stat"] = input.lambda_stat;
+      if (input.lambda_stat.empty()) in["lambda_stat"].assign(stat->nodes.size(), S(0));
+    }
     e.tau_a = get(run("inverse_torques"), "tau_a");
     e.lambda = get(run("multipliers"), "lambda");
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "check/evaluate_recursion.hpp"
 
+#include <algorithm>
+#include <stdexcept>
 #include <tuple>
 
 #include "anholon/free_dynamics.hpp"
@@ -24,11 +26,48 @@ Matrix<S> from_eigen(const DynamicMatrix<S>& x) {
   return m;
 }
 
+/// Constrained accelerations where the given rows carry everything: the others hold by themselves, at no
+/// force.
+template <class S>
+ConstrainedSolution<S> solve_by_rows(const DynamicMatrix<S>& M, const DynamicVector<S>& force,
+                                     const DynamicMatrix<S>& A, const DynamicVector<S>& bias,
+                                     const S& threshold, const std::vector<int>& rows) {
+  const DynamicMatrix<S> loaded = A(rows, Eigen::all);
+  auto solution = solve_constrained<S>(M, force, loaded, bias(rows), threshold);
+  const DynamicVector<S> carried = solution.multipliers;
+  solution.multipliers = DynamicVector<S>::Zero(A.rows());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    solution.multipliers(rows[i]) = carried(static_cast<Eigen::Index>(i));
+  return solution;
+}
+
+/// N s: each row beyond the leading ones carries its entry of s, and the leading ones balance it. The basis
+/// N of ker A^T is that of the programs (lambda_stat_basis).
+template <class S>
+DynamicVector<S> static_loading(const DynamicMatrix<S>& A, const std::vector<int>& leading,
+                                const std::vector<S>& s, const S& threshold) {
+  DynamicVector<S> lambda = DynamicVector<S>::Zero(A.rows());
+  const DynamicMatrix<S> loaded = A(leading, Eigen::all);
+  const ConstraintFactors<S> factors(loaded, threshold);
+  std::size_t next = 0;
+  for (int row = 0; row < static_cast<int>(A.rows()); ++row) {
+    if (std::ranges::find(leading, row) != leading.end()) continue;
+    if (next == s.size()) throw std::invalid_argument("lambda_stat has too few entries");
+    const DynamicVector<S> weights = factors.solve_transposed(A.row(row).transpose());
+    for (std::size_t i = 0; i < leading.size(); ++i)
+      lambda(leading[i]) -= s[next] * weights(static_cast<Eigen::Index>(i));
+    lambda(row) += s[next++];
+  }
+  if (next != s.size()) throw std::invalid_argument("lambda_stat has too many entries");
+  return lambda;
+}
+
 }  // namespace
 
 template <class S>
 Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition,
-                                const EvaluationInput<S>& input, const S& threshold) {
+                                const EvaluationInput<S>& input, const S& threshold,
+                                const RowSharing& sharing) {
   FreeDynamics<S> dynamics(mechanism);
   Evaluated<S> e;
   e.M = dynamics.mass_matrix(input.state);
@@ -53,6 +92,12 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
       r(static_cast<Eigen::Index>(i)) = v[static_cast<std::size_t>(indices[i])];
     return r;
   };
+  e.least_norm = !sharing.leading;
+  const auto solve = [&](const DynamicMatrix<S>& M, const DynamicVector<S>& force, const DynamicMatrix<S>& G,
+                         const DynamicVector<S>& b, const std::vector<int>& leading) {
+    return sharing.leading ? solve_by_rows<S>(M, force, G, b, threshold, leading)
+                           : solve_constrained<S>(M, force, G, b, threshold);
+  };
   const DynamicMatrix<S> Z = ConstraintFactors<S>(A, threshold).kernel();
   e.projector = from_eigen<S>(DynamicMatrix<S>(Z * Z.transpose()));
 
@@ -62,7 +107,9 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
       r_a_ddot(static_cast<Eigen::Index>(i)) =
           input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
     const DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
-    const auto solution = solve_constrained<S>(M_pp, force, A, bias + B * r_a_ddot, threshold);
+    auto solution = solve(M_pp, force, A, DynamicVector<S>(bias + B * r_a_ddot), sharing.locked);
+    if (!input.lambda_stat.empty())
+      solution.multipliers += static_loading<S>(A, sharing.locked, input.lambda_stat, threshold);
     e.acceleration.assign(e.force.size(), S(0));
     for (std::size_t i = 0; i < passive.size(); ++i)
       e.acceleration[static_cast<std::size_t>(passive[i])] =
@@ -78,7 +125,7 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
   if (input.has_torque) {
     DynamicVector<S> force = to_eigen(e.force);
     for (const int i : active) force(i) += input.tau[static_cast<std::size_t>(i - partition.n)];
-    const auto solution = solve_constrained<S>(to_eigen(e.M), force, to_eigen(e.G), bias, threshold);
+    const auto solution = solve(to_eigen(e.M), force, to_eigen(e.G), bias, sharing.free);
     e.free_acceleration = from_eigen<S>(solution.acceleration);
     e.free_lambda = from_eigen<S>(solution.multipliers);
   }
@@ -86,9 +133,10 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
 }
 
 template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&,
-                                              const EvaluationInput<double>&, const double&);
+                                              const EvaluationInput<double>&, const double&,
+                                              const RowSharing&);
 template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&,
-                                             const EvaluationInput<Exact>&, const Exact&);
+                                             const EvaluationInput<Exact>&, const Exact&, const RowSharing&);
 
 std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b) {
   return from_eigen<Exact>(

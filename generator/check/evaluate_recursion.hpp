@@ -11,15 +11,25 @@
 
 namespace anholon {
 
+/// How redundant rows share, as in the programs.
+struct RowSharing {
+  bool leading = false;           // the rows below carry everything; else all rows, with lambda of least norm
+  std::vector<int> locked, free;  // leading independent rows of (A, B_p), and of (A, B_p, B_a)
+};
+
 /// @param threshold  relative size below which a pivot of the constraint matrix counts as zero
+/// @throws std::invalid_argument where the input's lambda_stat has not one entry for each row beyond `locked`
 template <class S>
 Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& partition,
-                                const EvaluationInput<S>& input, const S& threshold);
+                                const EvaluationInput<S>& input, const S& threshold,
+                                const RowSharing& sharing = {});
 
 extern template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Partition&,
-                                                     const EvaluationInput<double>&, const double&);
+                                                     const EvaluationInput<double>&, const double&,
+                                                     const RowSharing&);
 extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&,
-                                                    const EvaluationInput<Exact>&, const Exact&);
+                                                    const EvaluationInput<Exact>&, const Exact&,
+                                                    const RowSharing&);
 
 /// Minimum-norm least-squares solution of A x = b.
 std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b);

@@ -16,9 +16,10 @@ namespace anholon {
 /// Inputs at one state.
 template <class S>
 struct EvaluationInput {
-  State<S> state;         // with admissible velocities
-  std::vector<S> r_ddot;  // (s) second derivatives; only those of active coordinates are used
-  std::vector<S> tau;     // (s) torques of active coordinates
+  State<S> state;              // with admissible velocities
+  std::vector<S> r_ddot;       // (s) second derivatives; only those of active coordinates are used
+  std::vector<S> tau;          // (s) torques of active coordinates
+  std::vector<S> lambda_stat;  // (rows - m°) static loading with the motion given; empty: none
   bool has_acceleration = false;
   bool has_torque = false;
 };
@@ -32,6 +33,7 @@ struct Evaluated {
   Matrix<S> projector;               // onto ker (A, B_p), passive x passive in the partition's order
   std::vector<S> acceleration;       // given r_a_ddot, n + s
   std::vector<S> lambda;             // rows
+  bool least_norm = true;            // of all lambda; else the leading rows carry them
   std::vector<S> tau_a;              // active, partition's order
   std::vector<S> free_acceleration;  // given tau_a, n + s
   std::vector<S> free_lambda;        // rows

@@ -19,6 +19,7 @@ class Reader {
 
   StatesFile read(const Json& json) {
     StatesFile states;
+    states.file = file_;
     const Json& coordinates = at(json, "coordinates", "the file");
     states.r_p = names(coordinates, "r_p", Drive::passive);
     states.r_a = names(coordinates, "r_a", Drive::active);
@@ -135,6 +136,8 @@ class Reader {
     if (result.input.has_acceleration) fill("rddot_a", file.r_a, result.input.r_ddot);
     result.input.has_torque = !file.r_a.empty() && inputs.contains("tau_a");
     if (result.input.has_torque) fill("tau_a", file.r_a, result.input.tau);
+    if (inputs.contains("lambda_stat"))  // how many there must be is known when the ranks are
+      result.input.lambda_stat = numbers(inputs, "lambda_stat", inputs["lambda_stat"].size(), where);
     return result;
   }
 
@@ -196,7 +199,7 @@ EvaluationInput<S> rounded_input(const EvaluationInput<Exact>& input) {
   for (int i = 0; i < 6; ++i) r.state.eta[i] = round(input.state.eta[i]);
   r.state.t = round(input.state.t);
   r.state.r = all(input.state.r), r.state.r_dot = all(input.state.r_dot);
-  r.r_ddot = all(input.r_ddot), r.tau = all(input.tau);
+  r.r_ddot = all(input.r_ddot), r.tau = all(input.tau), r.lambda_stat = all(input.lambda_stat);
   r.has_acceleration = input.has_acceleration, r.has_torque = input.has_torque;
   return r;
 }
@@ -221,6 +224,7 @@ Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
     return r;
   };
   const auto j = [&](const auto& x) { return to_json(x, digits); };
+  const char* lambda = e.least_norm ? "lambda_min_norm" : "lambda";
   std::vector<int> passive = eta;
   passive.insert(passive.end(), r_p.begin(), r_p.end());
   const auto position = [](const std::vector<int>& order, const std::vector<int>& of) {
@@ -244,12 +248,12 @@ Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
   if (input.has_acceleration) {
     Json& g = out["given_r_a"];
     g["eta_dot"] = j(pick(e.acceleration, eta)), g["r_p_ddot"] = j(pick(e.acceleration, r_p));
-    g["lambda_min_norm"] = j(e.lambda), g["tau_a"] = j(pick(e.tau_a, active_at));
+    g[lambda] = j(e.lambda), g["tau_a"] = j(pick(e.tau_a, active_at));
   }
   if (input.has_torque) {
     Json& g = out["given_tau_a"];
     g["eta_dot"] = j(pick(e.free_acceleration, eta)), g["r_p_ddot"] = j(pick(e.free_acceleration, r_p));
-    g["r_a_ddot"] = j(pick(e.free_acceleration, r_a)), g["lambda_min_norm"] = j(e.free_lambda);
+    g["r_a_ddot"] = j(pick(e.free_acceleration, r_a)), g[lambda] = j(e.free_lambda);
   }
   S actuator = S(0);
   if (input.has_acceleration) {

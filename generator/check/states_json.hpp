@@ -15,6 +15,7 @@
 namespace anholon {
 
 struct StatesFile {
+  std::string file;                   // base name, for messages
   std::vector<std::string> r_p, r_a;  // names, in the file's order
   std::vector<Exact> parameters;      // in the model's order; the file's values override the model's
   struct Entry {

@@ -174,9 +174,12 @@ class Verifier {
     }
     input.has_acceleration = true;
     ++formula_count_;
+    const ReductionReport& reduction = derivation_.reduction;
+    const RowSharing sharing{reduction.inverse == Inverse::leading, reduction.ranks.leading_rows, {}};
     const Evaluated<Exact> expected =
-        evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"));
-    const Evaluated<double> numeric = evaluate_recursion(rounded, partition_, double_input(input), 1e-9);
+        evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"), sharing);
+    const Evaluated<double> numeric =
+        evaluate_recursion(rounded, partition_, double_input(input), 1e-9, sharing);
 
     NamedValues<Exact> at = in;
     const NamedValues<Exact> forward = run("forward_dynamics", at);

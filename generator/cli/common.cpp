@@ -48,6 +48,9 @@ DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   const char* at = options.inverse.data() + prefix.size();
   const char* end = options.inverse.data() + options.inverse.size();
   const int rows = static_cast<int>(model.rows.size());
+  if (rows == 0)
+    throw std::invalid_argument("--inverse leading: the model has no constraint rows; leave the option out");
+  if (at == end) throw std::invalid_argument("--inverse leading: name rows, for example leading:1");
   while (at < end) {
     int row = 0;
     const auto [next, error] = std::from_chars(at, end, row);

@@ -89,7 +89,7 @@ class Deriver {
     derive_position_conditions();
     derive_energies();
     derive_poses();
-    result_->reduction = {motion_.partition, motion_.ranks, motion_.reduction->kernel()};
+    result_->reduction = {motion_.partition, motion_.ranks, motion_.reduction->kernel(), request_.inverse};
     note_header();
     return std::move(result_);
   }
@@ -575,7 +575,7 @@ class Deriver {
                  k.multipliers(residual, std::vector<Expr>(static_cast<std::size_t>(k.static_basis().cols()),
                                                            Expr(0))))}}});
     }
-    result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel()};
+    result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel(), request_.inverse};
   }
 
   void derive_position_conditions() {

@@ -40,6 +40,7 @@ struct ReductionReport {
   Partition partition;
   RankAnalysis ranks;
   Kernel kernel;  // on the program's tape
+  Inverse inverse = Inverse::pseudo;
 };
 
 struct Derivation {
