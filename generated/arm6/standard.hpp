@@ -6,7 +6,7 @@
 //
 //   group fixed: n = 0, s_p = 0, s_a = 6, rows = 0, m = 0, m_locked = 0
 //   Table I: H empty, lambda_stat = 0 (kinematic)
-//   kernel: no kernel: the constraints determine every passive velocity
+//   kernel: none, there are no passive velocities
 //
 // Operations per call, each shared value once (a - b is one addition):
 //   free_dynamics             354 add, 481 mul, 5 neg, 5 sin, 5 cos

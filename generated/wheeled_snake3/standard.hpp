@@ -6,7 +6,7 @@
 //
 //   group SE2: n = 3, s_p = 0, s_a = 2, rows = 3, m = 3, m_locked = 3
 //   Table I: H empty, lambda_stat = 0 (kinematic)
-//   kernel: no kernel: the constraints determine every passive velocity
+//   kernel: none, the constraints determine every passive velocity
 //
 // Operations per call, each shared value once (a - b is one addition):
 //   kinematics                 7 add, 15 mul, 1 div, 3 neg, 2 sin, 2 cos

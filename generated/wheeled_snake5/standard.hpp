@@ -6,7 +6,7 @@
 //
 //   group SE2: n = 3, s_p = 0, s_a = 4, rows = 5, m = 5, m_locked = 3
 //   Table I: H empty, lambda_stat undetermined (kinematic)
-//   kernel: no kernel: the constraints determine every passive velocity
+//   kernel: none, the constraints determine every passive velocity
 //
 // Operations per call, each shared value once (a - b is one addition):
 //   kinematics                 148 add, 190 mul, 3 div, 5 neg, 4 sin, 4 cos

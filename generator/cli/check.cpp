@@ -4,67 +4,128 @@
 
 #include <nlohmann/json.hpp>
 
+#include "check/regularity.hpp"
 #include "cli/common.hpp"
 
 namespace anholon::cli {
+namespace {
+
+struct Coordinates {
+  std::vector<std::string> active, kinematic, dynamic;
+};
+
+Coordinates sorted_coordinates(const Model& model, const ReductionReport& reduction) {
+  const Partition& p = reduction.partition;
+  const auto name_of = [&](int velocity) {
+    return model.coordinates[static_cast<std::size_t>(velocity - p.n)].name;
+  };
+  Coordinates c;
+  for (const int i : p.active) c.active.push_back(name_of(i));
+  for (std::size_t i = 0; i < static_cast<std::size_t>(p.s_p()); ++i)
+    (reduction.ranks.kinematic[i] ? c.kinematic : c.dynamic)
+        .push_back(name_of(p.passive[static_cast<std::size_t>(p.n) + i]));
+  return c;
+}
+
+std::string json_text(const Model& model, const ReductionReport& reduction, const Regularity& regularity) {
+  const RankAnalysis& ranks = reduction.ranks;
+  const Partition& p = reduction.partition;
+  const Coordinates coordinates = sorted_coordinates(model, reduction);
+  const auto optional = [](const std::optional<std::string>& text) {
+    return text ? nlohmann::ordered_json(*text) : nlohmann::ordered_json();
+  };
+  nlohmann::ordered_json j;
+  j["schema"] = "anholon.check/1";
+  j["model"] = model.name;
+  j["group"] = name(model.group);
+  j["sizes"] = {{"n", p.n},           {"s_p", p.s_p()}, {"s_a", p.s_a()},
+                {"rows", ranks.rows}, {"m", ranks.m},   {"m_locked", ranks.m_locked}};
+  j["table_I"] = ranks.table_I_class(p);
+  j["coordinates"] = {{"active", coordinates.active},
+                      {"passive_kinematic", coordinates.kinematic},
+                      {"passive_dynamic", coordinates.dynamic}};
+  j["kernel"] = {{"dimension", reduction.kernel.H.cols()},
+                 {"basis", reduction.kernel.description},
+                 {"worst_condition", reduction.kernel.worst_condition},
+                 {"irregular_samples", reduction.kernel.irregular},
+                 {"singular_at", optional(regularity.singular_basis)}};
+  j["constraints"] = {{"worst_condition", ranks.worst_condition}, {"worst_at", ranks.worst_at}};
+  j["rank_drops"] = nlohmann::ordered_json::array();
+  for (const auto& drop : ranks.drops)
+    j["rank_drops"].push_back({{"where", drop.where}, {"rank", drop.rank}});
+  if (ranks.drops.empty() && regularity.rank_drop)
+    j["rank_drops"].push_back({{"where", *regularity.rank_drop}, {"rank", nullptr}});
+  j["notes"] = model.notes;
+  return j.dump(1) + "\n";
+}
+
+void line(const std::string& what, const std::string& text) { fmt::print("  {:<21s} {}\n", what, text); }
+
+std::string counted(int n, const std::string& what, const std::string& plural) {
+  return fmt::format("{} {}", n, n == 1 ? what : plural);
+}
+
+void print(const Model& model, const ReductionReport& reduction, const Regularity& regularity) {
+  const RankAnalysis& ranks = reduction.ranks;
+  const Partition& p = reduction.partition;
+  const Kernel& kernel = reduction.kernel;
+  const Coordinates c = sorted_coordinates(model, reduction);
+  const auto listed = [](const std::vector<std::string>& names) {
+    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
+  };
+  fmt::print("{}{}\n", model.name, model.title.empty() ? "" : ": " + model.title);
+  line("group", fmt::format("{} (n = {})", name(model.group), p.n));
+  line("bodies", fmt::format("{}", model.bodies.size()));
+  line("active coordinates", fmt::format("s_a = {}: {}", p.s_a(), listed(c.active)));
+  line("passive coordinates", p.s_p() == 0 ? "s_p = 0: none"
+                                           : fmt::format("s_p = {}: kinematic {}; dynamic {}", p.s_p(),
+                                                         listed(c.kinematic), listed(c.dynamic)));
+  line("constraint rows", ranks.rows == 0
+                              ? "none"
+                              : fmt::format("{}; rank m = {} of (A, B_p, B_a), m° = {} of (A, B_p)",
+                                            ranks.rows, ranks.m, ranks.m_locked));
+  line("class (Table I)", ranks.table_I_class(p));
+  line("kernel",
+       kernel.H.cols() == 0
+           ? kernel.description
+           : fmt::format("{}; {}", counted(kernel.H.cols(), "reduced velocity", "reduced velocities"),
+                         kernel.description));
+  if (ranks.rows > 0) {
+    const std::string basis =
+        kernel.H.cols() == 0 ? "" : fmt::format("basis H {:.3g}, ", kernel.worst_condition);
+    line("condition, worst", fmt::format("{}(A, B_p) {:.3g}{}", basis, ranks.worst_condition,
+                                         ranks.worst_at.empty() ? "" : " at " + ranks.worst_at));
+  }
+  if (kernel.irregular > 0)
+    line("irregular basis",
+         fmt::format("H or J is singular, infinite or vanishes at {}",
+                     counted(kernel.irregular, "sampled configuration", "sampled configurations")));
+  if (regularity.singular_basis) {
+    line("singular basis",
+         fmt::format("H or J is singular at {}, where (A, B_p) keeps its rank;", *regularity.singular_basis));
+    line("", "name other free_velocities in the description, or keep motions away from there");
+  }
+  for (const auto& drop : ranks.drops)
+    line("rank drop", fmt::format("(A, B_p) has rank {} at {}", drop.rank, drop.where));
+  if (ranks.drops.empty() && regularity.rank_drop)
+    line("rank drop", fmt::format("(A, B_p) loses rank at {}", *regularity.rank_drop));
+  for (const std::string& note : model.notes) line("note", note);
+}
+
+}  // namespace
 
 int check(const CheckOptions& options) {
   const Model model = load_model(options);
   DeriveRequest request = derive_request(options, model);
-  request.functions = {"kinematics"};
+  request.functions = {"kinematics", "constraints"};
   request.closed_forms = false;
   const auto derivation = derive(model, request);
-  const ReductionReport& reduction = derivation->reduction;
-  const RankAnalysis& ranks = reduction.ranks;
-  const Partition& p = reduction.partition;
-  std::vector<std::string> active, kinematic, dynamic;
-  for (const int i : p.active) active.push_back(model.coordinates[static_cast<std::size_t>(i - p.n)].name);
-  for (int i = 0; i < p.s_p(); ++i) {
-    const std::string& coordinate =
-        model.coordinates[static_cast<std::size_t>(p.passive[static_cast<std::size_t>(p.n + i)] - p.n)].name;
-    (ranks.kinematic[static_cast<std::size_t>(i)] ? kinematic : dynamic).push_back(coordinate);
-  }
-
+  const Regularity regularity = search_singularities(model, *derivation);
   if (options.json) {
-    nlohmann::ordered_json j;
-    j["schema"] = "anholon.check/1";
-    j["model"] = model.name;
-    j["group"] = name(model.group);
-    j["sizes"] = {{"n", p.n},           {"s_p", p.s_p()}, {"s_a", p.s_a()},
-                  {"rows", ranks.rows}, {"m", ranks.m},   {"m_locked", ranks.m_locked}};
-    j["table_I"] = ranks.table_I_class(p);
-    j["coordinates"] = {{"active", active}, {"passive_kinematic", kinematic}, {"passive_dynamic", dynamic}};
-    j["kernel"] = {{"dimension", reduction.kernel.H.cols()},
-                   {"basis", reduction.kernel.description},
-                   {"worst_condition", reduction.kernel.worst_condition},
-                   {"irregular_samples", reduction.kernel.irregular}};
-    j["constraints"] = {{"worst_condition", ranks.worst_condition}, {"worst_at", ranks.worst_at}};
-    for (const auto& drop : ranks.drops)
-      j["rank_drops"].push_back({{"where", drop.where}, {"rank", drop.rank}});
-    j["notes"] = model.notes;
-    fmt::print("{}\n", j.dump(1));
-    return ok;
+    fmt::print("{}", json_text(model, derivation->reduction, regularity));
+  } else {
+    print(model, derivation->reduction, regularity);
   }
-  fmt::print("{}{}\n", model.name, model.title.empty() ? "" : ": " + model.title);
-  fmt::print("  group                 {} (n = {})\n", name(model.group), p.n);
-  fmt::print("  bodies                {}\n", model.bodies.size());
-  fmt::print("  active                s_a = {}: {}\n", p.s_a(), fmt::join(active, ", "));
-  fmt::print("  passive, kinematic    {}\n", fmt::join(kinematic, ", "));
-  fmt::print("  passive, dynamic      {}  (s_p = {})\n", fmt::join(dynamic, ", "), p.s_p());
-  fmt::print("  constraint rows       {}, rank m = {} unlocked, m_locked = {} locked\n", ranks.rows, ranks.m,
-             ranks.m_locked);
-  fmt::print("  class (Table I)       {}\n", ranks.table_I_class(p));
-  fmt::print("  kernel                {} reduced velocities; {}\n", reduction.kernel.H.cols(),
-             reduction.kernel.description);
-  fmt::print("  conditioning          basis H {:.3g} at worst; constraints {:.3g}{}\n",
-             reduction.kernel.worst_condition, ranks.worst_condition,
-             ranks.worst_at.empty() ? "" : " at " + ranks.worst_at);
-  if (reduction.kernel.irregular > 0)
-    fmt::print("  irregular             H or J is not regular at {} of the sampled configurations\n",
-               reduction.kernel.irregular);
-  for (const auto& drop : ranks.drops)
-    fmt::print("  rank drop             (A, B_p) has rank {} at {}\n", drop.rank, drop.where);
-  for (const std::string& note : model.notes) fmt::print("  note                  {}\n", note);
   return ok;
 }
 

@@ -295,10 +295,14 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
 
   std::vector<std::string> free_names;
   for (const int c : kernel_.free) free_names.push_back(names[static_cast<std::size_t>(c)]);
-  if (k == 0) {
-    kernel_.description = "no kernel: the constraints determine every passive velocity";
+  if (passive == 0) {
+    kernel_.description = "none, there are no passive velocities";
+  } else if (k == 0) {
+    kernel_.description = "none, the constraints determine every passive velocity";
   } else if (A_1_.rows() == 0) {
-    kernel_.description = "no constraints: nu are the passive velocities themselves";
+    kernel_.description = rows_.A.rows() == 0
+                              ? "no constraints: nu are the passive velocities themselves"
+                              : "the rows leave the passive velocities free: nu are these themselves";
   } else {
     kernel_.description =
         kernel_.content_divided

@@ -48,6 +48,69 @@ Eigen::MatrixXd to_double(const Matrix<Exact>& a) {
   return r;
 }
 
+/// Coordinates on which a matrix of the state depends, and whether it depends on the orientation: by changing
+/// one after the other at a random state.
+struct Dependence {
+  std::vector<std::size_t> coordinates;
+  bool orientation = false;
+};
+
+template <class MatrixAt>
+Dependence dependence(const MatrixAt& matrix_at, const SampleState& a, const SampleState& b) {
+  const auto differs = [&, base = matrix_at(a.state)](const State<Exact>& state) {
+    return matrix_at(state).entries() != base.entries();
+  };
+  Dependence found;
+  for (std::size_t i = 0; i < a.state.r.size(); ++i) {
+    State<Exact> moved = a.state;
+    moved.r[i] = b.state.r[i];
+    if (differs(moved)) found.coordinates.push_back(i);
+  }
+  State<Exact> turned = a.state;
+  turned.R = b.state.R;
+  found.orientation = differs(turned);
+  return found;
+}
+
+/// "r1 = r2 = pi/2" or "r1 = pi/2, r2 = 0.42".
+std::string text_of(const std::vector<SamplePlace>& places) {
+  constexpr std::size_t most = 6;
+  const bool equal = std::ranges::all_of(places, [&](const auto& p) { return p.value == places[0].value; });
+  std::string text;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places.size() > most && i == most - 1) text += (equal ? " = ..." : ", ...");
+    if (places.size() > most && i >= most - 1 && i + 1 < places.size()) continue;
+    if (i > 0) text += equal ? " = " : ", ";
+    text += equal ? places[i].coordinate : places[i].coordinate + " = " + places[i].value;
+  }
+  return equal && !places.empty() ? text + " = " + places[0].value : text;
+}
+
+/// The places of a sample that matter; of these the special ones alone where there are any.
+std::vector<SamplePlace> places_that_matter(const SampleState& sample, const Dependence& on,
+                                            bool special_alone) {
+  std::vector<SamplePlace> places;
+  for (const std::size_t i : on.coordinates) places.push_back(sample.places[i]);
+  const auto is_special = [](const SamplePlace& p) { return p.special; };
+  if (special_alone && std::ranges::any_of(places, is_special))
+    std::erase_if(places, [&](const auto& p) { return !is_special(p); });
+  return places;
+}
+
+/// A configuration that loses rank, as long as reports need it.
+struct FoundDrop {
+  std::vector<SamplePlace> places;
+  int rank;
+  /// Whether this one says no more than `other`: every place of it is here as well.
+  [[nodiscard]] bool follows_from(const FoundDrop& other) const {
+    return rank == other.rank && std::ranges::all_of(other.places, [this](const SamplePlace& p) {
+             return std::ranges::any_of(places, [&p](const SamplePlace& q) {
+               return q.coordinate == p.coordinate && q.value == p.value;
+             });
+           });
+  }
+};
+
 }  // namespace
 
 std::string RankAnalysis::table_I_class(const Partition& partition) const {
@@ -100,22 +163,40 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
       analysis.leading_rows = tried;
   }
 
+  const Dependence on = dependence(
+      [&](const State<Exact>& state) {
+        return dynamics.constraints(state).first.block(all_rows, partition.passive);
+      },
+      samples[0], samples[1]);
+  std::vector<FoundDrop> drops;
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Matrix<Exact> locked = matrices[s].block(all_rows, partition.passive);
     if (const int rank = rank_of(locked, drop_tolerance); rank < analysis.m_locked) {
-      analysis.drops.push_back({samples[s].label, rank});
+      drops.push_back({places_that_matter(samples[s], on, true), rank});
       continue;
     }
     const Eigen::JacobiSVD<Eigen::MatrixXd> svd(to_double(locked), Eigen::ComputeFullV);
     if (analysis.m_locked == 0) continue;
     const double condition = svd.singularValues()(0) / svd.singularValues()(analysis.m_locked - 1);
     if (condition > analysis.worst_condition)
-      analysis.worst_condition = condition, analysis.worst_at = samples[s].label;
+      analysis.worst_condition = condition,
+      analysis.worst_at =
+          text_of(places_that_matter(samples[s], on, false)) +
+          (on.orientation ? (on.coordinates.empty() ? "a random orientation" : ", a random orientation")
+                          : "");
     const auto kernel = svd.matrixV().rightCols(locked.cols() - analysis.m_locked);
     for (int i = 0; i < partition.s_p(); ++i) {
       if (kernel.cols() > 0 && kernel.row(partition.n + i).norm() > 1e-9)
         analysis.kinematic[static_cast<std::size_t>(i)] = false;
     }
+  }
+  for (std::size_t i = 0; i < drops.size(); ++i) {
+    const bool is_implied = std::ranges::any_of(drops, [&](const FoundDrop& other) {
+      const bool is_shorter = other.places.size() < drops[i].places.size();
+      const bool is_earlier = &other < &drops[i] && other.places.size() == drops[i].places.size();
+      return (is_shorter || is_earlier) && drops[i].follows_from(other);
+    });
+    if (!is_implied) analysis.drops.push_back({text_of(drops[i].places), drops[i].rank});
   }
   return analysis;
 }

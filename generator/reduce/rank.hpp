@@ -19,12 +19,12 @@ struct RankAnalysis {
   std::vector<int> leading_rows;  // first m° rows of (A, B_p) that are independent
   std::vector<bool> kinematic;    // for each passive coordinate: fixed by the constraints alone
   struct Drop {
-    std::string where;
+    std::string where;  // "r1 = pi/2"; only coordinates on which (A, B_p) depends are named
     int rank;
   };
   std::vector<Drop> drops;     // special configurations at which (A, B_p) loses rank
   double worst_condition = 1;  // of (A, B_p) over the samples that keep the rank
-  std::string worst_at;
+  std::string worst_at;        // empty where (A, B_p) is the same everywhere
 
   /// e.g. "H nonzero, lambda_stat = 0 (dynamic)"
   [[nodiscard]] std::string table_I_class(const Partition& partition) const;

@@ -19,16 +19,46 @@ Mat3<Exact> rotation(const Exact& w, const Exact& x, const Exact& y, const Exact
            two * (x * z - w * y), two * (y * z + w * x), Exact(1) - two * (x * x + y * y)}};
 }
 
+/// k pi/4 as one writes it: "0", "-pi/4", "pi/2", "3pi/4".
+std::string quarters_of_pi(int k) {
+  if (k == 0) return "0";
+  const int numerator = std::abs(k) % 4 == 0   ? std::abs(k) / 4
+                        : std::abs(k) % 2 == 0 ? std::abs(k) / 2
+                                               : std::abs(k);
+  const char* denominator = k % 4 == 0 ? "" : k % 2 == 0 ? "/2" : "/4";
+  return fmt::format("{}{}pi{}", k < 0 ? "-" : "", numerator == 1 ? "" : std::to_string(numerator),
+                     denominator);
+}
+
+/// A value that a sample was given, with the text that reports use for it.
+struct NamedValue {
+  std::string text;
+  Exact value;
+  [[nodiscard]] NamedValue negative() const {
+    if (value.is_zero()) return *this;
+    return {text.starts_with('-') ? text.substr(1) : "-" + text, -value};
+  }
+};
+
 /// Angles at which constraints tend to lose rank.
-std::vector<std::pair<std::string, Exact>> special_angles() {
+std::vector<NamedValue> special_angles() {
   const WorkingDigits digits(60);
-  std::vector<std::pair<std::string, Exact>> angles = {{"0", Exact(0)}};
+  std::vector<NamedValue> angles = {{"0", Exact(0)}};
   for (const int k : {1, 2, 3, 4}) {
-    const Exact angle = rounded(Exact::pi() * Exact::ratio(k, 4));
-    angles.emplace_back(fmt::format("{}pi/4", k), angle);
-    angles.emplace_back(fmt::format("-{}pi/4", k), -angle);
+    angles.push_back({quarters_of_pi(k), rounded(Exact::pi() * Exact::ratio(k, 4))});
+    angles.push_back(angles.back().negative());
   }
   return angles;
+}
+
+/// A random sample whose coordinates are reported by their values.
+SampleState random_sample(const Model& model, SampleSource& source) {
+  SampleState sample;
+  sample.state = random_state(model, source);
+  for (std::size_t i = 0; i < model.coordinates.size(); ++i)
+    sample.places.push_back(
+        {model.coordinates[i].name, fmt::format("{:.3g}", sample.state.r[i].to_double()), false});
+  return sample;
 }
 
 }  // namespace
@@ -78,44 +108,45 @@ State<Exact> random_state(const Model& model, SampleSource& source) {
 std::vector<SampleState> sample_states(const Model& model, int random_count) {
   SampleSource source;
   std::vector<SampleState> samples;
-  for (int i = 0; i < random_count; ++i)
-    samples.push_back({fmt::format("random {}", i + 1), false, random_state(model, source)});
+  for (int i = 0; i < random_count; ++i) samples.push_back(random_sample(model, source));
 
   std::vector<std::size_t> angles;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (model.coordinates[i].is_angle) angles.push_back(i);
   }
-  const auto add = [&](const std::string& label, const auto& value_of) {
-    SampleState sample{label, true, random_state(model, source)};
+  /// False where the value is out of the working range.
+  const auto place = [&](SampleState& sample, std::size_t coordinate, const NamedValue& to) {
+    const Coordinate& c = model.coordinates[coordinate];
+    if (to.value < c.lower || to.value > c.upper) return false;
+    sample.special = true;
+    sample.state.r[coordinate] = to.value;
+    sample.places[coordinate] = {c.name, to.text, true};
+    return true;
+  };
+  const auto add_all = [&](const NamedValue& even, const NamedValue& odd) {
+    SampleState sample = random_sample(model, source);
     for (std::size_t k = 0; k < angles.size(); ++k) {
-      const Coordinate& c = model.coordinates[angles[k]];
-      const Exact value = value_of(k);
-      if (value < c.lower || value > c.upper) return;
-      sample.state.r[angles[k]] = value;
+      if (!place(sample, angles[k], k % 2 == 0 ? even : odd)) return;
     }
+    sample.special = true;
     samples.push_back(std::move(sample));
   };
-  const auto special = special_angles();
-  for (const auto& [text, angle] : special) {
-    add(fmt::format("all angles {}", text), [&](std::size_t) { return angle; });
-    if (angles.size() > 1)
-      add(fmt::format("angles alternately +-{}", text),
-          [&](std::size_t k) { return k % 2 == 0 ? angle : -angle; });
+  const std::vector<NamedValue> special = special_angles();
+  for (const NamedValue& angle : special) {
+    add_all(angle, angle);
+    if (angles.size() > 1) add_all(angle, angle.negative());
   }
-  for (std::size_t i = 0; i < angles.size(); ++i) {  // one angle special, the others random
-    for (const auto& [text, angle] : special) {
-      SampleState sample{fmt::format("{} = {}", model.coordinates[angles[i]].name, text), true,
-                         random_state(model, source)};
-      const Coordinate& c = model.coordinates[angles[i]];
-      if (angle < c.lower || angle > c.upper) continue;
-      sample.state.r[angles[i]] = angle;
-      samples.push_back(std::move(sample));
+  for (const std::size_t coordinate : angles) {  // one angle special, the others random
+    for (const NamedValue& angle : special) {
+      SampleState sample = random_sample(model, source);
+      if (place(sample, coordinate, angle)) samples.push_back(std::move(sample));
     }
   }
   if (angles.size() > 1) {
-    const Exact common = source.uniform(Exact(-1), Exact(1));
-    add("all angles equal", [&](std::size_t) { return common; });
-    add("angles equal and opposite", [&](std::size_t k) { return k % 2 == 0 ? common : -common; });
+    const Exact value = source.uniform(Exact(-1), Exact(1));
+    const NamedValue common{fmt::format("{:.3g}", value.to_double()), value};
+    add_all(common, common);
+    add_all(common, common.negative());
   }
   return samples;
 }

@@ -12,8 +12,15 @@
 
 namespace anholon {
 
+/// Where a coordinate stands at a sample.
+struct SamplePlace {
+  std::string coordinate;
+  std::string value;     // "pi/2", "-0.42"
+  bool special = false;  // chosen, not random
+};
+
 struct SampleState {
-  std::string label;
+  std::vector<SamplePlace> places;  // of all coordinates
   bool special = false;
   State<Exact> state;  // exact binary values, so that double and exact evaluation see the same numbers
 };
