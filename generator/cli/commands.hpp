@@ -44,6 +44,7 @@ struct VerifyOptions : ModelOptions {
 };
 struct ExplainOptions : ModelOptions {
   std::string output;
+  bool brief = false;
 };
 struct SimulateOptions {
   std::string scene;

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   std::function<int()> run;
 
   const auto model_options = [](CLI::App* verb, cli::ModelOptions& o, bool functions) {
-    verb->add_option("MODEL", o.model, "description of the robot (TOML)")->required();
+    verb->add_option("MODEL", o.model, "description of the robot, or a scene of it (TOML)")->required();
     verb->add_option("--scene", o.scene, "scene file: what is frozen, locked, kept, driven");
     verb->add_option(
         "--inverse", o.inverse,
@@ -54,6 +54,7 @@ int main(int argc, char** argv) {
   verb = app.add_subcommand("explain", "Write the symbolic equations as Markdown with LaTeX");
   model_options(verb, explain, false);
   verb->add_option("-o,--output", explain.output, "file to write; default: standard output");
+  verb->add_flag("--brief", explain.brief, "without title, and of long equations only the size");
   verb->callback([&] { run = [&] { return cli::explain(explain); }; });
 
   cli::EvaluateOptions evaluate;
@@ -69,7 +70,7 @@ int main(int argc, char** argv) {
 
   cli::VerifyOptions verify;
   verb = app.add_subcommand(
-      "verify", "Compare generated code with the numeric recursion and exact arithmetic at random states");
+      "verify", "Compare generated code with exact arithmetic and the recursion at random states");
   model_options(verb, verify, false);
   verb->add_option("--samples", verify.samples, "random states")->check(CLI::Range(1, 10000000));
   verb->add_flag("--json", verify.json, "print JSON, schema anholon.verify/1");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The checked-in sources of the models are what the generator writes today, byte for byte.
+// The checked-in sources of the models, and the equations on their pages, are what the generator writes
+// today, byte for byte.
 
 #include <gtest/gtest.h>
 
@@ -12,6 +13,7 @@
 
 #include "derive/derive.hpp"
 #include "describe/read_model.hpp"
+#include "emit/equations.hpp"
 #include "emit/header.hpp"
 
 namespace anholon {
@@ -61,6 +63,25 @@ TEST_P(EveryModel, IsReproducedByteForByte) {
       << "generated code changed at " << first_difference(expected, text)
       << "\nif this is meant, run scripts/regenerate and commit the result with its cause";
   EXPECT_TRUE(text == emit_header(derive(model)->program)) << "two derivations in one process differ";
+}
+
+TEST_P(EveryModel, ShowsItsEquationsOnItsPage) {
+  const std::string page = bytes_of(root / "models" / GetParam() / "README.md");
+  const std::string begin = "<!-- equations, written by scripts/regenerate: do not edit -->\n\n";
+  const std::string end = "\n<!-- end of equations -->\n";
+  const std::size_t from = page.find(begin), to = page.find(end);
+  ASSERT_NE(from, std::string::npos) << "the page has no place for equations";
+  ASSERT_NE(to, std::string::npos);
+  const std::string shown = page.substr(from + begin.size(), to - from - begin.size());
+  const Model model = read_model(root / "models" / GetParam() / (GetParam() + ".toml"));
+  DeriveRequest request;
+  request.functions = equation_functions();
+  EquationStyle style;
+  style.brief = true;
+  style.heading = "###";
+  const std::string expected = equations(model, *derive(model, request), style);
+  EXPECT_TRUE(shown == expected) << "equations changed at " << first_difference(shown, expected)
+                                 << "\nif this is meant, run scripts/regenerate and commit the result";
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(model_names()));

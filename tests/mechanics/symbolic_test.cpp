@@ -4,103 +4,14 @@
 // programs: every difference is zero as a rational function of the symbols with c^2 + s^2 = 1.
 #include <gtest/gtest.h>
 
-#include "algebra/convert.hpp"
-#include "algebra/ginac_scalar.hpp"
 #include "anholon/free_dynamics.hpp"
-#include "check/evaluate_program.hpp"
-#include "derive/derive.hpp"
-#include "describe/mechanise.hpp"
-#include "describe/read_model.hpp"
+#include "mechanics/symbolic_model.hpp"
 
 namespace anholon {
 namespace {
 
-using GiNaC::ex;
-using Expressions = std::vector<ex>;
-
-class Symbolic {
- public:
-  explicit Symbolic(Model model)
-      : model_(std::move(model)),
-        derivation_(derive(model_)),
-        partition_(partition_of(model_)),
-        converter_(derivation_->program.tape, GinacConverter::Angles::functions) {
-    Expressions parameters;
-    for (const ParameterInfo& p : derivation_->program.parameters)
-      parameters.push_back(converter_.to_ginac(p.node));
-    mechanism_ = mechanise<ex>(describe_mechanism(model_), parameters);
-  }
-
-  [[nodiscard]] const Partition& partition() const { return partition_; }
-  [[nodiscard]] const Mechanism<ex>& mechanism() const { return mechanism_; }
-
-  /// The symbols of an input block; none where the program has no such block.
-  Expressions input(const std::string& name) {
-    Expressions symbols;
-    for (const InputBlock& block : derivation_->program.inputs) {
-      if (block.name != name) continue;
-      for (const NodeId id : block.nodes) symbols.push_back(converter_.to_ginac(id));
-    }
-    return symbols;
-  }
-  /// An output block of a function.
-  Matrix<ex> output(const std::string& function, const std::string& name) {
-    const Function* found = find_function(derivation_->program, function);
-    if (found == nullptr) throw std::invalid_argument("no function " + function);
-    for (const OutputBlock& block : found->outputs) {
-      if (block.name != name) continue;
-      Matrix<ex> m(block.rows, block.cols);
-      for (int i = 0; i < block.rows; ++i) {
-        for (int j = 0; j < block.cols; ++j)
-          m(i, j) = converter_.to_ginac(block.nodes[static_cast<std::size_t>(i * block.cols + j)]);
-      }
-      return m;
-    }
-    return {};
-  }
-  bool vanishes(const ex& e) { return converter_.residual(e).is_zero(); }
-
-  /// A state of the program's symbols with passive velocities `passive` and the input r_a_dot.
-  State<ex> state(const Expressions& passive) {
-    State<ex> s;
-    s.t = 0;
-    if (model_.group == GroupKind::SE2) {
-      const Expressions g = input("g");
-      s.p = {g[0], g[1], 0};
-      s.R = AxisRotation<ex>{2, GiNaC::cos(g[2]), GiNaC::sin(g[2])}.matrix();
-    }
-    if (model_.group == GroupKind::R1) s.p.x = input("p").at(0);
-    s.r.assign(model_.coordinates.size(), ex(0));
-    s.r_dot = s.r;
-    const Expressions r_p = input("r_p"), r_a = input("r_a"), r_a_dot = input("r_a_dot");
-    const auto components = free_components(model_.group);
-    for (std::size_t i = 0; i < passive.size(); ++i) {
-      const int at = partition_.passive[i] - partition_.n;
-      if (at < 0) {
-        s.eta[components[i]] = passive[i];
-      } else {
-        s.r[static_cast<std::size_t>(at)] = r_p[i - static_cast<std::size_t>(partition_.n)];
-        s.r_dot[static_cast<std::size_t>(at)] = passive[i];
-      }
-    }
-    for (std::size_t i = 0; i < r_a.size(); ++i) {
-      const auto at = static_cast<std::size_t>(partition_.active[i] - partition_.n);
-      s.r[at] = r_a[i], s.r_dot[at] = r_a_dot[i];
-    }
-    return s;
-  }
-
- private:
-  Model model_;
-  std::unique_ptr<Derivation> derivation_;
-  Partition partition_;
-  GinacConverter converter_;
-  Mechanism<ex> mechanism_;
-};
-
-Model shipped(const std::string& name) {
-  return read_model(std::string(ANHOLON_SOURCE_DIR) + "/models/" + name + "/" + name + ".toml");
-}
+using test::ex;
+using test::Expressions;
 
 /// A waist about Z and two parallel joints about Y, with point masses on the links.
 Model three_joint_arm() {
@@ -151,7 +62,7 @@ std::vector<int> range(int from, int to) {
 }
 
 TEST_P(Ginac, DerivesTheFreeDynamicsOfTheTape) {
-  Symbolic s(GetParam().model());
+  test::SymbolicModel s(GetParam().model());
   const Partition& p = s.partition();
   Expressions passive = s.input("eta");
   for (const ex& rate : s.input("r_p_dot")) passive.push_back(rate);
@@ -188,7 +99,7 @@ TEST_P(Ginac, DerivesTheFreeDynamicsOfTheTape) {
 
 // (66)-(68) and (27), with J_dot r_a_dot + H_dot nu differentiated by GiNaC.
 TEST_P(Ginac, ProjectsAsTheTapeDoes) {
-  Symbolic s(GetParam().model());
+  test::SymbolicModel s(GetParam().model());
   const Partition& p = s.partition();
   const Expressions nu = s.input("nu"), r_a_dot = s.input("r_a_dot"), r_a_ddot = s.input("r_a_ddot");
   Matrix<ex> H(static_cast<int>(p.passive.size()), static_cast<int>(nu.size())), J(H.rows(), p.s_a());
@@ -254,11 +165,12 @@ TEST_P(Ginac, ProjectsAsTheTapeDoes) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Small, Ginac,
-                         testing::Values(Case{"MobilePendulum", [] { return shipped("mobile_pendulum"); }},
-                                         Case{"RigidSnakeboard", [] { return shipped("rigid_snakeboard"); }},
-                                         Case{"ThreeJointArm", three_joint_arm}),
-                         [](const auto& info) { return std::string(info.param.name); });
+INSTANTIATE_TEST_SUITE_P(
+    Small, Ginac,
+    testing::Values(Case{"MobilePendulum", [] { return test::shipped_model("mobile_pendulum"); }},
+                    Case{"RigidSnakeboard", [] { return test::shipped_model("rigid_snakeboard"); }},
+                    Case{"ThreeJointArm", three_joint_arm}),
+    [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
 }  // namespace anholon
