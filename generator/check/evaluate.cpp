@@ -48,6 +48,9 @@ nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& sta
   const std::size_t redundant = model.rows.size() - sharing.locked.size();
   for (const auto& entry : states.states) {
     const std::size_t given = entry.input.lambda_stat.size();
+    if (given != 0 && !sharing.leading)
+      throw ModelError({states.file, 0, 0}, fmt::format("state '{}' has 'lambda_stat'", entry.label),
+                       "choose --inverse leading:ROWS, which says what it means");
     if (given != 0 && given != redundant)
       throw ModelError(
           {states.file, 0, 0},

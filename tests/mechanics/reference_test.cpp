@@ -345,6 +345,11 @@ TEST_F(PendulumTorques, TakeTheStaticLoadingOfTheStatesFile) {
   }
   StatesFile wrong = states;
   wrong.states[0].input.lambda_stat = {Exact(1), Exact(2)};
+  EvaluateRequest leading;
+  leading.inverse = Inverse::leading;
+  EXPECT_THROW(evaluate_states(model, wrong, leading), ModelError);
+  wrong.states[0].input.lambda_stat = {Exact(1)};
+  EXPECT_NO_THROW(evaluate_states(model, wrong, leading));
   EXPECT_THROW(evaluate_states(model, wrong, {}), ModelError);
 }
 
