@@ -1,15 +1,47 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
 
 #include "cli/common.hpp"
+#include "describe/scene.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
 #include "emit/write_file.hpp"
 #include "optimise/tape/count.hpp"
 
 namespace anholon::cli {
+namespace {
+
+int operations_of(const Program& program, const Function& f) {
+  std::vector<NodeId> roots;
+  for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+  return operations_per_call(program, roots).total();
+}
+
+/// Operations of the same functions for the whole model, nothing frozen, locked or left out; empty without a
+/// scene.
+std::map<std::string, int> operations_without_scene(const GenerateOptions& options, const Program& program) {
+  const std::string file = !options.scene.empty() ? options.scene : options.model;
+  if (!is_scene(file)) return {};
+  const Scene scene = read_scene(file);
+  DeriveRequest request = derive_request(options, scene.model);
+  request.functions.clear();
+  for (const Function& f : program.functions) request.functions.push_back(f.name);
+  std::map<std::string, int> operations;
+  try {
+    const auto whole = derive(scene.model, request);
+    for (const Function& f : whole->program.functions) operations[f.name] = operations_of(whole->program, f);
+  } catch (const UnsupportedError&) {  // the scene may leave out what cannot be derived
+  }
+  return operations;
+}
+
+}  // namespace
 
 int generate(const GenerateOptions& options) {
   const Stopwatch watch;
@@ -32,12 +64,18 @@ int generate(const GenerateOptions& options) {
 
   fmt::print("{} ({}), {}\n", program.model, program.scene,
              derivation->reduction.ranks.table_I_class(derivation->reduction.partition));
-  fmt::print("{:28s} {:>10s} {:>8s}  {}\n", "function", "operations", "sin+cos", "route");
+  const std::map<std::string, int> without_scene = operations_without_scene(options, program);
+  const auto compared = [&](const std::string& text) {
+    return without_scene.empty() ? "" : fmt::format("{:>13s}", text);
+  };
+  fmt::print("{:28s} {:>10s}{} {:>8s}  {}\n", "function", "operations", compared("whole model"), "sin+cos",
+             "route");
+  int operations = 0, operations_before = 0;
   for (const Function& f : program.functions) {
     std::vector<NodeId> roots;
     for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
     const OperationCount count = operations_per_call(program, roots);
-    std::string before;
+    std::string dearest;
     std::string route;
     int most = 0;
     for (const CandidateReport& c : derivation->candidates) {
@@ -45,9 +83,17 @@ int generate(const GenerateOptions& options) {
       most = std::max(most, c.operations);
       if (c.chosen) route = c.route;
     }
-    if (most > count.total()) before = fmt::format(" (dearest route {})", most);
-    fmt::print("{:28s} {:>10d} {:>8d}  {}{}\n", f.name, count.total(), count.trigonometric(), route, before);
+    if (most > count.total()) dearest = fmt::format(" (dearest route {})", most);
+    const auto before = without_scene.find(f.name);
+    const bool is_compared = before != without_scene.end();
+    if (is_compared) operations += count.total(), operations_before += before->second;
+    fmt::print("{:28s} {:>10d}{} {:>8d}  {}{}\n", f.name, count.total(),
+               compared(is_compared ? std::to_string(before->second) : "-"), count.trigonometric(), route,
+               dearest);
   }
+  if (operations_before > 0)
+    fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % fewer\n", operations,
+               operations_before, 100.0 * (operations_before - operations) / operations_before);
   if (options.passes) {
     fmt::print("\n{:28s} {:32s} {:>10s}\n", "function", "route", "operations");
     for (const CandidateReport& c : derivation->candidates)

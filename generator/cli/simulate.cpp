@@ -1,42 +1,128 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <cmath>
+#include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "check/simulation.hpp"
 #include "cli/common.hpp"
+#include "simulate/simulation.hpp"
+#include "simulate/work_precision.hpp"
 
 namespace anholon::cli {
 namespace {
 
-std::string csv(const SimulationResult& result) {
-  std::string text;
-  for (const std::string& c : result.columns) text += (text.empty() ? "" : ",") + c;
-  text += "\n";
-  for (const auto& row : result.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : ",", row[i]);
-    text += "\n";
+/// One line on the terminal that says how far a simulation is, once it takes longer than a second.
+class ProgressLine {
+ public:
+  explicit ProgressLine(double duration) : duration_(duration) {}
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() {
+    if (shown_ > 1) fmt::print(stderr, "\r{:60s}\r", "");
   }
-  return text;
+  void operator()(const char* stage, double t) {
+    if (!terminal_ || watch_.seconds() < shown_) return;
+    fmt::print(stderr, "\r{:60s}\r{}", "",
+               t > 0 ? fmt::format("{}: {:.4g} of {:g} s", stage, t, duration_) : stage);
+    std::fflush(stderr);
+    shown_ = watch_.seconds() + 0.5;
+  }
+
+ private:
+  bool terminal_ = isatty(STDERR_FILENO) != 0;
+  double duration_, shown_ = 1;
+  Stopwatch watch_;
+};
+
+/// A number that JSON can hold; null where there is none.
+nlohmann::ordered_json finite(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; }
+
+nlohmann::ordered_json json_of(const Scene& scene, const WorkPrecision& result) {
+  nlohmann::ordered_json j = {{"schema", "anholon.work_precision/1"},
+                              {"model", scene.model.name},
+                              {"scene", scene.name},
+                              {"reference",
+                               {{"method", "Gauss collocation of order 12, long double"},
+                                {"steps", result.reference_steps},
+                                {"own_error", finite(result.reference_error)}}}};
+  for (const char* code : {"generated", "recursion"}) {
+    const RoundingFloor floor = rounding_floor(result, code);
+    j["floor"][code] = {{"error", finite(floor.error)}, {"tolerance", floor.tolerance}, {"seen", floor.seen}};
+  }
+  for (const WorkPrecisionPoint& p : result.points)
+    j["points"].push_back({{"code", p.code},
+                           {"tolerance", p.tolerance},
+                           {"error", finite(p.error)},
+                           {"cpu_seconds", p.cpu_seconds},
+                           {"evaluations", p.evaluations},
+                           {"status", p.status}});
+  return j;
 }
 
 int print_work_precision(const Scene& scene, const std::filesystem::path& folder) {
-  const auto points = work_precision(scene);
+  fmt::print("{}, {}: error of the final state, relative to the sizes of the motion\n\n", scene.model.name,
+             scene.name);
+  fmt::print("{:>9s}  {:>10s} {:>11s} {:>11s}  {:>10s} {:>11s} {:>11s}\n", "tolerance", "generated",
+             "cpu [s]", "evaluations", "recursion", "cpu [s]", "evaluations");
+  std::fflush(stdout);
   std::string table = "code,tolerance,error,cpu_s,evaluations,status\n";
-  fmt::print("{}, {}: error of the final state against a long double run at tolerance 1e-16\n",
-             scene.model.name, scene.name);
-  fmt::print("{:>10s} {:>10s} {:>11s} {:>12s} {:>12s}  {}\n", "code", "tolerance", "error", "cpu [s]",
-             "evaluations", "status");
-  for (const auto& p : points) {
-    fmt::print("{:>10s} {:>10.0e} {:>11.2e} {:>12.6f} {:>12d}  {}\n", p.code, p.tolerance, p.error,
-               p.cpu_seconds, p.evaluations, p.status);
+  const WorkPrecision result = work_precision(scene, [&](const WorkPrecisionPoint& p) {
     table += fmt::format("{},{},{},{},{},{}\n", p.code, p.tolerance, p.error, p.cpu_seconds, p.evaluations,
                          p.status);
+    if (p.code == "generated") fmt::print("{:>9.0e}", p.tolerance);
+    if (p.status == "ok") {
+      fmt::print("  {:>10.2e} {:>11.6f} {:>11d}", p.error, p.cpu_seconds, p.evaluations);
+    } else {
+      fmt::print("  {:>34s}", p.status);
+    }
+    if (p.code == "recursion") fmt::print("\n");
+    std::fflush(stdout);
+  });
+  fmt::print(
+      "\nreference   Gauss collocation of order 12 in long double, {} steps; half as many move it by "
+      "{:.1e}\n",
+      result.reference_steps, result.reference_error);
+  for (const char* code : {"generated", "recursion"}) {
+    const RoundingFloor floor = rounding_floor(result, code);
+    fmt::print("floor       {:10s} {:.1e}, {}\n", code, floor.error,
+               floor.seen ? fmt::format("reached at tolerance {:.0e}: below it, only the cost grows",
+                                        floor.tolerance)
+                          : "not reached on this ladder");
   }
   write_output((folder / "work_precision.csv").string(), table);
-  fmt::print("wrote {}\n", (folder / "work_precision.csv").string());
+  write_output((folder / "work_precision.json").string(), json_of(scene, result).dump(1) + "\n");
+  fmt::print("files       {}, {}\n", (folder / "work_precision.csv").string(),
+             (folder / "work_precision.json").string());
   return ok;
+}
+
+std::string integrator_text(const Integrator& integrator) {
+  return integrator.method == Integrator::Method::dopri5
+             ? fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance)
+             : fmt::format("Munthe-Kaas RK4, step {:g} s", integrator.step);
+}
+
+nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& result) {
+  return {{"schema", "anholon.simulation/1"},
+          {"model", scene.model.name},
+          {"scene", scene.name},
+          {"status", result.status},
+          {"finished", result.finished},
+          {"table_I", result.class_of_table_I},
+          {"integrator", integrator_text(scene.integrator)},
+          {"steps", result.steps},
+          {"rejected", result.rejected},
+          {"evaluations", result.evaluations},
+          {"operations_per_evaluation", result.operations},
+          {"nanoseconds_per_evaluation", result.nanoseconds_per_evaluation},
+          {"cpu_seconds", result.cpu_seconds},
+          {"largest_energy", finite(result.largest_energy)},
+          {"energy_balance", finite(result.energy_balance)},
+          {"constraint_residual", finite(result.constraint_residual)},
+          {"orthonormality", finite(result.orthonormality)}};
 }
 
 }  // namespace
@@ -49,45 +135,30 @@ int simulate(const SimulateOptions& options) {
                              : std::filesystem::path(options.output);
   if (options.work_precision) return print_work_precision(scene, folder);
 
-  const SimulationResult result = simulate_scene(scene);
-  if (!result.rows.empty()) write_output((folder / "trajectory.csv").string(), csv(result));
-  nlohmann::ordered_json j = {{"schema", "anholon.simulation/1"},
-                              {"model", scene.model.name},
-                              {"scene", scene.name},
-                              {"status", result.status},
-                              {"finished", result.finished},
-                              {"table_I", result.class_of_table_I},
-                              {"steps", result.steps},
-                              {"rejected", result.rejected},
-                              {"evaluations", result.evaluations},
-                              {"operations_per_evaluation", result.operations},
-                              {"nanoseconds_per_evaluation", result.nanoseconds_per_evaluation},
-                              {"cpu_seconds", result.cpu_seconds},
-                              {"energy_balance", result.energy_balance},
-                              {"constraint_residual", result.constraint_residual},
-                              {"orthonormality", result.orthonormality}};
-  write_output((folder / "summary.json").string(), j.dump(1) + "\n");
+  const SimulationResult result = [&] {
+    ProgressLine line(scene.duration);
+    return simulate_scene(scene, [&](const char* stage, double t) { line(stage, t); });
+  }();
+  if (!result.rows.empty()) write_output((folder / "trajectory.csv").string(), trajectory_csv(result));
+  write_output((folder / "summary.json").string(), json_of(scene, result).dump(1) + "\n");
 
-  const bool adaptive = scene.integrator.method == Integrator::Method::dopri5;
   fmt::print("{}, scene {}{}\n", scene.model.name, scene.name, scene.title.empty() ? "" : ": " + scene.title);
   fmt::print("  class (Table I)       {}\n", result.class_of_table_I);
-  fmt::print("  integrator            {}\n",
-             adaptive
-                 ? fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", scene.integrator.tolerance)
-                 : fmt::format("Munthe-Kaas RK4, step {:g} s", scene.integrator.step));
+  fmt::print("  integrator            {}\n", integrator_text(scene.integrator));
   fmt::print("  status                {} ({} s simulated, {} steps, {} rejected, {} evaluations)\n",
              result.status, result.rows.empty() ? 0.0 : result.rows.back()[0], result.steps, result.rejected,
              result.evaluations);
   fmt::print("  one evaluation        {} operations, {:.0f} ns\n", result.operations,
              result.nanoseconds_per_evaluation);
-  fmt::print("  energy balance        {:.2e} of the largest energy\n", result.energy_balance);
+  fmt::print("  energy balance        {:.2e} of the largest energy, {:.3g} J\n", result.energy_balance,
+             result.largest_energy);
   fmt::print("  constraint residual   {:.2e} relative\n", result.constraint_residual);
   fmt::print("  ||R^T R - 1||         {:.2e}\n", result.orthonormality);
   fmt::print("  time                  {:.4f} s integration, {:.2f} s in all\n", result.cpu_seconds,
              watch.seconds());
-  if (!result.rows.empty())
-    fmt::print("  files                 {}, {}\n", (folder / "trajectory.csv").string(),
-               (folder / "summary.json").string());
+  fmt::print("  files                 {}{}\n",
+             result.rows.empty() ? "" : (folder / "trajectory.csv").string() + ", ",
+             (folder / "summary.json").string());
   return result.finished ? ok : check_failed;
 }
 

@@ -14,6 +14,7 @@
 #include "derive/symbols.hpp"
 #include "describe/function_names.hpp"
 #include "describe/mechanise.hpp"
+#include "optimise/model/merge_fixed.hpp"
 #include "optimise/tape/count.hpp"
 
 namespace anholon {
@@ -52,11 +53,13 @@ class Deriver {
         motion_partition_(partition_of(model, request.torque_driven)),
         symbols_(model, partition_of(model), program_),
         description_(describe_mechanism(model)),
-        mechanism_(mechanise<Expr>(description_, symbols_.parameters(), FromExact<Expr>{&tape_})),
+        described_(mechanise<Expr>(description_, symbols_.parameters(), FromExact<Expr>{&tape_})),
+        mechanism_(merged(described_)),
         dynamics_(mechanism_),
         samples_(sample_states(model, random_samples)),
         names_(velocity_names(model)) {
-    mechanism_.open_section = [this](const std::string& title) { tape_.section(title); };
+    described_.open_section =
+        mechanism_.open_section = [this](const std::string& title) { tape_.section(title); };
     for (const Parameter& p : model.parameters) defaults_.push_back(p.value);
   }
 
@@ -95,6 +98,11 @@ class Deriver {
   }
 
  private:
+  static Mechanism<Expr> merged(Mechanism<Expr> mechanism) {
+    merge_fixed(mechanism);
+    return mechanism;
+  }
+
   [[nodiscard]] bool wanted(const std::string& name) const {
     return request_.functions.empty() ||
            std::ranges::find(request_.functions, name) != request_.functions.end();
@@ -613,7 +621,7 @@ class Deriver {
     if (!wanted("body_poses")) return;
     std::vector<Mat3<Expr>> R;
     std::vector<Vec3<Expr>> p;
-    dynamics_.poses(symbols_.position(), R, p);
+    FreeDynamics<Expr>(described_).poses(symbols_.position(), R, p);  // also of bodies that are merged
     std::vector<OutputBlock> outputs;
     for (std::size_t b = 0; b < R.size(); ++b) {
       Matrix<Expr> rotation(3, 3);
@@ -645,7 +653,8 @@ class Deriver {
   Partition motion_partition_;
   ProgramSymbols symbols_;
   MechanismDescription description_;
-  Mechanism<Expr> mechanism_;
+  Mechanism<Expr> described_;  // every body as the model has it
+  Mechanism<Expr> mechanism_;  // bodies on fixed and locked joints merged
   FreeDynamics<Expr> dynamics_;
   std::vector<SampleState> samples_;
   std::vector<std::string> names_;

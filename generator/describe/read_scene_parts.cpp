@@ -125,6 +125,7 @@ void read_initial_state(TableReader& root, Scene& scene, Reading& reading) {
   if (value == nullptr) return;
   const Model& model = scene.model;
   TableReader initial(*value, "the initial state", reading.findings);
+  scene.initial_where = value->where;
   const auto at = [&](const Expr& x, const Location& where, const std::string& what) {
     return reading.at_defaults(x, where, what);
   };

@@ -235,7 +235,13 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& path) 
   TableReader root(document, "the scene", findings);
   Scene scene;
   scene.file = path.filename().string();
+  scene.where = scene.initial_where = document.where;
   scene.sha256 = sha256_of(text);
+  if (document.find("model") == nullptr && document.find("body") != nullptr)
+    throw ModelError(
+        document.where, "the file describes a robot, not a scene",
+        fmt::format("write a scene beside it that begins with anholon = 1, a name and model = \"{}\"",
+                    scene.file));
   const auto model_name = root.required_string(
       "model", "name the description, relative to the scene: model = \"snakeboard.toml\"");
   if (!model_name) findings.throw_if_any();

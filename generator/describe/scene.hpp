@@ -79,6 +79,7 @@ struct Scene {
   Integrator integrator;
   double duration = 0;               // s; 0: the scene is not to be simulated
   std::vector<double> output_times;  // s, increasing, within [0, duration]; empty: the integrator's own steps
+  Location where, initial_where;     // of the scene and of its initial state, for messages
 };
 
 /// Reads a scene and its model. @throws ModelError with everything that is wrong with either

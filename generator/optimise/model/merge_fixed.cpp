@@ -1,42 +1,93 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "optimise/model/merge_fixed.hpp"
 
+#include <vector>
+
 #include "optimise/model/constants.hpp"
 
 namespace anholon {
+namespace {
+
+/// Where an old body went: the new body that holds it, and its frame in that one's.
+template <class S>
+struct Place {
+  int index = 0;
+  Mat3<S> R = Mat3<S>::identity();
+  Vec3<S> p;
+  bool moved = false;
+};
+
+template <class S>
+void move_rows(Mechanism<S>& mechanism, const std::vector<Place<S>>& places) {
+  for (ConstraintRow<S>& row : mechanism.rows) {
+    for (RowTerm<S>& term : row.terms) {
+      const Place<S>& place = places[static_cast<std::size_t>(term.body)];
+      term.body = place.index;
+      if (!place.moved) continue;
+      term.point = place.p + place.R * term.point;
+      term.linear = place.R * term.linear;
+      term.angular = place.R * term.angular;
+    }
+  }
+}
+
+template <class S>
+void move_wrenches(Mechanism<S>& mechanism, const std::vector<Place<S>>& places) {
+  std::vector<std::pair<std::size_t, Mat3<S>>> turns;  // of wrenches given in the axes of a body that is gone
+  for (std::size_t i = 0; i < mechanism.wrenches.size(); ++i) {
+    AppliedWrench<S>& wrench = mechanism.wrenches[i];
+    const Place<S>& place = places[static_cast<std::size_t>(wrench.body)];
+    wrench.body = place.index;
+    if (!place.moved) continue;
+    wrench.point = place.p + place.R * wrench.point;
+    if (!wrench.in_world_axes) turns.emplace_back(i, place.R);
+  }
+  if (turns.empty()) return;
+  mechanism.evaluate_wrenches = [evaluate = mechanism.evaluate_wrenches, turns](const State<S>& state,
+                                                                                std::span<S> out) {
+    evaluate(state, out);
+    for (const auto& [wrench, R] : turns) {
+      for (const std::size_t at : {6 * wrench, 6 * wrench + 3}) {
+        const Vec3<S> v = R * Vec3<S>{out[at], out[at + 1], out[at + 2]};
+        for (int c = 0; c < 3; ++c) out[at + static_cast<std::size_t>(c)] = v[c];
+      }
+    }
+  };
+}
+
+}  // namespace
 
 template <class S>
 int merge_fixed(Mechanism<S>& mechanism) {
-  require_rigid_tree(mechanism);
   std::vector<Body<S>>& bodies = mechanism.bodies;
-  std::vector<int> index(bodies.size(), 0);  // new index of each body; that of what took it in
   std::vector<Body<S>> kept;
-  struct Pose {
-    Mat3<S> R = Mat3<S>::identity();
-    Vec3<S> p;
-  };
-  std::vector<Pose> in_new(bodies.size());  // of the old body's frame in the frame of what took it in
+  std::vector<Place<S>> places(bodies.size());
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     Body<S> body = bodies[k];
+    Place<S>& place = places[k];
     if (body.parent >= 0) {
-      const auto parent = static_cast<std::size_t>(body.parent);
-      const Pose& of_parent = in_new[parent];
-      body.p = of_parent.p + of_parent.R * body.p;
-      body.R = of_parent.R * body.R;
-      body.parent = index[parent];
+      const Place<S>& parent = places[static_cast<std::size_t>(body.parent)];
+      if (parent.moved) {
+        body.p = parent.p + parent.R * body.p;
+        body.R = parent.R * body.R;
+      }
+      body.parent = parent.index;
     }
-    if (body.parent < 0 || body.kind != JointKind::fixed) {
-      index[k] = static_cast<int>(kept.size());
+    const bool merges = body.parent >= 0 && body.kind == JointKind::fixed && body.modes.empty() &&
+                        kept[static_cast<std::size_t>(body.parent)].modes.empty();
+    if (!merges) {
+      place.index = static_cast<int>(kept.size());
       kept.push_back(std::move(body));
       continue;
     }
-    index[k] = body.parent;
-    in_new[k] = {body.R, body.p};
+    place = {body.parent, body.R, body.p, true};
     Body<S>& into = kept[static_cast<std::size_t>(body.parent)];
     set_moments(into, moments_of(into) + moments_in(body.R, body.p, moments_of(body)));
   }
   const int gone = static_cast<int>(bodies.size() - kept.size());
   bodies = std::move(kept);
+  move_rows(mechanism, places);
+  move_wrenches(mechanism, places);
   return gone;
 }
 

@@ -25,17 +25,22 @@ using DormandPrince = RkmkStages<G, DormandPrince54>;
 
 /// The error of a step is weighed component by component, and the largest counts:
 ///
-///   y_i             atol + rtol max(|y_i(t)|, |y_i(t + h)|)
-///   rotation        atol + rtol                                 [rad]
+///   y_i             atol size_i + rtol max(|y_i(t)|, |y_i(t + h)|)
+///   rotation        (atol + rtol) angle                         [rad]
 ///   translation     (atol + rtol) length                        [m]
 ///
-/// The pose has no natural size (its position depends on where the origin of the world is), so its error is
-/// taken in the body's axes against a fixed angle of 1 rad and a length of the user's.
+/// What counts as a small error depends on the motion: 1e-9 J is little for a car and much for a robot of a
+/// few grams. The sizes say how large each quantity ordinarily is in the motion at hand, such as its largest
+/// magnitude; atol and rtol are then pure numbers. The pose has no size of its own (its position depends on
+/// where the origin of the world is), so its error is taken in the body's axes.
 template <class Real>
 struct AdaptiveOptions {
   Real rtol = Real(1e-6L);
   Real atol = Real(1e-9L);
-  Real length = Real(1);        ///< what counts as a length of ordinary size [m]
+  Real angle = Real(1);         ///< what counts as a rotation of ordinary size [rad], > 0
+  Real length = Real(1);        ///< what counts as a length of ordinary size [m], > 0
+  std::span<const Real> sizes;  ///< (n_y) what counts as ordinary for each y_i, in its unit, > 0; empty:
+                                ///< all 1. Read during the integration, not copied
   Real initial_step = Real(0);  ///< [s], > 0; 0: chosen from the field, at the cost of one evaluation
   Real max_step = std::numeric_limits<Real>::infinity();  ///< [s]
   long max_steps = 1'000'000;  ///< limit on attempted steps, rejected ones included
@@ -62,14 +67,15 @@ class ErrorScale {
   Real operator()(const typename G::Tangent& theta, const Vector& y, const Vector& y_0,
                   const Vector& y_1) const {
     using std::abs;
-    const Real rotation = options_.atol + options_.rtol;
-    const Real translation = rotation * options_.length;
+    const Real rotation = (options_.atol + options_.rtol) * options_.angle;
+    const Real translation = (options_.atol + options_.rtol) * options_.length;
     Real largest = Real(0);
     for (int i = 0; i < G::dim; ++i) {
       largest = larger(largest, abs(theta[i]) / (i < G::linear_dim ? translation : rotation));
     }
     for (Eigen::Index i = 0; i < y.size(); ++i) {
-      const Real allowed = options_.atol + options_.rtol * std::max(abs(y_0[i]), abs(y_1[i]));
+      const Real size = options_.sizes.empty() ? Real(1) : options_.sizes[static_cast<std::size_t>(i)];
+      const Real allowed = options_.atol * size + options_.rtol * std::max(abs(y_0[i]), abs(y_1[i]));
       largest = larger(largest, abs(y[i]) / allowed);
     }
     return largest;
@@ -127,6 +133,7 @@ Result<typename G::Scalar> integrate_adaptive(DormandPrince<G>& stages, Field&& 
   using std::abs;
   using std::pow;
   eigen_assert(stages.size_y() == state.y.size());
+  eigen_assert(options.sizes.empty() || static_cast<Eigen::Index>(options.sizes.size()) == state.y.size());
 
   const Real beta = Real(0.04L);                       // weight of the integral part
   const Real alpha = Real(0.2L) - Real(0.75L) * beta;  // the error of a step goes with h^5

@@ -3,6 +3,7 @@
 
 // A scene, generated, compiled and integrated: trajectory, torques, constraint forces, energies.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,7 @@
 
 namespace anholon {
 
-/// One row of a trajectory; see SimulationResult::columns.
+/// A trajectory and what was seen on the way.
 struct SimulationResult {
   std::vector<std::string> columns;  // with units: "V_X [m/s]"
   std::vector<std::vector<double>> rows;
@@ -19,26 +20,26 @@ struct SimulationResult {
   long steps = 0, rejected = 0, evaluations = 0;
   double cpu_seconds = 0;  // of the integration alone
   double nanoseconds_per_evaluation = 0;
-  double energy_balance = 0;       // largest |E(t) - E(0) - work + dissipation| / scale of the energies
+  double energy_balance = 0;  // largest |E(t) - E(0) - work + dissipation| / largest_energy, at all steps
+  double largest_energy = 0;  // of kinetic, change of potential, work, dissipated [J]
   double constraint_residual = 0;  // largest |A eta + B r_dot| relative to what cancels
   double orthonormality = 0;       // largest ||R^T R - 1||
   int operations = 0;              // of one evaluation of the field
   bool was_cached = false;         // the compiled code
   std::string class_of_table_I;
+  std::string violation;  // the first compatibility condition that the imposed motion violates, and when
 };
+
+/// Told what is being done, and the time that the motion has reached [s]; called at every step.
+using Progress = std::function<void(const char* stage, double t)>;
 
 /// @throws ModelError, CompileError
-SimulationResult simulate_scene(const Scene& scene);
+SimulationResult simulate_scene(const Scene& scene, const Progress& progress = {});
 
-/// Error against cost for one way to compute, at one tolerance.
-struct WorkPrecisionPoint {
-  std::string code;  // "generated", "recursion"
-  double tolerance = 0;
-  double error = 0;  // of the final state against a long double run of tolerance 1e-16
-  double cpu_seconds = 0;
-  long evaluations = 0;
-  std::string status;
-};
-std::vector<WorkPrecisionPoint> work_precision(const Scene& scene);
+/// @throws ModelError where the scene has no duration
+void require_duration(const Scene& scene);
+
+/// The trajectory as comma-separated values, one line of names with units first.
+std::string trajectory_csv(const SimulationResult& result);
 
 }  // namespace anholon

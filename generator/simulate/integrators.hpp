@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The integrators of the runtime for fields and observers known at run time, instantiated once:
+// integrators.cpp.
+
+#include <Eigen/Core>
+#include <functional>
+
+#include "anholon/integrate/dopri.hpp"
+#include "anholon/integrate/rkmk.hpp"
+#include "simulate/groups.hpp"
+
+namespace anholon {
+
+/// (t, g, y) -> (eta, y_dot)
+template <class G>
+using Field = std::function<void(double t, const G& g, const Eigen::VectorXd& y, typename G::Tangent& eta,
+                                 Eigen::VectorXd& y_dot)>;
+template <class G>
+using DenseObserver = std::function<void(const integrate::DenseStep<G>&)>;
+template <class G>
+using StepObserver = std::function<void(double t, const G& g, const Eigen::VectorXd& y)>;
+
+/// Dormand-Prince with step control.
+template <class G>
+integrate::Result<double> integrate_adaptive(const Field<G>& field, integrate::State<G>& state, double t_end,
+                                             const integrate::AdaptiveOptions<double>& options,
+                                             const DenseObserver<G>& observer);
+
+/// The classical method with equal steps.
+template <class G>
+integrate::Result<double> integrate_fixed(const Field<G>& field, integrate::State<G>& state, double t_end,
+                                          long steps, const StepObserver<G>& observer);
+
+}  // namespace anholon

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// What is seen of a motion: rows of a trajectory at the wanted times, and the monitors at every step.
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "anholon/monitors.hpp"
+#include "simulate/monitors.hpp"
+#include "simulate/runner.hpp"
+#include "simulate/simulation.hpp"
+
+namespace anholon {
+
+class Recorder {
+ public:
+  /// Names the columns of `result`, to which rows are added.
+  Recorder(const SceneProgram& program, Runner<double>& run, SimulationResult& result);
+  Recorder(const Recorder&) = delete;  // columns point into it
+  Recorder& operator=(const Recorder&) = delete;
+  ~Recorder() = default;
+
+  /// Monitors alone. @param y  (r_p, r_d, nu, work, dissipated)
+  template <class G, class Vector>
+  void watch(double t, const G& g, const Vector& y) {
+    run_.impose(t);
+    run_.set(g, y);
+    work_ = y(y.size() - 2), dissipated_ = y(y.size() - 1);
+    result_.orthonormality = std::max(result_.orthonormality, orthonormality_defect(Eigen::Matrix3d(g.R())));
+    observe();
+  }
+
+  /// Monitors, and a row.
+  template <class G, class Vector>
+  void record(double t, const G& g, const Vector& y) {
+    watch(t, g, y);
+    add_row();
+  }
+
+ private:
+  void observe();
+  void add_row();
+
+  const SceneProgram& program_;
+  Runner<double>& run_;
+  SimulationResult& result_;
+  std::vector<const double*> sources_;  // of the columns
+  EnergyMonitor energy_;
+  double potential_ = 0, work_ = 0, dissipated_ = 0, defect_ = 0, residual_ = 0;
+};
+
+}  // namespace anholon

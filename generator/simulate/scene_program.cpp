@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "simulate/scene_program.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "describe/specialise.hpp"
+#include "optimise/tape/count.hpp"
+
+namespace anholon {
+namespace {
+
+/// The entry that a scene has for each of some velocities; `missing` where it has none.
+template <class Entry>
+std::vector<Entry> entries_for(const Scene& scene, const SceneProgram& p, const std::vector<Entry>& entries,
+                               const std::vector<int>& velocities, const Entry& missing) {
+  const std::vector<int> kept = kept_coordinates(scene.model, scene);
+  std::vector<Entry> result;
+  for (const int i : velocities) {
+    const auto found = std::ranges::find_if(entries, [&](const Entry& entry) {
+      return kept[static_cast<std::size_t>(entry.coordinate)] == i - p.original.n;
+    });
+    result.push_back(found == entries.end() ? missing : *found);
+  }
+  return result;
+}
+
+/// r_a(t) and its derivatives, in the order of the reduced partition's active coordinates.
+void add_imposed_motion(const Scene& scene, SceneProgram& p) {
+  const int size = p.reduced.s_a();
+  if (size == 0 || scene.motion_table) return;
+  std::vector<Expr> r, r_dot, r_ddot;
+  for (const ImposedMotion& m : entries_for(scene, p, scene.motion, p.reduced.active, {})) {
+    r.push_back(m.r);
+    r_dot.push_back(m.r_dot);
+    r_ddot.push_back(m.r_ddot);
+  }
+  Function imposed{"imposed", "Imposed motion of the active coordinates.", {}, ""};
+  imposed.outputs = {
+      {"r_m", "rad or m", "motion-driven coordinates", size, 1, scene_expressions(scene, p, r)},
+      {"r_m_dot", "rad/s or m/s", "their rates", size, 1, scene_expressions(scene, p, r_dot)},
+      {"r_m_ddot", "rad/s^2 or m/s^2", "their second derivatives", size, 1,
+       scene_expressions(scene, p, r_ddot)}};
+  p.derivation->program.functions.push_back(std::move(imposed));
+}
+
+void add_imposed_torque(const Scene& scene, SceneProgram& p) {
+  if (p.driven.empty()) return;
+  std::vector<Expr> torque;
+  for (const ImposedTorque& t : entries_for(scene, p, scene.torques, p.driven, {}))
+    torque.push_back(t.torque);
+  const int size = static_cast<int>(torque.size());
+  p.derivation->program.functions.push_back(
+      {"imposed_torque",
+       "Torques on the torque-driven coordinates.",
+       {{"torque", "N m or N", "torque-driven coordinates", size, 1, scene_expressions(scene, p, torque)}},
+       ""});
+}
+
+/// Velocities and reduced accelerations by one program, so that what they share is computed once.
+void add_rates(SceneProgram& p) {
+  Program& program = p.derivation->program;
+  Function rates{"rates", "Velocities and reduced accelerations for one evaluation of the field.", {}, ""};
+  std::vector<NodeId> roots;
+  for (const Function& f : program.functions) {
+    for (const OutputBlock& b : f.outputs) {
+      const bool velocity =
+          f.name == "kinematics" && (b.name == "eta" || b.name == "r_p_dot" || b.name == "r_d_dot");
+      if (!velocity && !(f.name == "forward_dynamics" && b.name == "nu_dot")) continue;
+      rates.outputs.push_back(b);
+      roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+    }
+  }
+  p.operations = operations_per_call(program, roots).total();
+  if (!rates.outputs.empty()) program.functions.push_back(std::move(rates));
+}
+
+}  // namespace
+
+SceneProgram make_program(const Scene& scene) {
+  SceneProgram p{specialise(scene.model, scene), nullptr, {}, {}, {}};
+  DeriveRequest request;
+  request.scene = scene.name;
+  request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
+  request.functions = {"kinematics",      "reduced_velocities", "constraints",   "forward_dynamics",
+                       "inverse_torques", "multipliers",        "compatibility", "energies"};
+  p.derivation = derive(p.model, request);
+  p.original = partition_of(p.model);
+  p.reduced = partition_of(p.model, request.torque_driven);
+  for (const int i : p.original.active) {
+    if (std::ranges::find(p.reduced.active, i) == p.reduced.active.end()) p.driven.push_back(i);
+  }
+  add_imposed_torque(scene, p);
+  add_imposed_motion(scene, p);
+  add_rates(p);
+  return p;
+}
+
+}  // namespace anholon

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// The program of a scene: its wanted functions, and three more of its own: `imposed(t)` and `imposed_torque`,
+// the motions and torques that the scene gives, and `rates`, all that one evaluation of the field needs.
+
+#include <memory>
+#include <vector>
+
+#include "derive/derive.hpp"
+#include "describe/scene.hpp"
+#include "reduce/partition.hpp"
+
+namespace anholon {
+
+struct SceneProgram {
+  Model model;  // specialised
+  std::unique_ptr<Derivation> derivation;
+  Partition original, reduced;  // all active apart; torque-driven ones with the passive
+  std::vector<int> driven;      // torque-driven velocity indices
+  int operations = 0;           // of one evaluation of the field
+};
+
+SceneProgram make_program(const Scene& scene);
+
+/// Nodes of the program for expressions of the scene. Velocities are those that nu and r_a_dot mean.
+std::vector<NodeId> scene_expressions(const Scene& scene, const SceneProgram& program,
+                                      const std::vector<Expr>& expressions);
+
+}  // namespace anholon

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "simulate/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+
+#include "check/compile_cache.hpp"
+#include "simulate/cpu_time.hpp"
+#include "simulate/groups.hpp"
+#include "simulate/initial_state.hpp"
+#include "simulate/integrators.hpp"
+#include "simulate/motion_sizes.hpp"
+#include "simulate/recorder.hpp"
+#include "simulate/runner.hpp"
+#include "simulate/scene_program.hpp"
+
+namespace anholon {
+namespace {
+
+/// Dormand-Prince over the whole duration: dense output at the wanted times, or rows at its own steps.
+template <class G>
+integrate::Result<double> integrate_with_step_control(const Scene& scene, const Field<G>& field,
+                                                      const MotionSizes& sizes, integrate::State<G>& state,
+                                                      Recorder& recorder, const Progress& progress) {
+  const std::vector<double> y_sizes = sizes.of_state();
+  const auto options = relative_tolerance(scene.integrator.tolerance, sizes, y_sizes);
+  const std::vector<double>& times = scene.output_times;
+  auto next = std::ranges::upper_bound(times, 0.0);
+  Eigen::VectorXd y(state.y.size());
+  return integrate_adaptive<G>(field, state, scene.duration, options,
+                               [&](const integrate::DenseStep<G>& step) {
+                                 for (G g; next != times.end() && *next <= step.t_end(); ++next) {
+                                   step.evaluate(*next, g, y);
+                                   recorder.record(*next, g, y);
+                                 }
+                                 if (times.empty()) {
+                                   recorder.record(step.t_end(), step.g_end(), step.y_end());
+                                 } else {
+                                   recorder.watch(step.t_end(), step.g_end(), step.y_end());
+                                 }
+                                 progress("integrating", step.t_end());
+                               });
+}
+
+/// The classical method from each output time to the next, with equal steps no longer than the scene's.
+template <class G>
+integrate::Result<double> integrate_with_fixed_step(const Scene& scene, const Field<G>& field,
+                                                    integrate::State<G>& state, Recorder& recorder,
+                                                    const Progress& progress) {
+  integrate::Result<double> total;
+  std::vector<double> times = scene.output_times;
+  if (times.empty() || times.back() < scene.duration) times.push_back(scene.duration);
+  for (auto t = std::ranges::upper_bound(times, 0.0); t != times.end(); ++t) {
+    const long steps = std::max(1L, std::lround(std::ceil((*t - state.t) / scene.integrator.step - 1e-9)));
+    const auto part = integrate_fixed<G>(field, state, *t, steps, [&](double now, const G& g, const auto& y) {
+      if (scene.output_times.empty() || now == *t) {
+        recorder.record(now, g, y);
+      } else {
+        recorder.watch(now, g, y);
+      }
+      progress("integrating", now);
+    });
+    total.accepted_steps += part.accepted_steps, total.evaluations += part.evaluations;
+    total.status = part.status;
+    if (!part) break;
+  }
+  return total;
+}
+
+double nanoseconds_per_call(const Call& call) {
+  const long repeats = 20000;
+  const double start = cpu_now();
+  for (long i = 0; i < repeats && call; ++i) call();
+  return (cpu_now() - start) / static_cast<double>(repeats) * 1e9;
+}
+
+}  // namespace
+
+void require_duration(const Scene& scene) {
+  if (!(scene.duration > 0))
+    throw ModelError(scene.where, "the scene has no duration", "write how long it lasts, in s: duration = 5");
+}
+
+SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progress) {
+  require_duration(scene);
+  const Progress progress = wanted_progress ? wanted_progress : [](const char*, double) {};
+  progress("deriving", 0);
+  const SceneProgram program = make_program(scene);
+  progress("compiling", 0);
+  const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
+  SimulationResult result;
+  result.was_cached = code->was_cached();
+  result.operations = program.operations;
+  result.class_of_table_I = program.derivation->reduction.ranks.table_I_class(program.reduced);
+  with_group<double>(program.model.group, [&]<class G>(std::type_identity<G>) {
+    Runner<double> run(scene, program, code);
+    integrate::State<G> state = initial_state<G>(scene, program, run, 2);
+    const Field<G> field = run.template field_of<G>();
+    Recorder recorder(program, run, result);
+    recorder.record(0.0, state.g, state.y);
+    if (!result.violation.empty()) {
+      result.status = result.violation;
+      result.rows.clear();
+      return;
+    }
+    const double start = cpu_now();
+    integrate::Result<double> outcome;
+    if (scene.integrator.method == Integrator::Method::dopri5) {
+      const MotionSizes sizes = motion_sizes<G>(program, run, state, scene.duration);
+      outcome = integrate_with_step_control(scene, field, sizes, state, recorder, progress);
+    } else {
+      outcome = integrate_with_fixed_step(scene, field, state, recorder, progress);
+    }
+    result.cpu_seconds = cpu_now() - start;
+    result.steps = outcome.accepted_steps, result.rejected = outcome.rejected_steps,
+    result.evaluations = outcome.evaluations;
+    result.status = integrate::name(outcome.status);
+    if (!outcome) result.status += fmt::format(" at t = {:.6g} s", state.t);
+    if (!result.violation.empty()) result.status = result.violation;
+    result.finished = outcome && result.violation.empty();
+    run.impose(state.t), run.set(state.g, state.y);
+    result.nanoseconds_per_evaluation = nanoseconds_per_call(run.rates);
+  });
+  return result;
+}
+
+}  // namespace anholon

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "simulate/work_precision.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "check/compile_cache.hpp"
+#include "simulate/cpu_time.hpp"
+#include "simulate/final_state.hpp"
+#include "simulate/groups.hpp"
+#include "simulate/initial_state.hpp"
+#include "simulate/integrators.hpp"
+#include "simulate/motion_sizes.hpp"
+#include "simulate/recursion_dynamics.hpp"
+#include "simulate/reference_solution.hpp"
+#include "simulate/runner.hpp"
+#include "simulate/scene_program.hpp"
+#include "simulate/simulation.hpp"
+
+namespace anholon {
+namespace {
+
+constexpr double enough_seconds = 40;  // of one integration: what would take longer is left out, and said
+constexpr double growth = 1.6;         // of the cost per decade of a method of order 5: 10^(1/5)
+
+/// One integration, repeated while it is too short for the clock; the least time counts.
+template <class G>
+WorkPrecisionPoint measured(const std::string& code, double tolerance, const integrate::State<G>& initial,
+                            const Field<G>& field, const integrate::AdaptiveOptions<double>& options,
+                            double duration, integrate::State<G>& state) {
+  constexpr double long_enough = 0.02;  // s
+  constexpr int most_repeats = 5;
+  WorkPrecisionPoint point{code, tolerance, 0, std::numeric_limits<double>::infinity(), 0, ""};
+  for (int repeat = 0; repeat < most_repeats; ++repeat) {
+    state = initial;
+    const double start = cpu_now();
+    const auto outcome = integrate_adaptive<G>(field, state, duration, options, [](const auto&) {});
+    point.cpu_seconds = std::min(point.cpu_seconds, cpu_now() - start);
+    point.evaluations = outcome.evaluations;
+    point.status = integrate::name(outcome.status);
+    if (point.cpu_seconds > long_enough) break;
+  }
+  return point;
+}
+
+}  // namespace
+
+WorkPrecision work_precision(const Scene& scene,
+                             const std::function<void(const WorkPrecisionPoint&)>& on_point,
+                             const Ladder& ladder) {
+  require_duration(scene);
+  const SceneProgram program = make_program(scene);
+  const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
+  WorkPrecision result;
+  with_group<double>(program.model.group, [&]<class G>(std::type_identity<G>) {
+    Runner<double> run(scene, program, code);
+    const MotionSizes sizes =
+        motion_sizes<G>(program, run, initial_state<G>(scene, program, run, 2), scene.duration);
+    const ReferenceSolution reference = reference_solution(scene, program, sizes);
+    result.reference_steps = reference.steps, result.reference_error = reference.own_error;
+    const integrate::State<G> initial = initial_state<G>(scene, program, run, 0);
+    RecursionDynamics recursion(program, run);
+    const integrate::State<G> expanded = recursion.expanded(initial);
+    std::vector<double> reduced_sizes = sizes.of_state();
+    reduced_sizes.resize(static_cast<std::size_t>(initial.y.size()));  // no quadratures here
+    const std::vector<double> expanded_sizes = sizes.of_velocity_state();
+
+    const auto add = [&](WorkPrecisionPoint point, const integrate::State<G>& reduced) {
+      point.error = reference.steps > 0 && point.status == "ok"
+                        ? state_error(final_values(reduced), reference.state, sizes)
+                        : std::numeric_limits<double>::quiet_NaN();
+      result.points.push_back(point);
+      if (on_point) on_point(point);
+    };
+    double expected_seconds = 0;
+    for (int exponent = ladder.loosest; exponent >= ladder.tightest; --exponent) {
+      const double tolerance = std::pow(10.0, exponent);
+      integrate::State<G> state;
+      auto options = relative_tolerance(tolerance, sizes, reduced_sizes);
+      options.max_steps = 100'000'000;
+      add(measured<G>("generated", tolerance, initial, run.template field_of<G>(), options, scene.duration,
+                      state),
+          state);
+      if (!ladder.recursion) continue;
+      if (expected_seconds > enough_seconds) {
+        add({"recursion", tolerance, 0, 0, 0, "left out: too long"}, initial);
+        continue;
+      }
+      options.sizes = expanded_sizes;
+      const Field<G> field = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
+        recursion(t, g, y, eta, y_dot);
+      };
+      const WorkPrecisionPoint point =
+          measured<G>("recursion", tolerance, expanded, field, options, scene.duration, state);
+      expected_seconds = growth * point.cpu_seconds;
+      add(point, recursion.reduced(state));
+    }
+  });
+  return result;
+}
+
+RoundingFloor rounding_floor(const WorkPrecision& result, const std::string& code) {
+  RoundingFloor floor{std::numeric_limits<double>::infinity(), 0, false};
+  for (const WorkPrecisionPoint& p : result.points) {
+    if (p.code == code && p.error < floor.error) floor.error = p.error;
+  }
+  double tightest = 1;
+  for (const WorkPrecisionPoint& p : result.points) {
+    if (p.code != code || std::isnan(p.error)) continue;
+    if (floor.tolerance == 0 && p.error <= 2 * floor.error) floor.tolerance = p.tolerance;
+    tightest = p.tolerance;
+  }
+  floor.seen = floor.tolerance >= 99 * tightest;  // two decades of the ladder no longer help
+  return floor;
+}
+
+}  // namespace anholon

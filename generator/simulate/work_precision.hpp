@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// Error against cost: one scene, integrated along a ladder of tolerances by generated code and by the numeric
+// recursion, on past the rounding floor, so that the floor is seen.
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "describe/scene.hpp"
+
+namespace anholon {
+
+/// One way to compute at one tolerance.
+struct WorkPrecisionPoint {
+  std::string code;  // "generated", "recursion"
+  double tolerance = 0;
+  double error = 0;  // of the final state, see state_error()
+  double cpu_seconds = 0;
+  long evaluations = 0;
+  std::string status;
+};
+
+struct WorkPrecision {
+  std::vector<WorkPrecisionPoint> points;  // per tolerance: generated, then recursion
+  long reference_steps = 0;                // of Gauss collocation of order 12 in long double
+  double reference_error = 0;              // how far the reference moves when its steps are doubled
+};
+
+/// Where the error of one code stops falling.
+struct RoundingFloor {
+  double error = 0;      // the smallest of the ladder
+  double tolerance = 0;  // the loosest at which the error is within twice the smallest
+  bool seen = false;     // the ladder goes on below it
+};
+RoundingFloor rounding_floor(const WorkPrecision& result, const std::string& code);
+
+/// Powers of ten of the tolerances, and which codes. The tightest is beyond what double can resolve: an error
+/// of it cannot fall below 1e-16, and has risen again by then where steps are many.
+struct Ladder {
+  int loosest = -3, tightest = -18;
+  bool recursion = true;
+};
+
+/// @param on_point  called after each point; may be empty
+/// @throws ModelError, CompileError
+WorkPrecision work_precision(const Scene& scene,
+                             const std::function<void(const WorkPrecisionPoint&)>& on_point = {},
+                             const Ladder& ladder = {});
+
+}  // namespace anholon
