@@ -54,6 +54,27 @@ TEST(DormandPrince, ErrorIsProportionalToTheTolerance) {
   EXPECT_NEAR(slope, 1, 0.1);  // measured 1.03
 }
 
+TEST(DormandPrince, TakesTheSameStepsForAMotionOfAnySize) {
+  const auto oscillator = [](double, const Trivial<double>&, const VectorXd& y, auto&, VectorXd& y_dot) {
+    y_dot << y[1], -y[0];
+  };
+  const auto run = [&](double size, State<Trivial<double>>& state) {
+    DormandPrince<Trivial<double>> stages(2);
+    const std::vector<double> sizes = {size, size};
+    auto options = tolerance<double>(1e-9);
+    options.sizes = sizes;
+    state = {0, {}, size * Eigen::Vector2d(0.3, -0.4)};
+    return integrate_adaptive(stages, oscillator, state, 10.0, options);
+  };
+  State<Trivial<double>> ordinary, tiny;
+  const double size = std::ldexp(1.0, -40);  // a power of two, so that roundings are the same
+  const auto expected = run(1, ordinary), found = run(size, tiny);
+  ASSERT_TRUE(expected && found);
+  EXPECT_EQ(found.accepted_steps, expected.accepted_steps);
+  EXPECT_EQ(found.rejected_steps, expected.rejected_steps);
+  EXPECT_EQ(tiny.y, size * ordinary.y);
+}
+
 TEST(DormandPrince, EvaluatesSixTimesAStepAndReportsIt) {
   const ManufacturedMotion<SE3<double>> motion;
   DormandPrince<SE3<double>> stages(motion.size_y);
