@@ -35,6 +35,7 @@ class Buffers {
         dissipated_power = blocks_["dissipated_power"], applied_power = blocks_["applied_power"];
   Block A = blocks_["A"], B_p = blocks_["B_p"], B_a = blocks_["B_a"],
         velocity_residual = blocks_["velocity_residual"];
+  Block Phi = blocks_["Phi"], Phi_q = blocks_["Phi_q"];
 };
 
 }  // namespace anholon

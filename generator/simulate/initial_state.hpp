@@ -3,6 +3,8 @@
 
 // The state at t = 0: pose and coordinates as the scene gives them, velocities as the constraints rule them.
 
+#include <fmt/format.h>
+
 #include <Eigen/Core>
 #include <algorithm>
 #include <vector>
@@ -11,6 +13,7 @@
 #include "anholon/reduction.hpp"
 #include "describe/specialise.hpp"
 #include "simulate/groups.hpp"
+#include "simulate/position_keeper.hpp"
 #include "simulate/runner.hpp"
 
 namespace anholon {
@@ -81,6 +84,23 @@ void initial_velocities(const Scene& scene, const SceneProgram& program, Runner<
   if (run.reduced_velocities) run.reduced_velocities();
 }
 
+/// Moves a start that does not meet the conditions on the position to the nearest that does.
+/// @throws ModelError where Newton's method finds none
+template <class G>
+void meet_position_conditions(const Scene& scene, const SceneProgram& program,
+                              Runner<typename G::Scalar>& run, integrate::State<G>& state) {
+  PositionKeeper<G> keeper(program, run);
+  if (keeper.empty()) return;
+  keeper.start(state.t, state.g, state.y);
+  keeper(state.t, state.g, state.y);
+  const double left = static_cast<double>(keeper.residual(state.t, state.g, state.y));
+  if (!(left <= 1e-12))  // m: far above rounding, far below what anybody could mean
+    throw ModelError(
+        scene.initial_where,
+        fmt::format("no position near the initial one meets the contacts: {:.2g} m are left", left),
+        "give an initial pose and coordinates at which they touch, or nearly so");
+}
+
 /// State at t = 0; y has room for the quadratures.
 template <class G>
 integrate::State<G> initial_state(const Scene& scene, const SceneProgram& program,
@@ -98,6 +118,7 @@ integrate::State<G> initial_state(const Scene& scene, const SceneProgram& progra
     if (kept[static_cast<std::size_t>(index)] >= 0 && at != program.reduced.passive.end())
       state.y(at - program.reduced.passive.begin() - program.original.n) = real(value);
   }
+  meet_position_conditions<G>(scene, program, run, state);
   run.impose(S(0));
   run.set(state.g, state.y);
   initial_velocities(scene, program, run);

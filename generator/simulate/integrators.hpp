@@ -13,10 +13,20 @@
 
 namespace anholon {
 
-/// (t, g, y) -> (eta, y_dot)
+/// (t, g, y) -> (eta, y_dot), and what is done to the state at the end of a step.
 template <class G>
-using Field = std::function<void(double t, const G& g, const Eigen::VectorXd& y, typename G::Tangent& eta,
-                                 Eigen::VectorXd& y_dot)>;
+struct Field {
+  std::function<void(double t, const G& g, const Eigen::VectorXd& y, typename G::Tangent& eta,
+                     Eigen::VectorXd& y_dot)>
+      rates;
+  std::function<bool(double t, G& g, Eigen::VectorXd& y)> correction;  // whether it moved; may be empty
+
+  void operator()(double t, const G& g, const Eigen::VectorXd& y, typename G::Tangent& eta,
+                  Eigen::VectorXd& y_dot) const {
+    rates(t, g, y, eta, y_dot);
+  }
+  bool correct(double t, G& g, Eigen::VectorXd& y) const { return correction && correction(t, g, y); }
+};
 template <class G>
 using DenseObserver = std::function<void(const integrate::DenseStep<G>&)>;
 template <class G>

@@ -84,7 +84,7 @@ MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const
     options.max_step = duration / 20;  // so that the run sees the motion
     options.max_steps = 100'000;
     const auto outcome =
-        integrate_adaptive<G>(run.template field_of<G>(), state, duration, options,
+        integrate_adaptive<G>(Field<G>{run.template field_of<G>(), {}}, state, duration, options,
                               [&](const auto& step) { observe(step.t_end(), step.g_end(), step.y_end()); });
     if (!outcome) return {program, run};
     const MotionSizes seen = collector.sizes();

@@ -80,6 +80,7 @@ Recorder::Recorder(const SceneProgram& program, Runner<double>& run, SimulationR
   column("kinetic [J]", b.kinetic[0]), column("potential [J]", potential_), column("work [J]", work_);
   column("dissipated [J]", dissipated_), column("energy defect [J]", defect_);
   column("constraint residual [1]", residual_);
+  if (!program.model.positions.empty()) column("position residual [m]", position_residual_);
 }
 
 void Recorder::observe() {

@@ -24,8 +24,11 @@ class Recorder {
   ~Recorder() = default;
 
   /// Monitors alone. @param y  (r_p, r_d, nu, work, dissipated)
+  /// @param position_residual  of the conditions on the position [m or 1]
   template <class G, class Vector>
-  void watch(double t, const G& g, const Vector& y) {
+  void watch(double t, const G& g, const Vector& y, double position_residual) {
+    position_residual_ = position_residual;
+    result_.position_residual = std::max(result_.position_residual, position_residual);
     run_.impose(t);
     run_.set(g, y);
     work_ = y(y.size() - 2), dissipated_ = y(y.size() - 1);
@@ -35,8 +38,8 @@ class Recorder {
 
   /// Monitors, and a row.
   template <class G, class Vector>
-  void record(double t, const G& g, const Vector& y) {
-    watch(t, g, y);
+  void record(double t, const G& g, const Vector& y, double position_residual) {
+    watch(t, g, y, position_residual);
     add_row();
   }
 
@@ -49,7 +52,7 @@ class Recorder {
   SimulationResult& result_;
   std::vector<const double*> sources_;  // of the columns
   EnergyMonitor energy_;
-  double potential_ = 0, work_ = 0, dissipated_ = 0, defect_ = 0, residual_ = 0;
+  double potential_ = 0, work_ = 0, dissipated_ = 0, defect_ = 0, residual_ = 0, position_residual_ = 0;
 };
 
 }  // namespace anholon

@@ -45,6 +45,7 @@ class Runner {
     energies = bound(code, "energies", b);
     reduced_velocities = bound(code, "reduced_velocities", b),
     compatibility = bound(code, "compatibility", b);
+    position_conditions = bound(code, "position_conditions", b);
     if (scene.motion_table) table_.emplace(scene, program);
   }
 
@@ -124,7 +125,7 @@ class Runner {
 
   Buffers<S> b;
   Call imposed, imposed_torque, rates, kinematics, torques, multipliers, constraints, energies,
-      reduced_velocities, compatibility;
+      reduced_velocities, compatibility, position_conditions;
   long evaluations = 0;
 
  private:

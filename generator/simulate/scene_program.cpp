@@ -82,8 +82,9 @@ SceneProgram make_program(const Scene& scene) {
   DeriveRequest request;
   request.scene = scene.name;
   request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
-  request.functions = {"kinematics",      "reduced_velocities", "constraints",   "forward_dynamics",
-                       "inverse_torques", "multipliers",        "compatibility", "energies"};
+  request.functions = {"kinematics",       "reduced_velocities", "constraints",
+                       "forward_dynamics", "inverse_torques",    "multipliers",
+                       "compatibility",    "energies",           "position_conditions"};
   p.derivation = derive(p.model, request);
   p.original = partition_of(p.model);
   p.reduced = partition_of(p.model, request.torque_driven);

@@ -14,6 +14,7 @@
 #include "simulate/initial_state.hpp"
 #include "simulate/integrators.hpp"
 #include "simulate/motion_sizes.hpp"
+#include "simulate/position_keeper.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/runner.hpp"
 #include "simulate/scene_program.hpp"
@@ -25,22 +26,28 @@ namespace {
 template <class G>
 integrate::Result<double> integrate_with_step_control(const Scene& scene, const Field<G>& field,
                                                       const MotionSizes& sizes, integrate::State<G>& state,
-                                                      Recorder& recorder, const Progress& progress) {
+                                                      PositionKeeper<G>& keeper, Recorder& recorder,
+                                                      const Progress& progress) {
   const std::vector<double> y_sizes = sizes.of_state();
   const auto options = relative_tolerance(scene.integrator.tolerance, sizes, y_sizes);
   const std::vector<double>& times = scene.output_times;
   auto next = std::ranges::upper_bound(times, 0.0);
   Eigen::VectorXd y(state.y.size());
+  G g;
   return integrate_adaptive<G>(field, state, scene.duration, options,
                                [&](const integrate::DenseStep<G>& step) {
-                                 for (G g; next != times.end() && *next <= step.t_end(); ++next) {
+                                 for (; next != times.end() && *next <= step.t_end(); ++next) {
                                    step.evaluate(*next, g, y);
-                                   recorder.record(*next, g, y);
+                                   keeper(*next, g, y);
+                                   recorder.record(*next, g, y, keeper.residual(*next, g, y));
                                  }
+                                 const double t = step.t_end();
+                                 g = step.g_end(), y = step.y_end();
+                                 keeper(t, g, y);
                                  if (times.empty()) {
-                                   recorder.record(step.t_end(), step.g_end(), step.y_end());
+                                   recorder.record(t, g, y, keeper.residual(t, g, y));
                                  } else {
-                                   recorder.watch(step.t_end(), step.g_end(), step.y_end());
+                                   recorder.watch(t, g, y, keeper.residual(t, g, y));
                                  }
                                  progress("integrating", step.t_end());
                                });
@@ -49,21 +56,25 @@ integrate::Result<double> integrate_with_step_control(const Scene& scene, const 
 /// The classical method from each output time to the next, with equal steps no longer than the scene's.
 template <class G>
 integrate::Result<double> integrate_with_fixed_step(const Scene& scene, const Field<G>& field,
-                                                    integrate::State<G>& state, Recorder& recorder,
-                                                    const Progress& progress) {
+                                                    integrate::State<G>& state, PositionKeeper<G>& keeper,
+                                                    Recorder& recorder, const Progress& progress) {
   integrate::Result<double> total;
   std::vector<double> times = scene.output_times;
   if (times.empty() || times.back() < scene.duration) times.push_back(scene.duration);
   for (auto t = std::ranges::upper_bound(times, 0.0); t != times.end(); ++t) {
     const long steps = std::max(1L, std::lround(std::ceil((*t - state.t) / scene.integrator.step - 1e-9)));
-    const auto part = integrate_fixed<G>(field, state, *t, steps, [&](double now, const G& g, const auto& y) {
-      if (scene.output_times.empty() || now == *t) {
-        recorder.record(now, g, y);
-      } else {
-        recorder.watch(now, g, y);
-      }
-      progress("integrating", now);
-    });
+    const auto part =
+        integrate_fixed<G>(field, state, *t, steps, [&](double now, const G& end, const auto& y_end) {
+          G g = end;
+          Eigen::VectorXd y = y_end;
+          keeper(now, g, y);
+          if (scene.output_times.empty() || now == *t) {
+            recorder.record(now, g, y, keeper.residual(now, g, y));
+          } else {
+            recorder.watch(now, g, y, keeper.residual(now, g, y));
+          }
+          progress("integrating", now);
+        });
     total.accepted_steps += part.accepted_steps, total.evaluations += part.evaluations;
     total.status = part.status;
     if (!part) break;
@@ -99,9 +110,13 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progr
   with_group<double>(program.model.group, [&]<class G>(std::type_identity<G>) {
     Runner<double> run(scene, program, code);
     integrate::State<G> state = initial_state<G>(scene, program, run, 2);
-    const Field<G> field = run.template field_of<G>();
+    PositionKeeper<G> keeper(program, run);
+    keeper.start(0.0, state.g, state.y);
+    Field<G> field{run.template field_of<G>(), {}};
+    if (!keeper.empty())
+      field.correction = [&keeper](double t, G& g, Eigen::VectorXd& y) { return keeper(t, g, y); };
     Recorder recorder(program, run, result);
-    recorder.record(0.0, state.g, state.y);
+    recorder.record(0.0, state.g, state.y, keeper.residual(0.0, state.g, state.y));
     if (!result.violation.empty()) {
       result.status = result.violation;
       result.rows.clear();
@@ -111,9 +126,9 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progr
     integrate::Result<double> outcome;
     if (scene.integrator.method == Integrator::Method::dopri5) {
       const MotionSizes sizes = motion_sizes<G>(program, run, state, scene.duration);
-      outcome = integrate_with_step_control(scene, field, sizes, state, recorder, progress);
+      outcome = integrate_with_step_control(scene, field, sizes, state, keeper, recorder, progress);
     } else {
-      outcome = integrate_with_fixed_step(scene, field, state, recorder, progress);
+      outcome = integrate_with_fixed_step(scene, field, state, keeper, recorder, progress);
     }
     result.cpu_seconds = cpu_now() - start;
     result.steps = outcome.accepted_steps, result.rejected = outcome.rejected_steps,

@@ -23,6 +23,7 @@ struct SimulationResult {
   double energy_balance = 0;  // largest |E(t) - E(0) - work + dissipation| / largest_energy, at all steps
   double largest_energy = 0;  // of kinetic, change of potential, work, dissipated [J]
   double constraint_residual = 0;  // largest |A eta + B r_dot| relative to what cancels
+  double position_residual = 0;    // largest residual of a condition on the position [m or 1]
   double orthonormality = 0;       // largest ||R^T R - 1||
   int operations = 0;              // of one evaluation of the field
   bool was_cached = false;         // the compiled code

@@ -81,8 +81,8 @@ WorkPrecision work_precision(const Scene& scene,
       integrate::State<G> state;
       auto options = relative_tolerance(tolerance, sizes, reduced_sizes);
       options.max_steps = 100'000'000;
-      add(measured<G>("generated", tolerance, initial, run.template field_of<G>(), options, scene.duration,
-                      state),
+      add(measured<G>("generated", tolerance, initial, Field<G>{run.template field_of<G>(), {}}, options,
+                      scene.duration, state),
           state);
       if (!ladder.recursion) continue;
       if (expected_seconds > enough_seconds) {
@@ -90,7 +90,8 @@ WorkPrecision work_precision(const Scene& scene,
         continue;
       }
       options.sizes = expanded_sizes;
-      const Field<G> field = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
+      Field<G> field;
+      field.rates = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
         recursion(t, g, y, eta, y_dot);
       };
       const WorkPrecisionPoint point =
