@@ -4,7 +4,7 @@
 // they were found at configure time, MuJoCo and KDL. All take turns within one run, at the same random states
 // within the joint limits. Prints a Markdown table for each robot and function; fails if values disagree.
 //
-//   robot_benchmark [--rounds N] [--functions NAME,...] [--fixed NAME]... URDF...
+//   robot_benchmark [--rounds N] [--orders] [--functions NAME,...] [--fixed NAME]... URDF...
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,14 +30,16 @@ using namespace anholon::bench;
 
 struct Options {
   int rounds = 101;
+  bool orders = false;  // compare the orders in which operations may be emitted
   std::vector<std::string> functions = {"inverse_dynamics", "forward_dynamics"};
   std::set<std::string> fixed = {"double_pendulum", "iiwa", "panda", "ur5"};  // base on the ground
   std::vector<std::string> robots;
 };
 
 [[noreturn]] void usage() {
-  std::fputs("usage: robot_benchmark [--rounds N] [--functions NAME,...] [--fixed NAME]... URDF...\n",
-             stderr);
+  std::fputs(
+      "usage: robot_benchmark [--rounds N] [--orders] [--functions NAME,...] [--fixed NAME]... URDF...\n",
+      stderr);
   std::exit(2);
 }
 
@@ -59,6 +61,10 @@ Options read_options(int argc, char** argv) {
     const std::string argument = argv[i];
     if (!argument.starts_with("--")) {
       options.robots.push_back(argument);
+      continue;
+    }
+    if (argument == "--orders") {
+      options.orders = true;
       continue;
     }
     if (++i == argc) usage();
@@ -104,12 +110,26 @@ double disagreement(const Contender& a, const Contender& b) {
 }
 
 /// Every way to compute one function of one robot; the first is what the others are compared with.
-std::vector<Contender> contenders_of(const Robot& robot, const Program& program,
-                                     const std::string& function) {
-  std::vector<Contender> all = generated_contenders(robot, program, function, "generated", {});
+std::vector<Contender> contenders_of(const Robot& robot, const Program& program, const std::string& function,
+                                     bool orders) {
+  StatementStyle batch;
+  batch.sincos = SinCos::batch;
+  batch.order = NodeOrder::lifetimes;
+  std::vector<Contender> all =
+      generated_contenders(robot, program, function, "generated, --sincos batch --order lifetimes", batch);
   const auto add = [&](std::vector<Contender> more) {
     for (Contender& c : more) all.push_back(std::move(c));
   };
+  StatementStyle plain = batch;
+  plain.sincos = SinCos::cmath;
+  add(generated_contenders(robot, program, function, "generated, --order lifetimes", plain));
+  if (orders) {
+    for (const auto& [order, name] : {std::pair(NodeOrder::depth_first, "batch, depth first in sections"),
+                                      std::pair(NodeOrder::levels, "batch, by levels in sections")}) {
+      batch.order = order;
+      add(generated_contenders(robot, program, function, name, batch));
+    }
+  }
   add(recursion_contenders(robot, function));
 #ifdef ANHOLON_HAVE_MUJOCO
   add(mujoco_contenders(robot, function));
@@ -130,9 +150,10 @@ int operations(const Program& program, const std::string& function) {
 }
 
 /// Prints the table of one function. @return whether all values agree
-bool compete(const Robot& robot, const Program& program, const std::string& function, int rounds) {
-  const std::vector<Contender> contenders = contenders_of(robot, program, function);
-  const std::vector<Timing> timings = measure(contenders, robot.samples.size(), rounds);
+bool compete(const Robot& robot, const Program& program, const std::string& function,
+             const Options& options) {
+  const std::vector<Contender> contenders = contenders_of(robot, program, function, options.orders);
+  const std::vector<Timing> timings = measure(contenders, robot.samples.size(), options.rounds);
   fmt::print("\n### {}, {}: {} operations\n\n", robot.name, function, operations(program, function));
   fmt::print("| | median ns | quartiles | least | times the generated code | difference |\n");
   fmt::print("| --- | ---: | ---: | ---: | ---: | ---: |\n");
@@ -168,7 +189,7 @@ int main(int argc, char** argv) {
       request.functions = options.functions;
       const auto derivation = derive_tree(robot.model, request);
       for (const std::string& function : options.functions)
-        agree = compete(robot, derivation->program, function, options.rounds) && agree;
+        agree = compete(robot, derivation->program, function, options) && agree;
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

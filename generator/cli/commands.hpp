@@ -29,6 +29,8 @@ struct CheckOptions : ModelOptions {
 };
 struct GenerateOptions : ModelOptions {
   std::string output = ".";
+  std::string sincos = "cmath";  // or "batch"
+  std::string order = "auto";    // or "sections", "lifetimes"
   bool c_abi = false;
   bool passes = false;
 };

@@ -48,7 +48,11 @@ int generate(const GenerateOptions& options) {
   const Model model = load_model(options);
   const auto derivation = derive(model, derive_request(options, model));
   const Program& program = derivation->program;
-  const std::string header = emit_header(program);
+  StatementStyle style;
+  if (options.sincos == "batch") style.sincos = SinCos::batch;
+  if (options.order == "sections") style.order = NodeOrder::depth_first;
+  if (options.order == "lifetimes") style.order = NodeOrder::lifetimes;
+  const std::string header = emit_header(program, style);
 
   std::filesystem::path file = options.output;
   if (file.extension() != ".hpp") {

@@ -46,6 +46,14 @@ int main(int argc, char** argv) {
   verb = app.add_subcommand("generate", "Write the C++ header of a model");
   model_options(verb, generate, true);
   verb->add_option("-o,--output", generate.output, "folder to write to, or a file ending in .hpp");
+  verb->add_option("--sincos", generate.sincos,
+                   "sines and cosines: cmath, one by one, or batch, those of all angles by one loop that "
+                   "compilers vectorise")
+      ->check(CLI::IsMember({"cmath", "batch"}));
+  verb->add_option("--order", generate.order,
+                   "of operations: sections as derived, lifetimes as processors like it, or auto: lifetimes "
+                   "in long functions")
+      ->check(CLI::IsMember({"auto", "sections", "lifetimes"}));
   verb->add_flag("--c-abi", generate.c_abi, "also write a source with a flat C interface, and its JSON");
   verb->add_flag("--passes", generate.passes, "print the operations of every route that was tried");
   verb->callback([&] { run = [&] { return cli::generate(generate); }; });

@@ -120,6 +120,8 @@ class HeaderWriter {
     for (const PlannedFunction& function : plan_.functions)
       data["functions"].push_back(function_data(function));
     data["uses_sign"] = uses_sign();
+    data["uses_batch"] = uses_batch_;
+    data["sines_cosines"] = without_last_newline(std::string(embedded::sines_cosines));
     return fill_template(embedded::header_template, data);
   }
 
@@ -200,7 +202,14 @@ class HeaderWriter {
     }
   }
 
-  void write_prepare(json& data) const {
+  Statements statements(const std::vector<Assignment>& results, const GivenValues& given,
+                        const NameScope& names) {
+    Statements s = write_statements(program_.tape, results, given, names, style_);
+    uses_batch_ = uses_batch_ || s.uses_batch;
+    return s;
+  }
+
+  void write_prepare(json& data) {
     GivenValues given;
     for (std::size_t i = 0; i < program_.parameters.size(); ++i) {
       given[program_.parameters[i].node] = {"par." + plan_.parameter_names[i], 0};
@@ -215,8 +224,7 @@ class HeaderWriter {
     NameScope names;
     names.claim("result");
     const std::string argument = "const Parameters<Real>& par";
-    const Body body =
-        body_of(write_statements(program_.tape, results, given, names, style_), "prepare", {argument});
+    const Body body = body_of(statements(results, given, names), "prepare", {argument});
     data["prepare_operations"] = plan_.prepare_operations.text();
     data["prepare_argument"] = body.arguments.empty() ? "const Parameters<Real>&" : argument;
     data["prepare_body"] = body.text;
@@ -232,7 +240,7 @@ class HeaderWriter {
           {{"text", "namespace detail {\n\n" + blocks + "}  // namespace detail"}});
   }
 
-  json function_data(const PlannedFunction& function) const {
+  json function_data(const PlannedFunction& function) {
     std::vector<std::string> arguments = {"const Prepared<Real>& par"};
     GivenValues given;
     for (const std::size_t i : plan_.prepared_parameters) {
@@ -263,7 +271,7 @@ class HeaderWriter {
     }
     const std::string doc = documentation(function);
     const Body body =
-        body_of(write_statements(program_.tape, results, given, names, style_), function.name,
+        body_of(statements(results, given, names), function.name,
                 {arguments.begin(), arguments.begin() + static_cast<std::ptrdiff_t>(first_output)});
     if (!body.arguments.contains(0)) arguments[0] = "const Prepared<Real>&";
     json data;
@@ -370,6 +378,7 @@ class HeaderWriter {
   const Program& program_;
   const StatementStyle& style_;
   EmissionPlan plan_;
+  bool uses_batch_ = false;  // in what is written so far
 };
 
 }  // namespace

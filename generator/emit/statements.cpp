@@ -32,15 +32,20 @@ class Writer {
     const std::size_t block_size =
         split ? std::max<std::size_t>(1, style_.block_size) : std::max<std::size_t>(1, order_.nodes.size());
     if (split) place_carried(block_size);
+    is_written_.assign(order_.nodes.size(), false);
 
     Statements out;
     out.carried_size = slot_count_;
     out.carried = carried_;
+    name_batch();
     std::set<std::size_t> arguments;
     for (std::size_t begin = 0; begin < order_.nodes.size(); begin += block_size) {
       const std::size_t end = std::min(begin + block_size, order_.nodes.size());
       start_text();
-      for (std::size_t i = begin; i < end; ++i) write_operation(i);
+      write_batch(begin, std::min(end, order_.sincos));
+      for (std::size_t i = begin; i < end; ++i) {
+        if (!is_written_[i]) write_operation(i);
+      }
       if (!split) break;
       out.blocks.push_back({{arguments_.begin(), arguments_.end()}, finish_text()});
       arguments.insert(arguments_.begin(), arguments_.end());
@@ -52,6 +57,7 @@ class Writer {
       lines_ += fmt::format("  {} = {};\n", result.target, operand(result.node));
     }
     out.text = finish_text();
+    out.uses_batch = uses_batch_;
     arguments.insert(arguments_.begin(), arguments_.end());
     out.arguments.assign(arguments.begin(), arguments.end());
     return out;
@@ -110,6 +116,53 @@ class Writer {
     }
   }
 
+  void name_batch() {
+    if (style_.sincos != SinCos::batch) return;
+    for (std::string* name : {&angle_, &sine_, &cosine_})
+      *name = names_.claim(name == &angle_ ? "angle" : name == &sine_ ? "sine" : "cosine");
+  }
+
+  /// Writes the sines and cosines among the operations [begin, end) together, behind what their angles need.
+  void write_batch(std::size_t begin, std::size_t end) {
+    if (style_.sincos != SinCos::batch) return;
+    std::vector<NodeId> angles;
+    std::vector<std::pair<std::size_t, std::size_t>> calls;  // operation, index of its angle
+    for (std::size_t i = begin; i < end; ++i) {
+      const Node& n = tape_.node(order_.nodes[i]);
+      if (n.op != Op::sin && n.op != Op::cos) continue;
+      const auto found = std::find(angles.begin(), angles.end(), n.a);
+      calls.emplace_back(i, static_cast<std::size_t>(found - angles.begin()));
+      if (found == angles.end()) angles.push_back(n.a);
+    }
+    if (angles.size() < 2) return;  // nothing to do side by side
+    uses_batch_ = true;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Op op = tape_.node(order_.nodes[i]).op;
+      if (op == Op::sin || op == Op::cos) continue;
+      write_operation(i);
+      is_written_[i] = true;
+    }
+    // whole vectors of four; those in excess are of angle 0
+    const std::size_t size = (angles.size() + 3) / 4 * 4;
+    std::string list;
+    block_ = block_of_.empty() ? 0 : block_of_[order_.nodes[begin]];
+    for (const NodeId a : angles) list += (list.empty() ? "" : ", ") + operand(a);
+    for (std::size_t i = angles.size(); i < size; ++i) {
+      list += ", constant<Real>(0.0L)";
+      uses_constant_ = true;
+    }
+    lines_ += fmt::format("  const Real {}[{}] = {{{}}};\n", angle_, size, list);
+    lines_ += fmt::format("  Real {0}[{2}], {1}[{2}];\n", sine_, cosine_, size);
+    lines_ += fmt::format("  detail::sines_cosines({}, {}, {});\n", angle_, sine_, cosine_);
+    for (const auto& [i, angle] : calls) {
+      const NodeId id = order_.nodes[i];
+      const bool is_sine = tape_.node(id).op == Op::sin;
+      lines_ += fmt::format("  const Real {} = {}[{}];\n", temporary_[id], is_sine ? sine_ : cosine_, angle);
+      carry(id);
+      is_written_[i] = true;
+    }
+  }
+
   void start_text() {
     lines_.clear();
     functions_.clear();
@@ -138,6 +191,11 @@ class Writer {
     const std::string a = operand(n.a);
     const std::string value = fmt::format(fmt::runtime(op.cpp), a, op.arity == 2 ? operand(n.b) : a);
     lines_ += fmt::format("  const Real {} = {};\n", temporary_[id], value);
+    carry(id);
+  }
+
+  /// Hands a value on to the blocks behind.
+  void carry(NodeId id) {
     if (!slot_.empty() && slot_[id] != nowhere)
       lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], temporary_[id]);
   }
@@ -180,6 +238,10 @@ class Writer {
   std::vector<std::size_t> block_of_, slot_;  // empty where the function is not split
   std::size_t slot_count_ = 0;
   std::string carried_;
+
+  std::string angle_, sine_, cosine_;  // arrays of the batch
+  std::vector<bool> is_written_;       // operations
+  bool uses_batch_ = false;
 
   std::string lines_;
   std::set<std::string> functions_;

@@ -26,10 +26,17 @@ struct Assignment {
   NodeId node = 0;
 };
 
+/// How sines and cosines are computed.
+enum class SinCos {
+  cmath,  // std::sin and std::cos, one by one
+  batch,  // those of all angles by one loop that compilers vectorise (templates/sines_cosines.inl)
+};
+
 struct StatementStyle {
-  SectionOrder order = SectionOrder::depth_first;
+  NodeOrder order = NodeOrder::by_length;
   std::size_t split_above = 5000;  // statements; compilers are slow on longer functions
   std::size_t block_size = 1000;
+  SinCos sincos = SinCos::cmath;
 };
 
 /// A function of its own that holds a part of a long one.
@@ -44,6 +51,7 @@ struct Statements {
   std::vector<std::size_t> arguments;  // that `text` and the blocks read, ascending
   std::string carried;                 // name of the array of values that cross blocks
   std::size_t carried_size = 0;
+  bool uses_batch = false;  // of sines and cosines
 };
 
 /// @param names  names that are taken already; temporaries keep clear of them

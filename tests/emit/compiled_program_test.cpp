@@ -82,9 +82,36 @@ TEST(CompiledProgram, KnowsEveryOperation) {
 
 TEST(CompiledProgram, GivesTheSameValuesInBlocks) {
   CompileOptions options = options_for_test();
-  options.style = {SectionOrder::depth_first, 10, 7};
+  options.style = {NodeOrder::depth_first, 10, 7};
   expect_values(test::random_program({4, 6, 150, 6, 40}, 21), options, -1, 1, 1e-10);
   expect_values(test::cart_pendulum(), options, -3, 3, 1e-14);
+}
+
+TEST(CompiledProgram, GivesTheSameValuesWithTheBatchOfSinesAndCosines) {
+  CompileOptions options = options_for_test();
+  options.style.sincos = SinCos::batch;
+  const Program program = test::turns(5);
+  const CompiledProgram plain(program, options_for_test());
+  const CompiledProgram batch(program, options);
+  EXPECT_NE(emit_header(program, options.style).find("sines_cosines(angle, sine, cosine)"),
+            std::string::npos);
+  std::mt19937_64 random(11);
+  // angles in use, beyond the range of the batch, and what is none: of infinity both make NaN
+  for (const double size : {3.0, 1e5, 1e7, 1e300, HUGE_VAL}) {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    for (int trial = 0; trial < 50; ++trial) {
+      CompiledProgram::Blocks inputs;
+      for (int i = 0; i < 5; ++i) inputs["r"].push_back(size * uniform(random));
+      const std::vector<double> x = batch.call("turn", inputs)["xy"];
+      const std::vector<double> y = plain.call("turn", inputs)["xy"];
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(std::isnan(x[i]), size == HUGE_VAL);
+        if (size != HUGE_VAL) {
+          EXPECT_NEAR(x[i], y[i], 1e-14);  // ten turns of some ulp each, length 1
+        }
+      }
+    }
+  }
 }
 
 TEST(CompiledProgram, SplitsALongFunctionAndCompilesIt) {

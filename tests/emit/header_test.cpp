@@ -67,12 +67,17 @@ Program constants_only() {
   return program;
 }
 
+Program turns() { return test::turns(3); }
+
 const NamedProgram programs[] = {
     {"pendulum", pendulum, {}},
-    {"split", pendulum, {SectionOrder::depth_first, 5, 4}},
-    {"levels", random_small, {SectionOrder::levels, 5000, 1000}},
+    {"split", pendulum, {NodeOrder::depth_first, 5, 4}},
+    {"levels", random_small, {NodeOrder::levels, 5000, 1000}},
     {"every_operation", test::every_operation, {}},
-    {"every_operation_split", test::every_operation, {SectionOrder::depth_first, 1, 3}},
+    {"every_operation_split", test::every_operation, {NodeOrder::depth_first, 1, 3}},
+    {"lifetimes", random_small, {NodeOrder::lifetimes, 5000, 1000}},
+    {"batch", turns, {NodeOrder::by_length, 5000, 1000, SinCos::batch}},
+    {"batch_split", turns, {NodeOrder::by_length, 5, 4, SinCos::batch}},
     {"no_parameters", no_parameters, {}},
     {"constants_only", constants_only, {}}};
 
@@ -175,7 +180,7 @@ TEST(EmittedText, IsTheSameTwiceAndForEveryOrderOfCreationWithinASection) {
   EXPECT_EQ(emit_c_abi(test::cart_pendulum(false), "a.hpp"), emit_c_abi(test::cart_pendulum(true), "a.hpp"));
   EXPECT_EQ(describe_json(test::cart_pendulum(false)), describe_json(test::cart_pendulum(true)));
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    for (const SectionOrder order : {SectionOrder::levels, SectionOrder::depth_first}) {
+    for (const NodeOrder order : {NodeOrder::levels, NodeOrder::depth_first, NodeOrder::lifetimes}) {
       const StatementStyle style{order, seed % 2 == 0 ? 20U : 5000U, 7};
       EXPECT_EQ(emit_header(test::random_program({}, seed, false), style),
                 emit_header(test::random_program({}, seed, true), style));

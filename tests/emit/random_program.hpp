@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tape/expr.hpp"
 #include "tape/interface.hpp"
 
 namespace anholon::test {
@@ -133,6 +134,28 @@ inline Program long_program(int steps) {
     x = next;
   }
   program.functions = {{"turn", "Turns (1, u) by steps (q + p).", {{"xy", "", "", 2, 1, {x, y}}}, ""}};
+  return program;
+}
+
+/// Turns a vector by each of some angles and by their halves.
+inline Program turns(int angles) {
+  Program program;
+  program.name_space = "turns";
+  program.model = "turns";
+  Tape& tape = program.tape;
+  InputBlock r{"r", "rad", "angles", angles, 1, {}};
+  for (int i = 0; i < angles; ++i) r.nodes.push_back(tape.input("r[" + std::to_string(i) + "]"));
+  Expr x(tape, tape.constant(1));
+  Expr y(tape, tape.constant(0));
+  for (const NodeId id : r.nodes) {
+    for (const Expr& angle : {Expr(tape, id), Expr(tape, id) / Expr(2)}) {
+      const Expr next = cos(angle) * x - sin(angle) * y;
+      y = sin(angle) * x + cos(angle) * y;
+      x = next;
+    }
+  }
+  program.inputs = {r};
+  program.functions = {{"turn", "", {{"xy", "", "", 2, 1, {x.id(tape), y.id(tape)}}}, ""}};
   return program;
 }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <unordered_map>
 
@@ -31,11 +32,11 @@ std::vector<NodeId> parameters_of(const Program& program) {
   return nodes;
 }
 
-class EverySectionOrder : public testing::TestWithParam<SectionOrder> {};
-INSTANTIATE_TEST_SUITE_P(Orders, EverySectionOrder,
-                         testing::Values(SectionOrder::levels, SectionOrder::depth_first));
+class EveryNodeOrder : public testing::TestWithParam<NodeOrder> {};
+INSTANTIATE_TEST_SUITE_P(Orders, EveryNodeOrder,
+                         testing::Values(NodeOrder::levels, NodeOrder::depth_first, NodeOrder::lifetimes));
 
-TEST_P(EverySectionOrder, PutsEveryOperandBeforeItsUser) {
+TEST_P(EveryNodeOrder, PutsEveryOperandBeforeItsUser) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     SCOPED_TRACE(seed);
     const Program program = test::random_program({}, seed);
@@ -56,7 +57,7 @@ TEST_P(EverySectionOrder, PutsEveryOperandBeforeItsUser) {
   }
 }
 
-TEST_P(EverySectionOrder, DoesNotDependOnTheOrderOfCreationWithinASection) {
+TEST_P(EveryNodeOrder, DoesNotDependOnTheOrderOfCreationWithinASection) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {
     SCOPED_TRACE(seed);
     const Program forwards = test::random_program({}, seed, false);
@@ -72,12 +73,52 @@ TEST_P(EverySectionOrder, DoesNotDependOnTheOrderOfCreationWithinASection) {
   }
 }
 
-TEST_P(EverySectionOrder, KeepsSectionsInTheirOrderBehindTheSines) {
+TEST(EmissionOrder, KeepsSectionsInTheirOrderBehindTheSinesWhereItIsToBeRead) {
   const Program program = test::random_program({}, 7);
-  const EmissionOrder order = emission_order(program.tape, roots_of(program), {}, GetParam());
+  const EmissionOrder order = emission_order(program.tape, roots_of(program));
   for (std::size_t i = order.sincos + 1; i < order.nodes.size(); ++i) {
     EXPECT_LE(program.tape.section_of(order.nodes[i - 1]), program.tape.section_of(order.nodes[i]));
   }
+}
+
+/// Values alive between two operations, at most.
+std::size_t most_alive(const Tape& tape, const std::vector<NodeId>& order, NodeId root) {
+  std::map<NodeId, std::size_t> last;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Node& n = tape.node(order[i]);
+    last[n.a] = i;
+    if (info(n.op).arity == 2) last[n.b] = i;
+  }
+  last[root] = order.size();
+  std::size_t most = 0;
+  std::multiset<std::size_t> alive;  // last uses of what is there
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    alive.erase(alive.begin(), alive.upper_bound(i));
+    alive.insert(last[order[i]]);
+    most = std::max(most, alive.size());
+  }
+  return most;
+}
+
+TEST(EmissionOrder, ByLifetimesKeepsOneValueForEachLevelOfABalancedSum) {
+  Tape tape;
+  std::vector<Expr> terms;
+  for (int i = 0; i < 64; ++i) {
+    const Expr x(tape, tape.input("x" + std::to_string(i)));
+    terms.push_back(x * x);
+  }
+  while (terms.size() > 1) {
+    tape.section("sum of " + std::to_string(terms.size()));
+    std::vector<Expr> next;
+    for (std::size_t i = 0; i < terms.size(); i += 2) next.push_back(terms[i] + terms[i + 1]);
+    terms = next;
+  }
+  const NodeId root = terms[0].id(tape);
+  const auto alive = [&](NodeOrder order) {
+    return most_alive(tape, emission_order(tape, {root}, {}, order).nodes, root);
+  };
+  EXPECT_EQ(alive(NodeOrder::lifetimes), 7U);  // log2(64) + 1, the least there is (Sethi and Ullman 1970)
+  EXPECT_EQ(alive(NodeOrder::levels), 64U);
 }
 
 TEST(EmissionOrder, PutsTheSinesOfTheInputsFirstSineAndCosineOfOneArgumentTogether) {

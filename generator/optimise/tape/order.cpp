@@ -13,6 +13,10 @@ namespace {
 /// An argument such as 2 q + phi is computed in front of its sine; a longer one waits for its section.
 constexpr int longest_argument = 4;
 
+/// Operations beyond which nobody reads a function: it is ordered for the registers. Shorter ones gain too,
+/// up to a tenth, where the caller asks for it.
+constexpr std::size_t long_function = 1600;
+
 class Ordering {
  public:
   Ordering(const Tape& tape, const std::vector<NodeId>& roots, const std::vector<NodeId>& given)
@@ -49,12 +53,32 @@ class Ordering {
     for (const NodeId call : calls) visit(call);
   }
 
-  void emit_section(const std::vector<NodeId>& members, SectionOrder within) {
-    if (within == SectionOrder::levels) {
+  void emit_section(const std::vector<NodeId>& members, NodeOrder order) {
+    if (order == NodeOrder::levels) {
       emit_levels(members);
     } else {
       emit_depth_first(members);
     }
+  }
+
+  /// What the last output needs first: outputs of a tree are listed from the base to the tips, so that a limb
+  /// is finished before the next one begins and its motion need not be kept for the way back. Of two operands
+  /// the one with the longer path below it comes first, because the other may wait in fewer registers (Sethi
+  /// and Ullman 1970).
+  void emit_by_lifetimes(const std::vector<NodeId>& roots) {
+    std::vector<int> path(tape_.size(), 0);
+    for (const NodeId id : needed_) {
+      if (done_[id] != 0) continue;
+      const Node& n = tape_.node(id);
+      path[id] = 1 + std::max(path[n.a], info(n.op).arity == 2 ? path[n.b] : 0);
+    }
+    for (auto root = roots.rbegin(); root != roots.rend(); ++root) visit(*root, &path);
+  }
+
+  /// Whether many operations are left.
+  [[nodiscard]] bool is_long() const {
+    const auto is_left = [this](NodeId id) { return done_[id] == 0; };
+    return static_cast<std::size_t>(std::ranges::count_if(needed_, is_left)) > long_function;
   }
 
   /// The sections, each with the nodes that are needed and not emitted yet.
@@ -74,9 +98,9 @@ class Ordering {
     return info(tape_.node(id).op).arity == 0 || given_.contains(id);
   }
 
-  /// Emits a node after what it needs, operands from left to right: those of a commutative operation are
-  /// sorted by structure already.
-  void visit(NodeId id) {
+  /// Emits a node after what it needs: the operand with the longer path first, else from left to right, where
+  /// those of a commutative operation are sorted by structure already.
+  void visit(NodeId id, const std::vector<int>* path = nullptr) {
     std::vector<NodeId> stack = {id};
     while (!stack.empty()) {
       const NodeId top = stack.back();
@@ -88,6 +112,8 @@ class Ordering {
       const std::size_t before = stack.size();
       if (info(n.op).arity == 2 && done_[n.b] == 0) stack.push_back(n.b);
       if (done_[n.a] == 0) stack.push_back(n.a);  // on top: the first operand is computed first
+      if (path != nullptr && stack.size() == before + 2 && (*path)[n.b] > (*path)[n.a])
+        std::swap(stack[before], stack[before + 1]);
       if (stack.size() > before) continue;
       done_[top] = 1;
       order_.push_back(top);
@@ -137,12 +163,18 @@ class Ordering {
 }  // namespace
 
 EmissionOrder emission_order(const Tape& tape, const std::vector<NodeId>& roots,
-                             const std::vector<NodeId>& given, SectionOrder within) {
+                             const std::vector<NodeId>& given, NodeOrder order) {
   EmissionOrder result;
   Ordering ordering(tape, roots, given);
   ordering.emit_sincos();
   result.sincos = ordering.size();
-  for (const auto& members : ordering.rest_by_section()) ordering.emit_section(members, within);
+  if (order == NodeOrder::by_length)
+    order = ordering.is_long() ? NodeOrder::lifetimes : NodeOrder::depth_first;
+  if (order == NodeOrder::lifetimes) {
+    ordering.emit_by_lifetimes(roots);
+  } else {
+    for (const auto& members : ordering.rest_by_section()) ordering.emit_section(members, order);
+  }
   result.nodes = ordering.take();
   return result;
 }

@@ -11,10 +11,13 @@
 
 namespace anholon {
 
-/// How the nodes of one section follow each other.
-enum class SectionOrder {
-  levels,       // by the longest path from what the section is given, then by structural key
-  depth_first,  // what a result needs, right before it: shorter lifetimes, fewer spills
+/// How nodes follow each other.
+enum class NodeOrder {
+  by_length,    // lifetimes for long functions, depth_first for others, which people may read
+  levels,       // section by section; in each by the longest path from what the section is given, then by
+                // structural key
+  depth_first,  // section by section; in each, what a result needs right before it
+  lifetimes,    // depth first through all sections, from the last output to the first: values die soon
 };
 
 struct EmissionOrder {
@@ -23,10 +26,9 @@ struct EmissionOrder {
 };
 
 /// Order of the operations that the roots need: sines and cosines of the inputs first, so that the calls
-/// stand together and nothing else is alive across them, then section by section.
+/// stand together and nothing else is alive across them, then the rest.
 /// @param given  nodes that are there already
 EmissionOrder emission_order(const Tape& tape, const std::vector<NodeId>& roots,
-                             const std::vector<NodeId>& given = {},
-                             SectionOrder within = SectionOrder::depth_first);
+                             const std::vector<NodeId>& given = {}, NodeOrder order = NodeOrder::by_length);
 
 }  // namespace anholon
