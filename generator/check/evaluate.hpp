@@ -4,10 +4,12 @@
 // Evaluation of a model at states, by generated code, numeric recursion, or in exact arithmetic.
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "check/evaluate_program.hpp"
 #include "check/states_json.hpp"
+#include "derive/tree_functions.hpp"
 
 namespace anholon {
 
@@ -18,6 +20,7 @@ struct EvaluateRequest {
   unsigned digits = 50;  // of the exact method
   Inverse inverse = Inverse::pseudo;
   std::vector<int> leading_rows;
+  std::optional<TreeRequest> tree;  // functions of a driven tree in place of those of the reduction
 };
 
 /// Answer in the layout of the reference files, schema "anholon.evaluate/1".

@@ -121,6 +121,10 @@ class Reader {
       const auto eta = numbers(inputs, "eta", components.size(), where);
       for (std::size_t i = 0; i < components.size(); ++i) s.eta[components[i]] = eta[i];
     }
+    if (inputs.contains("eta_dot")) {
+      const auto eta_dot = numbers(inputs, "eta_dot", components.size(), where);
+      for (std::size_t i = 0; i < components.size(); ++i) result.eta_dot[components[i]] = eta_dot[i];
+    }
     const std::size_t size = model_.coordinates.size();
     s.r.assign(size, Exact(0)), s.r_dot.assign(size, Exact(0));
     result.input.r_ddot.assign(size, Exact(0)), result.input.tau.assign(size, Exact(0));
@@ -280,6 +284,13 @@ Json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
   return out;
 }
 
+template <class S>
+Json number_list(const std::vector<S>& values, unsigned digits) {
+  return to_json(values, digits);
+}
+
+template Json number_list(const std::vector<double>&, unsigned);
+template Json number_list(const std::vector<Exact>&, unsigned);
 template EvaluationInput<double> rounded_input(const EvaluationInput<Exact>&);
 template EvaluationInput<Exact> rounded_input(const EvaluationInput<Exact>&);
 template Json answer(const Model&, const StatesFile&, const Evaluated<double>&,

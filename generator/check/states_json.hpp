@@ -21,6 +21,7 @@ struct StatesFile {
   struct Entry {
     std::string label;
     EvaluationInput<Exact> input;
+    Spatial<Exact> eta_dot;  // for inverse dynamics of a tree; zero where it is not given
   };
   std::vector<Entry> states;
 };
@@ -34,6 +35,10 @@ StatesFile read_states(const std::filesystem::path& path, const Model& model);
 template <class S>
 nlohmann::ordered_json answer(const Model& model, const StatesFile& file, const Evaluated<S>& e,
                               const EvaluationInput<S>& input, unsigned digits);
+
+/// A list of numbers, as in answer().
+template <class S>
+nlohmann::ordered_json number_list(const std::vector<S>& values, unsigned digits);
 
 /// The inputs of a state rounded to S.
 template <class S>

@@ -116,6 +116,7 @@ void print(const Model& model, const ReductionReport& reduction, const Regularit
 
 int check(const CheckOptions& options) {
   const Model model = load_model(options);
+  if (wants_tree(options, model)) return check_tree(options, model);
   DeriveRequest request = derive_request(options, model);
   request.functions = {"kinematics", "constraints"};
   request.closed_forms = false;

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "describe/read_urdf.hpp"
+
 namespace anholon::cli {
 
 // Exit statuses of every verb.
@@ -22,6 +24,9 @@ struct ModelOptions {
   std::string scene;  // path, empty: standard
   std::vector<std::string> functions;
   std::string inverse = "pseudo";  // or "leading:ROW[,ROW...]"
+  UrdfOptions urdf;                // of a URDF file
+  std::string gravity;             // of a URDF file, m/s^2 along -z; empty: its default
+  bool search = true;              // of a tree: try every formulation
 };
 
 struct CheckOptions : ModelOptions {

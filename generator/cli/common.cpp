@@ -3,11 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 
+#include "describe/function_names.hpp"
 #include "describe/read_model.hpp"
 #include "describe/scene.hpp"
 #include "describe/specialise.hpp"
@@ -15,7 +17,35 @@
 
 namespace anholon::cli {
 
+namespace {
+
+bool named(const std::vector<std::string>& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+/// Options that only a URDF file has.
+UrdfOptions urdf_options(const ModelOptions& options) {
+  UrdfOptions urdf = options.urdf;
+  if (options.gravity.empty()) return urdf;
+  try {
+    urdf.gravity = Exact::from_decimal(options.gravity);
+  } catch (const std::invalid_argument&) {
+    throw std::invalid_argument(
+        fmt::format("--gravity is '{}', not a decimal number in m/s^2", options.gravity));
+  }
+  return urdf;
+}
+
+}  // namespace
+
 Model load_model(const ModelOptions& options) {
+  const bool has_urdf_option = options.urdf.floating || options.urdf.as_written ||
+                               options.urdf.symbolic_inertia || !options.gravity.empty();
+  if (is_urdf(options.model) && options.scene.empty()) return read_urdf(options.model, urdf_options(options));
+  if (has_urdf_option)
+    throw std::invalid_argument(
+        "--floating, --as-written, --symbolic-inertia and --gravity are for a URDF file without a scene; a "
+        "model file says these things itself (docs/urdf.md)");
   if (!options.scene.empty()) {
     const Scene scene = read_scene(options.scene);
     return specialise(scene.model, scene);
@@ -25,6 +55,35 @@ Model load_model(const ModelOptions& options) {
     return specialise(scene.model, scene);
   }
   return read_model(options.model);
+}
+
+bool wants_tree(const ModelOptions& options, const Model& model) {
+  const auto only_in = [&](const std::vector<std::string>& these, const std::vector<std::string>& others) {
+    return std::ranges::any_of(options.functions, [&](const std::string& name) {
+      return named(these, name) && !named(others, name);
+    });
+  };
+  if (!options.scene.empty() || !is_driven_tree(model)) return false;
+  return is_urdf(options.model) ? !only_in(function_names(), tree_function_names())
+                                : only_in(tree_function_names(), function_names());
+}
+
+TreeRequest tree_request(const ModelOptions& options) {
+  TreeRequest request;
+  request.search = options.search;
+  request.functions = options.functions;
+  if (named(request.functions, "all")) request.functions = tree_function_names();
+  return request;
+}
+
+AnyDerivation derive_any(const ModelOptions& options, const Model& model) {
+  AnyDerivation result;
+  if (wants_tree(options, model)) {
+    result.tree = derive_tree(model, tree_request(options));
+  } else {
+    result.reduction = derive(model, derive_request(options, model));
+  }
+  return result;
 }
 
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {

@@ -4,18 +4,42 @@
 // What the verbs share: reading a model with its scene, the choice of inverse, files and progress.
 
 #include <chrono>
+#include <memory>
 #include <string>
 
 #include "cli/commands.hpp"
 #include "derive/derive.hpp"
+#include "derive/tree_functions.hpp"
 #include "describe/model.hpp"
 
 namespace anholon::cli {
 
 /// The model, specialised to the scene if one is named.
 Model load_model(const ModelOptions& options);
+/// What the generator makes of a model: functions of the reduction, or those of a tree whose joints are all
+/// driven. Exactly one of the two is there.
+struct AnyDerivation {
+  std::unique_ptr<Derivation> reduction;
+  std::unique_ptr<TreeDerivation> tree;
+
+  [[nodiscard]] const Program& program() const { return tree ? tree->program : reduction->program; }
+  [[nodiscard]] const std::vector<CandidateReport>& candidates() const {
+    return tree ? tree->candidates : reduction->candidates;
+  }
+};
+
+/// Whether the functions of a tree are wanted: of a URDF file as it stands, without a scene, unless a
+/// function is named that only the reduction has; of another model, where a function is named that only a
+/// tree has.
+bool wants_tree(const ModelOptions& options, const Model& model);
+AnyDerivation derive_any(const ModelOptions& options, const Model& model);
+TreeRequest tree_request(const ModelOptions& options);
+
 /// Functions, inverse and scene name as a request.
 DeriveRequest derive_request(const ModelOptions& options, const Model& model);
+
+/// `check` for a robot from a URDF file.
+int check_tree(const CheckOptions& options, const Model& model);
 
 /// Writes to the file by renaming a finished temporary, or to standard output if the name is empty.
 void write_output(const std::string& path, const std::string& text);

@@ -8,7 +8,8 @@ namespace anholon::cli {
 int evaluate(const EvaluateOptions& options) {
   const Model model = load_model(options);
   const StatesFile states = read_states(options.states, model);
-  const DeriveRequest request = derive_request(options, model);
+  const bool is_tree = wants_tree(options, model);
+  const DeriveRequest request = is_tree ? DeriveRequest() : derive_request(options, model);
   EvaluateRequest wanted;
   wanted.method = options.method == "exact"       ? EvaluationMethod::exact
                   : options.method == "recursion" ? EvaluationMethod::recursion
@@ -16,6 +17,7 @@ int evaluate(const EvaluateOptions& options) {
   wanted.digits = options.digits;
   wanted.inverse = request.inverse;
   wanted.leading_rows = request.leading_rows;
+  if (is_tree) wanted.tree = tree_request(options);
   write_output(options.output, evaluate_states(model, states, wanted).dump(1) + "\n");
   return ok;
 }

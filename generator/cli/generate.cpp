@@ -27,7 +27,7 @@ int operations_of(const Program& program, const Function& f) {
 /// scene.
 std::map<std::string, int> operations_without_scene(const GenerateOptions& options, const Program& program) {
   const std::string file = !options.scene.empty() ? options.scene : options.model;
-  if (!is_scene(file)) return {};
+  if (is_urdf(file) || !is_scene(file)) return {};
   const Scene scene = read_scene(file);
   DeriveRequest request = derive_request(options, scene.model);
   request.functions.clear();
@@ -41,13 +41,35 @@ std::map<std::string, int> operations_without_scene(const GenerateOptions& optio
   return operations;
 }
 
+std::string headline(const AnyDerivation& derivation, const Model& model) {
+  if (!derivation.tree)
+    return derivation.reduction->reduction.ranks.table_I_class(derivation.reduction->reduction.partition);
+  return fmt::format(
+      "{} bodies, {} coordinates, all driven, reference body {}", model.bodies.size(),
+      model.coordinates.size(),
+      model.group == GroupKind::fixed ? "fixed" : fmt::format("free in {}", name(model.group)));
+}
+
+/// Every formulation that was tried. Passes over the finished program see only the two cheapest.
+void print_routes(const AnyDerivation& derivation) {
+  std::size_t width = 5;
+  for (const CandidateReport& c : derivation.candidates()) width = std::max(width, c.route.size());
+  fmt::print("\n{:28s} {:{}s} {:>10s}\n", "function", "route", width, "operations");
+  for (const CandidateReport& c : derivation.candidates())
+    fmt::print("{:28s} {:{}s} {:>10d}{}\n", c.function, c.route, width, c.operations,
+               c.chosen ? "  <- kept" : "");
+  if (derivation.tree) {
+    for (const std::string& pass : derivation.tree->passes) fmt::print("{}\n", pass);
+  }
+}
+
 }  // namespace
 
 int generate(const GenerateOptions& options) {
   const Stopwatch watch;
   const Model model = load_model(options);
-  const auto derivation = derive(model, derive_request(options, model));
-  const Program& program = derivation->program;
+  const AnyDerivation derivation = derive_any(options, model);
+  const Program& program = derivation.program();
   StatementStyle style;
   if (options.sincos == "batch") style.sincos = SinCos::batch;
   if (options.order == "sections") style.order = NodeOrder::depth_first;
@@ -66,8 +88,7 @@ int generate(const GenerateOptions& options) {
     write_file(std::filesystem::path(file).replace_extension(".json"), describe_json(program));
   }
 
-  fmt::print("{} ({}), {}\n", program.model, program.scene,
-             derivation->reduction.ranks.table_I_class(derivation->reduction.partition));
+  fmt::print("{} ({}), {}\n", program.model, program.scene, headline(derivation, model));
   const std::map<std::string, int> without_scene = operations_without_scene(options, program);
   const auto compared = [&](const std::string& text) {
     return without_scene.empty() ? "" : fmt::format("{:>13s}", text);
@@ -82,7 +103,7 @@ int generate(const GenerateOptions& options) {
     std::string dearest;
     std::string route;
     int most = 0;
-    for (const CandidateReport& c : derivation->candidates) {
+    for (const CandidateReport& c : derivation.candidates()) {
       if (c.function != f.name) continue;
       most = std::max(most, c.operations);
       if (c.chosen) route = c.route;
@@ -98,11 +119,7 @@ int generate(const GenerateOptions& options) {
   if (operations_before > 0)
     fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % fewer\n", operations,
                operations_before, 100.0 * (operations_before - operations) / operations_before);
-  if (options.passes) {
-    fmt::print("\n{:28s} {:32s} {:>10s}\n", "function", "route", "operations");
-    for (const CandidateReport& c : derivation->candidates)
-      fmt::print("{:28s} {:32s} {:>10d}{}\n", c.function, c.route, c.operations, c.chosen ? "  <- kept" : "");
-  }
+  if (options.passes || derivation.tree) print_routes(derivation);
   fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), watch.seconds());
   return ok;
 }

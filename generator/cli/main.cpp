@@ -25,14 +25,22 @@ int main(int argc, char** argv) {
   std::function<int()> run;
 
   const auto model_options = [](CLI::App* verb, cli::ModelOptions& o, bool functions) {
-    verb->add_option("MODEL", o.model, "description of the robot, or a scene of it (TOML)")->required();
+    verb->add_option("MODEL", o.model, "description of the robot or a scene of it (TOML), or its URDF file")
+        ->required();
     verb->add_option("--scene", o.scene, "scene file: what is frozen, locked, kept, driven");
     verb->add_option(
         "--inverse", o.inverse,
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
     if (functions)
-      verb->add_option("--functions", o.functions, "functions to generate, separated by commas; default: all")
+      verb->add_option("--functions", o.functions,
+                       "functions to generate, separated by commas; default: all, or of a URDF file the five "
+                       "of docs/urdf.md; 'all' for every one there")
           ->delimiter(',');
+    verb->add_flag("--floating", o.urdf.floating, "URDF: the root link moves freely");
+    verb->add_flag("--as-written", o.urdf.as_written, "URDF: angles and axes exactly as their digits say");
+    verb->add_flag("--symbolic-inertia", o.urdf.symbolic_inertia, "URDF: inertial figures become parameters");
+    verb->add_option("--gravity", o.gravity, "URDF: acceleration along -z of the world, m/s^2; default 9.81");
+    verb->add_flag("!--no-search", o.search, "URDF: take the first formulation instead of the cheapest");
   };
 
   cli::CheckOptions check;
@@ -67,7 +75,7 @@ int main(int argc, char** argv) {
 
   cli::EvaluateOptions evaluate;
   verb = app.add_subcommand("evaluate", "Evaluate a model at given states");
-  model_options(verb, evaluate, false);
+  model_options(verb, evaluate, true);
   verb->add_option("STATES", evaluate.states, "states (JSON), docs/evaluate.md")->required();
   verb->add_option("--with", evaluate.method, "generated, recursion or exact")
       ->check(CLI::IsMember({"generated", "recursion", "exact"}));
@@ -79,7 +87,7 @@ int main(int argc, char** argv) {
   cli::VerifyOptions verify;
   verb = app.add_subcommand(
       "verify", "Compare generated code with exact arithmetic and the recursion at random states");
-  model_options(verb, verify, false);
+  model_options(verb, verify, true);
   verb->add_option("--samples", verify.samples, "random states")->check(CLI::Range(1, 10000000));
   verb->add_flag("--json", verify.json, "print JSON, schema anholon.verify/1");
   verb->callback([&] { run = [&] { return cli::verify(verify); }; });

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "check/verify_tree.hpp"
 #include "cli/common.hpp"
 
 namespace anholon::cli {
@@ -39,7 +40,7 @@ std::string json_text(const Model& model, const Verification& v) {
 int verify(const VerifyOptions& options) {
   const Stopwatch watch;
   const Model model = load_model(options);
-  const auto derivation = derive(model, derive_request(options, model));
+  const AnyDerivation derivation = derive_any(options, model);
   double shown = 1;
   const auto progress = [&](int done) {
     if (watch.seconds() < shown || isatty(STDERR_FILENO) == 0) return;
@@ -47,7 +48,9 @@ int verify(const VerifyOptions& options) {
     std::fflush(stderr);
     shown = watch.seconds() + 0.5;
   };
-  const Verification v = verify_program(model, *derivation, options.samples, progress);
+  const Verification v = derivation.tree
+                             ? verify_tree(model, *derivation.tree, options.samples, progress)
+                             : verify_program(model, *derivation.reduction, options.samples, progress);
   if (shown > 1 && isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r{:40s}\r", "");
   if (options.json) {
     fmt::print("{}", json_text(model, v));

@@ -65,6 +65,11 @@ class TreeDeriver {
           request_.functions.empty() ? standard_tree_functions() : request_.functions;
       if (std::ranges::find(wanted, name) != wanted.end()) derive(name);
     }
+    if (program_.functions.empty())
+      throw UnsupportedError(fmt::format(
+          "robot '{}' has nothing that moves and so none of these functions; give it a joint, or a "
+          "free base (--floating)",
+          model_.name));
     return std::move(result_);
   }
 
@@ -134,10 +139,10 @@ class TreeDeriver {
       const std::size_t first = routes.size();
       for (const Algorithm& algorithm : algorithms_of(name)) {
         if (hopeless.contains(algorithm.name)) continue;
-        Route r{algorithm.name, algorithm.outputs(frames.mechanism)};
+        Route r{algorithm.name, outputs_of(name, algorithm, frames.mechanism)};
         std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
         if (r.outputs.empty()) continue;
-        cost.push_back(count_operations(tape_, roots_of(r)).total());
+        cost.push_back(operations_per_call(program_, roots_of(r)).total());
         routes.push_back(std::move(r));
       }
       if (first == routes.size()) continue;
@@ -160,7 +165,7 @@ class TreeDeriver {
     for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), finalists); ++i) {
       const std::vector<NodeId> shared = share(roots_of(routes[order[i]]));
       place(order[i], shared);
-      cost[order[i]] = count_operations(tape_, shared).total();
+      cost[order[i]] = operations_per_call(program_, shared).total();
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
     for (std::size_t i = 0; i < routes.size(); ++i)
@@ -185,6 +190,17 @@ class TreeDeriver {
     std::string name;
     std::function<std::vector<OutputBlock>(const Mechanism<Expr>&)> outputs;
   };
+  static std::vector<OutputBlock> outputs_of(const std::string& function, const Algorithm& algorithm,
+                                             const Mechanism<Expr>& mechanism) {
+    try {
+      return algorithm.outputs(mechanism);
+    } catch (const std::domain_error&) {
+      throw UnsupportedError(fmt::format(
+          "function {} divides by zero: some joint moves no inertia; give its links mass, fix the "
+          "joint, or name functions that need no inverse with --functions",
+          function));
+    }
+  }
   std::vector<Algorithm> algorithms_of(const std::string& name) {
     using M = const Mechanism<Expr>&;
     if (name == "inverse_dynamics")
@@ -205,6 +221,8 @@ class TreeDeriver {
            [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
           {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
     }
+    if (name == "imposed_motion")
+      return {{"composite body and two sweeps", [this](M m) { return imposed_motion(m); }}};
     if (name == "mass_factor") {
       return {{"composite bodies", [this](M m) {
                  const LtdlFactor<Expr> f = ltdl(mass_matrix(m));
@@ -232,7 +250,9 @@ class TreeDeriver {
                  return std::vector{
                      block("kinetic", "J", "kinetic energy", std::vector{e.kinetic}),
                      block("gravity", "J", "potential energy of gravity, zero at the origin of the world",
-                           std::vector{e.gravity})};
+                           std::vector{e.gravity}),
+                     block("elastic", "J", "energy of springs", std::vector{e.elastic}),
+                     block("dissipated_power", "W", "lost in dampers", std::vector{e.dissipated_power})};
                }}};
     }
     if (name == "forward_kinematics")
@@ -255,13 +275,16 @@ class TreeDeriver {
     if (name == "bias_forces")
       return "What inverse dynamics needs without accelerations: Coriolis, centrifugal and gravity forces, "
              "friction.";
-    if (name == "gravity_forces") return "What inverse dynamics needs at rest.";
+    if (name == "gravity_forces")
+      return "What gravity alone asks of the joints and of the reference body, at rest.";
     if (name == "mass_matrix") return "Mass matrix M of (eta, r_dot).";
     if (name == "forward_dynamics") return "Accelerations under joint forces tau.";
+    if (name == "imposed_motion")
+      return "Acceleration of a free reference body and forces of the joints under imposed joint motion.";
     if (name == "mass_factor") return "M = L^T D L.";
     if (name == "inverse_mass_matrix") return "Inverse of M.";
     if (name == "centroidal_momentum") return "Momentum of the robot about its centre of mass.";
-    if (name == "energies") return "Kinetic and potential energy.";
+    if (name == "energies") return "Kinetic and potential energy, power lost.";
     if (name == "forward_kinematics") return "Poses of all links in the world, R row-major and p.";
     if (name == "jacobians")
       return "Twists of the links at the tips in their own axes: J (eta, r_dot); their derivative is J "
@@ -324,6 +347,30 @@ class TreeDeriver {
     return {block("base_wrench", "N, N m", "on the reference body about its origin, in its own axes",
                   free_part(base)),
             block("tau", "N m or N", "forces of the joints", force)};
+  }
+
+  /// The free components of the base acceleration vanish in a first sweep; what that sweep leaves on the base
+  /// is balanced by the inertia of all bodies taken as one. Empty for a fixed reference body.
+  std::vector<OutputBlock> imposed_motion(const Mechanism<Expr>& m) {
+    if (n() == 0) return {};
+    const auto components = free_components(model_.group);
+    const Vec3<Expr> drift = cross(in_.eta.angular, in_.eta.linear) - transposed_times(in_.R, m.gravity);
+    const Spatial<Expr> wrench = sweep(m, in_.eta, {}, drift, in_.r_dot, in_.r_ddot, true).first;
+    const Matrix<Expr> M = mass_matrix(m);
+    Matrix<Expr> base(n(), n());
+    std::vector<Expr> b;
+    for (int i = 0; i < n(); ++i) {
+      for (int j = 0; j < n(); ++j) base(i, j) = M(i, j);
+      b.push_back(-wrench[components[static_cast<std::size_t>(i)]]);
+    }
+    m.section("acceleration of the reference body");
+    const std::vector<Expr> x = ltdl(base).solve(b);
+    Spatial<Expr> eta_dot;
+    for (std::size_t i = 0; i < x.size(); ++i) eta_dot[components[i]] = x[i];
+    const std::vector<Expr> tau =
+        sweep(m, in_.eta, eta_dot.angular, eta_dot.linear + drift, in_.r_dot, in_.r_ddot, true).second;
+    return {block("eta_dot", "m/s^2, rad/s^2", "derivative of eta", x),
+            block("tau", "N m or N", "forces of the joints", tau)};
   }
 
   Matrix<Expr> mass_matrix(const Mechanism<Expr>& m) {
@@ -451,9 +498,11 @@ class TreeDeriver {
 
 const std::vector<std::string>& tree_function_names() {
   static const std::vector<std::string> names = {
-      "inverse_dynamics", "bias_forces",        "gravity_forces",      "mass_matrix",
-      "forward_dynamics", "mass_factor",        "inverse_mass_matrix", "centroidal_momentum",
-      "energies",         "forward_kinematics", "jacobians",           "regressor"};
+      "inverse_dynamics", "bias_forces",         "gravity_forces",
+      "mass_matrix",      "forward_dynamics",    "imposed_motion",
+      "mass_factor",      "inverse_mass_matrix", "centroidal_momentum",
+      "energies",         "forward_kinematics",  "jacobians",
+      "regressor"};
   return names;
 }
 
@@ -461,6 +510,19 @@ const std::vector<std::string>& standard_tree_functions() {
   static const std::vector<std::string> names = {"inverse_dynamics", "bias_forces", "gravity_forces",
                                                  "mass_matrix", "forward_dynamics"};
   return names;
+}
+
+bool is_driven_tree(const Model& model) {
+  const auto moves_alone = [](const Coordinate& c) { return c.drive == Drive::active; };
+  const auto is_rigid = [](const BodyDescription& b) { return b.modes.empty(); };
+  const auto acts_on_base = [](const GeneralisedForceDescription& f) { return f.index < 6; };
+  std::vector<NodeId> roots = {model.potential.id(*model.tape), model.dissipation.id(*model.tape)};
+  for (const GeneralisedForceDescription& f : model.forces) roots.push_back(f.force.id(*model.tape));
+  const std::vector<NodeId> used = model.tape->reachable(roots);
+  const bool depends_on_time = std::ranges::find(used, model.symbols.t) != used.end();
+  return !depends_on_time && model.rows.empty() && model.wrenches.empty() &&
+         std::ranges::all_of(model.coordinates, moves_alone) && std::ranges::all_of(model.bodies, is_rigid) &&
+         std::ranges::none_of(model.forces, acts_on_base);
 }
 
 std::unique_ptr<TreeDerivation> derive_tree(const Model& model, const TreeRequest& request) {

@@ -33,6 +33,10 @@ const std::vector<std::string>& tree_function_names();
 /// Those that are derived where none are named: inverse and forward dynamics, bias, gravity, mass matrix.
 const std::vector<std::string>& standard_tree_functions();
 
+/// Whether a model is one: no rows, external wrenches or compliant bodies, every coordinate driven, no force
+/// of time, none on the reference body but gravity.
+bool is_driven_tree(const Model& model);
+
 /// Inputs are R (orientation of the reference body, for a group that turns), eta, eta_dot, r, r_dot, r_ddot,
 /// tau; twists and wrenches are those of the described reference body in its own axes, (V, Omega) and (force,
 /// torque).

@@ -203,21 +203,23 @@ Outline read_outline(TableReader& root, Reading& reading) {
   Model& model = reading.model;
   std::vector<std::string> taken = reserved_names();
   for (const Parameter& parameter : model.parameters) taken.push_back(parameter.name);
+  for (const Coordinate& coordinate : model.coordinates) taken.push_back(coordinate.name);
 
-  root.required("body", "write at least the reference body: [[body]] with a name");
+  if (model.bodies.empty()) root.required("body", "write at least the reference body: [[body]] with a name");
   const std::vector<const Value*> tables = tables_of(root, "body", reading.findings);
   if (tables.size() > most_bodies) {
     throw ModelError(tables[most_bodies]->where, fmt::format("more than {} bodies", most_bodies),
                      "use fewer");
   }
   std::vector<std::string> all_names;
+  for (const BodyDescription& body : model.bodies) all_names.push_back(body.name);
   for (const Value* table : tables) {
     if (const Value* name = table->find("name"); name != nullptr) all_names.push_back(name->text);
   }
 
   // Coordinates of joints come in the order of their bodies, each before the modes of its body; the coupled
   // ones are taken out as soon as they are known.
-  std::vector<Coordinate> joints;
+  std::vector<Coordinate> joints = model.coordinates;
   std::vector<std::string> coupled;
   if (const Value* couplings = root.table().find("coupling")) {
     for (const Value& item : couplings->items) {

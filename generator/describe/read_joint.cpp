@@ -73,18 +73,11 @@ void read_joint_forces(TableReader& joint, const Expr& r, const Expr& rate, bool
   }
 }
 
-/// Range and drive of the coordinate that moves the joint.
-void read_coordinate(BodyOutline& body, Coordinate& coordinate, Reading& reading) {
-  TableReader& joint = *body.joint;
+/// Range and drive of the coordinate that moves the joint, where they are said.
+void read_coordinate(TableReader& joint, Coordinate& coordinate, Reading& reading) {
   if (const auto drive = joint.optional_choice("drive", {"active", "passive"}))
     coordinate.drive = *drive == 0 ? Drive::active : Drive::passive;
-  const Value* range = coordinate.is_angle
-                           ? joint.optional("range")
-                           : joint.required("range", "write its working range, range = [lower, upper]");
-  if (coordinate.is_angle) {
-    coordinate.upper = Exact::pi();
-    coordinate.lower = -coordinate.upper;
-  }
+  const Value* range = joint.optional("range");
   if (range == nullptr) return;
   const std::string what = fmt::format("the range of {}", joint.what());
   if (const auto bounds = reading.range(*range, what, coordinate.is_angle ? units::one : units::m)) {
@@ -123,7 +116,22 @@ void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading)
   if (body.coordinate >= 0) {
     const auto i = static_cast<std::size_t>(body.coordinate);
     described.joint.displacement = Expr(*model.tape, model.symbols.r[i]);
-    read_coordinate(body, model.coordinates[i], reading);
+    Coordinate& coordinate = model.coordinates[i];
+    if (is_angle) {
+      coordinate.upper = Exact::pi();
+      coordinate.lower = -coordinate.upper;
+    } else {
+      joint.required("range", "write its working range, range = [lower, upper]");
+    }
+  }
+  read_joint_supplement(joint, described, body.coordinate, reading);
+  joint.report_unknown_keys();
+}
+
+void read_joint_supplement(TableReader& joint, const BodyDescription& described, int coordinate,
+                           Reading& reading) {
+  if (coordinate >= 0) {
+    read_coordinate(joint, reading.model.coordinates[static_cast<std::size_t>(coordinate)], reading);
   } else {
     for (const std::string_view key : {"drive", "range"}) {
       if (const Value* value = joint.optional(key))
@@ -133,8 +141,8 @@ void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading)
   }
   const Symbol* rate = reading.scope.find_rate(described.joint.coordinate);
   if (rate != nullptr)
-    read_joint_forces(joint, described.joint.displacement, rate->quantity.value, is_angle, reading);
-  joint.report_unknown_keys();
+    read_joint_forces(joint, described.joint.displacement, rate->quantity.value,
+                      described.joint.kind != JointKind::prismatic, reading);
 }
 
 }  // namespace anholon

@@ -7,6 +7,8 @@
 
 #include "describe/names.hpp"
 #include "describe/read_parts.hpp"
+#include "describe/read_supplement.hpp"
+#include "describe/read_urdf.hpp"
 #include "describe/sha256.hpp"
 
 namespace anholon {
@@ -20,60 +22,8 @@ void read_header(TableReader& root, Reading& reading) {
   if (const Value* name = root.required("name", Value::Kind::string, "name it: name = \"snakeboard\""))
     model.name = reading.new_name(*name, "the model");
   model.title = root.optional_string("title").value_or(model.name);
-  std::vector<std::string> groups;
-  for (const GroupKind group : {GroupKind::SE3, GroupKind::SE2, GroupKind::SO3, GroupKind::R1, GroupKind::R2,
-                                GroupKind::R3, GroupKind::fixed})
-    groups.emplace_back(name(group));
-  if (const auto group = root.required_choice("group", groups)) model.group = static_cast<GroupKind>(*group);
-}
-
-void read_gravity(TableReader& root, Reading& reading) {
-  const Value* value = root.optional("gravity");
-  if (value == nullptr) return;
-  Model& model = reading.model;
-  model.gravity = reading.vector3(*value, "gravity", units::m_per_s2);
-  const bool is_normal =
-      model.gravity[0].is_zero() && model.gravity[1].is_zero() && !model.gravity[2].is_zero();
-  if (model.group == GroupKind::SE2 && is_normal)
-    model.notes.emplace_back(
-        "gravity is normal to the plane of SE2: it moves only bodies that leave the plane");
-}
-
-void read_energies(TableReader& root, Reading& reading) {
-  Model& model = reading.model;
-  if (const Value* value = root.optional("potential")) {
-    model.potential += reading.number(*value, "the potential", units::newton_m,
-                                      SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::pose);
-  }
-  if (const Value* value = root.optional("dissipation")) {
-    model.dissipation +=
-        reading.number(*value, "the dissipation", units::watt,
-                       SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::velocity);
-  }
-}
-
-/// Velocities that the user wants as coordinates of the kernel: "V_X", "r3" or "dot(r3)".
-void read_free_velocities(TableReader& root, Reading& reading) {
-  const Value* list = root.optional("free_velocities", Value::Kind::array);
-  if (list == nullptr) return;
-  std::vector<std::string> known;
-  for (const int i : free_components(reading.model.group))
-    known.emplace_back(twist_component_names[static_cast<std::size_t>(i)]);
-  for (const Coordinate& coordinate : reading.model.coordinates) known.push_back(coordinate.name);
-  for (const Value& item : list->items) {
-    std::string name = item.text;
-    if (name.starts_with("dot(") && name.ends_with(")")) name = name.substr(4, name.size() - 5);
-    auto& chosen = reading.model.free_velocities;
-    if (item.kind != Value::Kind::string || std::find(known.begin(), known.end(), name) == known.end()) {
-      reading.findings.error(
-          item.where, fmt::format("'{}' is not a velocity", item.text),
-          did_you_mean(name, known, fmt::format("velocities are those of {}", listed(known))));
-    } else if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) {
-      reading.findings.error(item.where, fmt::format("'{}' is named twice", item.text), "remove one");
-    } else {
-      chosen.push_back(name);
-    }
-  }
+  if (const auto group = root.required_choice("group", group_names()))
+    model.group = static_cast<GroupKind>(*group);
 }
 
 /// Compliant bodies end the tree: nothing hangs on them.
@@ -117,8 +67,65 @@ void fill(TableReader& root, const ParameterValues& overrides, Reading& reading)
 
 }  // namespace
 
+void read_gravity(TableReader& root, Reading& reading) {
+  const Value* value = root.optional("gravity");
+  if (value == nullptr) return;
+  Model& model = reading.model;
+  model.gravity = reading.vector3(*value, "gravity", units::m_per_s2);
+  const bool is_normal =
+      model.gravity[0].is_zero() && model.gravity[1].is_zero() && !model.gravity[2].is_zero();
+  if (model.group == GroupKind::SE2 && is_normal)
+    model.notes.emplace_back(
+        "gravity is normal to the plane of SE2: it moves only bodies that leave the plane");
+}
+
+void read_energies(TableReader& root, Reading& reading) {
+  Model& model = reading.model;
+  if (const Value* value = root.optional("potential")) {
+    model.potential += reading.number(*value, "the potential", units::newton_m,
+                                      SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::pose);
+  }
+  if (const Value* value = root.optional("dissipation")) {
+    model.dissipation +=
+        reading.number(*value, "the dissipation", units::watt,
+                       SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::velocity);
+  }
+}
+
+void read_free_velocities(TableReader& root, Reading& reading) {
+  const Value* list = root.optional("free_velocities", Value::Kind::array);
+  if (list == nullptr) return;
+  std::vector<std::string> known;
+  for (const int i : free_components(reading.model.group))
+    known.emplace_back(twist_component_names[static_cast<std::size_t>(i)]);
+  for (const Coordinate& coordinate : reading.model.coordinates) known.push_back(coordinate.name);
+  for (const Value& item : list->items) {
+    std::string name = item.text;
+    if (name.starts_with("dot(") && name.ends_with(")")) name = name.substr(4, name.size() - 5);
+    auto& chosen = reading.model.free_velocities;
+    if (item.kind != Value::Kind::string || std::find(known.begin(), known.end(), name) == known.end()) {
+      reading.findings.error(
+          item.where, fmt::format("'{}' is not a velocity", item.text),
+          did_you_mean(name, known, fmt::format("velocities are those of {}", listed(known))));
+    } else if (std::find(chosen.begin(), chosen.end(), name) != chosen.end()) {
+      reading.findings.error(item.where, fmt::format("'{}' is named twice", item.text), "remove one");
+    } else {
+      chosen.push_back(name);
+    }
+  }
+}
+
+std::vector<std::string> group_names() {
+  std::vector<std::string> groups;
+  for (const GroupKind group : {GroupKind::SE3, GroupKind::SE2, GroupKind::SO3, GroupKind::R1, GroupKind::R2,
+                                GroupKind::R3, GroupKind::fixed})
+    groups.emplace_back(name(group));
+  return groups;
+}
+
 Model read_model_text(std::string_view text, const std::string& file_name, const ParameterValues& overrides) {
   const Value document = read_document(text, file_name);
+  if (document.find("urdf") != nullptr) return read_supplemented_urdf(document, text, file_name, overrides);
   Model model;
   model.file = std::filesystem::path(file_name).filename().string();
   model.sha256 = sha256_of(text);
@@ -146,7 +153,8 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
 }
 
 Model read_model(const std::filesystem::path& path, const ParameterValues& overrides) {
-  return read_model_text(read_bytes(path), path.string(), overrides);
+  if (!is_urdf(path)) return read_model_text(read_bytes(path), path.string(), overrides);
+  return read_urdf(path);  // its figures are numbers: there is nothing to override
 }
 
 }  // namespace anholon

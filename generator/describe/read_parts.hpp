@@ -22,6 +22,11 @@ void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading);
 /// Axis, range, drive, spring, damper and friction of a body's joint.
 void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading);
 
+/// Drive, range, spring, damper and friction alone: what a URDF file does not say of its joints.
+/// @param coordinate  index of the coordinate that moves the joint; -1 where the joint follows others
+void read_joint_supplement(TableReader& joint, const BodyDescription& described, int coordinate,
+                           Reading& reading);
+
 /// Mass, first moment and inertia, brought to the body's origin.
 void read_inertia(BodyOutline& body, BodyDescription& described, Reading& reading);
 
@@ -44,6 +49,18 @@ void read_constraints(TableReader& root, Reading& reading);
 
 /// Wrenches and generalised forces.
 void read_forces(TableReader& root, Reading& reading);
+
+/// Acceleration of gravity.
+void read_gravity(TableReader& root, Reading& reading);
+
+/// Potential and dissipation, added to what joints and beams have.
+void read_energies(TableReader& root, Reading& reading);
+
+/// Velocities that the user wants as coordinates of the kernel.
+void read_free_velocities(TableReader& root, Reading& reading);
+
+/// Names of the groups, in the order of GroupKind.
+std::vector<std::string> group_names();
 
 /// Adds the generalised force `force` that works on `displacement`: on each independent coordinate its share.
 void add_force_on(const Expr& displacement, const Expr& force, Reading& reading);

@@ -2,34 +2,18 @@
 #include "describe/read_urdf.hpp"
 
 #include <fmt/format.h>
-#include <sha256.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <sstream>
 
+#include "describe/document.hpp"
 #include "describe/names.hpp"
+#include "describe/outline.hpp"
+#include "describe/sha256.hpp"
 #include "describe/urdf_tree.hpp"
 
 namespace anholon {
 namespace {
-
-std::string sha256_of(std::string_view bytes) {
-  std::array<char, SHA256_DIGEST_STRING_LENGTH> digest{};
-  SHA256Data(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size(), digest.data());
-  return digest.data();
-}
-
-/// Words that expressions and generated code use for themselves.
-const std::set<std::string>& words_in_use() {
-  static const std::set<std::string> words = {
-      "t",    "g",    "R",     "p",   "r",    "pi",   "eta",     "sin",     "cos",    "tan",
-      "asin", "acos", "atan2", "exp", "log",  "tanh", "abs",     "sign",    "sqrt",   "dot",
-      "ddot", "p_X",  "p_Y",   "p_Z", "R_XX", "R_XY", "R_XZ",    "R_YX",    "R_YY",   "R_YZ",
-      "R_ZX", "R_ZY", "R_ZZ",  "V_X", "V_Y",  "V_Z",  "Omega_X", "Omega_Y", "Omega_Z"};
-  return words;
-}
 
 /// A name of the file as an identifier: other characters become underscores, keywords get one behind them.
 std::string identifier_from(std::string_view text, std::string_view prefix) {
@@ -56,15 +40,16 @@ class NameGiver {
   std::string operator()(const std::string& text) {
     const std::string base = identifier_from(text, kind_);
     std::string name = base;
-    for (int i = 2; words_in_use().contains(name) || !taken_.insert(name).second; ++i)
+    for (int i = 2; std::ranges::find(reserved_, name) != reserved_.end() || !taken_.insert(name).second; ++i)
       name = fmt::format("{}{}{}", base, base.back() == '_' ? "" : "_", i);
-    if (name != text) notes_.push_back(fmt::format("{} '{}' is called {}", kind_, text, name));
+    if (name != text) notes_.push_back(fmt::format("renamed: {} '{}' is called {}", kind_, text, name));
     return name;
   }
 
  private:
   std::string kind_;
   std::vector<std::string>& notes_;
+  std::vector<std::string> reserved_ = reserved_names();
   std::set<std::string> taken_;
 };
 
@@ -84,13 +69,16 @@ bool is_zero(const UrdfInertial& inertial) {
 
 class UrdfReader {
  public:
-  UrdfReader(std::string_view text, const std::string& file_name, const UrdfOptions& options)
+  UrdfReader(std::string_view text, const std::string& file_name, const UrdfOptions& options,
+             const UrdfSupplement& supplement)
       : options_(options),
+        supplement_(supplement),
         source_(text, file_name),
         file_(read_urdf_elements(source_)),
         tree_(urdf_tree(file_, {file_name, 0, 0})) {
     model_.file = std::filesystem::path(file_name).filename().string();
     model_.sha256 = sha256_of(text);
+    model_.parameters = supplement.parameters;
   }
 
   Model run() {
@@ -101,6 +89,9 @@ class UrdfReader {
     model_.gravity = {0, 0, constant(-options_.gravity)};
     drop_world();
     name_coordinates();
+    leave_out_coupled();
+    model_.coordinates.insert(model_.coordinates.end(), supplement_.coordinates.begin(),
+                              supplement_.coordinates.end());
     read_inertias();
     make_inputs();
     for (std::size_t n = 0; n < tree_.nodes.size(); ++n) add_link(n);
@@ -123,7 +114,7 @@ class UrdfReader {
     const UrdfJoint& first = joint(tree_.nodes[1].joint);
     if (first.type != UrdfJointType::floating || !one_child || (inertial && !is_zero(*inertial))) return;
     note(fmt::format(
-        "floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world",
+        "assumed: floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world",
         first.name, link(1).name, link(0).name));
     model_.group = GroupKind::SE3;
     tree_.nodes.erase(tree_.nodes.begin());
@@ -145,9 +136,9 @@ class UrdfReader {
       c.where = j.where;
       if (j.limit && !is_chain) c.lower = (*j.limit)[0], c.upper = (*j.limit)[1];
       if (!j.limit && j.type == UrdfJointType::revolute)
-        note(fmt::format("joint '{}' has no limits: range [-pi, pi]", j.name));
+        note(fmt::format("assumed: joint '{}' has no limits: range [-pi, pi]", j.name));
       if (!is_angle && (is_chain || !j.limit))
-        note(fmt::format("joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
+        note(fmt::format("assumed: joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
       model_.coordinates.push_back(std::move(c));
     };
     for (const UrdfNode& node : tree_.nodes) {
@@ -165,15 +156,29 @@ class UrdfReader {
           add(described, fmt::format("{}_{}", described.name, part), false, true);
         for (const char* part : {"yaw", "pitch", "roll"})
           add(described, fmt::format("{}_{}", described.name, part), true, true);
-        note(
-            fmt::format("floating joint '{}' inside the tree became three slides and three turns (yaw, "
-                        "pitch, roll): singular "
-                        "at a pitch of pi/2",
-                        described.name));
+        note(fmt::format(
+            "assumed: floating joint '{}' inside the tree became three slides and three turns (yaw, "
+            "pitch, roll): singular "
+            "at a pitch of pi/2",
+            described.name));
       } else {
         add(described, described.name, described.type != UrdfJointType::prismatic, false);
       }
     }
+  }
+
+  /// Coordinates that a supplement couples go; their joints keep the names and await a displacement.
+  void leave_out_coupled() {
+    std::vector<int> place(model_.coordinates.size(), -1);
+    std::vector<Coordinate> kept;
+    for (std::size_t i = 0; i < place.size(); ++i) {
+      coordinate_names_.push_back(model_.coordinates[i].name);
+      if (std::ranges::find(supplement_.coupled, coordinate_names_[i]) != supplement_.coupled.end()) continue;
+      place[i] = static_cast<int>(kept.size());
+      kept.push_back(model_.coordinates[i]);
+    }
+    model_.coordinates = std::move(kept);
+    places_ = std::move(place);
   }
 
   /// Mass, first moment and inertia of every link about its own origin, in its own axes; parameters where
@@ -185,7 +190,7 @@ class UrdfReader {
       std::array<Exact, 10> figures;  // m, mx, my, mz, xx, yy, zz, xy, xz, yz
       const auto& inertial = link(n).inertial;
       if (!inertial) {
-        note(fmt::format("link '{}' has no inertial: massless", link(n).name));
+        note(fmt::format("assumed: link '{}' has no inertial: massless", link(n).name));
       } else {
         figures = about_origin(*inertial, link(n).name);
       }
@@ -213,8 +218,9 @@ class UrdfReader {
     const Exact half_trace = (central[0] + central[4] + central[8]) / Exact(2);
     for (std::size_t k = 0; k < 3; ++k) {
       if (half_trace - central[4 * k] < -half_trace * Exact::from_decimal("1e-9")) {
-        note(fmt::format("{} breaks the triangle rule: one principal moment exceeds the sum of the others",
-                         what));
+        note(fmt::format(
+            "doubtful: {} breaks the triangle rule: one principal moment exceeds the sum of the others",
+            what));
         break;
       }
     }
@@ -224,7 +230,7 @@ class UrdfReader {
     const ExactMatrix I = turned ? product(product(R, central), transposed(R)) : central;
     const Exact& m = i.mass;
     const Exact square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-    if (m.is_zero() && !is_zero(i)) note(fmt::format("link '{}' has inertia but no mass", name));
+    if (m.is_zero() && !is_zero(i)) note(fmt::format("doubtful: link '{}' has inertia but no mass", name));
     return {m,
             m * c[0],
             m * c[1],
@@ -243,7 +249,7 @@ class UrdfReader {
       for (std::size_t i = 0; i < 3; ++i) {
         const auto turns = rpy[i].is_zero() ? std::nullopt : eighth_turns(rpy[i]);
         if (turns)
-          note(fmt::format("{} {} of {} taken as {}", names[i], rpy[i].decimal(20), of,
+          note(fmt::format("snapped: {} {} of {} taken as {}", names[i], rpy[i].decimal(20), of,
                            quarters_of_pi(*turns)));
       }
     }
@@ -305,18 +311,28 @@ class UrdfReader {
   std::array<Expr, 3> axis(const UrdfJoint& j) {
     const ExactVector a = unit_vector(j.axis, !options_.as_written);
     if (a != j.axis)
-      note(fmt::format("axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8), a[1].decimal(8),
-                       a[2].decimal(8)));
+      note(fmt::format("snapped: axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8),
+                       a[1].decimal(8), a[2].decimal(8)));
     return {constant(a[0]), constant(a[1]), constant(a[2])};
   }
 
   void add_joint(BodyDescription& body, const UrdfJoint& j, int index) {
     const UrdfFollower& follower = tree_.followers[static_cast<std::size_t>(index)];
-    const auto coordinate =
+    const auto number =
         static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(follower.leader)]);
     body.joint.kind = j.type == UrdfJointType::prismatic ? JointKind::prismatic : JointKind::revolute;
     body.joint.axis = axis(j);
-    body.joint.coordinate = model_.coordinates[coordinate].name;
+    body.joint.coordinate = coordinate_names_[number];
+    if (places_[number] < 0) {
+      if (j.mimic || !j.damping.is_zero() || !j.friction.is_zero())
+        throw ModelError(
+            j.where,
+            fmt::format("joint '{}' {}, and '{}' is coupled by a supplement", j.name,
+                        j.mimic ? "mimics another" : "has damping or friction", coordinate_names_[number]),
+            "say it in the supplement instead, as a coupling, damping or friction");
+      return;
+    }
+    const auto coordinate = static_cast<std::size_t>(places_[number]);
     const Expr factor = constant(follower.multiplier);
     const Expr turned = factor * Expr(*model_.tape, model_.symbols.r[coordinate]);
     body.joint.displacement = turned + constant(follower.offset);
@@ -362,8 +378,13 @@ class UrdfReader {
       for (std::size_t k = 3; k-- > 0;) steps.push_back({JointKind::revolute, e[k]});
     }
     for (std::size_t i = 0; i < steps.size(); ++i) {
-      const auto coordinate =
-          static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(index)]) + i;
+      const int place =
+          places_[static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(index)]) + i];
+      if (place < 0)
+        throw ModelError(j.where,
+                         fmt::format("joint '{}' has several coordinates, one of them coupled", j.name),
+                         "couple revolute, continuous and prismatic joints only");
+      const auto coordinate = static_cast<std::size_t>(place);
       BodyDescription part;
       const bool last = i + 1 == steps.size();
       if (last) part = body;
@@ -382,30 +403,34 @@ class UrdfReader {
   }
 
   const UrdfOptions options_;
+  const UrdfSupplement& supplement_;
   XmlSource source_;
   UrdfFile file_;
   UrdfTree tree_;
   Model model_;
   std::vector<int> first_coordinate_;           // of each joint, in Model::coordinates
+  std::vector<std::string> coordinate_names_;   // of all coordinates that the file has
+  std::vector<int> places_;                     // of those in Model::coordinates; -1: left out
   std::vector<std::string> names_;              // of the nodes' links
   std::vector<std::array<Exact, 10>> figures_;  // inertial figures of the nodes' links
   std::vector<int> body_of_;                    // of each node, in Model::bodies
-  std::size_t next_parameter_ = 0;
+  std::size_t next_parameter_ = supplement_.parameters.size();
 };
 
 }  // namespace
 
-Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options) {
-  return UrdfReader(text, file_name, options).run();
+Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options,
+                     const UrdfSupplement& supplement) {
+  return UrdfReader(text, file_name, options, supplement).run();
 }
 
-Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options) {
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file)
-    throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
-  return read_urdf_text(bytes.str(), path.string(), options);
+bool is_urdf(const std::filesystem::path& path) {
+  return path.extension() == ".urdf" || path.extension() == ".xml";
+}
+
+Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options,
+                const UrdfSupplement& supplement) {
+  return read_urdf_text(read_bytes(path), path.string(), options, supplement);
 }
 
 }  // namespace anholon

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "describe/model.hpp"
 
@@ -21,10 +22,22 @@ struct UrdfOptions {
   Exact gravity = Exact::from_decimal("9.81");  // along -z of the world, m/s^2
 };
 
+/// What a supplement adds before the inputs of the model's tape are made.
+struct UrdfSupplement {
+  std::vector<Parameter> parameters;
+  std::vector<std::string> coupled;     // coordinates whose joints follow others: they are left out
+  std::vector<Coordinate> coordinates;  // of bodies that the supplement adds, behind those of the file
+};
+
+/// Whether a path is that of a URDF file, by its ending: .urdf or .xml.
+bool is_urdf(const std::filesystem::path& path);
+
 /// @throws ModelError with everything that is wrong with it
-Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {});
+Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options = {},
+                const UrdfSupplement& supplement = {});
 
 /// Likewise from text. @param file_name  stands in messages; its last component becomes Model::file
-Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options = {});
+Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options = {},
+                     const UrdfSupplement& supplement = {});
 
 }  // namespace anholon

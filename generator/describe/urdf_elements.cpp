@@ -40,7 +40,7 @@ class ElementReader {
     if (file_.links.empty()) error(source_.place(root), "the robot has no link", "write at least one <link>");
     findings_.throw_if_any();
     for (const auto& [what, number] : ignored_)
-      file_.notes.push_back(fmt::format("left out: {} {}", number, what));
+      file_.notes.push_back(fmt::format("dropped: {} {}", number, what));
     return std::move(file_);
   }
 

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "describe/document.hpp"
+
 namespace anholon {
 namespace {
 
@@ -31,6 +33,9 @@ std::string syntax_fault(tinyxml2::XMLError error) {
 
 XmlSource::XmlSource(std::string_view text, std::string file_name)
     : text_(text), file_name_(std::move(file_name)) {
+  if (text_.size() > largest_file)
+    throw ModelError({file_name_, 1, 1}, fmt::format("the file is larger than {} bytes", largest_file),
+                     "leave out what dynamics does not need, such as meshes written into it");
   line_starts_.push_back(0);
   for (std::size_t i = 0; i < text_.size(); ++i) {
     if (text_[i] == '\n') line_starts_.push_back(i + 1);

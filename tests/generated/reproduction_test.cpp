@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "derive/derive.hpp"
+#include "derive/tree_functions.hpp"
 #include "describe/read_model.hpp"
+#include "describe/read_urdf.hpp"
 #include "emit/equations.hpp"
 #include "emit/header.hpp"
 
@@ -41,7 +43,7 @@ std::string first_difference(const std::string& a, const std::string& b) {
   }
 }
 
-std::vector<std::string> model_names() {
+std::vector<std::string> names_of_model_files() {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(root / "models")) {
     const std::string name = entry.path().filename().string();
@@ -51,21 +53,46 @@ std::vector<std::string> model_names() {
   return names;
 }
 
+std::vector<std::string> model_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(root / "models")) {
+    const std::string name = entry.path().filename().string();
+    if (fs::exists(entry.path() / (name + ".toml")) || fs::exists(entry.path() / (name + ".urdf")))
+      names.push_back(name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// What `generate` writes of a model, as scripts/regenerate calls it.
+std::string generated_text(const std::string& name) {
+  const fs::path urdf = root / "models" / name / (name + ".urdf");
+  if (!fs::exists(urdf))
+    return emit_header(derive(read_model(root / "models" / name / (name + ".toml")))->program);
+  UrdfOptions options;
+  options.floating = name != "arm7";
+  TreeRequest request;
+  if (name == "humanoid") request.functions = {"inverse_dynamics", "gravity_forces"};
+  return emit_header(derive_tree(read_urdf(urdf, options), request)->program);
+}
+
 class EveryModel : public testing::TestWithParam<std::string> {};
 
 TEST_P(EveryModel, IsReproducedByteForByte) {
   const fs::path kept = root / "generated" / GetParam() / "standard.hpp";
   ASSERT_TRUE(fs::exists(kept)) << "run scripts/regenerate";
-  const Model model = read_model(root / "models" / GetParam() / (GetParam() + ".toml"));
   const std::string expected = bytes_of(kept);
-  const std::string text = emit_header(derive(model)->program);
+  const std::string text = generated_text(GetParam());
   EXPECT_TRUE(text == expected)
       << "generated code changed at " << first_difference(expected, text)
       << "\nif this is meant, run scripts/regenerate and commit the result with its cause";
-  EXPECT_TRUE(text == emit_header(derive(model)->program)) << "two derivations in one process differ";
+  EXPECT_TRUE(text == generated_text(GetParam())) << "two derivations in one process differ";
 }
 
-TEST_P(EveryModel, ShowsItsEquationsOnItsPage) {
+/// Models that are described by a model file: their pages show equations, which those of URDF files do not.
+class EveryModelFile : public testing::TestWithParam<std::string> {};
+
+TEST_P(EveryModelFile, ShowsItsEquationsOnItsPage) {
   const std::string page = bytes_of(root / "models" / GetParam() / "README.md");
   const std::string begin = "<!-- equations, written by scripts/regenerate: do not edit -->\n\n";
   const std::string end = "\n<!-- end of equations -->\n";
@@ -85,6 +112,7 @@ TEST_P(EveryModel, ShowsItsEquationsOnItsPage) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(model_names()));
+INSTANTIATE_TEST_SUITE_P(Models, EveryModelFile, testing::ValuesIn(names_of_model_files()));
 
 }  // namespace
 }  // namespace anholon

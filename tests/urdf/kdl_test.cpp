@@ -10,13 +10,11 @@
 #include <cmath>
 #include <filesystem>
 #include <kdl/chaindynparam.hpp>
+#include <kdl/chainfdsolver_recursive_newton_euler.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 
-#include "derive/tree_functions.hpp"
-#include "describe/mechanise.hpp"
-#include "describe/read_urdf.hpp"
 #include "urdf/kdl_chain.hpp"
-#include "urdf/random_state.hpp"
+#include "urdf/oracle_state.hpp"
 #include "urdf/small_robots.hpp"
 
 namespace anholon {
@@ -24,12 +22,13 @@ namespace {
 
 void compare(const Model& model) {
   const auto derivation = derive_tree(model);
-  const Mechanism<double> mechanism = mechanise<double>(describe_mechanism(model), std::vector<double>{});
+  const Mechanism<double> mechanism = testing::mechanism_of(model);
   ASSERT_TRUE(testing::is_chain(mechanism));
   const KDL::Chain chain = testing::chain_of(mechanism);
   const unsigned n = chain.getNrOfJoints();
   ASSERT_EQ(n, model.coordinates.size());
   KDL::ChainIdSolver_RNE inverse(chain, KDL::Vector(0, 0, -9.81));
+  KDL::ChainFdSolver_RNE forward(chain, KDL::Vector(0, 0, -9.81));
   KDL::ChainDynParam parameters(chain, KDL::Vector(0, 0, -9.81));
   std::mt19937 random(3);
   for (int trial = 0; trial < 20; ++trial) {
@@ -37,11 +36,17 @@ void compare(const Model& model) {
     KDL::JntArray q(n), qd(n), qdd(n), tau(n), gravity(n);
     for (unsigned i = 0; i < n; ++i)
       q(i) = x.state.r[i], qd(i) = x.state.r_dot[i], qdd(i) = x.acceleration[i];
-    ASSERT_EQ(inverse.CartToJnt(q, qd, qdd, KDL::Wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()), tau),
-              0);
+    const KDL::Wrenches none(chain.getNrOfSegments(), KDL::Wrench::Zero());
+    ASSERT_EQ(inverse.CartToJnt(q, qd, qdd, none, tau), 0);
     ASSERT_EQ(parameters.JntToGravity(q, gravity), 0);
     KDL::JntSpaceInertiaMatrix M(n);
     ASSERT_EQ(parameters.JntToMass(q, M), 0);
+    KDL::JntArray applied(n), acceleration(n);
+    for (unsigned i = 0; i < n; ++i) applied(i) = x.tau[i];
+    ASSERT_EQ(forward.CartToJnt(q, qd, applied, none, acceleration), 0);
+    const std::vector<double> r_ddot(acceleration.data.data(), acceleration.data.data() + n);
+    EXPECT_LT(testing::difference(testing::run(derivation->program, "forward_dynamics", x.inputs), r_ddot),
+              1e-12);
     const auto got_tau = testing::run(derivation->program, "inverse_dynamics", x.inputs);
     const auto got_gravity = testing::run(derivation->program, "gravity_forces", x.inputs);
     const auto got_M = testing::run(derivation->program, "mass_matrix", x.inputs);
@@ -72,6 +77,8 @@ std::string frictionless_chain() {
 }
 
 TEST(Kdl, ChainOfOurOwn) { compare(read_urdf_text(frictionless_chain(), "chain.urdf")); }
+
+TEST(Kdl, Arm7) { compare(testing::shipped_robot("arm7")); }
 
 TEST(Kdl, Iiwa) {
   const std::filesystem::path file = std::filesystem::path(ANHOLON_ROBOTS) / "iiwa.urdf";

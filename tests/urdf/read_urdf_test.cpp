@@ -145,7 +145,7 @@ TEST(ReadUrdf, VisualsAreLeftOutWithANote) {
       "<robot name='v'><link name='a'><visual><geometry><mesh "
       "filename='x'/></geometry></visual></link></robot>",
       "v.urdf");
-  EXPECT_TRUE(notes_contain(model, "left out: 1 <visual>"));
+  EXPECT_TRUE(notes_contain(model, "dropped: 1 <visual>"));
   EXPECT_TRUE(notes_contain(model, "link 'a' has no inertial: massless"));
 }
 

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "check/verify_tree.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <span>
+
+#include "anholon/free_dynamics.hpp"
+#include "check/compiled_caller.hpp"
+#include "check/error_measure.hpp"
+#include "check/tree_reference.hpp"
+#include "describe/mechanise.hpp"
+#include "reduce/samples.hpp"
+
+namespace anholon {
+namespace {
+
+constexpr double eps = std::numeric_limits<double>::epsilon();
+constexpr unsigned digits = 60;
+constexpr int condition_trials = 4;
+
+/// States at which the exact recursion runs: its unit sweeps grow with the square of the size.
+int formula_samples(int size) { return std::clamp(400 / std::max(size, 1), 5, 40); }
+
+TreePoint<double> rounded(const TreePoint<Exact>& x) {
+  const auto all = [](const std::vector<Exact>& from) {
+    std::vector<double> to;
+    for (const Exact& e : from) to.push_back(e.to_double());
+    return to;
+  };
+  TreePoint<double> r;
+  for (std::size_t i = 0; i < 9; ++i) r.state.R.m[i] = x.state.R.m[i].to_double();
+  for (int i = 0; i < 3; ++i) r.state.p[i] = x.state.p[i].to_double();
+  for (int i = 0; i < 6; ++i) {
+    r.state.eta[i] = x.state.eta[i].to_double();
+    r.eta_dot[i] = x.eta_dot[i].to_double();
+  }
+  r.state.r = all(x.state.r), r.state.r_dot = all(x.state.r_dot);
+  r.r_ddot = all(x.r_ddot), r.tau = all(x.tau);
+  return r;
+}
+
+class TreeVerifier {
+ public:
+  TreeVerifier(const Model& model, const Program& program)
+      : model_(model), program_(program), components_(free_components(model.group)) {
+    const MechanismDescription description = describe_mechanism(model);
+    std::vector<Exact> parameters;
+    std::vector<double> numbers;
+    for (const Parameter& p : model.parameters) {
+      numbers.push_back(p.value.to_double());  // double code is given these numbers
+      parameters.push_back(Exact::from_double(numbers.back()));
+    }
+    mechanism_ = mechanise<Exact>(description, parameters);
+    in_double_ = mechanise<double>(description, numbers);
+    exact_ = interpreting_caller<Exact>(program, parameters);
+    compiled_ = compiled_caller(program, parameters);
+  }
+
+  Verification run(int samples, const std::function<void(int)>& progress) {
+    const int size = static_cast<int>(components_.size()) + mechanism_.coordinates;
+    SampleSource source(4);
+    for (int s = 0; s < samples; ++s) {
+      if (progress) progress(s);
+      points_.push_back(random_point(source));
+      compare(points_.back());
+      if (s < formula_samples(size)) check_formulas(points_.back());
+    }
+    return summarise(samples, source);
+  }
+
+ private:
+  struct Record {
+    std::vector<double> error, scale, recursion_error;  // one an evaluated state
+  };
+
+  /// Position in the working range; velocities, accelerations and forces in +-1. Every value is a double.
+  TreePoint<Exact> random_point(SampleSource& source) const {
+    const auto unit = [&] { return source.uniform(Exact(-1), Exact(1)); };
+    TreePoint<Exact> x;
+    x.state = random_state(model_, source);
+    for (const int c : components_) x.eta_dot[c] = unit();
+    for (int i = 0; i < mechanism_.coordinates; ++i) {
+      x.r_ddot.push_back(unit());
+      x.tau.push_back(unit());
+    }
+    return x;
+  }
+
+  void compare(const TreePoint<Exact>& x) {
+    const NamedValues<Exact> in = tree_inputs(mechanism_, x);
+    const NamedValues<double> in_double = tree_inputs(in_double_, rounded(x));
+    for (const Function& f : program_.functions) {
+      const NamedValues<Exact> expected = exact_(f.name, in);
+      const NamedValues<double> got = compiled_(f.name, in_double);
+      for (const OutputBlock& b : f.outputs) {
+        Record& record = records_[{f.name, b.name}];
+        record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
+        record.scale.push_back(size_of(expected.at(b.name)));
+      }
+    }
+  }
+
+  void check_formulas(const TreePoint<Exact>& x) {
+    ++formula_count_;
+    const NamedValues<Exact> in = tree_inputs(mechanism_, x);
+    for (const Function& f : program_.functions) {
+      const NamedValues<Exact> expected = tree_reference(mechanism_, f.name, x);
+      const NamedValues<double> numeric = tree_reference(in_double_, f.name, rounded(x));
+      const NamedValues<Exact> got = exact_(f.name, in);
+      for (const OutputBlock& b : f.outputs) {
+        const std::vector<Exact>& want = expected.at(b.name);
+        const double scale = std::max(size_of(want), 1e-3);
+        const double error = distance(got.at(b.name), want) / scale;
+        if (!(error <= formula_worst_)) formula_worst_ = error, formula_at_ = f.name + "." + b.name;
+        records_[{f.name, b.name}].recursion_error.push_back(distance(numeric.at(b.name), want) / scale);
+      }
+    }
+    balance_energy(x);
+  }
+
+  /// d(T + V)/dt = power of wrench, joint forces and what the joints resist with; the forces are those of
+  /// the compiled inverse dynamics, the derivative is by central differences with an error of 1e-24.
+  void balance_energy(const TreePoint<Exact>& x) {
+    if (find_function(program_, "inverse_dynamics") == nullptr) return;
+    Mechanism<Exact> bare = mechanism_;
+    bare.generalised_forces = {};
+    FreeDynamics<Exact> inertial(bare), dynamics(mechanism_);
+    const Exact h = Exact::from_decimal("1e-12");
+    const auto energy = [&](const Exact& step) {
+      State<Exact> s = x.state;
+      s.p += s.R * (step * s.eta.linear);
+      s.R = s.R + step * (s.R * skew(s.eta.angular));
+      for (const int c : components_) s.eta[c] += step * x.eta_dot[c];
+      for (std::size_t i = 0; i < s.r.size(); ++i) {
+        s.r[i] += step * x.state.r_dot[i];
+        s.r_dot[i] += step * x.r_ddot[i];
+      }
+      const auto e = inertial.energies(s);
+      return e.kinetic + e.gravity;
+    };
+    const double rate = ((energy(h) - energy(-h)) / (Exact(2) * h)).to_double();
+    const std::vector<Exact> with = dynamics.forces(x.state), without = inertial.forces(x.state);
+    const NamedValues<double> got = compiled_("inverse_dynamics", tree_inputs(in_double_, rounded(x)));
+    double power = 0, scale = std::abs(rate);
+    const auto add = [&](double term) { power += term, scale = std::max(scale, std::abs(term)); };
+    const std::size_t n = components_.size();
+    for (std::size_t i = 0; i < with.size(); ++i) {
+      const Exact& v = i < n ? x.state.eta[components_[i]] : x.state.r_dot[i - n];
+      add(((with[i] - without[i]) * v).to_double());
+      add((i < n ? got.at("base_wrench")[i] : got.at("tau")[i - n]) * v.to_double());
+    }
+    if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
+  }
+
+  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last
+  /// place.
+  double condition(const std::string& function, const std::string& output, std::size_t sample, double scale,
+                   SampleSource& source) {
+    const NamedValues<Exact> in = tree_inputs(mechanism_, points_[sample]);
+    const std::vector<Exact> base = exact_(function, in).at(output);
+    double largest = 0;
+    for (int trial = 0; trial < condition_trials; ++trial) {
+      NamedValues<Exact> moved = in;
+      for (auto& [name, values] : moved) {
+        for (Exact& x : values) x = x * (Exact(1) + Exact::from_double(source.uniform() < 0.5 ? eps : -eps));
+      }
+      largest = std::max(largest, distance(exact_(function, moved).at(output), base) / scale);
+    }
+    return largest / eps;
+  }
+
+  Verification summarise(int samples, SampleSource& source) {
+    Verification v;
+    v.samples = samples;
+    v.formula_samples = formula_count_;
+    v.formula_worst = formula_worst_;
+    v.formula_at = formula_at_;
+    v.energy_balance = energy_balance_;
+    for (const Function& f : program_.functions) {
+      for (const OutputBlock& b : f.outputs) {
+        const Record& record = records_.at({f.name, b.name});
+        std::vector<double> sizes = record.scale;
+        std::ranges::sort(sizes);
+        const double typical = sizes[sizes.size() / 2];
+        OutputError e;
+        e.function = f.name;
+        e.output = b.name;
+        std::vector<double> relative;
+        for (std::size_t i = 0; i < record.error.size(); ++i) {
+          const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
+          relative.push_back(record.error[i] / scale);
+          if (!(relative.back() <= e.worst))
+            e.worst = relative.back(), e.worst_at = fmt::format("sample {}", i + 1);
+          if (relative.back() <= verification_bound) continue;
+          const double kappa = condition(f.name, b.name, i, scale, source);
+          e.condition = std::max(e.condition, kappa);
+          if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
+        }
+        std::ranges::sort(relative);
+        e.median = relative[relative.size() / 2];
+        e.p99 = relative[std::min(relative.size() - 1, relative.size() * 99 / 100)];
+        if (!record.recursion_error.empty())
+          e.recursion_worst = *std::ranges::max_element(record.recursion_error);
+        v.passed = v.passed && e.passed;
+        v.outputs.push_back(std::move(e));
+      }
+    }
+    v.passed = v.passed && v.formula_worst <= formula_bound && v.energy_balance <= 1e-11;
+    return v;
+  }
+
+  const WorkingDigits precision_{digits};
+  const Model& model_;
+  const Program& program_;
+  std::span<const int> components_;
+  Mechanism<Exact> mechanism_;
+  Mechanism<double> in_double_;
+  ProgramCaller<Exact> exact_;
+  ProgramCaller<double> compiled_;
+  std::vector<TreePoint<Exact>> points_;
+  std::map<std::pair<std::string, std::string>, Record> records_;
+  double formula_worst_ = 0, energy_balance_ = 0;
+  int formula_count_ = 0;
+  std::string formula_at_;
+};
+
+}  // namespace
+
+Verification verify_tree(const Model& model, const TreeDerivation& derivation, int samples,
+                         const std::function<void(int)>& progress) {
+  return TreeVerifier(model, derivation.program).run(samples, progress);
+}
+
+}  // namespace anholon

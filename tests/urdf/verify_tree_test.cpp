@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+
+// Compiled code of whole robots against exact arithmetic and the exact recursion; and that a wrong program is
+// found.
+
+#include "check/verify_tree.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+#include "urdf/oracle_state.hpp"
+#include "urdf/small_robots.hpp"
+
+namespace anholon {
+namespace {
+
+void expect_passed(const Model& model, const std::vector<std::string>& functions, int samples) {
+  TreeRequest request;
+  request.functions = functions;
+  const auto derivation = derive_tree(model, request);
+  const Verification v = verify_tree(model, *derivation, samples, {});
+  EXPECT_TRUE(v.passed);
+  EXPECT_GT(v.formula_samples, 0);
+  EXPECT_LE(v.formula_worst, formula_bound) << v.formula_at;
+  EXPECT_LE(v.energy_balance, 1e-11);  // the bound of verify; the derivative alone is good to 1e-24
+  for (const OutputError& e : v.outputs)
+    EXPECT_TRUE(e.passed) << e.function << "." << e.output << ": " << e.worst << ", kappa " << e.condition;
+}
+
+TEST(VerifyTree, EveryFunctionOfTheSmallArm) {
+  expect_passed(read_urdf_text(testing::arm(), "arm.urdf"), tree_function_names(), 5);
+}
+TEST(VerifyTree, EveryFunctionOfTheWalker) {
+  UrdfOptions options;
+  options.floating = true;
+  expect_passed(read_urdf_text(testing::walker(), "walker.urdf", options), tree_function_names(), 5);
+}
+TEST(VerifyTree, SymbolicInertia) {
+  UrdfOptions options;
+  options.symbolic_inertia = true;
+  expect_passed(read_urdf_text(testing::arm(), "arm.urdf", options), {}, 20);
+}
+TEST(VerifyTree, Arm7) { expect_passed(testing::shipped_robot("arm7"), tree_function_names(), 10); }
+TEST(VerifyTree, Quadruped) { expect_passed(testing::shipped_robot("quadruped"), {}, 10); }
+TEST(VerifyTree, Humanoid) { expect_passed(testing::shipped_robot("humanoid"), {}, 5); }
+
+/// A program with one output changed by 1e-12 of itself has to fail.
+TEST(VerifyTree, FindsAWrongFunction) {
+  const Model model = read_urdf_text(testing::serial_arm(), "arm.urdf");
+  TreeRequest request;
+  request.functions = {"inverse_dynamics"};
+  const auto derivation = derive_tree(model, request);
+  Program& program = derivation->program;
+  NodeId& output = program.functions.at(0).outputs.back().nodes.at(1);
+  const Expr factor(program.tape, program.tape.constant(Exact::from_decimal("1.000000000001")));
+  output = (factor * Expr(program.tape, output)).id(program.tape);
+  const Verification v = verify_tree(model, *derivation, 3, {});
+  EXPECT_FALSE(v.passed);
+  EXPECT_GT(v.formula_worst, 1e-14);
+}
+
+/// Robots that users point at by the environment variable ANHOLON_ROBOTS; their files are not part of the
+/// project.
+class RealRobots : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(RealRobots, PassVerification) {
+  const char* folder = std::getenv("ANHOLON_ROBOTS");
+  const std::filesystem::path file =
+      std::filesystem::path(folder == nullptr ? "" : folder) / (GetParam() + ".urdf");
+  if (folder == nullptr || !std::filesystem::exists(file)) GTEST_SKIP() << "no " << GetParam();
+  UrdfOptions options;
+  options.floating =
+      GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" && GetParam() != "double_pendulum";
+  expect_passed(read_urdf(file, options), {}, GetParam().starts_with("talos") ? 5 : 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RealRobots,
+                         ::testing::Values("double_pendulum", "ur5", "iiwa", "panda", "anymal_b", "hyq",
+                                           "talos_reduced", "talos_full"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace anholon
