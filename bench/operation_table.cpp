@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-// Operations of the functions of every robot in a folder of URDF files: additions, multiplications and
-// divisions together, sines and cosines apart. A robot whose name does not begin like an arm's on a pedestal
-// has a free base.
+// Operations of the functions of every robot in a folder of URDF and model files: additions, multiplications
+// and divisions together, sines and cosines apart. A robot whose name does not begin like an arm's on a
+// pedestal has a free base.
 //
-//   operation_table [--routes] [--fixed NAME]... FOLDER
+//   operation_table [--routes | --passes | --symbolic] [--fixed NAME]... FOLDER
+//
+// --routes adds the formulations that were tried, --passes the operations after each pass; --symbolic
+// compares frozen inertial figures with symbolic ones, whose operations are those of one call.
 
 #include <fmt/format.h>
 
@@ -17,18 +20,57 @@
 #include <vector>
 
 #include "derive/tree_functions.hpp"
+#include "describe/read_model.hpp"
 #include "describe/read_urdf.hpp"
 #include "optimise/tape/count.hpp"
 
+namespace {
+
+using namespace anholon;
+
+/// Operations of one call; -1 where the robot has no such function.
+int operations(const TreeDerivation& derivation, const std::string& name, int* angles = nullptr) {
+  const auto function = std::ranges::find(derivation.program.functions, name, &Function::name);
+  if (function == derivation.program.functions.end()) return -1;
+  std::vector<NodeId> roots;
+  for (const OutputBlock& b : function->outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+  const OperationCount count = operations_per_call(derivation.program, roots);
+  if (angles != nullptr) *angles = std::max(*angles, count.trigonometric());
+  return count.total();
+}
+
+void print_counts(const std::string& robot, const TreeDerivation& derivation, double seconds) {
+  fmt::print("| {} |", robot);
+  int angles = 0;
+  for (const std::string& name : standard_tree_functions())
+    fmt::print(" {} |", operations(derivation, name, &angles));
+  fmt::print(" {} | {:.2f} |\n", angles, seconds);
+}
+
+void print_ratios(const std::string& robot, const TreeDerivation& frozen, const TreeDerivation& symbolic) {
+  fmt::print("| {} |", robot);
+  for (const std::string& name : standard_tree_functions()) {
+    const int f = operations(frozen, name);
+    const int s = operations(symbolic, name);
+    fmt::print(" {} / {} ({:+.1f} %) |", f, s, 100.0 * (s - f) / f);
+  }
+  fmt::print(" {} |\n", symbolic.program.parameters.size());
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace anholon;
   std::set<std::string> fixed = {"double_pendulum", "iiwa", "panda", "ur5"};
-  bool routes = false;
+  bool routes = false, passes = false, symbolic = false;
   std::string folder;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--routes") {
       routes = true;
+    } else if (argument == "--passes") {
+      passes = true;
+    } else if (argument == "--symbolic") {
+      symbolic = true;
     } else if (argument == "--fixed" && i + 1 < argc) {
       fixed.insert(argv[++i]);
     } else {
@@ -36,44 +78,47 @@ int main(int argc, char** argv) {
     }
   }
   if (folder.empty()) {
-    std::fputs("usage: operation_table [--routes] [--fixed NAME]... FOLDER\n", stderr);
+    std::fputs("usage: operation_table [--routes | --passes | --symbolic] [--fixed NAME]... FOLDER\n",
+               stderr);
     return 2;
   }
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    if (entry.path().extension() == ".urdf") files.push_back(entry.path());
+    if (entry.path().extension() == ".urdf" || entry.path().extension() == ".toml")
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
 
   fmt::print("| robot |");
   for (const std::string& name : standard_tree_functions()) fmt::print(" {} |", name);
-  fmt::print(" sin + cos | s |\n|---|");
-  for (std::size_t i = 0; i < standard_tree_functions().size() + 2; ++i) fmt::print("---:|");
+  const std::vector<std::string> more =
+      symbolic ? std::vector<std::string>{"parameters"} : std::vector<std::string>{"sin + cos", "s"};
+  for (const std::string& name : more) fmt::print(" {} |", name);
+  fmt::print("\n|---|");
+  for (std::size_t i = 0; i < standard_tree_functions().size() + more.size(); ++i) fmt::print("---:|");
   fmt::print("\n");
   int status = 0;
   for (const auto& file : files) {
     try {
       UrdfOptions options;
       options.floating = !fixed.contains(file.stem().string());
+      TreeRequest request;
+      request.trace = passes;
+      const auto derive_file = [&] {
+        return derive_tree(file.extension() == ".urdf" ? read_urdf(file, options) : read_model(file),
+                           request);
+      };
       const auto start = std::chrono::steady_clock::now();
-      const auto derivation = derive_tree(read_urdf(file, options));
+      const auto derivation = derive_file();
       const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
-      fmt::print("| {} |", file.stem().string());
-      int angles = 0;
-      for (const std::string& name : standard_tree_functions()) {
-        const auto function = std::ranges::find(derivation->program.functions, name, &Function::name);
-        if (function == derivation->program.functions.end()) {
-          fmt::print(" |");
-          continue;
-        }
-        std::vector<NodeId> roots;
-        for (const OutputBlock& b : function->outputs)
-          roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-        const OperationCount count = count_operations(derivation->program.tape, roots);
-        angles = std::max(angles, count.trigonometric());
-        fmt::print(" {} |", count.total());
+      if (symbolic) {
+        options.symbolic_inertia = true;
+        print_ratios(file.stem().string(), *derivation, *derive_file());
+      } else {
+        print_counts(file.stem().string(), *derivation, elapsed.count());
       }
-      fmt::print(" {} | {:.2f} |\n", angles, elapsed.count());
+      for (const PassReport& p : derivation->trace)
+        fmt::print("    {:6} {}: {}\n", p.operations, p.function, p.pass);
       if (!routes) continue;
       for (const CandidateReport& c : derivation->candidates)
         fmt::print("    {} {:6} {}: {}\n", c.chosen ? '*' : ' ', c.operations, c.function, c.route);

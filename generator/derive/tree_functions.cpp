@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -15,6 +16,7 @@
 #include "derive/tree_inputs.hpp"
 #include "derive/tree_kinematics.hpp"
 #include "describe/mechanise.hpp"
+#include "optimise/model/align_parallel.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/model/regroup.hpp"
 #include "optimise/model/rotate_leaves.hpp"
@@ -22,6 +24,8 @@
 #include "optimise/tape/common_factors.hpp"
 #include "optimise/tape/common_sums.hpp"
 #include "optimise/tape/count.hpp"
+#include "optimise/tape/gather_parameters.hpp"
+#include "optimise/tape/hoist.hpp"
 #include "optimise/tape/opposite_differences.hpp"
 
 namespace anholon {
@@ -38,6 +42,36 @@ struct Route {
   std::vector<OutputBlock> outputs;
 };
 
+/// Ways to derive a function in given frames; one that does not apply has no outputs.
+struct Algorithm {
+  std::string name;
+  std::function<std::vector<OutputBlock>(const Mechanism<Expr>&)> outputs;
+};
+
+/// What became of a function, for the trace.
+struct Kept {
+  Algorithm algorithm;
+  std::vector<NodeId> roots;  // before the passes on the program
+};
+
+/// Passes over a program, in the order in which they run.
+struct TapePass {
+  std::string name;
+  std::function<std::vector<NodeId>(Tape&, std::vector<NodeId>, const std::vector<NodeId>&)> run;
+};
+const std::vector<TapePass>& tape_passes() {
+  using Roots = std::vector<NodeId>;
+  static const std::vector<TapePass> passes = {
+      {"opposite differences",
+       [](Tape& t, Roots r, const Roots&) { return merge_opposite_differences(t, std::move(r)); }},
+      {"common factors",
+       [](Tape& t, Roots r, const Roots&) { return extract_common_factors(t, std::move(r)); }},
+      {"common sums", [](Tape& t, Roots r, const Roots&) { return share_common_sums(t, std::move(r)); }},
+      {"gathered parameters",
+       [](Tape& t, Roots r, const Roots& p) { return gather_parameters(t, std::move(r), p); }}};
+  return passes;
+}
+
 class TreeDeriver {
  public:
   TreeDeriver(const Model& model, const TreeRequest& request)
@@ -46,7 +80,9 @@ class TreeDeriver {
         result_(std::make_unique<TreeDerivation>()),
         program_(result_->program),
         tape_(program_.tape),
-        in_(model, program_) {}
+        in_(model, program_) {
+    for (const ParameterInfo& p : program_.parameters) parameters_.push_back(p.node);
+  }
 
   std::unique_ptr<TreeDerivation> run() {
     program_.model = model_.name;
@@ -70,6 +106,7 @@ class TreeDeriver {
           "robot '{}' has nothing that moves and so none of these functions; give it a joint, or a "
           "free base (--floating)",
           model_.name));
+    if (request_.trace) trace_passes();  // last: it leaves nodes on the tape, which no function needs
     return std::move(result_);
   }
 
@@ -94,6 +131,8 @@ class TreeDeriver {
     const int merged = merge_fixed(mechanism);
     merged_ = mechanism;
     result_->passes.push_back(fmt::format("merged {} bodies on fixed joints", merged));
+    result_->passes.push_back(fmt::format("aligned {} frames with parallel ones", align_parallel(mechanism)));
+    if (request_.trace) trace_frames();
     const auto add = [&](const std::string& name, Mechanism<Expr> m, bool tips, bool base_parameters) {
       if (tips) rotate_leaves(m);
       if (base_parameters) regroup(m);
@@ -109,6 +148,37 @@ class TreeDeriver {
     add("slid to the tips, regrouped", to_tips, false, true);
     add("slid to the base, regrouped", to_base, false, true);
     add("slid to the tips", to_tips, false, false);
+  }
+
+  /// The passes on the mechanism one by one, as the first choice of frames has them.
+  void trace_frames() {
+    stages_.push_back({"as described", described_});
+    Mechanism<Expr> m = merged_;
+    const auto stage = [&](const std::string& name) { stages_.push_back({name, m}); };
+    stage("fixed joints merged");
+    align_parallel(m);
+    stage("parallel frames aligned");
+    slide_frames(m);
+    stage("frames slid");
+    rotate_leaves(m);
+    stage("tips turned");
+    regroup(m);
+    stage("inertia regrouped");
+  }
+
+  void trace_passes() {
+    for (const Function& f : program_.functions) {
+      const auto report = [&](const std::string& pass, const std::vector<NodeId>& roots) {
+        result_->trace.push_back({f.name, pass, cost_of(roots)});
+      };
+      const Kept& kept = kept_.at(f.name);
+      for (const Frames& stage : stages_) {
+        const Route r{"", kept.algorithm.outputs(stage.mechanism)};
+        if (const std::vector<NodeId> roots = roots_of(r); !roots.empty()) report(stage.name, roots);
+      }
+      report("best frames", kept.roots);
+      share(kept.roots, report);
+    }
   }
 
   // ---- routes
@@ -133,6 +203,7 @@ class TreeDeriver {
   /// Derives a function by every route and keeps the cheapest.
   void derive(const std::string& name) {
     std::vector<Route> routes;
+    std::vector<Algorithm> algorithms;
     std::vector<int> cost;
     std::set<std::string> hopeless;  // algorithms that lost by a quarter in the first frames
     for (const Frames& frames : frames_) {
@@ -142,8 +213,9 @@ class TreeDeriver {
         Route r{algorithm.name, outputs_of(name, algorithm, frames.mechanism)};
         std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
         if (r.outputs.empty()) continue;
-        cost.push_back(operations_per_call(program_, roots_of(r)).total());
+        cost.push_back(cost_of(roots_of(r)));
         routes.push_back(std::move(r));
+        algorithms.push_back(algorithm);
       }
       if (first == routes.size()) continue;
       const int least = *std::min_element(cost.begin() + static_cast<std::ptrdiff_t>(first), cost.end());
@@ -159,37 +231,51 @@ class TreeDeriver {
         for (NodeId& id : b.nodes) id = roots[next++];
       }
     };
+    std::vector<std::vector<NodeId>> before;
+    for (const Route& r : routes) before.push_back(roots_of(r));
     std::vector<std::size_t> order(routes.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cost[i]; });
     for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), finalists); ++i) {
-      const std::vector<NodeId> shared = share(roots_of(routes[order[i]]));
+      const std::vector<NodeId> shared = share(before[order[i]]);
       place(order[i], shared);
-      cost[order[i]] = operations_per_call(program_, shared).total();
+      cost[order[i]] = cost_of(shared);
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
     for (std::size_t i = 0; i < routes.size(); ++i)
       result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
+    if (request_.trace) kept_.emplace(name, Kept{algorithms[best], before[best]});
     program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
   }
 
   /// Passes over the program itself; they are costly, so only the cheapest routes see them.
-  static constexpr std::size_t finalists = 2;
+  static constexpr std::size_t finalists = 4;
   static constexpr std::size_t largest_shared =
-      200000;  // nodes of the tape beyond which the passes would dominate the time
-  std::vector<NodeId> share(std::vector<NodeId> roots) {
+      400000;  // nodes of the tape beyond which the passes would dominate the time
+  std::vector<NodeId> share(
+      std::vector<NodeId> roots,
+      const std::function<void(const std::string& pass, const std::vector<NodeId>& roots)>& report = {}) {
     if (tape_.size() > largest_shared) return roots;
-    roots = merge_opposite_differences(tape_, std::move(roots));
-    roots = extract_common_factors(tape_, std::move(roots));
-    roots = share_common_sums(tape_, std::move(roots));
-    return merge_opposite_differences(tape_, std::move(roots));
+    int cost = cost_of(roots);
+    for (int round = 0; round < 3; ++round) {
+      const int before = cost;
+      for (const TapePass& pass : tape_passes()) {
+        std::vector<NodeId> next = pass.run(tape_, roots, parameters_);
+        const int after = cost_of(next);
+        if (after > cost) continue;  // a pass counts what prepare() computes, too
+        cost = after;
+        roots = std::move(next);
+        if (report) report(pass.name, roots);
+      }
+      if (cost == before) break;
+    }
+    return roots;
   }
 
-  /// Ways to derive a function in given frames; one that does not apply has no outputs.
-  struct Algorithm {
-    std::string name;
-    std::function<std::vector<OutputBlock>(const Mechanism<Expr>&)> outputs;
-  };
+  [[nodiscard]] int cost_of(const std::vector<NodeId>& roots) const {
+    return operations_per_call(tape_, roots, parameters_).total();
+  }
+
   static std::vector<OutputBlock> outputs_of(const std::string& function, const Algorithm& algorithm,
                                              const Mechanism<Expr>& mechanism) {
     try {
@@ -219,7 +305,9 @@ class TreeDeriver {
       return {
           {"articulated bodies",
            [this](M m) { return independent(m) ? forward_dynamics(m, true) : std::vector<OutputBlock>{}; }},
-          {"composite bodies and LTDL factor", [this](M m) { return forward_dynamics(m, false); }}};
+          {"composite bodies and LTDL factor", [this](M m) {
+             return factor_may_pay(m) ? forward_dynamics(m, false) : std::vector<OutputBlock>{};
+           }}};
     }
     if (name == "imposed_motion")
       return {{"composite body and two sweeps", [this](M m) { return imposed_motion(m); }}};
@@ -263,6 +351,20 @@ class TreeDeriver {
       return {{"", [this](M m) { return is_first(m) ? regressors() : std::vector<OutputBlock>{}; }}};
     throw std::logic_error("a function without a derivation");
   }
+  /// Whether the LTDL factor may take less than the articulated bodies: it grows with the squares of the
+  /// depths, they with the number of bodies, of which none takes 400 operations.
+  [[nodiscard]] bool factor_may_pay(const Mechanism<Expr>& m) const {
+    if (!independent(m)) return true;
+    std::vector<double> depth(m.bodies.size(), n());
+    double operations = 0;
+    for (std::size_t k = 1; k < m.bodies.size(); ++k) {
+      const double above = depth[static_cast<std::size_t>(m.bodies[k].parent)];
+      depth[k] = above + 1;
+      operations += above * above;  // a multiplication and a subtraction for each pair above
+    }
+    return operations < 400.0 * static_cast<double>(m.bodies.size());
+  }
+
   [[nodiscard]] bool independent(const Mechanism<Expr>& m) const {
     RigidTree<Expr> tree(m);
     tree.position(in_.r);
@@ -489,9 +591,12 @@ class TreeDeriver {
   Program& program_;
   Tape& tape_;
   TreeInputs in_;
+  std::vector<NodeId> parameters_;
   Mechanism<Expr> described_;  // every link a body
   Mechanism<Expr> merged_;     // without fixed joints, in the described frames
   std::vector<Frames> frames_;
+  std::vector<Frames> stages_;        // for the trace
+  std::map<std::string, Kept> kept_;  // by function
 };
 
 }  // namespace

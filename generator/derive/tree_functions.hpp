@@ -19,12 +19,21 @@ struct TreeRequest {
   std::string scene = "standard";
   std::vector<std::string> functions;  // wanted; empty: standard_tree_functions()
   bool search = true;  // try every choice of frames and algorithm; else only the first of each
+  bool trace = false;  // fill TreeDerivation::trace
+};
+
+/// Operations of one call of a function after a pass; the algorithm is the one that was kept.
+struct PassReport {
+  std::string function;
+  std::string pass;
+  int operations = 0;
 };
 
 struct TreeDerivation {
   Program program;
   std::vector<CandidateReport> candidates;
   std::vector<std::string> passes;  // what the passes on the mechanism did
+  std::vector<PassReport> trace;    // in the order in which the passes run, function by function
 };
 
 /// Names of the functions that derive_tree knows, in the order in which programs list them.

@@ -26,7 +26,7 @@ CentroidalMomentum<S> centroidal_momentum(const Mechanism<S>& mechanism, const S
   free.group = GroupKind::SE3;
   RigidTree<S> tree(free);
   tree.position(state.r);
-  const MassMoments<S> all = composite_moments(tree)[0];
+  const MassMoments<S> all = composite_bodies(tree, JointFrames<S>(tree)).whole;
   const Matrix<S> M = composite_mass_matrix(tree);
   Spatial<S> h;
   for (int row = 0; row < 6; ++row) {

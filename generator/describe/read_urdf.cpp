@@ -198,8 +198,14 @@ class UrdfReader {
       if (!options_.symbolic_inertia) continue;
       constexpr std::array<const char*, 10> suffix = {"m",   "mx",  "my",  "mz",  "Ixx",
                                                       "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
+      std::array<std::size_t, 10>& index = parameter_of_.emplace_back();
       for (std::size_t i = 0; i < 10; ++i) {
         if (figures[i].is_zero()) continue;
+        index[i] = model_.parameters.size();
+        for (std::size_t j = 4; j < i && i < 7; ++j) {  // a symmetric body stays one, as a zero stays zero
+          if (figures[j] == figures[i]) index[i] = index[j];
+        }
+        if (index[i] < model_.parameters.size()) continue;
         const char* unit = i == 0 ? "kg" : i < 4 ? "kg m" : "kg m^2";
         model_.parameters.push_back(
             {fmt::format("{}{}{}", names_[n], names_[n].back() == '_' ? "" : "_", suffix[i]), figures[i],
@@ -300,7 +306,7 @@ class UrdfReader {
     std::array<Expr, 10> f;
     for (std::size_t i = 0; i < 10; ++i) {
       f[i] = figures_[n][i].is_zero()    ? Expr(0)
-             : options_.symbolic_inertia ? Expr(*model_.tape, model_.symbols.parameters[next_parameter_++])
+             : options_.symbolic_inertia ? Expr(*model_.tape, model_.symbols.parameters[parameter_of_[n][i]])
                                          : constant(figures_[n][i]);
     }
     body.mass = f[0];
@@ -408,13 +414,13 @@ class UrdfReader {
   UrdfFile file_;
   UrdfTree tree_;
   Model model_;
-  std::vector<int> first_coordinate_;           // of each joint, in Model::coordinates
-  std::vector<std::string> coordinate_names_;   // of all coordinates that the file has
-  std::vector<int> places_;                     // of those in Model::coordinates; -1: left out
-  std::vector<std::string> names_;              // of the nodes' links
-  std::vector<std::array<Exact, 10>> figures_;  // inertial figures of the nodes' links
-  std::vector<int> body_of_;                    // of each node, in Model::bodies
-  std::size_t next_parameter_ = supplement_.parameters.size();
+  std::vector<int> first_coordinate_;                      // of each joint, in Model::coordinates
+  std::vector<std::string> coordinate_names_;              // of all coordinates that the file has
+  std::vector<int> places_;                                // of those in Model::coordinates; -1: left out
+  std::vector<std::string> names_;                         // of the nodes' links
+  std::vector<std::array<Exact, 10>> figures_;             // inertial figures of the nodes' links
+  std::vector<int> body_of_;                               // of each node, in Model::bodies
+  std::vector<std::array<std::size_t, 10>> parameter_of_;  // where inertia is symbolic
 };
 
 }  // namespace

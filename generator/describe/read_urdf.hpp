@@ -18,7 +18,8 @@ struct UrdfOptions {
   bool floating = false;          // the root link moves freely (SE3); else it is fixed to the world
   bool as_written = false;        // angles and axes exactly as their digits say; else those within 1e-10 of a
                                   // multiple of pi/4 or of a coordinate axis are taken for it
-  bool symbolic_inertia = false;  // inertial figures become parameters, those that are zero stay zero
+  bool symbolic_inertia = false;  // inertial figures become parameters; those that are zero stay zero, equal
+                                  // ones among Ixx, Iyy and Izz of a link stay equal
   Exact gravity = Exact::from_decimal("9.81");  // along -z of the world, m/s^2
 };
 

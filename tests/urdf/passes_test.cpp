@@ -6,9 +6,11 @@
 
 #include <random>
 
+#include "anholon/composite.hpp"
 #include "anholon/free_dynamics.hpp"
 #include "describe/mechanise.hpp"
 #include "describe/read_urdf.hpp"
+#include "optimise/model/align_parallel.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/model/regroup.hpp"
 #include "optimise/model/rotate_leaves.hpp"
@@ -16,6 +18,8 @@
 #include "optimise/tape/common_factors.hpp"
 #include "optimise/tape/common_sums.hpp"
 #include "optimise/tape/count.hpp"
+#include "optimise/tape/gather_parameters.hpp"
+#include "optimise/tape/hoist.hpp"
 #include "optimise/tape/opposite_differences.hpp"
 #include "tape/interpret.hpp"
 #include "urdf/small_robots.hpp"
@@ -63,6 +67,60 @@ TEST(ModelPasses, SlidingKeepsForces) {
     const std::vector<Exact> before = forces(m);
     EXPECT_GT(slide_frames(m, towards), 2);
     expect_same(forces(m), before);
+  }
+}
+
+/// A chain of three parallel joints, each of whose frames stands a quarter turn from the one before; the last
+/// names its axis otherwise.
+Mechanism<Exact> parallel_chain() {
+  Mechanism<Exact> m;
+  m.group = GroupKind::SE3;
+  m.coordinates = 3;
+  m.gravity = {0, 0, Exact::from_decimal("-9.81")};
+  for (int k = 0; k < 4; ++k) {
+    Body<Exact> b;
+    b.name = "link " + std::to_string(k);
+    b.parent = k - 1;
+    b.kind = k == 0 ? JointKind::fixed : JointKind::revolute;
+    b.coordinate = k - 1;
+    b.axis = k == 3 ? 2 : 1;
+    b.p = {Exact::ratio(k, 3), Exact::ratio(1, 4), Exact::ratio(-k, 5)};
+    if (k == 2) b.R = {{0, 0, 1, 0, 1, 0, -1, 0, 0}};
+    if (k == 3) b.R = {{0, 1, 0, 0, 0, 1, 1, 0, 0}};
+    b.mass = Exact(k + 1);
+    b.first_moment = {Exact::ratio(1, 2), Exact::ratio(-1, 3), Exact::ratio(k, 7)};
+    b.inertia = {{5, 0, -1, 0, Exact(4 + k), 1, -1, 1, 6}};
+    m.bodies.push_back(b);
+  }
+  return m;
+}
+
+TEST(ModelPasses, AligningParallelJointsKeepsForces) {
+  Mechanism<Exact> m = parallel_chain();
+  const std::vector<Exact> before = forces(m);
+  EXPECT_EQ(align_parallel(m), 2);
+  expect_same(forces(m), before);
+  for (const Body<Exact>& b : m.bodies) EXPECT_EQ(b.axis, 1) << b.name;
+}
+
+TEST(ModelPasses, ParallelJointsInCommonAxesGiveTheSameMassMatrix) {
+  Mechanism<Exact> m = parallel_chain();
+  m.bodies.push_back(m.bodies[3]);  // a second branch, and a joint across
+  m.bodies.back().parent = 2;
+  m.bodies.back().axis = 0;
+  m.bodies.back().coordinate = 3;
+  m.coordinates = 4;
+  State<Exact> state;
+  for (int i = 0; i < 4; ++i) state.r.push_back(Exact::ratio(2 * i - 3, 5)), state.r_dot.push_back(Exact(0));
+  const std::vector<Exact> expected = FreeDynamics<Exact>(m).mass_matrix(state).entries();
+  EXPECT_EQ(align_parallel(m), 2);
+  for (const bool regrouped : {false, true}) {
+    if (regrouped) regroup(m);
+    RigidTree<Exact> tree(m);
+    tree.position(state.r);
+    EXPECT_TRUE(JointFrames<Exact>(tree).is_parallel(2) && JointFrames<Exact>(tree).is_parallel(3));
+    EXPECT_FALSE(JointFrames<Exact>(tree).is_parallel(1) || JointFrames<Exact>(tree).is_parallel(4));
+    expect_same(composite_mass_matrix(tree).entries(), expected);
   }
 }
 
@@ -137,6 +195,22 @@ TEST(TapePasses, CommonFactors) {
 }
 TEST(TapePasses, CommonSums) {
   check_pass([](Tape& t, const std::vector<NodeId>& r) { return share_common_sums(t, r); });
+}
+
+TEST(TapePasses, GatheredParametersOfAllKinds) {
+  check_pass([](Tape& t, const std::vector<NodeId>& r) { return gather_parameters(t, r, {}); });
+}
+TEST(TapePasses, GatheredParametersCostNothingPerCall) {
+  Tape tape;
+  const NodeId a = tape.input("a"), b = tape.input("b"), x = tape.input("x"), y = tape.input("y");
+  const NodeId sum = tape.apply(Op::sub, tape.apply(Op::sub, x, a), tape.apply(Op::sub, y, b));      // 3
+  const NodeId product = tape.apply(Op::mul, a, tape.apply(Op::mul, y, tape.apply(Op::mul, b, x)));  // 3
+  const std::vector<NodeId> before = {sum, product};
+  const std::vector<NodeId> after = gather_parameters(tape, before, {a, b});
+  EXPECT_EQ(operations_per_call(tape, before, {a, b}).total(), 6);
+  EXPECT_EQ(operations_per_call(tape, after, {a, b}).total(), 4);
+  const std::vector<Exact> inputs = {Exact::ratio(3, 7), Exact(5), Exact::ratio(-2, 3), Exact(11)};
+  expect_same(interpret<Exact>(tape, after, inputs), interpret<Exact>(tape, before, inputs));
 }
 
 }  // namespace

@@ -251,6 +251,30 @@ TEST(TreeFunctions, SearchNeverCostsOperations) {
   EXPECT_LE(total(*derive_tree(model)), total(*derive_tree(model, plain)));
 }
 
+TEST(TreeFunctions, TraceEndsWithWhatIsKeptAndChangesNothing) {
+  const Model model = read_urdf_text(testing::walker(), "walker.urdf");
+  TreeRequest traced;
+  traced.trace = true;
+  const auto derivation = derive_tree(model, traced);
+  const auto plain = derive_tree(model);
+  for (std::size_t f = 0; f < plain->program.functions.size(); ++f) {
+    for (std::size_t o = 0; o < plain->program.functions[f].outputs.size(); ++o)
+      EXPECT_EQ(derivation->program.functions[f].outputs[o].nodes,
+                plain->program.functions[f].outputs[o].nodes);
+  }
+  for (const CandidateReport& c : derivation->candidates) {
+    if (!c.chosen) continue;
+    int first = 0, last = 0;
+    for (const PassReport& p : derivation->trace) {
+      if (p.function != c.function) continue;
+      if (p.pass == "as described") first = p.operations;
+      last = p.operations;
+    }
+    EXPECT_EQ(last, c.operations) << c.function;
+    EXPECT_GT(first, last) << c.function;
+  }
+}
+
 TEST(TreeFunctions, SameProgramEveryTime) {
   const Model model = read_urdf_text(testing::walker(), "walker.urdf");
   const auto a = derive_tree(model);
@@ -270,8 +294,9 @@ class Robots : public ::testing::TestWithParam<std::string> {
     if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file_))
       GTEST_SKIP() << "ANHOLON_ROBOTS has no " << GetParam();
   }
-  [[nodiscard]] Model model() const {
+  [[nodiscard]] Model model(bool symbolic_inertia = false) const {
     UrdfOptions options;
+    options.symbolic_inertia = symbolic_inertia;
     options.floating = GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" &&
                        GetParam() != "double_pendulum";
     return read_urdf(file_, options);
@@ -283,13 +308,13 @@ TEST_P(Robots, AgreeWithTheRecursion) { verify(model()); }
 
 TEST_P(Robots, KeepTheirOperationCounts) {
   static const std::map<std::string, std::map<std::string, int>> reached = {
-      {"ur5", {{"inverse_dynamics", 261}, {"mass_matrix", 134}, {"forward_dynamics", 456}}},
-      {"iiwa", {{"inverse_dynamics", 392}, {"mass_matrix", 196}, {"forward_dynamics", 732}}},
-      {"panda", {{"inverse_dynamics", 546}, {"mass_matrix", 318}, {"forward_dynamics", 1075}}},
-      {"anymal_b", {{"inverse_dynamics", 1268}, {"mass_matrix", 551}, {"forward_dynamics", 2619}}},
-      {"hyq", {{"inverse_dynamics", 1301}, {"mass_matrix", 581}, {"forward_dynamics", 2713}}},
-      {"talos_reduced", {{"inverse_dynamics", 3366}, {"mass_matrix", 3022}, {"forward_dynamics", 7656}}},
-      {"talos_full", {{"inverse_dynamics", 4520}, {"mass_matrix", 5173}, {"forward_dynamics", 9842}}}};
+      {"ur5", {{"inverse_dynamics", 261}, {"mass_matrix", 76}, {"forward_dynamics", 394}}},
+      {"iiwa", {{"inverse_dynamics", 392}, {"mass_matrix", 194}, {"forward_dynamics", 728}}},
+      {"panda", {{"inverse_dynamics", 546}, {"mass_matrix", 314}, {"forward_dynamics", 1071}}},
+      {"anymal_b", {{"inverse_dynamics", 1264}, {"mass_matrix", 513}, {"forward_dynamics", 2597}}},
+      {"hyq", {{"inverse_dynamics", 1297}, {"mass_matrix", 546}, {"forward_dynamics", 2698}}},
+      {"talos_reduced", {{"inverse_dynamics", 3366}, {"mass_matrix", 2921}, {"forward_dynamics", 7634}}},
+      {"talos_full", {{"inverse_dynamics", 4520}, {"mass_matrix", 5015}, {"forward_dynamics", 9777}}}};
   const auto bounds = reached.find(GetParam());
   if (bounds == reached.end()) GTEST_SKIP();
   const auto derivation = derive_tree(model());
@@ -297,6 +322,19 @@ TEST_P(Robots, KeepTheirOperationCounts) {
     const auto bound = bounds->second.find(c.function);
     if (!c.chosen || bound == bounds->second.end()) continue;
     EXPECT_LE(c.operations, bound->second) << c.function << ": " << c.route;
+  }
+}
+
+TEST_P(Robots, SymbolicInertiaCostsLittle) {
+  const auto frozen = derive_tree(model());
+  const auto symbolic = derive_tree(model(true));
+  for (const Function& f : frozen->program.functions) {
+    const auto chosen = [&](const TreeDerivation& d) {
+      return std::ranges::find_if(d.candidates,
+                                  [&](const auto& c) { return c.function == f.name && c.chosen; })
+          ->operations;
+    };
+    EXPECT_LE(chosen(*symbolic), 1.03 * chosen(*frozen)) << f.name;
   }
 }
 

@@ -37,6 +37,33 @@ void turn_frame(Mechanism<S>& mechanism, std::size_t k, const S& angle, const S&
   mechanism.couplings.push_back(std::move(shifted));
 }
 
+namespace {
+
+template <class S>
+struct Turn {
+  S angle, c, s;
+};
+
+/// The angle of (x, y), which are not both zero by structure. Where they depend on parameters, its sine and
+/// cosine are taken of the angle, so that parameters that make both vanish do no harm.
+template <class S>
+Turn<S> turn_onto(const S& x, const S& y) {
+  const auto x_value = constant_value(x);
+  const auto y_value = constant_value(y);
+  if (!x_value || !y_value) {
+    if constexpr (std::is_same_v<S, Expr>) {
+      const S angle = atan2(y, x);
+      return {angle, cos(angle), sin(angle)};
+    }
+    throw std::logic_error("a number without a value");
+  }
+  const Exact length = sqrt(*x_value * *x_value + *y_value * *y_value);
+  return {constant_like(x, atan2(*y_value, *x_value)), constant_like(x, *x_value / length),
+          constant_like(x, *y_value / length)};
+}
+
+}  // namespace
+
 template <class S>
 int rotate_leaves(Mechanism<S>& mechanism) {
   require_rigid_tree(mechanism);
@@ -48,14 +75,10 @@ int rotate_leaves(Mechanism<S>& mechanism) {
     for (const Body<S>& other : mechanism.bodies) is_tip = is_tip && other.parent != static_cast<int>(k);
     const S& along_x = body.first_moment[(body.axis + 1) % 3];
     const S& along_y = body.first_moment[(body.axis + 2) % 3];
-    const auto x = constant_value(along_x);
-    const auto y = constant_value(along_y);
-    if (!is_tip || !x || !y || x->is_zero() || y->is_zero()) continue;
-    const Exact length = sqrt(*x * *x + *y * *y);
-    const auto constant = [like = along_x](const Exact& value) { return constant_like(like, value); };
-    const S zero = constant(0);
-    turn_frame(mechanism, k, constant(atan2(*y, *x)), constant(*x / length), constant(*y / length));
-    mechanism.bodies[k].first_moment[(body.axis + 2) % 3] = zero;  // up to the last digits of the root
+    if (!is_tip || vanishes(along_x) || vanishes(along_y)) continue;
+    const Turn<S> turn = turn_onto(along_x, along_y);
+    turn_frame(mechanism, k, turn.angle, turn.c, turn.s);
+    mechanism.bodies[k].first_moment[(body.axis + 2) % 3] = S(0);  // up to rounding
     ++turned_frames;
   }
   return turned_frames;

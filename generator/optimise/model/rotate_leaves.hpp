@@ -14,7 +14,8 @@ namespace anholon {
 template <class S>
 void turn_frame(Mechanism<S>& mechanism, std::size_t k, const S& angle, const S& c, const S& s);
 
-/// Turns the frame of every tip whose moments are constant. Instantiated for Exact and Expr.
+/// Turns the frame of every tip. Moments are constants or depend on parameters alone. Instantiated for Exact
+/// and Expr.
 /// @return number of frames that turned
 template <class S>
 int rotate_leaves(Mechanism<S>& mechanism);

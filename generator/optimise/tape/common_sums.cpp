@@ -5,6 +5,7 @@
 #include <map>
 #include <set>
 #include <stdexcept>
+#include <tuple>
 #include <unordered_map>
 
 #include "optimise/tape/count.hpp"
@@ -25,6 +26,9 @@ struct Pair {
   bool opposite;
   friend auto operator<=>(const Pair&, const Pair&) = default;
 };
+
+/// The pair that most sums have comes first; of equals, the first by structure.
+using Rank = std::tuple<int, StructuralKey, StructuralKey, Pair>;
 
 /// The sums of three terms or more whose inner nodes nothing else uses, and the pairs that they share.
 class SharedSums {
@@ -110,34 +114,33 @@ class SharedSums {
   /// sums.
   void find_pairs() {
     std::map<Pair, std::set<NodeId>> where;
+    std::set<Rank> ranks;  // of the pairs that two sums have
+    const auto rank = [&](const Pair& p, std::size_t users) {
+      return Rank{-static_cast<int>(users), key(p.x), key(p.y), p};
+    };
     const auto enter = [&](NodeId sum, bool add) {
       const std::vector<Term>& terms = sums_[sum];
+      std::set<Pair> pairs;
       for (std::size_t i = 0; i < terms.size(); ++i) {
         for (std::size_t j = 0; j < i; ++j) {
-          if (terms[i].node == terms[j].node) continue;
-          const Pair p = pair_of(terms[i], terms[j]);
-          if (add) {
-            where[p].insert(sum);
-          } else if (const auto found = where.find(p); found != where.end()) {
-            found->second.erase(sum);
-            if (found->second.empty()) where.erase(found);
-          }
+          if (terms[i].node != terms[j].node) pairs.insert(pair_of(terms[i], terms[j]));
         }
+      }
+      for (const Pair& p : pairs) {
+        std::set<NodeId>& users = where[p];
+        if (users.size() > 1) ranks.erase(rank(p, users.size()));
+        if (add) {
+          users.insert(sum);
+        } else {
+          users.erase(sum);
+        }
+        if (users.size() > 1) ranks.insert(rank(p, users.size()));
+        if (users.empty()) where.erase(p);
       }
     };
     for (const auto& [sum, terms] : sums_) enter(sum, true);
-    while (true) {
-      const Pair* best = nullptr;
-      std::size_t most = 1;
-      for (const auto& [pair, users] : where) {
-        const auto earlier = [&] {
-          return std::pair(key(pair.x), key(pair.y)) < std::pair(key(best->x), key(best->y));
-        };
-        if (users.size() > most || (best != nullptr && users.size() == most && earlier()))
-          best = &pair, most = users.size();
-      }
-      if (best == nullptr) return;
-      const Pair pair = *best;
+    while (!ranks.empty()) {
+      const Pair pair = std::get<Pair>(*ranks.begin());
       const std::set<NodeId> users = where[pair];
       const auto term = static_cast<NodeId>(first_pair_ + pairs_.size());
       pairs_.push_back(pair);

@@ -46,4 +46,22 @@ Hoisted hoist(const Tape& tape, const std::vector<NodeId>& roots, const std::vec
   return result;
 }
 
+OperationCount operations_per_call(const Tape& tape, const std::vector<NodeId>& roots,
+                                   const std::vector<NodeId>& parameters) {
+  std::vector<char> fixed(tape.size(), 0);
+  for (const NodeId id : parameters) fixed[id] = 1;
+  std::vector<NodeId> prepared;
+  for (const NodeId id : tape.reachable(roots)) {
+    const Node& n = tape.node(id);
+    const int arity = info(n.op).arity;
+    if (arity == 0) {
+      if (n.op == Op::constant) fixed[id] = 1;
+    } else if (fixed[n.a] != 0 && (arity == 1 || fixed[n.b] != 0)) {
+      fixed[id] = 1;
+      prepared.push_back(id);
+    }
+  }
+  return count_operations(tape, roots, prepared);
+}
+
 }  // namespace anholon

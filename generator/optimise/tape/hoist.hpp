@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "optimise/tape/count.hpp"
 #include "tape/tape.hpp"
 
 namespace anholon {
@@ -18,5 +19,9 @@ struct Hoisted {
 /// @param roots  outputs of all functions together
 /// @param parameters  input nodes that are constant between calls
 Hoisted hoist(const Tape& tape, const std::vector<NodeId>& roots, const std::vector<NodeId>& parameters);
+
+/// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.
+OperationCount operations_per_call(const Tape& tape, const std::vector<NodeId>& roots,
+                                   const std::vector<NodeId>& parameters);
 
 }  // namespace anholon

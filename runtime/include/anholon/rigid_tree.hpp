@@ -28,7 +28,8 @@ template <class S>
 struct JointTransform {
   Mat3<S> R;
   AxisRotation<S> rotation;
-  Vec3<S> offset;  // of the body's origin in the parent's frame
+  Vec3<S> offset;         // of the body's origin in the parent's frame
+  S displacement = S(0);  // of the joint, rad or m
 
   [[nodiscard]] Vec3<S> to_body(const Vec3<S>& v) const {
     return rotation.apply_inverse(transposed_times(R, v));
@@ -78,7 +79,7 @@ class RigidTree {
       const Body<S>& b = body(k);
       const S q = displacement(b, r);
       JointTransform<S>& joint = joints_[k];
-      joint = {b.R, {b.axis, S(1), S(0)}, b.p};
+      joint = {b.R, {b.axis, S(1), S(0)}, b.p, q};
       if (turns(b)) joint.rotation.c = cos(q), joint.rotation.s = sin(q);
       if (b.kind == JointKind::prismatic) joint.offset += b.R * (q * unit<S>(b.axis));
       if (b.kind == JointKind::helical) joint.offset += b.R * (b.pitch * q * unit<S>(b.axis));

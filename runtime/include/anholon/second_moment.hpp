@@ -155,15 +155,15 @@ struct MassMoments {
   friend MassMoments operator+(const MassMoments& a, const MassMoments& b) {
     return {a.mass + b.mass, a.first + b.first, a.second + b.second};
   }
-  /// About an origin from which the old one is at p: Sigma + p h^T + h p^T + m p p^T, in the form that uses p
-  /// (h + m p/2) twice.
+  /// About an origin from which the old one is at p: Sigma + p h^T + (h + m p) p^T. The products p_i h_i
+  /// stand alone because a wrench about the new origin needs them too.
   [[nodiscard]] MassMoments moved(const Vec3<S>& p) const {
     MassMoments r = *this;
     const Vec3<S> mp = mass * p;
     r.first = first + mp;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;
-      r.second.diagonal[i] = second.diagonal[i] + p[i] * (S(2) * first[i] + mp[i]);
+      r.second.diagonal[i] = second.diagonal[i] + (p[i] * first[i] + p[i] * r.first[i]);
       r.second(i, j) = second(i, j) + p[i] * r.first[j] + p[j] * first[i];
     }
     return r;
