@@ -5,7 +5,7 @@
 //   sha256  dc4e11577108020b1659d9a80ebc362918159cb981902c842f6f925a9aaaed1a
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   inverse_dynamics  1373 add, 1562 mul, 30 sin, 30 cos
+//   inverse_dynamics  1373 add, 1560 mul, 30 sin, 30 cos
 //   gravity_forces    220 add, 330 mul, 30 sin, 30 cos
 //   prepare           none, once per set of parameters
 //
@@ -86,7 +86,7 @@ inline Prepared<Real> prepare(const Parameters<Real>&) noexcept {
 
 /// Joint forces and, for a moving reference body, the wrench on it that a motion needs.
 /// route: frames slid to the base, tips turned, regrouped
-/// operations: 1373 add, 1562 mul, 30 sin, 30 cos
+/// operations: 1373 add, 1560 mul, 30 sin, 30 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r
@@ -181,3210 +181,5292 @@ inline void inverse_dynamics(const Prepared<Real>&,
   const Real t14 = sin(t13);
   const Real t15 = cos(t13);
 
-  // pelvis: acceleration
-  const Real t16 = eta[3] * eta[1];
-  const Real t17 = eta[4] * eta[0];
-  const Real t18 = t16 - t17;
-  const Real t19 = eta_dot[2] + t18;
-  const Real t20 = constant<Real>(9.81L) * R[8];
-  const Real t21 = t19 + t20;
-  const Real t22 = R[7] * constant<Real>(9.81L);
-  const Real t23 = eta[5] * eta[0];
-  const Real t24 = eta[3] * eta[2];
-  const Real t25 = t23 - t24;
-  const Real t26 = eta_dot[1] + t25;
-  const Real t27 = t22 + t26;
-  const Real t28 = eta[4] * eta[2];
-  const Real t29 = eta[5] * eta[1];
-  const Real t30 = t28 - t29;
-  const Real t31 = eta_dot[0] + t30;
-  const Real t32 = R[6] * constant<Real>(9.81L);
-  const Real t33 = t31 + t32;
-
   // joint angles
-  const Real t34 = eta[5] * eta[3];
-  const Real t35 = t34 + eta_dot[4];
-  const Real t36 = eta[5] * eta[4];
-  const Real t37 = eta_dot[3] + t36;
-  const Real t38 = eta[4] * eta[4];
-  const Real t39 = eta[3] * eta[3];
-  const Real t40 = t38 + t39;
-  const Real t41 = t36 - eta_dot[3];
-  const Real t42 = eta[4] * eta[3];
-  const Real t43 = t42 + eta_dot[5];
-  const Real t44 = t42 - eta_dot[5];
-  const Real t45 = eta[5] * eta[5];
-  const Real t46 = t45 + t39;
-  const Real t47 = t34 - eta_dot[4];
-  const Real t48 = t38 + t45;
-
-  // waist: motion
-  const Real t49 = eta[5] + r_dot[0];
-  const Real t50 = t49 * constant<Real>(2.0L);
-  const Real t51 = c_r_0_ * eta[3];
-  const Real t52 = s_r_0_ * eta[4];
-  const Real t53 = t51 + t52;
-  const Real t54 = t50 * t53;
-  const Real t55 = s_r_0_ * t41;
-  const Real t56 = c_r_0_ * t35;
-  const Real t57 = t55 + t56;
-  const Real t58 = t54 - t57;
-  const Real t59 = c_r_0_ * eta[4];
-  const Real t60 = s_r_0_ * eta[3];
-  const Real t61 = t59 - t60;
-  const Real t62 = t61 * t53;
-  const Real t63 = r_ddot[0] + eta_dot[5];
-  const Real t64 = t62 - t63;
-  const Real t65 = t50 * t61;
-  const Real t66 = c_r_0_ * t41;
-  const Real t67 = t35 * s_r_0_;
-  const Real t68 = t66 - t67;
-  const Real t69 = t65 - t68;
-  const Real t70 = t62 + t63;
-  const Real t71 = t49 * t49;
-  const Real t72 = t53 * t53;
-  const Real t73 = t71 + t72;
-  const Real t74 = t61 * t61;
-  const Real t75 = t71 + t74;
-
-  // torso: motion
-  const Real t76 = t49 * t53;
-  const Real t77 = t57 - t76;
-  const Real t78 = r_ddot[1] + t77;
-  const Real t79 = c_r_1_ * t49;
-  const Real t80 = s_r_1_ * t53;
-  const Real t81 = t79 + t80;
-  const Real t82 = c_r_1_ * t53;
-  const Real t83 = s_r_1_ * t49;
-  const Real t84 = t82 - t83;
-  const Real t85 = t81 * t84;
-  const Real t86 = t78 + t85;
-  const Real t87 = r_dot[1] + t61;
-  const Real t88 = t87 * constant<Real>(2.0L);
-  const Real t89 = t88 * t81;
-  const Real t90 = c_r_1_ * t69;
-  const Real t91 = t64 * s_r_1_;
-  const Real t92 = t90 + t91;
-  const Real t93 = t89 - t92;
-  const Real t94 = t81 * t81;
-  const Real t95 = t87 * t87;
-  const Real t96 = t94 + t95;
-  const Real t97 = t40 * constant<Real>(0.17L);
-  const Real t98 = t21 - t97;
-  const Real t99 = c_r_1_ * t98;
-  const Real t100 = s_r_1_ * t98;
-  const Real t101 = t88 * t84;
-  const Real t102 = t64 * c_r_1_;
-  const Real t103 = t69 * s_r_1_;
-  const Real t104 = t102 - t103;
-  const Real t105 = t101 - t104;
-  const Real t106 = t85 - t78;
-  const Real t107 = t84 * t84;
-  const Real t108 = t107 + t95;
-
-  // neck: motion
-  const Real t109 = t84 * c_r_2_;
-  const Real t110 = t87 * s_r_2_;
-  const Real t111 = t109 + t110;
-  const Real t112 = t87 * c_r_2_;
-  const Real t113 = t84 * s_r_2_;
-  const Real t114 = t112 - t113;
-  const Real t115 = t111 * t114;
-  const Real t116 = t87 * t84;
-  const Real t117 = t105 - t116;
-  const Real t118 = t117 + r_ddot[2];
-  const Real t119 = t115 + t118;
-  const Real t120 = r_dot[2] + t81;
-  const Real t121 = t120 * constant<Real>(2.0L);
-  const Real t122 = t111 * t121;
-  const Real t123 = t93 * s_r_2_;
-  const Real t124 = t86 * c_r_2_;
-  const Real t125 = t123 + t124;
-  const Real t126 = t122 - t125;
-  const Real t127 = constant<Real>(0.01L) * t96;
-  const Real t128 = t115 - t118;
-  const Real t129 = t121 * t114;
-  const Real t130 = t93 * c_r_2_;
-  const Real t131 = t86 * s_r_2_;
-  const Real t132 = t130 - t131;
-  const Real t133 = t129 - t132;
-  const Real t134 = constant<Real>(0.01L) * t105;
-  const Real t135 = constant<Real>(0.01L) * t106;
-
-  // head: motion
-  const Real t136 = t120 * t9;
-  const Real t137 = t111 * t8;
-  const Real t138 = t136 + t137;
-  const Real t139 = t111 * t9;
-  const Real t140 = t120 * t8;
-  const Real t141 = t139 - t140;
-  const Real t142 = t138 * t141;
-  const Real t143 = t111 * t120;
-  const Real t144 = t125 - t143;
-  const Real t145 = t144 + r_ddot[3];
-  const Real t146 = t142 - t145;
-  const Real t147 = t142 + t145;
-  const Real t148 = t138 * t138;
-  const Real t149 = constant<Real>(0.45L) * t108;
-  const Real t150 = t114 + r_dot[3];
-  const Real t151 = t150 * constant<Real>(2.0L);
-  const Real t152 = t141 * t151;
-  const Real t153 = t9 * t128;
-  const Real t154 = t8 * t133;
-  const Real t155 = t153 - t154;
-  const Real t156 = t152 - t155;
-  const Real t157 = t138 * t151;
-  const Real t158 = t8 * t128;
-  const Real t159 = t9 * t133;
-  const Real t160 = t158 + t159;
-  const Real t161 = t157 - t160;
-  const Real t162 = t150 * t150;
-  const Real t163 = t141 * t141;
-  const Real t164 = t162 + t163;
-
-  // left_shoulder: motion
-  const Real t165 = t87 + r_dot[4];
-  const Real t166 = t165 * t165;
-  const Real t167 = s_r_4_ * t84;
-  const Real t168 = t81 * c_r_4_;
-  const Real t169 = t167 + t168;
-  const Real t170 = t169 * t169;
-  const Real t171 = t166 + t170;
-  const Real t172 = t84 * c_r_4_;
-  const Real t173 = t81 * s_r_4_;
-  const Real t174 = t172 - t173;
-  const Real t175 = t174 * t174;
-  const Real t176 = t166 + t175;
-  const Real t177 = constant<Real>(2.0L) * t165;
-  const Real t178 = t169 * t177;
-  const Real t179 = s_r_4_ * t104;
-  const Real t180 = t92 * c_r_4_;
-  const Real t181 = t179 + t180;
-  const Real t182 = t178 - t181;
-  const Real t183 = t169 * t174;
-  const Real t184 = r_ddot[4] + t78;
-  const Real t185 = t183 + t184;
-  const Real t186 = t183 - t184;
-  const Real t187 = constant<Real>(0.005L) * t106;
-  const Real t188 = constant<Real>(0.005L) * t105;
-  const Real t189 = constant<Real>(0.3L) * t93;
-  const Real t190 = t188 + t189;
-  const Real t191 = constant<Real>(0.3L) * t86;
-  const Real t192 = constant<Real>(0.3L) * t108;
-  const Real t193 = t177 * t174;
-  const Real t194 = c_r_4_ * t104;
-  const Real t195 = t92 * s_r_4_;
-  const Real t196 = t194 - t195;
-  const Real t197 = t193 - t196;
-  const Real t198 = constant<Real>(0.005L) * t96;
-
-  // left_upper_arm_roll: motion
-  const Real t199 = t169 * c_r_5_;
-  const Real t200 = s_r_5_ * t165;
-  const Real t201 = t199 - t200;
-  const Real t202 = c_r_5_ * t165;
-  const Real t203 = s_r_5_ * t169;
-  const Real t204 = t202 + t203;
-  const Real t205 = t201 * t204;
-  const Real t206 = t169 * t165;
-  const Real t207 = t181 - t206;
-  const Real t208 = t207 + r_ddot[5];
-  const Real t209 = t205 - t208;
-  const Real t210 = r_dot[5] + t174;
-  const Real t211 = t210 * t210;
-  const Real t212 = t201 * t201;
-  const Real t213 = t211 + t212;
-  const Real t214 = t210 * constant<Real>(2.0L);
-  const Real t215 = t204 * t214;
-  const Real t216 = t197 * c_r_5_;
-  const Real t217 = s_r_5_ * t186;
-  const Real t218 = t216 + t217;
-  const Real t219 = t215 - t218;
-  const Real t220 = t201 * t214;
-  const Real t221 = t186 * c_r_5_;
-  const Real t222 = s_r_5_ * t197;
-  const Real t223 = t221 - t222;
-  const Real t224 = t220 - t223;
-  const Real t225 = t205 + t208;
-  const Real t226 = constant<Real>(0.25L) * t73;
-  const Real t227 = t204 * t204;
-  const Real t228 = t227 + t211;
-
-  // left_upper_arm: motion
-  const Real t229 = t210 * c_r_6_;
-  const Real t230 = t204 * s_r_6_;
-  const Real t231 = t229 + t230;
-  const Real t232 = t201 + r_dot[6];
-  const Real t233 = t232 * constant<Real>(2.0L);
-  const Real t234 = t231 * t233;
-  const Real t235 = t209 * s_r_6_;
-  const Real t236 = t224 * c_r_6_;
-  const Real t237 = t235 + t236;
-  const Real t238 = t234 - t237;
-  const Real t239 = t219 * constant<Real>(0.01L);
-  const Real t240 = t204 * c_r_6_;
-  const Real t241 = t210 * s_r_6_;
-  const Real t242 = t240 - t241;
-  const Real t243 = t242 * t233;
-  const Real t244 = t209 * c_r_6_;
-  const Real t245 = t224 * s_r_6_;
-  const Real t246 = t244 - t245;
-  const Real t247 = t243 - t246;
-  const Real t248 = t213 * constant<Real>(0.01L);
-  const Real t249 = t232 * t232;
-  const Real t250 = t242 * t242;
-  const Real t251 = t249 + t250;
-  const Real t252 = constant<Real>(0.01L) * t225;
-  const Real t253 = t231 * t242;
-  const Real t254 = t210 * t204;
-  const Real t255 = t218 - t254;
-  const Real t256 = r_ddot[6] + t255;
-  const Real t257 = t253 + t256;
-  const Real t258 = t231 * t231;
-  const Real t259 = t249 + t258;
-  const Real t260 = t253 - t256;
-
-  // left_forearm: motion
-  const Real t261 = c_r_7_ * t231;
-  const Real t262 = t232 * s_r_7_;
-  const Real t263 = t261 - t262;
-  const Real t264 = r_dot[7] + t242;
-  const Real t265 = t264 * constant<Real>(2.0L);
-  const Real t266 = t263 * t265;
-  const Real t267 = c_r_7_ * t260;
-  const Real t268 = t247 * s_r_7_;
-  const Real t269 = t267 - t268;
-  const Real t270 = t266 - t269;
-  const Real t271 = constant<Real>(0.01L) * t238;
-  const Real t272 = s_r_7_ * t231;
-  const Real t273 = t232 * c_r_7_;
-  const Real t274 = t272 + t273;
-  const Real t275 = t274 * t265;
-  const Real t276 = t247 * c_r_7_;
-  const Real t277 = s_r_7_ * t260;
-  const Real t278 = t276 + t277;
-  const Real t279 = t275 - t278;
-  const Real t280 = constant<Real>(0.01L) * t251;
-  const Real t281 = constant<Real>(0.01L) * t257;
-  const Real t282 = constant<Real>(0.28L) * t228;
-  const Real t283 = t264 * t264;
-  const Real t284 = t263 * t263;
-  const Real t285 = t283 + t284;
-  const Real t286 = t274 * t274;
-  const Real t287 = t286 + t283;
-  const Real t288 = t263 * t274;
-  const Real t289 = t232 * t231;
-  const Real t290 = t237 - t289;
-  const Real t291 = r_ddot[7] + t290;
-  const Real t292 = t288 - t291;
-  const Real t293 = t291 + t288;
-
-  // left_wrist_yaw_link: motion
-  const Real t294 = constant<Real>(0.01L) * t287;
-  const Real t295 = r_dot[8] + t274;
-  const Real t296 = t295 * constant<Real>(2.0L);
-  const Real t297 = c_r_8_ * t263;
-  const Real t298 = t264 * s_r_8_;
-  const Real t299 = t297 + t298;
-  const Real t300 = t296 * t299;
-  const Real t301 = t279 * s_r_8_;
-  const Real t302 = c_r_8_ * t293;
-  const Real t303 = t301 + t302;
-  const Real t304 = t300 - t303;
-  const Real t305 = t263 * t264;
-  const Real t306 = t270 - t305;
-  const Real t307 = r_ddot[8] + t306;
-  const Real t308 = c_r_8_ * t264;
-  const Real t309 = t263 * s_r_8_;
-  const Real t310 = t308 - t309;
-  const Real t311 = t310 * t299;
-  const Real t312 = t307 + t311;
-  const Real t313 = t310 * t296;
-  const Real t314 = t279 * c_r_8_;
-  const Real t315 = s_r_8_ * t293;
-  const Real t316 = t314 - t315;
-  const Real t317 = t313 - t316;
-  const Real t318 = constant<Real>(0.01L) * t292;
-  const Real t319 = t311 - t307;
-  const Real t320 = t299 * t299;
-  const Real t321 = t295 * t295;
-  const Real t322 = t320 + t321;
-  const Real t323 = t310 * t310;
-  const Real t324 = constant<Real>(0.01L) * t270;
-
-  // left_wrist: motion
-  const Real t325 = c_r_9_ * t299;
-  const Real t326 = s_r_9_ * t295;
-  const Real t327 = t325 - t326;
-  const Real t328 = t327 * t327;
-  const Real t329 = r_dot[9] + t310;
-  const Real t330 = t329 * t329;
-  const Real t331 = t328 + t330;
-  const Real t332 = s_r_9_ * t299;
-  const Real t333 = c_r_9_ * t295;
-  const Real t334 = t332 + t333;
-  const Real t335 = t334 * t334;
-  const Real t336 = t335 + t330;
-  const Real t337 = t327 * t334;
-  const Real t338 = t295 * t299;
-  const Real t339 = t303 - t338;
-  const Real t340 = r_ddot[9] + t339;
-  const Real t341 = t337 + t340;
-  const Real t342 = t329 * constant<Real>(2.0L);
-  const Real t343 = t342 * t334;
-  const Real t344 = s_r_9_ * t319;
-  const Real t345 = c_r_9_ * t317;
-  const Real t346 = t344 + t345;
-  const Real t347 = t343 - t346;
-  const Real t348 = t327 * t342;
-  const Real t349 = c_r_9_ * t319;
-  const Real t350 = s_r_9_ * t317;
-  const Real t351 = t349 - t350;
-  const Real t352 = t348 - t351;
-  const Real t353 = constant<Real>(0.24L) * t285;
-  const Real t354 = t337 - t340;
-
-  // left_hand: motion
-  const Real t355 = r_dot[10] + t327;
-  const Real t356 = t355 * t355;
-  const Real t357 = t6 * t334;
-  const Real t358 = t5 * t329;
-  const Real t359 = t357 - t358;
-  const Real t360 = t359 * t359;
-  const Real t361 = t356 + t360;
-  const Real t362 = t355 * constant<Real>(2.0L);
-  const Real t363 = t5 * t334;
-  const Real t364 = t6 * t329;
-  const Real t365 = t363 + t364;
-  const Real t366 = t362 * t365;
-  const Real t367 = t6 * t352;
-  const Real t368 = t5 * t354;
-  const Real t369 = t367 + t368;
-  const Real t370 = t366 - t369;
-  const Real t371 = t362 * t359;
-  const Real t372 = t6 * t354;
-  const Real t373 = t352 * t5;
-  const Real t374 = t372 - t373;
-  const Real t375 = t371 - t374;
-  const Real t376 = t365 * t365;
-  const Real t377 = t365 * t359;
-  const Real t378 = t329 * t334;
-  const Real t379 = t346 - t378;
-  const Real t380 = r_ddot[10] + t379;
-  const Real t381 = t377 - t380;
-  const Real t382 = t377 + t380;
-
-  // right_shoulder: motion
-  const Real t383 = t81 * c_r_11_;
-  const Real t384 = t84 * s_r_11_;
-  const Real t385 = t383 + t384;
-  const Real t386 = t385 * t385;
-  const Real t387 = r_dot[11] + t87;
-  const Real t388 = t387 * t387;
-  const Real t389 = t386 + t388;
-  const Real t390 = t78 + r_ddot[11];
-  const Real t391 = t84 * c_r_11_;
-  const Real t392 = t81 * s_r_11_;
-  const Real t393 = t391 - t392;
-  const Real t394 = t393 * t385;
-  const Real t395 = t390 + t394;
-  const Real t396 = t387 * constant<Real>(2.0L);
-  const Real t397 = t393 * t396;
-  const Real t398 = c_r_11_ * t104;
-  const Real t399 = t92 * s_r_11_;
-  const Real t400 = t398 - t399;
-  const Real t401 = t397 - t400;
-  const Real t402 = t394 - t390;
-  const Real t403 = t393 * t393;
-  const Real t404 = t403 + t388;
-  const Real t405 = t385 * t396;
-  const Real t406 = t92 * c_r_11_;
-  const Real t407 = s_r_11_ * t104;
-  const Real t408 = t406 + t407;
-  const Real t409 = t405 - t408;
-
-  // right_upper_arm_roll: motion
-  const Real t410 = c_r_12_ * t387;
-  const Real t411 = s_r_12_ * t385;
-  const Real t412 = t410 + t411;
-  const Real t413 = t412 * t412;
-  const Real t414 = t393 + r_dot[12];
-  const Real t415 = t414 * t414;
-  const Real t416 = t413 + t415;
-  const Real t417 = t385 * c_r_12_;
-  const Real t418 = s_r_12_ * t387;
-  const Real t419 = t417 - t418;
-  const Real t420 = t412 * t419;
-  const Real t421 = t385 * t387;
-  const Real t422 = t408 - t421;
-  const Real t423 = r_ddot[12] + t422;
-  const Real t424 = t420 + t423;
-  const Real t425 = t414 * constant<Real>(2.0L);
-  const Real t426 = t419 * t425;
-  const Real t427 = t402 * c_r_12_;
-  const Real t428 = t401 * s_r_12_;
-  const Real t429 = t427 - t428;
-  const Real t430 = t426 - t429;
-  const Real t431 = t419 * t419;
-  const Real t432 = t415 + t431;
-  const Real t433 = t420 - t423;
-  const Real t434 = t412 * t425;
-  const Real t435 = t402 * s_r_12_;
-  const Real t436 = t401 * c_r_12_;
-  const Real t437 = t435 + t436;
-  const Real t438 = t434 - t437;
-
-  // right_upper_arm: motion
-  const Real t439 = constant<Real>(0.01L) * t438;
-  const Real t440 = t412 * c_r_13_;
-  const Real t441 = t414 * s_r_13_;
-  const Real t442 = t440 - t441;
-  const Real t443 = t419 + r_dot[13];
-  const Real t444 = t443 * constant<Real>(2.0L);
-  const Real t445 = t442 * t444;
-  const Real t446 = c_r_13_ * t433;
-  const Real t447 = t430 * s_r_13_;
-  const Real t448 = t446 - t447;
-  const Real t449 = t445 - t448;
-  const Real t450 = t412 * s_r_13_;
-  const Real t451 = t414 * c_r_13_;
-  const Real t452 = t450 + t451;
-  const Real t453 = t452 * t444;
-  const Real t454 = t433 * s_r_13_;
-  const Real t455 = c_r_13_ * t430;
-  const Real t456 = t454 + t455;
-  const Real t457 = t453 - t456;
-  const Real t458 = t443 * t443;
-  const Real t459 = t452 * t452;
-  const Real t460 = t458 + t459;
-  const Real t461 = t442 * t442;
-  const Real t462 = t461 + t458;
-  const Real t463 = t452 * t442;
-  const Real t464 = t412 * t414;
-  const Real t465 = t437 - t464;
-  const Real t466 = t465 + r_ddot[13];
-  const Real t467 = t463 + t466;
-  const Real t468 = constant<Real>(0.01L) * t432;
-  const Real t469 = t463 - t466;
-  const Real t470 = constant<Real>(0.01L) * t424;
-
-  // right_forearm: motion
-  const Real t471 = t452 * s_r_14_;
-  const Real t472 = t443 * c_r_14_;
-  const Real t473 = t471 + t472;
-  const Real t474 = t442 + r_dot[14];
-  const Real t475 = t474 * constant<Real>(2.0L);
-  const Real t476 = t473 * t475;
-  const Real t477 = t449 * c_r_14_;
-  const Real t478 = s_r_14_ * t469;
-  const Real t479 = t477 + t478;
-  const Real t480 = t476 - t479;
-  const Real t481 = t452 * c_r_14_;
-  const Real t482 = t443 * s_r_14_;
-  const Real t483 = t481 - t482;
-  const Real t484 = t475 * t483;
-  const Real t485 = c_r_14_ * t469;
-  const Real t486 = t449 * s_r_14_;
-  const Real t487 = t485 - t486;
-  const Real t488 = t484 - t487;
-  const Real t489 = t473 * t483;
-  const Real t490 = t452 * t443;
-  const Real t491 = t456 - t490;
-  const Real t492 = r_ddot[14] + t491;
-  const Real t493 = t489 - t492;
-  const Real t494 = t474 * t474;
-  const Real t495 = t473 * t473;
-  const Real t496 = t494 + t495;
-  const Real t497 = t416 * constant<Real>(0.28L);
-  const Real t498 = constant<Real>(0.01L) * t457;
-  const Real t499 = constant<Real>(0.01L) * t462;
-  const Real t500 = t483 * t483;
-  const Real t501 = t494 + t500;
-  const Real t502 = t489 + t492;
-  const Real t503 = constant<Real>(0.01L) * t467;
-
-  // right_wrist_yaw_link: motion
-  const Real t504 = r_dot[15] + t473;
-  const Real t505 = t504 * constant<Real>(2.0L);
-  const Real t506 = t474 * c_r_15_;
-  const Real t507 = s_r_15_ * t483;
-  const Real t508 = t506 - t507;
-  const Real t509 = t505 * t508;
-  const Real t510 = t480 * c_r_15_;
-  const Real t511 = s_r_15_ * t502;
-  const Real t512 = t510 - t511;
-  const Real t513 = t509 - t512;
-  const Real t514 = t474 * s_r_15_;
-  const Real t515 = c_r_15_ * t483;
-  const Real t516 = t514 + t515;
-  const Real t517 = t516 * t508;
-  const Real t518 = t474 * t483;
-  const Real t519 = t488 - t518;
-  const Real t520 = r_ddot[15] + t519;
-  const Real t521 = t517 - t520;
-  const Real t522 = t516 * t516;
-  const Real t523 = t504 * t504;
-  const Real t524 = t522 + t523;
-  const Real t525 = t520 + t517;
-  const Real t526 = constant<Real>(0.01L) * t493;
-  const Real t527 = constant<Real>(0.01L) * t496;
-  const Real t528 = t516 * t505;
-  const Real t529 = t480 * s_r_15_;
-  const Real t530 = c_r_15_ * t502;
-  const Real t531 = t529 + t530;
-  const Real t532 = t528 - t531;
-  const Real t533 = t488 * constant<Real>(0.01L);
-  const Real t534 = t508 * t508;
-
-  // right_wrist: motion
-  const Real t535 = constant<Real>(0.24L) * t501;
-  const Real t536 = t516 * c_r_16_;
-  const Real t537 = t504 * s_r_16_;
-  const Real t538 = t536 - t537;
-  const Real t539 = t504 * c_r_16_;
-  const Real t540 = t516 * s_r_16_;
-  const Real t541 = t539 + t540;
-  const Real t542 = t538 * t541;
-  const Real t543 = t516 * t504;
-  const Real t544 = t531 - t543;
-  const Real t545 = t544 + r_ddot[16];
-  const Real t546 = t542 + t545;
-  const Real t547 = t541 * t541;
-  const Real t548 = t508 + r_dot[16];
-  const Real t549 = t548 * t548;
-  const Real t550 = t547 + t549;
-  const Real t551 = t548 * constant<Real>(2.0L);
-  const Real t552 = t538 * t551;
-  const Real t553 = t521 * c_r_16_;
-  const Real t554 = t513 * s_r_16_;
-  const Real t555 = t553 - t554;
-  const Real t556 = t552 - t555;
-  const Real t557 = t538 * t538;
-  const Real t558 = t557 + t549;
-  const Real t559 = t551 * t541;
-  const Real t560 = t513 * c_r_16_;
-  const Real t561 = t521 * s_r_16_;
-  const Real t562 = t560 + t561;
-  const Real t563 = t559 - t562;
-  const Real t564 = t542 - t545;
-
-  // right_hand: motion
-  const Real t565 = t12 * t541;
-  const Real t566 = t11 * t548;
-  const Real t567 = t565 - t566;
-  const Real t568 = t11 * t541;
-  const Real t569 = t548 * t12;
-  const Real t570 = t568 + t569;
-  const Real t571 = t567 * t570;
-  const Real t572 = t548 * t541;
-  const Real t573 = t562 - t572;
-  const Real t574 = t573 + r_ddot[17];
-  const Real t575 = t571 - t574;
-  const Real t576 = t538 + r_dot[17];
-  const Real t577 = t576 * constant<Real>(2.0L);
-  const Real t578 = t577 * t570;
-  const Real t579 = t556 * t12;
-  const Real t580 = t11 * t564;
-  const Real t581 = t579 + t580;
-  const Real t582 = t578 - t581;
-  const Real t583 = t567 * t577;
-  const Real t584 = t12 * t564;
-  const Real t585 = t11 * t556;
-  const Real t586 = t584 - t585;
-  const Real t587 = t583 - t586;
-  const Real t588 = t570 * t570;
-  const Real t589 = t571 + t574;
-  const Real t590 = t576 * t576;
-  const Real t591 = t567 * t567;
-  const Real t592 = t590 + t591;
-
-  // left_hip_yaw_link: motion
-  const Real t593 = t37 * constant<Real>(0.1L);
-  const Real t594 = eta[5] + r_dot[18];
-  const Real t595 = t594 * t594;
-  const Real t596 = eta[4] * c_r_18_;
-  const Real t597 = eta[3] * s_r_18_;
-  const Real t598 = t596 - t597;
-  const Real t599 = t598 * t598;
-  const Real t600 = t595 + t599;
-  const Real t601 = constant<Real>(0.1L) * t44;
-  const Real t602 = constant<Real>(0.1L) * t46;
-  const Real t603 = eta[4] * s_r_18_;
-  const Real t604 = eta[3] * c_r_18_;
-  const Real t605 = t603 + t604;
-  const Real t606 = t598 * t605;
-  const Real t607 = eta_dot[5] + r_ddot[18];
-  const Real t608 = t606 - t607;
-  const Real t609 = t594 * constant<Real>(2.0L);
-  const Real t610 = t605 * t609;
-  const Real t611 = t41 * s_r_18_;
-  const Real t612 = t35 * c_r_18_;
-  const Real t613 = t611 + t612;
-  const Real t614 = t610 - t613;
-  const Real t615 = t607 + t606;
-  const Real t616 = t605 * t605;
-  const Real t617 = t616 + t595;
-  const Real t618 = t598 * t609;
-  const Real t619 = t41 * c_r_18_;
-  const Real t620 = t35 * s_r_18_;
-  const Real t621 = t619 - t620;
-  const Real t622 = t618 - t621;
-
-  // left_hip_roll_link: motion
-  const Real t623 = constant<Real>(0.02L) * t622;
-  const Real t624 = t594 * c_r_19_;
-  const Real t625 = t598 * s_r_19_;
-  const Real t626 = t624 - t625;
-  const Real t627 = t626 * t626;
-  const Real t628 = t605 + r_dot[19];
-  const Real t629 = t628 * t628;
-  const Real t630 = t627 + t629;
-  const Real t631 = t598 * t594;
-  const Real t632 = t622 - t631;
-  const Real t633 = t632 + r_ddot[19];
-  const Real t634 = t594 * s_r_19_;
-  const Real t635 = t598 * c_r_19_;
-  const Real t636 = t634 + t635;
-  const Real t637 = t636 * t626;
-  const Real t638 = t633 + t637;
-  const Real t639 = t628 * constant<Real>(2.0L);
-  const Real t640 = t636 * t639;
-  const Real t641 = t615 * c_r_19_;
-  const Real t642 = t614 * s_r_19_;
-  const Real t643 = t641 + t642;
-  const Real t644 = t640 - t643;
-  const Real t645 = t636 * t636;
-  const Real t646 = t645 + t629;
-  const Real t647 = constant<Real>(0.13L) * t40;
-  const Real t648 = t637 - t633;
-  const Real t649 = constant<Real>(0.02L) * t608;
-  const Real t650 = t626 * t639;
-  const Real t651 = t614 * c_r_19_;
-  const Real t652 = t615 * s_r_19_;
-  const Real t653 = t651 - t652;
-  const Real t654 = t650 - t653;
-  const Real t655 = constant<Real>(0.02L) * t617;
-
-  // left_thigh: motion
-  const Real t656 = r_dot[20] + t636;
-  const Real t657 = t656 * constant<Real>(2.0L);
-  const Real t658 = t626 * c_r_20_;
-  const Real t659 = s_r_20_ * t628;
-  const Real t660 = t658 + t659;
-  const Real t661 = t657 * t660;
-  const Real t662 = t638 * c_r_20_;
-  const Real t663 = s_r_20_ * t644;
-  const Real t664 = t662 + t663;
-  const Real t665 = t661 - t664;
-  const Real t666 = c_r_20_ * t628;
-  const Real t667 = t626 * s_r_20_;
-  const Real t668 = t666 - t667;
-  const Real t669 = t668 * t660;
-  const Real t670 = t626 * t628;
-  const Real t671 = t654 - t670;
-  const Real t672 = r_ddot[20] + t671;
-  const Real t673 = t669 - t672;
-  const Real t674 = t660 * t660;
-  const Real t675 = t656 * t656;
-  const Real t676 = t674 + t675;
-  const Real t677 = t672 + t669;
-  const Real t678 = t657 * t668;
-  const Real t679 = t644 * c_r_20_;
-  const Real t680 = t638 * s_r_20_;
-  const Real t681 = t679 - t680;
-  const Real t682 = t678 - t681;
-  const Real t683 = t668 * t668;
-  const Real t684 = t683 + t675;
-
-  // left_shank: motion
-  const Real t685 = constant<Real>(0.4L) * t684;
-  const Real t686 = t668 * c_r_21_;
-  const Real t687 = s_r_21_ * t660;
-  const Real t688 = t686 - t687;
-  const Real t689 = t656 + r_dot[21];
-  const Real t690 = t689 * constant<Real>(2.0L);
-  const Real t691 = t688 * t690;
-  const Real t692 = c_r_21_ * t681;
-  const Real t693 = t664 * s_r_21_;
-  const Real t694 = t692 - t693;
-  const Real t695 = t691 - t694;
-  const Real t696 = t668 * s_r_21_;
-  const Real t697 = c_r_21_ * t660;
-  const Real t698 = t696 + t697;
-  const Real t699 = t698 * t688;
-  const Real t700 = t672 + r_ddot[21];
-  const Real t701 = t699 + t700;
-  const Real t702 = t688 * t688;
-  const Real t703 = t689 * t689;
-  const Real t704 = t702 + t703;
-  const Real t705 = t698 * t698;
-  const Real t706 = t705 + t703;
-  const Real t707 = t699 - t700;
-  const Real t708 = constant<Real>(0.4L) * t677;
-  const Real t709 = t698 * t690;
-  const Real t710 = t664 * c_r_21_;
-  const Real t711 = t681 * s_r_21_;
-  const Real t712 = t710 + t711;
-  const Real t713 = t709 - t712;
-  const Real t714 = t665 * constant<Real>(0.4L);
-
-  // left_ankle: motion
-  const Real t715 = c_r_22_ * t698;
-  const Real t716 = s_r_22_ * t688;
-  const Real t717 = t715 + t716;
-  const Real t718 = c_r_22_ * t688;
-  const Real t719 = s_r_22_ * t698;
-  const Real t720 = t718 - t719;
-  const Real t721 = t717 * t720;
-  const Real t722 = t700 + r_ddot[22];
-  const Real t723 = t721 - t722;
-  const Real t724 = constant<Real>(0.4L) * t701;
-  const Real t725 = constant<Real>(0.4L) * t704;
-  const Real t726 = t689 + r_dot[22];
-  const Real t727 = t726 * t726;
-  const Real t728 = t720 * t720;
-  const Real t729 = t727 + t728;
-  const Real t730 = t717 * t717;
-  const Real t731 = t727 + t730;
-  const Real t732 = t721 + t722;
-  const Real t733 = constant<Real>(0.4L) * t713;
-  const Real t734 = t726 * constant<Real>(2.0L);
-  const Real t735 = t720 * t734;
-  const Real t736 = t694 * c_r_22_;
-  const Real t737 = s_r_22_ * t712;
-  const Real t738 = t736 - t737;
-  const Real t739 = t735 - t738;
-  const Real t740 = t717 * t734;
-  const Real t741 = t694 * s_r_22_;
-  const Real t742 = c_r_22_ * t712;
-  const Real t743 = t741 + t742;
-  const Real t744 = t740 - t743;
-
-  // left_foot: motion
-  const Real t745 = r_dot[23] + t720;
-  const Real t746 = t745 * t745;
-  const Real t747 = t717 * t3;
-  const Real t748 = t726 * t2;
-  const Real t749 = t747 - t748;
-  const Real t750 = t749 * t749;
-  const Real t751 = t746 + t750;
-  const Real t752 = t745 * constant<Real>(2.0L);
-  const Real t753 = t749 * t752;
-  const Real t754 = t723 * t3;
-  const Real t755 = t739 * t2;
-  const Real t756 = t754 - t755;
-  const Real t757 = t753 - t756;
-  const Real t758 = t717 * t2;
-  const Real t759 = t726 * t3;
-  const Real t760 = t758 + t759;
-  const Real t761 = t760 * t752;
-  const Real t762 = t723 * t2;
-  const Real t763 = t3 * t739;
-  const Real t764 = t762 + t763;
-  const Real t765 = t761 - t764;
-  const Real t766 = t760 * t760;
-  const Real t767 = t717 * t726;
-  const Real t768 = t743 - t767;
-  const Real t769 = r_ddot[23] + t768;
-  const Real t770 = t749 * t760;
-  const Real t771 = t769 + t770;
-  const Real t772 = t770 - t769;
+  const Real t16 = eta[5] * eta[4];
+  const Real t17 = t16 - eta_dot[3];
 
   // right_hip_yaw_link: motion
-  const Real t773 = c_r_24_ * eta[3];
-  const Real t774 = s_r_24_ * eta[4];
-  const Real t775 = t773 + t774;
-  const Real t776 = t775 * t775;
-  const Real t777 = eta[5] + r_dot[24];
-  const Real t778 = t777 * t777;
-  const Real t779 = t776 + t778;
-  const Real t780 = c_r_24_ * eta[4];
-  const Real t781 = s_r_24_ * eta[3];
-  const Real t782 = t780 - t781;
-  const Real t783 = t775 * t782;
-  const Real t784 = eta_dot[5] + r_ddot[24];
-  const Real t785 = t783 - t784;
-  const Real t786 = t777 * constant<Real>(2.0L);
-  const Real t787 = t775 * t786;
-  const Real t788 = s_r_24_ * t41;
-  const Real t789 = t35 * c_r_24_;
-  const Real t790 = t788 + t789;
-  const Real t791 = t787 - t790;
-  const Real t792 = t784 + t783;
-  const Real t793 = t782 * t786;
-  const Real t794 = c_r_24_ * t41;
-  const Real t795 = s_r_24_ * t35;
-  const Real t796 = t794 - t795;
-  const Real t797 = t793 - t796;
-  const Real t798 = t782 * t782;
-  const Real t799 = t798 + t778;
+  const Real t18 = s_r_24_ * t17;
+
+  // joint angles
+  const Real t19 = eta[5] * eta[3];
+  const Real t20 = t19 + eta_dot[4];
+
+  // right_hip_yaw_link: motion
+  const Real t21 = t20 * c_r_24_;
+  const Real t22 = t18 + t21;
+  const Real t23 = c_r_24_ * eta[3];
+  const Real t24 = s_r_24_ * eta[4];
+  const Real t25 = t23 + t24;
+  const Real t26 = eta[5] + r_dot[24];
+  const Real t27 = t26 * constant<Real>(2.0L);
+  const Real t28 = t25 * t27;
+  const Real t29 = t28 - t22;
 
   // right_hip_roll_link: motion
-  const Real t800 = t777 * c_r_25_;
-  const Real t801 = s_r_25_ * t782;
-  const Real t802 = t800 - t801;
-  const Real t803 = t775 + r_dot[25];
-  const Real t804 = t803 * constant<Real>(2.0L);
-  const Real t805 = t802 * t804;
-  const Real t806 = t791 * c_r_25_;
-  const Real t807 = s_r_25_ * t792;
-  const Real t808 = t806 - t807;
-  const Real t809 = t805 - t808;
-  const Real t810 = t782 * c_r_25_;
-  const Real t811 = s_r_25_ * t777;
-  const Real t812 = t810 + t811;
-  const Real t813 = t802 * t812;
-  const Real t814 = t777 * t782;
-  const Real t815 = t797 - t814;
-  const Real t816 = r_ddot[25] + t815;
-  const Real t817 = t813 - t816;
-  const Real t818 = t779 * constant<Real>(0.02L);
-  const Real t819 = t813 + t816;
-  const Real t820 = constant<Real>(0.02L) * t797;
-  const Real t821 = t803 * t803;
-  const Real t822 = t812 * t812;
-  const Real t823 = t821 + t822;
-  const Real t824 = t804 * t812;
-  const Real t825 = t792 * c_r_25_;
-  const Real t826 = s_r_25_ * t791;
-  const Real t827 = t825 + t826;
-  const Real t828 = t824 - t827;
-  const Real t829 = t802 * t802;
-  const Real t830 = t821 + t829;
-  const Real t831 = t785 * constant<Real>(0.02L);
+  const Real t30 = s_r_25_ * t29;
+
+  // right_hip_yaw_link: motion
+  const Real t31 = c_r_24_ * eta[4];
+  const Real t32 = s_r_24_ * eta[3];
+  const Real t33 = t31 - t32;
+  const Real t34 = t25 * t33;
+  const Real t35 = eta_dot[5] + r_ddot[24];
+  const Real t36 = t35 + t34;
+
+  // right_hip_roll_link: motion
+  const Real t37 = t36 * c_r_25_;
+  const Real t38 = t37 + t30;
+  const Real t39 = t25 + r_dot[25];
+  const Real t40 = t39 * constant<Real>(2.0L);
+  const Real t41 = t33 * c_r_25_;
+  const Real t42 = s_r_25_ * t26;
+  const Real t43 = t41 + t42;
+  const Real t44 = t40 * t43;
+  const Real t45 = t44 - t38;
 
   // right_thigh: motion
-  const Real t832 = t812 + r_dot[26];
-  const Real t833 = t832 * t832;
-  const Real t834 = t802 * c_r_26_;
-  const Real t835 = s_r_26_ * t803;
-  const Real t836 = t834 + t835;
-  const Real t837 = t836 * t836;
-  const Real t838 = t833 + t837;
-  const Real t839 = t832 * constant<Real>(2.0L);
-  const Real t840 = t836 * t839;
-  const Real t841 = t819 * c_r_26_;
-  const Real t842 = s_r_26_ * t828;
-  const Real t843 = t841 + t842;
-  const Real t844 = t840 - t843;
-  const Real t845 = t803 * c_r_26_;
-  const Real t846 = t802 * s_r_26_;
-  const Real t847 = t845 - t846;
-  const Real t848 = t836 * t847;
-  const Real t849 = t802 * t803;
-  const Real t850 = t809 - t849;
-  const Real t851 = r_ddot[26] + t850;
-  const Real t852 = t848 - t851;
-  const Real t853 = t847 * t839;
-  const Real t854 = c_r_26_ * t828;
-  const Real t855 = t819 * s_r_26_;
-  const Real t856 = t854 - t855;
-  const Real t857 = t853 - t856;
-  const Real t858 = t848 + t851;
-  const Real t859 = t847 * t847;
-  const Real t860 = t833 + t859;
+  const Real t46 = c_r_26_ * t45;
+
+  // right_hip_yaw_link: motion
+  const Real t47 = c_r_24_ * t17;
+  const Real t48 = s_r_24_ * t20;
+  const Real t49 = t47 - t48;
+  const Real t50 = t33 * t27;
+  const Real t51 = t50 - t49;
+
+  // right_hip_roll_link: motion
+  const Real t52 = t26 * t33;
+  const Real t53 = t51 - t52;
+  const Real t54 = r_ddot[25] + t53;
+  const Real t55 = s_r_25_ * t33;
+  const Real t56 = t26 * c_r_25_;
+  const Real t57 = t56 - t55;
+  const Real t58 = t57 * t43;
+  const Real t59 = t58 + t54;
+
+  // right_thigh: motion
+  const Real t60 = t59 * s_r_26_;
+  const Real t61 = t46 - t60;
 
   // right_shank: motion
-  const Real t861 = constant<Real>(0.4L) * t844;
-  const Real t862 = t847 * c_r_27_;
-  const Real t863 = t836 * s_r_27_;
-  const Real t864 = t862 - t863;
-  const Real t865 = t836 * c_r_27_;
-  const Real t866 = t847 * s_r_27_;
-  const Real t867 = t865 + t866;
-  const Real t868 = t864 * t867;
-  const Real t869 = t851 + r_ddot[27];
-  const Real t870 = t868 + t869;
-  const Real t871 = t832 + r_dot[27];
-  const Real t872 = t871 * constant<Real>(2.0L);
-  const Real t873 = t872 * t867;
-  const Real t874 = t843 * c_r_27_;
-  const Real t875 = t856 * s_r_27_;
-  const Real t876 = t874 + t875;
-  const Real t877 = t873 - t876;
-  const Real t878 = t872 * t864;
-  const Real t879 = t856 * c_r_27_;
-  const Real t880 = t843 * s_r_27_;
-  const Real t881 = t879 - t880;
-  const Real t882 = t878 - t881;
-  const Real t883 = constant<Real>(0.4L) * t860;
-  const Real t884 = constant<Real>(0.4L) * t858;
-  const Real t885 = t871 * t871;
-  const Real t886 = t867 * t867;
-  const Real t887 = t885 + t886;
-  const Real t888 = t864 * t864;
-  const Real t889 = t888 + t885;
-  const Real t890 = t868 - t869;
+  const Real t62 = t61 * c_r_27_;
+
+  // right_thigh: motion
+  const Real t63 = t59 * c_r_26_;
+  const Real t64 = s_r_26_ * t45;
+  const Real t65 = t63 + t64;
+
+  // right_shank: motion
+  const Real t66 = t65 * s_r_27_;
+  const Real t67 = t62 - t66;
 
   // right_ankle: motion
-  const Real t891 = c_r_28_ * t867;
-  const Real t892 = s_r_28_ * t864;
-  const Real t893 = t891 + t892;
-  const Real t894 = t893 * t893;
-  const Real t895 = r_dot[28] + t871;
-  const Real t896 = t895 * t895;
-  const Real t897 = t894 + t896;
-  const Real t898 = constant<Real>(0.4L) * t870;
-  const Real t899 = constant<Real>(0.4L) * t877;
-  const Real t900 = constant<Real>(0.4L) * t889;
-  const Real t901 = t864 * c_r_28_;
-  const Real t902 = s_r_28_ * t867;
-  const Real t903 = t901 - t902;
-  const Real t904 = t903 * t903;
-  const Real t905 = t896 + t904;
-  const Real t906 = t895 * constant<Real>(2.0L);
-  const Real t907 = t903 * t906;
-  const Real t908 = c_r_28_ * t881;
-  const Real t909 = s_r_28_ * t876;
-  const Real t910 = t908 - t909;
-  const Real t911 = t907 - t910;
-  const Real t912 = t903 * t893;
-  const Real t913 = r_ddot[28] + t869;
-  const Real t914 = t912 - t913;
-  const Real t915 = t893 * t906;
-  const Real t916 = s_r_28_ * t881;
-  const Real t917 = c_r_28_ * t876;
-  const Real t918 = t916 + t917;
-  const Real t919 = t915 - t918;
-  const Real t920 = t912 + t913;
+  const Real t68 = s_r_28_ * t67;
+
+  // right_shank: motion
+  const Real t69 = t65 * c_r_27_;
+  const Real t70 = t61 * s_r_27_;
+  const Real t71 = t69 + t70;
+
+  // right_ankle: motion
+  const Real t72 = c_r_28_ * t71;
+  const Real t73 = t68 + t72;
+
+  // right_thigh: motion
+  const Real t74 = t57 * c_r_26_;
+  const Real t75 = s_r_26_ * t39;
+  const Real t76 = t74 + t75;
+
+  // right_shank: motion
+  const Real t77 = t76 * c_r_27_;
+
+  // right_thigh: motion
+  const Real t78 = t57 * s_r_26_;
+  const Real t79 = t39 * c_r_26_;
+  const Real t80 = t79 - t78;
+
+  // right_shank: motion
+  const Real t81 = t80 * s_r_27_;
+  const Real t82 = t77 + t81;
+
+  // right_ankle: motion
+  const Real t83 = c_r_28_ * t82;
+
+  // right_shank: motion
+  const Real t84 = t80 * c_r_27_;
+  const Real t85 = t76 * s_r_27_;
+  const Real t86 = t84 - t85;
+
+  // right_ankle: motion
+  const Real t87 = s_r_28_ * t86;
+  const Real t88 = t83 + t87;
+
+  // right_thigh: motion
+  const Real t89 = t43 + r_dot[26];
+
+  // right_shank: motion
+  const Real t90 = t89 + r_dot[27];
+
+  // right_ankle: motion
+  const Real t91 = r_dot[28] + t90;
 
   // right_foot: motion
-  const Real t921 = t14 * t893;
-  const Real t922 = t895 * t15;
-  const Real t923 = t921 + t922;
-  const Real t924 = t15 * t893;
-  const Real t925 = t895 * t14;
-  const Real t926 = t924 - t925;
-  const Real t927 = t923 * t926;
-  const Real t928 = t895 * t893;
-  const Real t929 = t918 - t928;
-  const Real t930 = t929 + r_ddot[29];
-  const Real t931 = t927 + t930;
-  const Real t932 = t927 - t930;
-  const Real t933 = t923 * t923;
-  const Real t934 = t926 * t926;
-  const Real t935 = t903 + r_dot[29];
-  const Real t936 = t935 * t935;
-  const Real t937 = t934 + t936;
-  const Real t938 = t935 * constant<Real>(2.0L);
-  const Real t939 = t926 * t938;
-  const Real t940 = t15 * t914;
-  const Real t941 = t14 * t911;
-  const Real t942 = t940 - t941;
-  const Real t943 = t939 - t942;
-  const Real t944 = t923 * t938;
-  const Real t945 = t14 * t914;
-  const Real t946 = t15 * t911;
-  const Real t947 = t945 + t946;
-  const Real t948 = t944 - t947;
-
-  // pelvis: wrench
-  const Real t949 = t33 * constant<Real>(2.0514L);
-  const Real t950 = t39 - t45;
-  const Real t951 = constant<Real>(0.001444L) * t950;
-  const Real t952 = t44 * constant<Real>(0.3921142L);
-  const Real t953 = t35 * constant<Real>(0.000076L);
-  const Real t954 = constant<Real>(0.0309962L) * t43;
-  const Real t955 = constant<Real>(0.0092L) * t33;
-  const Real t956 = constant<Real>(77.62L) * t27;
-  const Real t957 = t27 * constant<Real>(2.0514L);
-  const Real t958 = constant<Real>(0.0092L) * t46;
-  const Real t959 = t43 * constant<Real>(0.001444L);
-  const Real t960 = t41 * constant<Real>(1.563735L);
-  const Real t961 = t21 * constant<Real>(0.0092L);
-  const Real t962 = constant<Real>(77.62L) * t33;
-  const Real t963 = t38 - t39;
-  const Real t964 = constant<Real>(0.0004552L) * t963;
-  const Real t965 = t37 * constant<Real>(0.3921142L);
-  const Real t966 = t45 - t38;
-  const Real t967 = constant<Real>(0.000076L) * t966;
-  const Real t968 = t35 * constant<Real>(2.0514L);
-  const Real t969 = t41 * constant<Real>(0.001444L);
-  const Real t970 = constant<Real>(0.0004552L) * t47;
-  const Real t971 = constant<Real>(0.0552L) * t21;
-  const Real t972 = constant<Real>(0.0004552L) * t37;
-  const Real t973 = t41 * constant<Real>(2.0514L);
-  const Real t974 = constant<Real>(0.0552L) * t43;
-  const Real t975 = constant<Real>(0.0092L) * t44;
-  const Real t976 = constant<Real>(0.0552L) * t48;
-  const Real t977 = constant<Real>(0.000076L) * t44;
-  const Real t978 = constant<Real>(0.0552L) * t27;
-  const Real t979 = constant<Real>(0.0309962L) * t47;
-  const Real t980 = t21 * constant<Real>(77.62L);
-  const Real t981 = t37 * constant<Real>(0.0092L);
-  const Real t982 = constant<Real>(0.0552L) * t47;
-  const Real t983 = t981 - t982;
-  const Real t984 = t40 * constant<Real>(2.0514L);
-  const Real t985 = t983 - t984;
-  const Real t986 = t980 + t985;
-  const Real t987 = t35 * constant<Real>(1.563735L);
-
-  // waist: wrench
-  const Real t988 = constant<Real>(0.0032L) * t70;
-  const Real t989 = constant<Real>(0.9513005L) * t69;
-  const Real t990 = t64 * constant<Real>(0.0175L);
-  const Real t991 = constant<Real>(0.0032L) * t75;
-  const Real t992 = t990 - t991;
-  const Real t993 = constant<Real>(0.0175L) * t73;
-  const Real t994 = t69 * constant<Real>(0.0175L);
-  const Real t995 = t58 * constant<Real>(0.0032L);
-  const Real t996 = t994 + t995;
-  const Real t997 = t72 - t71;
-  const Real t998 = constant<Real>(0.0010864L) * t70;
-  const Real t999 = constant<Real>(0.9513005L) * t64;
-  const Real t1000 = t998 - t999;
-  const Real t1001 = t58 * constant<Real>(0.0010864L);
-
-  // torso: wrench
-  const Real t1002 = constant<Real>(0.073347L) * t105;
-  const Real t1003 = constant<Real>(0.003875L) * t104;
-  const Real t1004 = constant<Real>(0.026965L) * t105;
-  const Real t1005 = t96 * constant<Real>(0.0968L);
-  const Real t1006 = constant<Real>(0.0012925L) * t92;
-  const Real t1007 = constant<Real>(0.0968L) * t105;
-  const Real t1008 = t93 * constant<Real>(0.026965L);
-  const Real t1009 = constant<Real>(0.0968L) * t106;
-  const Real t1010 = t94 - t95;
-  const Real t1011 = t1010 * constant<Real>(0.003875L);
-  const Real t1012 = t86 * constant<Real>(8.246L);
-  const Real t1013 = t107 - t94;
-  const Real t1014 = t1013 * constant<Real>(0.026965L);
-  const Real t1015 = t95 - t107;
-  const Real t1016 = constant<Real>(0.0012925L) * t1015;
-  const Real t1017 = t86 * constant<Real>(0.003875L);
-  const Real t1018 = t93 * constant<Real>(2.51418505L);
-  const Real t1019 = t86 * constant<Real>(2.51418505L);
-  const Real t1020 = constant<Real>(0.073347L) * t106;
-  const Real t1021 = constant<Real>(8.246L) * t108;
-  const Real t1022 = constant<Real>(0.0012925L) * t106;
-  const Real t1023 = t93 * constant<Real>(8.246L);
-
-  // neck: wrench
-  const Real t1024 = constant<Real>(0.00401775L) * t133;
-  const Real t1025 = constant<Real>(0.00018375L) * t126;
-  const Real t1026 = t119 * constant<Real>(0.00018375L);
-  const Real t1027 = t128 * constant<Real>(0.00401775L);
-  const Real t1028 = t1026 - t1027;
-
-  // head: wrench
-  const Real t1029 = constant<Real>(0.00696992484105879965887L) * t156;
-  const Real t1030 = t161 * constant<Real>(0.00126691013601806312038L);
-  const Real t1031 = t1029 - t1030;
-  const Real t1032 = t156 * constant<Real>(0.00126691013601806312038L);
-  const Real t1033 = constant<Real>(0.0243403889003640938417L) * t161;
-  const Real t1034 = t1032 - t1033;
-  const Real t1035 = constant<Real>(0.204831170943767747913L) * t164;
-  const Real t1036 = t147 * constant<Real>(0.0243403889003640938417L);
-  const Real t1037 = t146 * constant<Real>(0.00696992484105879965887L);
-  const Real t1038 = t1036 - t1037;
-  const Real t1039 = t163 - t148;
-  const Real t1040 = t1039 * constant<Real>(0.00126691013601806312038L);
-  const Real t1041 = t1038 - t1040;
-  const Real t1042 = t147 * constant<Real>(0.204831170943767747913L);
-  const Real t1043 = constant<Real>(0.204831170943767747913L) * t161;
-
-  // left_shoulder: wrench
-  const Real t1044 = t185 * constant<Real>(0.0007689L);
-  const Real t1045 = constant<Real>(0.0012427L) * t186;
-  const Real t1046 = t1044 - t1045;
-  const Real t1047 = t175 - t170;
-  const Real t1048 = t1047 * constant<Real>(5.6e-6L);
-  const Real t1049 = t182 * constant<Real>(0.0007689L);
-  const Real t1050 = t176 * constant<Real>(0.0056L);
-  const Real t1051 = t186 * constant<Real>(0.0038L);
-  const Real t1052 = t1050 + t1051;
-  const Real t1053 = constant<Real>(0.0012427L) * t197;
-  const Real t1054 = t182 * constant<Real>(5.6e-6L);
-  const Real t1055 = t1053 - t1054;
-  const Real t1056 = t170 - t166;
-  const Real t1057 = constant<Real>(0.0056L) * t185;
-  const Real t1058 = t171 * constant<Real>(0.0038L);
-  const Real t1059 = t1057 + t1058;
-  const Real t1060 = t166 - t175;
-  const Real t1061 = constant<Real>(5.6e-6L) * t197;
-  const Real t1062 = constant<Real>(0.0038L) * t197;
-  const Real t1063 = constant<Real>(0.0056L) * t182;
-  const Real t1064 = t1062 - t1063;
-
-  // left_upper_arm_roll: wrench
-  const Real t1065 = t219 * constant<Real>(0.0515L);
-  const Real t1066 = t224 * constant<Real>(1.031L);
-  const Real t1067 = t1065 - t1066;
-  const Real t1068 = t224 * constant<Real>(0.2556705L);
-  const Real t1069 = t219 * constant<Real>(0.01061L);
-  const Real t1070 = t1068 - t1069;
-  const Real t1071 = t225 * constant<Real>(0.000024L);
-  const Real t1072 = t1070 - t1071;
-  const Real t1073 = t211 - t212;
-  const Real t1074 = constant<Real>(0.00022L) * t1073;
-  const Real t1075 = t1072 - t1074;
-  const Real t1076 = constant<Real>(0.00022L) * t218;
-  const Real t1077 = t223 * constant<Real>(0.000024L);
-  const Real t1078 = t225 * constant<Real>(0.001005L);
-  const Real t1079 = t209 * constant<Real>(0.2556705L);
-  const Real t1080 = t1078 - t1079;
-  const Real t1081 = t1077 + t1080;
-  const Real t1082 = t1076 + t1081;
-  const Real t1083 = t212 - t227;
-  const Real t1084 = constant<Real>(0.01061L) * t1083;
-  const Real t1085 = t1082 - t1084;
-  const Real t1086 = t227 - t211;
-  const Real t1087 = constant<Real>(0.000024L) * t1086;
-  const Real t1088 = t224 * constant<Real>(0.01061L);
-  const Real t1089 = t219 * constant<Real>(0.001005L);
-  const Real t1090 = t209 * constant<Real>(0.00022L);
-  const Real t1091 = t1089 + t1090;
-  const Real t1092 = t1088 - t1091;
-  const Real t1093 = t1087 + t1092;
-  const Real t1094 = constant<Real>(1.031L) * t228;
-  const Real t1095 = t225 * constant<Real>(0.0515L);
-  const Real t1096 = t1094 + t1095;
-  const Real t1097 = t213 * constant<Real>(0.0515L);
-  const Real t1098 = t209 * constant<Real>(1.031L);
-  const Real t1099 = t1097 + t1098;
-
-  // left_upper_arm: wrench
-  const Real t1100 = t247 * constant<Real>(0.0008996L);
-  const Real t1101 = t238 * constant<Real>(0.0008815L);
-  const Real t1102 = t260 * constant<Real>(0.0027L);
-  const Real t1103 = t251 * constant<Real>(0.0305L);
-  const Real t1104 = t1102 + t1103;
-  const Real t1105 = t257 * constant<Real>(0.0008815L);
-  const Real t1106 = constant<Real>(0.0008996L) * t260;
-  const Real t1107 = t1105 - t1106;
-  const Real t1108 = t258 - t249;
-  const Real t1109 = t249 - t250;
-  const Real t1110 = t238 * constant<Real>(0.0305L);
-  const Real t1111 = t247 * constant<Real>(0.0027L);
-  const Real t1112 = t1110 - t1111;
-  const Real t1113 = t259 * constant<Real>(0.0027L);
-  const Real t1114 = t257 * constant<Real>(0.0305L);
-  const Real t1115 = t1113 + t1114;
-
-  // left_forearm: wrench
-  const Real t1116 = t284 - t286;
-  const Real t1117 = constant<Real>(0.003165L) * t1116;
-  const Real t1118 = constant<Real>(5.4e-6L) * t278;
-  const Real t1119 = constant<Real>(0.00001L) * t269;
-  const Real t1120 = constant<Real>(0.07335995L) * t293;
-  const Real t1121 = constant<Real>(0.0004331L) * t292;
-  const Real t1122 = t1120 - t1121;
-  const Real t1123 = t1119 + t1122;
-  const Real t1124 = t1118 + t1123;
-  const Real t1125 = t1117 + t1124;
-  const Real t1126 = t279 * constant<Real>(0.368L);
-  const Real t1127 = t270 * constant<Real>(0.0182L);
-  const Real t1128 = t1126 + t1127;
-  const Real t1129 = constant<Real>(0.0182L) * t287;
-  const Real t1130 = constant<Real>(0.368L) * t293;
-  const Real t1131 = t1129 - t1130;
-  const Real t1132 = constant<Real>(0.368L) * t285;
-  const Real t1133 = constant<Real>(0.0182L) * t292;
-  const Real t1134 = t1132 - t1133;
-  const Real t1135 = t286 - t283;
-  const Real t1136 = constant<Real>(0.00001L) * t1135;
-  const Real t1137 = constant<Real>(0.07335995L) * t279;
-  const Real t1138 = constant<Real>(5.4e-6L) * t292;
-  const Real t1139 = t1137 + t1138;
-  const Real t1140 = constant<Real>(0.003165L) * t270;
-  const Real t1141 = t1139 + t1140;
-  const Real t1142 = t1136 - t1141;
-  const Real t1143 = constant<Real>(0.003165L) * t279;
-  const Real t1144 = t270 * constant<Real>(0.0004331L);
-  const Real t1145 = t1143 + t1144;
-  const Real t1146 = constant<Real>(0.00001L) * t293;
-  const Real t1147 = t1145 - t1146;
-  const Real t1148 = t283 - t284;
-  const Real t1149 = t1148 * constant<Real>(5.4e-6L);
-  const Real t1150 = t1147 - t1149;
-
-  // left_wrist_yaw_link: wrench
-  const Real t1151 = t317 * constant<Real>(0.0007L);
-  const Real t1152 = constant<Real>(0.00018655L) * t317;
-  const Real t1153 = t319 * constant<Real>(0.0007L);
-  const Real t1154 = t322 * constant<Real>(0.0007L);
-  const Real t1155 = t321 - t323;
-  const Real t1156 = t312 * constant<Real>(0.00014585L);
-  const Real t1157 = constant<Real>(0.00018655L) * t319;
-  const Real t1158 = t1156 - t1157;
-  const Real t1159 = t304 * constant<Real>(0.00014585L);
-
-  // left_wrist: wrench
-  const Real t1160 = t352 * constant<Real>(0.0033L);
-  const Real t1161 = t347 * constant<Real>(0.003L);
-  const Real t1162 = t1160 - t1161;
-  const Real t1163 = t341 * constant<Real>(0.00007L);
-  const Real t1164 = constant<Real>(0.0001744L) * t354;
-  const Real t1165 = t1163 - t1164;
-  const Real t1166 = t347 * constant<Real>(0.00007L);
-  const Real t1167 = t352 * constant<Real>(0.0001744L);
-  const Real t1168 = t331 * constant<Real>(0.003L);
-  const Real t1169 = constant<Real>(0.0033L) * t354;
-  const Real t1170 = t1168 + t1169;
-  const Real t1171 = t341 * constant<Real>(0.003L);
-  const Real t1172 = t336 * constant<Real>(0.0033L);
-  const Real t1173 = t1171 + t1172;
-
-  // left_hand: wrench
-  const Real t1174 = t361 * constant<Real>(0.0385628059145078290295L);
-  const Real t1175 = t370 * constant<Real>(0.0385628059145078290295L);
-  const Real t1176 = t382 * constant<Real>(0.0385628059145078290295L);
-  const Real t1177 = t375 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1178 = t381 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1179 = t370 * constant<Real>(0.00336830219690805532954L);
-  const Real t1180 = t1178 + t1179;
-  const Real t1181 = t1177 - t1180;
-  const Real t1182 = t376 - t356;
-  const Real t1183 = constant<Real>(0.000292420111363255831432L) * t1182;
-  const Real t1184 = t1181 + t1183;
-  const Real t1185 = t369 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1186 = t374 * constant<Real>(0.000292420111363255831432L);
-  const Real t1187 = constant<Real>(0.00336830219690805532954L) * t382;
-  const Real t1188 = constant<Real>(0.000288797803091944670464L) * t381;
-  const Real t1189 = t1187 - t1188;
-  const Real t1190 = t1186 + t1189;
-  const Real t1191 = t1185 + t1190;
-  const Real t1192 = t360 - t376;
-  const Real t1193 = t1192 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1194 = t1191 - t1193;
-  const Real t1195 = constant<Real>(0.000288797803091944670464L) * t375;
-  const Real t1196 = t370 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1197 = t1195 - t1196;
-  const Real t1198 = constant<Real>(0.000292420111363255831432L) * t382;
-  const Real t1199 = t1197 - t1198;
-  const Real t1200 = t356 - t360;
-  const Real t1201 = t1200 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1202 = t1199 - t1201;
-
-  // right_shoulder: wrench
-  const Real t1203 = constant<Real>(0.0007689L) * t409;
-  const Real t1204 = t388 - t403;
-  const Real t1205 = t401 * constant<Real>(0.0038L);
-  const Real t1206 = constant<Real>(0.0056L) * t409;
-  const Real t1207 = t1205 - t1206;
-  const Real t1208 = constant<Real>(0.0056L) * t404;
-  const Real t1209 = t402 * constant<Real>(0.0038L);
-  const Real t1210 = t1208 + t1209;
-  const Real t1211 = t401 * constant<Real>(0.0012427L);
-  const Real t1212 = t409 * constant<Real>(5.6e-6L);
-  const Real t1213 = t1211 - t1212;
-  const Real t1214 = constant<Real>(0.0056L) * t395;
-  const Real t1215 = t389 * constant<Real>(0.0038L);
-  const Real t1216 = t1214 + t1215;
-  const Real t1217 = t395 * constant<Real>(0.0007689L);
-  const Real t1218 = constant<Real>(0.0012427L) * t402;
-  const Real t1219 = t1217 - t1218;
-  const Real t1220 = t386 - t388;
-  const Real t1221 = t403 - t386;
-  const Real t1222 = t1221 * constant<Real>(5.6e-6L);
-  const Real t1223 = t401 * constant<Real>(5.6e-6L);
-
-  // right_upper_arm_roll: wrench
-  const Real t1224 = t416 * constant<Real>(1.031L);
-  const Real t1225 = t424 * constant<Real>(0.0515L);
-  const Real t1226 = t1224 - t1225;
-  const Real t1227 = constant<Real>(0.0515L) * t438;
-  const Real t1228 = t430 * constant<Real>(1.031L);
-  const Real t1229 = t1227 + t1228;
-  const Real t1230 = constant<Real>(0.01061L) * t438;
-  const Real t1231 = t430 * constant<Real>(0.2556705L);
-  const Real t1232 = t1230 + t1231;
-  const Real t1233 = t424 * constant<Real>(0.000024L);
-  const Real t1234 = t1232 + t1233;
-  const Real t1235 = t415 - t431;
-  const Real t1236 = constant<Real>(0.00022L) * t1235;
-  const Real t1237 = t1234 - t1236;
-  const Real t1238 = t432 * constant<Real>(0.0515L);
-  const Real t1239 = t433 * constant<Real>(1.031L);
-  const Real t1240 = t1238 - t1239;
-  const Real t1241 = t430 * constant<Real>(0.01061L);
-  const Real t1242 = t438 * constant<Real>(0.001005L);
-  const Real t1243 = constant<Real>(0.00022L) * t433;
-  const Real t1244 = t1242 + t1243;
-  const Real t1245 = t1241 + t1244;
-  const Real t1246 = t413 - t415;
-  const Real t1247 = t1246 * constant<Real>(0.000024L);
-  const Real t1248 = t1245 + t1247;
-  const Real t1249 = t431 - t413;
-  const Real t1250 = t1249 * constant<Real>(0.01061L);
-  const Real t1251 = t424 * constant<Real>(0.001005L);
-  const Real t1252 = t433 * constant<Real>(0.2556705L);
-  const Real t1253 = t1251 - t1252;
-  const Real t1254 = t429 * constant<Real>(0.000024L);
-  const Real t1255 = t1253 - t1254;
-  const Real t1256 = constant<Real>(0.00022L) * t437;
-  const Real t1257 = t1255 + t1256;
-  const Real t1258 = t1250 + t1257;
-
-  // right_upper_arm: wrench
-  const Real t1259 = t458 - t461;
-  const Real t1260 = t449 * constant<Real>(0.0008996L);
-  const Real t1261 = t449 * constant<Real>(0.0027L);
-  const Real t1262 = t457 * constant<Real>(0.0305L);
-  const Real t1263 = t1261 + t1262;
-  const Real t1264 = t457 * constant<Real>(0.0008815L);
-  const Real t1265 = t459 - t458;
-  const Real t1266 = t469 * constant<Real>(0.0027L);
-  const Real t1267 = constant<Real>(0.0305L) * t462;
-  const Real t1268 = t1266 - t1267;
-  const Real t1269 = t467 * constant<Real>(0.0008815L);
-  const Real t1270 = constant<Real>(0.0008996L) * t469;
-  const Real t1271 = t1269 - t1270;
-  const Real t1272 = constant<Real>(0.0305L) * t467;
-  const Real t1273 = t460 * constant<Real>(0.0027L);
-  const Real t1274 = t1272 - t1273;
-
-  // right_forearm: wrench
-  const Real t1275 = t493 * constant<Real>(5.4e-6L);
-  const Real t1276 = t480 * constant<Real>(0.07335995L);
-  const Real t1277 = t1275 - t1276;
-  const Real t1278 = t488 * constant<Real>(0.003165L);
-  const Real t1279 = t1277 - t1278;
-  const Real t1280 = t495 - t494;
-  const Real t1281 = constant<Real>(0.00001L) * t1280;
-  const Real t1282 = t1279 - t1281;
-  const Real t1283 = t488 * constant<Real>(0.0182L);
-  const Real t1284 = t480 * constant<Real>(0.368L);
-  const Real t1285 = t1283 + t1284;
-  const Real t1286 = t488 * constant<Real>(0.0004331L);
-  const Real t1287 = t480 * constant<Real>(0.003165L);
-  const Real t1288 = t1286 + t1287;
-  const Real t1289 = constant<Real>(0.00001L) * t502;
-  const Real t1290 = t1288 + t1289;
-  const Real t1291 = t494 - t500;
-  const Real t1292 = constant<Real>(5.4e-6L) * t1291;
-  const Real t1293 = t1290 + t1292;
-  const Real t1294 = constant<Real>(0.368L) * t501;
-  const Real t1295 = t493 * constant<Real>(0.0182L);
-  const Real t1296 = t1294 - t1295;
-  const Real t1297 = t500 - t495;
-  const Real t1298 = constant<Real>(0.003165L) * t1297;
-  const Real t1299 = constant<Real>(0.07335995L) * t502;
-  const Real t1300 = t493 * constant<Real>(0.0004331L);
-  const Real t1301 = t1299 - t1300;
-  const Real t1302 = constant<Real>(0.00001L) * t487;
-  const Real t1303 = t1301 - t1302;
-  const Real t1304 = t479 * constant<Real>(5.4e-6L);
-  const Real t1305 = t1303 - t1304;
-  const Real t1306 = t1298 + t1305;
-  const Real t1307 = t496 * constant<Real>(0.0182L);
-  const Real t1308 = constant<Real>(0.368L) * t502;
-  const Real t1309 = t1307 - t1308;
-
-  // right_wrist_yaw_link: wrench
-  const Real t1310 = t521 * constant<Real>(0.0007L);
-  const Real t1311 = t523 - t534;
-  const Real t1312 = t513 * constant<Real>(0.0007L);
-  const Real t1313 = t524 * constant<Real>(0.0007L);
-  const Real t1314 = t532 * constant<Real>(0.00014585L);
-  const Real t1315 = t525 * constant<Real>(0.00014585L);
-  const Real t1316 = constant<Real>(0.00018655L) * t521;
-  const Real t1317 = t1315 - t1316;
-  const Real t1318 = constant<Real>(0.00018655L) * t513;
-
-  // right_wrist: wrench
-  const Real t1319 = constant<Real>(0.00007L) * t563;
-  const Real t1320 = t558 * constant<Real>(0.003L);
-  const Real t1321 = constant<Real>(0.0033L) * t564;
-  const Real t1322 = t1320 + t1321;
-  const Real t1323 = t546 * constant<Real>(0.00007L);
-  const Real t1324 = constant<Real>(0.0001744L) * t564;
-  const Real t1325 = t1323 - t1324;
-  const Real t1326 = t556 * constant<Real>(0.0033L);
-  const Real t1327 = constant<Real>(0.003L) * t563;
-  const Real t1328 = t1326 - t1327;
-  const Real t1329 = t556 * constant<Real>(0.0001744L);
-  const Real t1330 = t550 * constant<Real>(0.0033L);
-  const Real t1331 = t546 * constant<Real>(0.003L);
-  const Real t1332 = t1330 + t1331;
-
-  // right_hand: wrench
-  const Real t1333 = t582 * constant<Real>(0.0385628059145078290295L);
-  const Real t1334 = t592 * constant<Real>(0.0385628059145078290295L);
-  const Real t1335 = t590 - t591;
-  const Real t1336 = t1335 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1337 = t582 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1338 = constant<Real>(0.000288797803091944670464L) * t587;
-  const Real t1339 = t1337 + t1338;
-  const Real t1340 = constant<Real>(0.000292420111363255831432L) * t589;
-  const Real t1341 = t1339 - t1340;
-  const Real t1342 = t1336 + t1341;
-  const Real t1343 = t575 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1344 = t582 * constant<Real>(0.00336830219690805532954L);
-  const Real t1345 = t1343 - t1344;
-  const Real t1346 = t587 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1347 = t1345 - t1346;
-  const Real t1348 = t588 - t590;
-  const Real t1349 = constant<Real>(0.000292420111363255831432L) * t1348;
-  const Real t1350 = t1347 + t1349;
-  const Real t1351 = t589 * constant<Real>(0.0385628059145078290295L);
-  const Real t1352 = constant<Real>(0.00336830219690805532954L) * t589;
-  const Real t1353 = constant<Real>(0.000288797803091944670464L) * t575;
-  const Real t1354 = t1352 - t1353;
-  const Real t1355 = t586 * constant<Real>(0.000292420111363255831432L);
-  const Real t1356 = t1354 + t1355;
-  const Real t1357 = t581 * constant<Real>(0.0000165444392561687557046L);
-  const Real t1358 = t1356 - t1357;
-  const Real t1359 = t591 - t588;
-  const Real t1360 = t1359 * constant<Real>(0.0000287884458909682668836L);
-  const Real t1361 = t1358 + t1360;
-
-  // left_hip_yaw_link: wrench
-  const Real t1362 = t616 - t595;
-  const Real t1363 = t615 * constant<Real>(0.004255L);
-  const Real t1364 = constant<Real>(0.0077371L) * t608;
-  const Real t1365 = t1363 - t1364;
-  const Real t1366 = t595 - t599;
-  const Real t1367 = constant<Real>(0.3168L) * t622;
-  const Real t1368 = t614 * constant<Real>(0.0111L);
-  const Real t1369 = t1367 - t1368;
-  const Real t1370 = constant<Real>(0.0003676L) * t622;
-  const Real t1371 = t599 - t616;
-  const Real t1372 = constant<Real>(0.0003676L) * t1371;
-  const Real t1373 = t600 * constant<Real>(0.0111L);
-  const Real t1374 = constant<Real>(0.3168L) * t608;
-  const Real t1375 = t1373 + t1374;
-  const Real t1376 = constant<Real>(0.3168L) * t617;
-  const Real t1377 = t615 * constant<Real>(0.0111L);
-  const Real t1378 = t1376 + t1377;
-  const Real t1379 = t614 * constant<Real>(0.004255L);
-  const Real t1380 = constant<Real>(0.0077371L) * t622;
-  const Real t1381 = t614 * constant<Real>(0.0003676L);
-  const Real t1382 = t1380 - t1381;
-
-  // left_hip_roll_link: wrench
-  const Real t1383 = t629 - t627;
-  const Real t1384 = constant<Real>(0.000068L) * t1383;
-  const Real t1385 = constant<Real>(0.00196L) * t654;
-  const Real t1386 = constant<Real>(0.000184L) * t644;
-  const Real t1387 = t1385 - t1386;
-  const Real t1388 = t638 * constant<Real>(0.0002328L);
-  const Real t1389 = t1387 - t1388;
-  const Real t1390 = t1384 + t1389;
-  const Real t1391 = constant<Real>(0.021L) * t648;
-  const Real t1392 = t630 * constant<Real>(0.12L);
-  const Real t1393 = t1391 + t1392;
-  const Real t1394 = t638 * constant<Real>(0.12L);
-  const Real t1395 = t646 * constant<Real>(0.021L);
-  const Real t1396 = t1394 + t1395;
-  const Real t1397 = t644 * constant<Real>(0.12L);
-  const Real t1398 = constant<Real>(0.021L) * t654;
-  const Real t1399 = t1397 - t1398;
-  const Real t1400 = t638 * constant<Real>(0.014119L);
-  const Real t1401 = t648 * constant<Real>(0.00196L);
-  const Real t1402 = t1400 - t1401;
-  const Real t1403 = t653 * constant<Real>(0.0002328L);
-  const Real t1404 = t1402 + t1403;
-  const Real t1405 = t643 * constant<Real>(0.000068L);
-  const Real t1406 = t1404 - t1405;
-  const Real t1407 = t627 - t645;
-  const Real t1408 = constant<Real>(0.000184L) * t1407;
-  const Real t1409 = t1406 - t1408;
-  const Real t1410 = t645 - t629;
-  const Real t1411 = t1410 * constant<Real>(0.0002328L);
-  const Real t1412 = constant<Real>(0.000184L) * t654;
-  const Real t1413 = t648 * constant<Real>(0.000068L);
-  const Real t1414 = t644 * constant<Real>(0.014119L);
-  const Real t1415 = t1413 - t1414;
-  const Real t1416 = t1412 + t1415;
-  const Real t1417 = t1411 + t1416;
-
-  // left_thigh: wrench
-  const Real t1418 = t677 * constant<Real>(3.696L);
-  const Real t1419 = constant<Real>(0.0448L) * t676;
-  const Real t1420 = t1418 + t1419;
-  const Real t1421 = constant<Real>(3.696L) * t684;
-  const Real t1422 = constant<Real>(0.0448L) * t673;
-  const Real t1423 = t1421 + t1422;
-  const Real t1424 = constant<Real>(0.0093286L) * t682;
-  const Real t1425 = t665 * constant<Real>(0.010612L);
-  const Real t1426 = t1424 - t1425;
-  const Real t1427 = constant<Real>(0.02108L) * t677;
-  const Real t1428 = t1426 + t1427;
-  const Real t1429 = t675 - t683;
-  const Real t1430 = constant<Real>(0.000072L) * t1429;
-  const Real t1431 = t1428 + t1430;
-  const Real t1432 = constant<Real>(0.000072L) * t673;
-  const Real t1433 = t665 * constant<Real>(1.308375L);
-  const Real t1434 = t1432 - t1433;
-  const Real t1435 = constant<Real>(0.010612L) * t682;
-  const Real t1436 = t1434 + t1435;
-  const Real t1437 = t674 - t675;
-  const Real t1438 = constant<Real>(0.02108L) * t1437;
-  const Real t1439 = t1436 - t1438;
-  const Real t1440 = constant<Real>(0.0448L) * t682;
-  const Real t1441 = t665 * constant<Real>(3.696L);
-  const Real t1442 = t1440 - t1441;
-  const Real t1443 = constant<Real>(1.308375L) * t677;
-  const Real t1444 = t673 * constant<Real>(0.0093286L);
-  const Real t1445 = t1443 - t1444;
-  const Real t1446 = constant<Real>(0.02108L) * t681;
-  const Real t1447 = t1445 - t1446;
-  const Real t1448 = constant<Real>(0.000072L) * t664;
-  const Real t1449 = t1447 - t1448;
-  const Real t1450 = t683 - t674;
-  const Real t1451 = t1450 * constant<Real>(0.010612L);
-  const Real t1452 = t1449 - t1451;
-
-  // left_shank: wrench
-  const Real t1453 = constant<Real>(0.0429L) * t706;
-  const Real t1454 = t701 * constant<Real>(1.544L);
-  const Real t1455 = t1453 - t1454;
-  const Real t1456 = constant<Real>(0.010564L) * t713;
-  const Real t1457 = t695 * constant<Real>(0.0037219L);
-  const Real t1458 = t1456 + t1457;
-  const Real t1459 = constant<Real>(0.003296L) * t701;
-  const Real t1460 = t1458 + t1459;
-  const Real t1461 = t703 - t702;
-  const Real t1462 = constant<Real>(0.0002716L) * t1461;
-  const Real t1463 = t1460 - t1462;
-  const Real t1464 = constant<Real>(0.0002716L) * t712;
-  const Real t1465 = t701 * constant<Real>(0.51477L);
-  const Real t1466 = constant<Real>(0.0037219L) * t707;
-  const Real t1467 = t1465 - t1466;
-  const Real t1468 = t694 * constant<Real>(0.003296L);
-  const Real t1469 = t1467 - t1468;
-  const Real t1470 = t1464 + t1469;
-  const Real t1471 = t702 - t705;
-  const Real t1472 = constant<Real>(0.010564L) * t1471;
-  const Real t1473 = t1470 + t1472;
-  const Real t1474 = t695 * constant<Real>(0.010564L);
-  const Real t1475 = constant<Real>(0.51477L) * t713;
-  const Real t1476 = constant<Real>(0.0002716L) * t707;
-  const Real t1477 = t1475 + t1476;
-  const Real t1478 = t1474 + t1477;
-  const Real t1479 = t705 - t703;
-  const Real t1480 = constant<Real>(0.003296L) * t1479;
-  const Real t1481 = t1478 + t1480;
-  const Real t1482 = constant<Real>(1.544L) * t713;
-  const Real t1483 = t695 * constant<Real>(0.0429L);
-  const Real t1484 = t1482 + t1483;
-  const Real t1485 = t704 * constant<Real>(1.544L);
-  const Real t1486 = constant<Real>(0.0429L) * t707;
-  const Real t1487 = t1485 - t1486;
-
-  // left_ankle: wrench
-  const Real t1488 = t732 * constant<Real>(0.00032L);
-  const Real t1489 = t723 * constant<Real>(0.0081023L);
-  const Real t1490 = t1488 - t1489;
-  const Real t1491 = t728 - t730;
-  const Real t1492 = constant<Real>(8e-6L) * t1491;
-  const Real t1493 = t1490 - t1492;
-  const Real t1494 = t731 * constant<Real>(0.0323L);
-  const Real t1495 = constant<Real>(0.008L) * t732;
-  const Real t1496 = t1494 + t1495;
-  const Real t1497 = t739 * constant<Real>(0.0323L);
-  const Real t1498 = constant<Real>(0.008L) * t744;
-  const Real t1499 = t1497 - t1498;
-  const Real t1500 = t723 * constant<Real>(0.0323L);
-  const Real t1501 = t729 * constant<Real>(0.008L);
-  const Real t1502 = t1500 + t1501;
-  const Real t1503 = constant<Real>(0.0081023L) * t739;
-  const Real t1504 = constant<Real>(8e-6L) * t744;
-  const Real t1505 = t1503 - t1504;
-  const Real t1506 = constant<Real>(8e-6L) * t739;
-  const Real t1507 = t744 * constant<Real>(0.00032L);
-  const Real t1508 = t1506 - t1507;
-
-  // left_foot: wrench
-  const Real t1509 = constant<Real>(0.0000271209957151601713936L) * t765;
-  const Real t1510 = constant<Real>(0.00151146970006121199755L) * t757;
-  const Real t1511 = t1509 + t1510;
-  const Real t1512 = constant<Real>(0.00310484748070548142703L) * t771;
-  const Real t1513 = t1511 - t1512;
-  const Real t1514 = t746 - t750;
-  const Real t1515 = t1514 * constant<Real>(0.0000328537906005553296336L);
-  const Real t1516 = t1513 - t1515;
-  const Real t1517 = constant<Real>(0.105010713739122828609L) * t771;
-  const Real t1518 = t751 * constant<Real>(0.105010713739122828609L);
-  const Real t1519 = t766 - t746;
-  const Real t1520 = constant<Real>(0.00310484748070548142703L) * t1519;
-  const Real t1521 = constant<Real>(0.0000328537906005553296336L) * t772;
-  const Real t1522 = constant<Real>(0.00766503029993878800245L) * t765;
-  const Real t1523 = t1521 + t1522;
-  const Real t1524 = constant<Real>(0.0000271209957151601713936L) * t757;
-  const Real t1525 = t1523 + t1524;
-  const Real t1526 = t1520 - t1525;
-  const Real t1527 = t750 - t766;
-  const Real t1528 = constant<Real>(0.0000271209957151601713936L) * t1527;
-  const Real t1529 = constant<Real>(0.00766503029993878800245L) * t771;
-  const Real t1530 = constant<Real>(0.00151146970006121199755L) * t772;
-  const Real t1531 = t1529 - t1530;
-  const Real t1532 = constant<Real>(0.00310484748070548142703L) * t756;
-  const Real t1533 = t1531 + t1532;
-  const Real t1534 = t764 * constant<Real>(0.0000328537906005553296336L);
-  const Real t1535 = t1533 + t1534;
-  const Real t1536 = t1528 + t1535;
-  const Real t1537 = constant<Real>(0.105010713739122828609L) * t765;
-
-  // right_hip_yaw_link: wrench
-  const Real t1538 = constant<Real>(0.3168L) * t797;
-  const Real t1539 = t791 * constant<Real>(0.0111L);
-  const Real t1540 = t1538 + t1539;
-  const Real t1541 = t791 * constant<Real>(0.004255L);
-  const Real t1542 = t798 - t776;
-  const Real t1543 = constant<Real>(0.0003676L) * t1542;
-  const Real t1544 = t778 - t798;
-  const Real t1545 = t776 - t778;
-  const Real t1546 = constant<Real>(0.0077371L) * t797;
-  const Real t1547 = t791 * constant<Real>(0.0003676L);
-  const Real t1548 = t1546 + t1547;
-  const Real t1549 = t797 * constant<Real>(0.0003676L);
-  const Real t1550 = constant<Real>(0.0111L) * t799;
-  const Real t1551 = t785 * constant<Real>(0.3168L);
-  const Real t1552 = t1550 - t1551;
-  const Real t1553 = t779 * constant<Real>(0.3168L);
-  const Real t1554 = t792 * constant<Real>(0.0111L);
-  const Real t1555 = t1553 - t1554;
-  const Real t1556 = t792 * constant<Real>(0.004255L);
-  const Real t1557 = t785 * constant<Real>(0.0077371L);
-  const Real t1558 = t1556 - t1557;
-
-  // right_hip_roll_link: wrench
-  const Real t1559 = constant<Real>(0.000184L) * t828;
-  const Real t1560 = t809 * constant<Real>(0.00196L);
-  const Real t1561 = t1559 + t1560;
-  const Real t1562 = t819 * constant<Real>(0.0002328L);
-  const Real t1563 = t1561 + t1562;
-  const Real t1564 = t821 - t829;
-  const Real t1565 = t1564 * constant<Real>(0.000068L);
-  const Real t1566 = t1563 + t1565;
-  const Real t1567 = t817 * constant<Real>(0.000068L);
-  const Real t1568 = constant<Real>(0.014119L) * t828;
-  const Real t1569 = t1567 - t1568;
-  const Real t1570 = t809 * constant<Real>(0.000184L);
-  const Real t1571 = t1569 - t1570;
-  const Real t1572 = t822 - t821;
-  const Real t1573 = constant<Real>(0.0002328L) * t1572;
-  const Real t1574 = t1571 - t1573;
-  const Real t1575 = t829 - t822;
-  const Real t1576 = constant<Real>(0.000184L) * t1575;
-  const Real t1577 = t819 * constant<Real>(0.014119L);
-  const Real t1578 = t817 * constant<Real>(0.00196L);
-  const Real t1579 = t1577 - t1578;
-  const Real t1580 = constant<Real>(0.0002328L) * t808;
-  const Real t1581 = t1579 - t1580;
-  const Real t1582 = constant<Real>(0.000068L) * t827;
-  const Real t1583 = t1581 - t1582;
-  const Real t1584 = t1576 + t1583;
-  const Real t1585 = t823 * constant<Real>(0.021L);
-  const Real t1586 = t819 * constant<Real>(0.12L);
-  const Real t1587 = t1585 - t1586;
-  const Real t1588 = constant<Real>(0.12L) * t830;
-  const Real t1589 = t817 * constant<Real>(0.021L);
-  const Real t1590 = t1588 - t1589;
-  const Real t1591 = constant<Real>(0.12L) * t828;
-  const Real t1592 = t809 * constant<Real>(0.021L);
-  const Real t1593 = t1591 + t1592;
-
-  // right_thigh: wrench
-  const Real t1594 = constant<Real>(0.0448L) * t852;
-  const Real t1595 = t860 * constant<Real>(3.696L);
-  const Real t1596 = t1594 + t1595;
-  const Real t1597 = constant<Real>(0.0448L) * t857;
-  const Real t1598 = t844 * constant<Real>(3.696L);
-  const Real t1599 = t1597 - t1598;
-  const Real t1600 = t858 * constant<Real>(3.696L);
-  const Real t1601 = constant<Real>(0.0448L) * t838;
-  const Real t1602 = t1600 + t1601;
-  const Real t1603 = t857 * constant<Real>(0.0093286L);
-  const Real t1604 = t844 * constant<Real>(0.010612L);
-  const Real t1605 = t1603 - t1604;
-  const Real t1606 = t858 * constant<Real>(0.02108L);
-  const Real t1607 = t1605 - t1606;
-  const Real t1608 = t833 - t859;
-  const Real t1609 = constant<Real>(0.000072L) * t1608;
-  const Real t1610 = t1607 - t1609;
-  const Real t1611 = t837 - t833;
-  const Real t1612 = t1611 * constant<Real>(0.02108L);
-  const Real t1613 = t857 * constant<Real>(0.010612L);
-  const Real t1614 = constant<Real>(0.000072L) * t852;
-  const Real t1615 = t844 * constant<Real>(1.308375L);
-  const Real t1616 = t1614 + t1615;
-  const Real t1617 = t1613 - t1616;
-  const Real t1618 = t1612 + t1617;
-  const Real t1619 = constant<Real>(0.000072L) * t843;
-  const Real t1620 = t856 * constant<Real>(0.02108L);
-  const Real t1621 = t858 * constant<Real>(1.308375L);
-  const Real t1622 = t852 * constant<Real>(0.0093286L);
-  const Real t1623 = t1621 - t1622;
-  const Real t1624 = t1620 + t1623;
-  const Real t1625 = t1619 + t1624;
-  const Real t1626 = t859 - t837;
-  const Real t1627 = constant<Real>(0.010612L) * t1626;
-  const Real t1628 = t1625 - t1627;
-
-  // right_shank: wrench
-  const Real t1629 = t886 - t885;
-  const Real t1630 = constant<Real>(0.003296L) * t1629;
-  const Real t1631 = constant<Real>(0.0002716L) * t890;
-  const Real t1632 = t877 * constant<Real>(0.51477L);
-  const Real t1633 = t1631 - t1632;
-  const Real t1634 = constant<Real>(0.010564L) * t882;
-  const Real t1635 = t1633 - t1634;
-  const Real t1636 = t1630 + t1635;
-  const Real t1637 = t882 * constant<Real>(0.0429L);
-  const Real t1638 = t877 * constant<Real>(1.544L);
-  const Real t1639 = t1637 + t1638;
-  const Real t1640 = constant<Real>(1.544L) * t889;
-  const Real t1641 = constant<Real>(0.0429L) * t890;
-  const Real t1642 = t1640 - t1641;
-  const Real t1643 = constant<Real>(0.003296L) * t881;
-  const Real t1644 = t870 * constant<Real>(0.51477L);
-  const Real t1645 = constant<Real>(0.0037219L) * t890;
-  const Real t1646 = t1644 - t1645;
-  const Real t1647 = t1643 + t1646;
-  const Real t1648 = constant<Real>(0.0002716L) * t876;
-  const Real t1649 = t1647 - t1648;
-  const Real t1650 = t888 - t886;
-  const Real t1651 = constant<Real>(0.010564L) * t1650;
-  const Real t1652 = t1649 + t1651;
-  const Real t1653 = constant<Real>(0.0429L) * t887;
-  const Real t1654 = t870 * constant<Real>(1.544L);
-  const Real t1655 = t1653 - t1654;
-  const Real t1656 = t885 - t888;
-  const Real t1657 = constant<Real>(0.0002716L) * t1656;
-  const Real t1658 = constant<Real>(0.010564L) * t877;
-  const Real t1659 = t882 * constant<Real>(0.0037219L);
-  const Real t1660 = t1658 + t1659;
-  const Real t1661 = constant<Real>(0.003296L) * t870;
-  const Real t1662 = t1660 - t1661;
-  const Real t1663 = t1657 + t1662;
-
-  // right_ankle: wrench
-  const Real t1664 = constant<Real>(8e-6L) * t911;
-  const Real t1665 = constant<Real>(0.00032L) * t919;
-  const Real t1666 = t1664 - t1665;
-  const Real t1667 = constant<Real>(0.00032L) * t920;
-  const Real t1668 = constant<Real>(0.0081023L) * t914;
-  const Real t1669 = t1667 - t1668;
-  const Real t1670 = t904 - t894;
-  const Real t1671 = t1670 * constant<Real>(8e-6L);
-  const Real t1672 = t1669 - t1671;
-  const Real t1673 = constant<Real>(0.0081023L) * t911;
-  const Real t1674 = constant<Real>(8e-6L) * t919;
-  const Real t1675 = t1673 - t1674;
-  const Real t1676 = t911 * constant<Real>(0.0323L);
-  const Real t1677 = constant<Real>(0.008L) * t919;
-  const Real t1678 = t1676 - t1677;
-  const Real t1679 = t914 * constant<Real>(0.0323L);
-  const Real t1680 = constant<Real>(0.008L) * t905;
-  const Real t1681 = t1679 + t1680;
-  const Real t1682 = constant<Real>(0.008L) * t920;
-  const Real t1683 = t897 * constant<Real>(0.0323L);
-  const Real t1684 = t1682 + t1683;
+  const Real t92 = t91 * t88;
+  const Real t93 = t73 - t92;
+  const Real t94 = t93 + r_ddot[29];
+  const Real t95 = t14 * t88;
+  const Real t96 = t91 * t15;
+  const Real t97 = t95 + t96;
+  const Real t98 = t15 * t88;
+  const Real t99 = t91 * t14;
+  const Real t100 = t98 - t99;
+  const Real t101 = t97 * t100;
+  const Real t102 = t101 + t94;
 
   // right_foot: wrench
-  const Real t1685 = constant<Real>(0.105010713739122828609L) * t948;
-  const Real t1686 = constant<Real>(0.00766503029993878800245L) * t931;
-  const Real t1687 = constant<Real>(0.00151146970006121199755L) * t932;
-  const Real t1688 = t1686 - t1687;
-  const Real t1689 = constant<Real>(0.00310484748070548142703L) * t942;
-  const Real t1690 = t1688 + t1689;
-  const Real t1691 = t947 * constant<Real>(0.0000328537906005553296336L);
-  const Real t1692 = t1690 - t1691;
-  const Real t1693 = t934 - t933;
-  const Real t1694 = constant<Real>(0.0000271209957151601713936L) * t1693;
-  const Real t1695 = t1692 - t1694;
-  const Real t1696 = constant<Real>(0.0000271209957151601713936L) * t943;
-  const Real t1697 = t932 * constant<Real>(0.0000328537906005553296336L);
-  const Real t1698 = constant<Real>(0.00766503029993878800245L) * t948;
-  const Real t1699 = t1697 - t1698;
-  const Real t1700 = t1696 + t1699;
-  const Real t1701 = t933 - t936;
-  const Real t1702 = constant<Real>(0.00310484748070548142703L) * t1701;
-  const Real t1703 = t1700 + t1702;
-  const Real t1704 = t936 - t934;
-  const Real t1705 = t1704 * constant<Real>(0.0000328537906005553296336L);
-  const Real t1706 = constant<Real>(0.00151146970006121199755L) * t943;
-  const Real t1707 = constant<Real>(0.0000271209957151601713936L) * t948;
-  const Real t1708 = t1706 - t1707;
-  const Real t1709 = t931 * constant<Real>(0.00310484748070548142703L);
-  const Real t1710 = t1708 - t1709;
-  const Real t1711 = t1705 + t1710;
-  const Real t1712 = t931 * constant<Real>(0.105010713739122828609L);
-  const Real t1713 = constant<Real>(0.105010713739122828609L) * t937;
+  const Real t103 = constant<Real>(0.00766503029993878800245L) * t102;
 
-  // right_foot: joint force
-  const Real t1714 = t1685 - t1684;
-  const Real t1715 = t14 * t1711;
-  const Real t1716 = t15 * t1712;
-  const Real t1717 = t14 * t1713;
-  const Real t1718 = t1716 - t1717;
-  const Real t1719 = t1718 + t1681;
-  const Real t1720 = t15 * t1713;
-  const Real t1721 = t14 * t1712;
-  const Real t1722 = t1720 + t1721;
-  const Real t1723 = t1678 - t1722;
-  const Real t1724 = t1711 * t15;
+  // right_foot: motion
+  const Real t104 = t101 - t94;
 
-  // right_ankle: joint force
-  const Real t1725 = t1723 - t1639;
-  const Real t1726 = c_r_28_ * t1719;
-  const Real t1727 = t1714 * s_r_28_;
-  const Real t1728 = t1726 - t1727;
-  const Real t1729 = t1642 + t1728;
-  const Real t1730 = s_r_28_ * t1719;
-  const Real t1731 = t1714 * c_r_28_;
-  const Real t1732 = t1730 + t1731;
-  const Real t1733 = t1655 + t1732;
-  const Real t1734 = constant<Real>(0.4L) * t1723;
-  const Real t1735 = constant<Real>(0.4L) * t1732;
+  // right_foot: wrench
+  const Real t105 = constant<Real>(0.00151146970006121199755L) * t104;
+  const Real t106 = t103 - t105;
 
-  // right_shank: joint force
-  const Real t1736 = t1733 * c_r_27_;
-  const Real t1737 = t1729 * s_r_27_;
-  const Real t1738 = t1736 + t1737;
-  const Real t1739 = constant<Real>(0.4L) * t1738;
-  const Real t1740 = t1725 * constant<Real>(0.4L);
-  const Real t1741 = t1738 - t1602;
-  const Real t1742 = t1729 * c_r_27_;
-  const Real t1743 = t1733 * s_r_27_;
-  const Real t1744 = t1742 - t1743;
-  const Real t1745 = t1596 + t1744;
-  const Real t1746 = t1725 + t1599;
+  // right_ankle: motion
+  const Real t107 = c_r_28_ * t67;
+  const Real t108 = s_r_28_ * t71;
+  const Real t109 = t107 - t108;
+  const Real t110 = t86 * c_r_28_;
+  const Real t111 = s_r_28_ * t82;
+  const Real t112 = t110 - t111;
+  const Real t113 = t91 * constant<Real>(2.0L);
+  const Real t114 = t112 * t113;
+  const Real t115 = t114 - t109;
 
-  // right_thigh: joint force
-  const Real t1747 = t1745 * c_r_26_;
-  const Real t1748 = t1741 * s_r_26_;
-  const Real t1749 = t1747 - t1748;
-  const Real t1750 = t1587 + t1749;
-  const Real t1751 = t1590 + t1746;
-  const Real t1752 = s_r_26_ * t1745;
-  const Real t1753 = t1741 * c_r_26_;
-  const Real t1754 = t1752 + t1753;
-  const Real t1755 = t1754 - t1593;
+  // right_foot: motion
+  const Real t116 = t14 * t115;
 
-  // right_hip_roll_link: joint force
-  const Real t1756 = t1751 * c_r_25_;
-  const Real t1757 = s_r_25_ * t1750;
-  const Real t1758 = t1756 - t1757;
-  const Real t1759 = t1555 + t1758;
-  const Real t1760 = s_r_25_ * t1751;
-  const Real t1761 = t1750 * c_r_25_;
-  const Real t1762 = t1760 + t1761;
-  const Real t1763 = t1762 * constant<Real>(0.02L);
-  const Real t1764 = t1552 + t1755;
-  const Real t1765 = t1762 - t1540;
-  const Real t1766 = constant<Real>(0.02L) * t1755;
+  // right_hip_roll_link: motion
+  const Real t117 = t29 * c_r_25_;
+  const Real t118 = s_r_25_ * t36;
+  const Real t119 = t117 - t118;
+  const Real t120 = t57 * t40;
+  const Real t121 = t120 - t119;
 
-  // right_hip_yaw_link: joint force
-  const Real t1767 = t1765 + t986;
-  const Real t1768 = c_r_24_ * t1764;
-  const Real t1769 = s_r_24_ * t1759;
-  const Real t1770 = t1768 - t1769;
-  const Real t1771 = s_r_24_ * t1764;
-  const Real t1772 = c_r_24_ * t1759;
-  const Real t1773 = t1771 + t1772;
+  // right_thigh: motion
+  const Real t122 = t57 * t39;
+  const Real t123 = t121 - t122;
+  const Real t124 = r_ddot[26] + t123;
 
-  // left_foot: joint force
-  const Real t1774 = t3 * t1517;
-  const Real t1775 = t1518 * t2;
-  const Real t1776 = t1774 - t1775;
-  const Real t1777 = t1502 + t1776;
-  const Real t1778 = t1517 * t2;
-  const Real t1779 = t3 * t1518;
-  const Real t1780 = t1778 + t1779;
-  const Real t1781 = t1499 - t1780;
-  const Real t1782 = t1516 * t2;
-  const Real t1783 = t1537 - t1496;
-  const Real t1784 = t1516 * t3;
+  // right_shank: motion
+  const Real t125 = t124 + r_ddot[27];
 
-  // left_ankle: joint force
-  const Real t1785 = s_r_22_ * t1777;
-  const Real t1786 = c_r_22_ * t1783;
-  const Real t1787 = t1785 + t1786;
-  const Real t1788 = constant<Real>(0.4L) * t1787;
-  const Real t1789 = constant<Real>(0.4L) * t1781;
-  const Real t1790 = c_r_22_ * t1777;
-  const Real t1791 = s_r_22_ * t1783;
-  const Real t1792 = t1790 - t1791;
-  const Real t1793 = t1792 + t1487;
-  const Real t1794 = t1781 - t1484;
-  const Real t1795 = t1455 + t1787;
+  // right_ankle: motion
+  const Real t126 = r_ddot[28] + t125;
+  const Real t127 = t112 * t88;
+  const Real t128 = t127 - t126;
 
-  // left_shank: joint force
-  const Real t1796 = t1442 + t1794;
-  const Real t1797 = c_r_21_ * t1793;
-  const Real t1798 = s_r_21_ * t1795;
-  const Real t1799 = t1797 - t1798;
-  const Real t1800 = t1423 + t1799;
-  const Real t1801 = t1793 * s_r_21_;
-  const Real t1802 = c_r_21_ * t1795;
-  const Real t1803 = t1801 + t1802;
-  const Real t1804 = constant<Real>(0.4L) * t1803;
-  const Real t1805 = t1803 - t1420;
-  const Real t1806 = constant<Real>(0.4L) * t1794;
+  // right_foot: motion
+  const Real t129 = t15 * t128;
+  const Real t130 = t129 - t116;
 
-  // left_thigh: joint force
-  const Real t1807 = c_r_20_ * t1805;
-  const Real t1808 = t1800 * s_r_20_;
-  const Real t1809 = t1807 + t1808;
-  const Real t1810 = t1809 + t1399;
-  const Real t1811 = t1796 - t1393;
-  const Real t1812 = t1800 * c_r_20_;
-  const Real t1813 = s_r_20_ * t1805;
-  const Real t1814 = t1812 - t1813;
-  const Real t1815 = t1814 + t1396;
+  // right_foot: wrench
+  const Real t131 = constant<Real>(0.00310484748070548142703L) * t130;
+  const Real t132 = t106 + t131;
 
-  // left_hip_roll_link: joint force
-  const Real t1816 = t1810 + t1375;
-  const Real t1817 = c_r_19_ * t1815;
-  const Real t1818 = t1811 * s_r_19_;
-  const Real t1819 = t1817 + t1818;
-  const Real t1820 = t1819 + t1369;
-  const Real t1821 = t1811 * c_r_19_;
-  const Real t1822 = s_r_19_ * t1815;
-  const Real t1823 = t1821 - t1822;
-  const Real t1824 = t1823 - t1378;
-  const Real t1825 = t1810 * constant<Real>(0.02L);
-  const Real t1826 = t1819 * constant<Real>(0.02L);
+  // right_foot: motion
+  const Real t133 = t15 * t115;
+  const Real t134 = t14 * t128;
+  const Real t135 = t134 + t133;
 
-  // left_hip_yaw_link: joint force
-  const Real t1827 = t1816 * c_r_18_;
-  const Real t1828 = t1824 * s_r_18_;
-  const Real t1829 = t1827 - t1828;
-  const Real t1830 = t1767 + t1820;
-  const Real t1831 = t1824 * c_r_18_;
-  const Real t1832 = t1816 * s_r_18_;
-  const Real t1833 = t1831 + t1832;
+  // right_foot: wrench
+  const Real t136 = t135 * constant<Real>(0.0000328537906005553296336L);
+  const Real t137 = t132 - t136;
 
-  // right_hand: joint force
-  const Real t1834 = t1351 * t12;
-  const Real t1835 = t11 * t1334;
-  const Real t1836 = t1834 - t1835;
-  const Real t1837 = t1322 + t1836;
-  const Real t1838 = t11 * t1351;
-  const Real t1839 = t1334 * t12;
-  const Real t1840 = t1838 + t1839;
-  const Real t1841 = t1328 - t1840;
-  const Real t1842 = t1333 - t1332;
-  const Real t1843 = t1342 * t12;
-  const Real t1844 = t11 * t1342;
+  // right_foot: motion
+  const Real t138 = t100 * t100;
+  const Real t139 = t97 * t97;
 
-  // right_wrist: joint force
-  const Real t1845 = t1837 * s_r_16_;
-  const Real t1846 = t1842 * c_r_16_;
-  const Real t1847 = t1845 + t1846;
-  const Real t1848 = t1847 - t1310;
-  const Real t1849 = t1841 + t1313;
-  const Real t1850 = t1837 * c_r_16_;
-  const Real t1851 = t1842 * s_r_16_;
-  const Real t1852 = t1850 - t1851;
-  const Real t1853 = t1852 - t1312;
+  // right_foot: wrench
+  const Real t140 = t138 - t139;
+  const Real t141 = constant<Real>(0.0000271209957151601713936L) * t140;
+  const Real t142 = t137 - t141;
 
-  // right_wrist_yaw_link: joint force
-  const Real t1854 = constant<Real>(0.01L) * t1853;
-  const Real t1855 = t1849 * c_r_15_;
-  const Real t1856 = t1848 * s_r_15_;
-  const Real t1857 = t1855 + t1856;
-  const Real t1858 = t1857 - t1285;
-  const Real t1859 = t1848 * c_r_15_;
-  const Real t1860 = t1849 * s_r_15_;
-  const Real t1861 = t1859 - t1860;
-  const Real t1862 = t1861 + t1309;
-  const Real t1863 = constant<Real>(0.01L) * t1857;
-  const Real t1864 = t1853 + t1296;
-
-  // right_forearm: joint force
-  const Real t1865 = constant<Real>(0.01L) * t1858;
-  const Real t1866 = c_r_14_ * t1864;
-  const Real t1867 = t1862 * s_r_14_;
-  const Real t1868 = t1866 - t1867;
-  const Real t1869 = constant<Real>(0.01L) * t1868;
-  const Real t1870 = t1263 + t1868;
-  const Real t1871 = t1858 + t1274;
-  const Real t1872 = t1862 * c_r_14_;
-  const Real t1873 = s_r_14_ * t1864;
-  const Real t1874 = t1872 + t1873;
-  const Real t1875 = t1874 + t1268;
-
-  // right_upper_arm: joint force
-  const Real t1876 = t1226 + t1870;
-  const Real t1877 = constant<Real>(0.01L) * t1870;
-  const Real t1878 = c_r_13_ * t1875;
-  const Real t1879 = s_r_13_ * t1871;
-  const Real t1880 = t1878 - t1879;
-  const Real t1881 = constant<Real>(0.01L) * t1880;
-  const Real t1882 = s_r_13_ * t1875;
-  const Real t1883 = c_r_13_ * t1871;
-  const Real t1884 = t1882 + t1883;
-  const Real t1885 = t1884 + t1240;
-  const Real t1886 = t1880 - t1229;
-
-  // right_upper_arm_roll: joint force
-  const Real t1887 = t1876 * c_r_12_;
-  const Real t1888 = s_r_12_ * t1885;
-  const Real t1889 = t1887 + t1888;
-  const Real t1890 = t1210 + t1889;
-  const Real t1891 = t1886 - t1216;
-  const Real t1892 = t1885 * c_r_12_;
-  const Real t1893 = t1876 * s_r_12_;
-  const Real t1894 = t1892 - t1893;
-  const Real t1895 = t1894 + t1207;
-
-  // right_shoulder: joint force
-  const Real t1896 = t1890 * c_r_11_;
-  const Real t1897 = t1891 * s_r_11_;
-  const Real t1898 = t1896 - t1897;
-  const Real t1899 = t1890 * s_r_11_;
-  const Real t1900 = t1891 * c_r_11_;
-  const Real t1901 = t1899 + t1900;
-
-  // left_hand: joint force
-  const Real t1902 = t6 * t1202;
-  const Real t1903 = t1202 * t5;
-  const Real t1904 = t1176 * t6;
-  const Real t1905 = t1174 * t5;
-  const Real t1906 = t1904 - t1905;
-  const Real t1907 = t1170 + t1906;
-  const Real t1908 = t1174 * t6;
-  const Real t1909 = t1176 * t5;
-  const Real t1910 = t1908 + t1909;
-  const Real t1911 = t1162 - t1910;
-  const Real t1912 = t1175 - t1173;
-
-  // left_wrist: joint force
-  const Real t1913 = c_r_9_ * t1912;
-  const Real t1914 = s_r_9_ * t1907;
-  const Real t1915 = t1913 + t1914;
-  const Real t1916 = t1915 + t1153;
-  const Real t1917 = t1911 - t1154;
-  const Real t1918 = c_r_9_ * t1907;
-  const Real t1919 = s_r_9_ * t1912;
-  const Real t1920 = t1918 - t1919;
-  const Real t1921 = t1151 + t1920;
-
-  // left_wrist_yaw_link: joint force
-  const Real t1922 = c_r_8_ * t1917;
-  const Real t1923 = t1916 * s_r_8_;
-  const Real t1924 = t1922 + t1923;
-  const Real t1925 = t1924 - t1128;
-  const Real t1926 = constant<Real>(0.01L) * t1921;
-  const Real t1927 = t1916 * c_r_8_;
-  const Real t1928 = t1917 * s_r_8_;
-  const Real t1929 = t1927 - t1928;
-  const Real t1930 = t1929 + t1131;
-  const Real t1931 = t1921 + t1134;
-  const Real t1932 = constant<Real>(0.01L) * t1924;
-
-  // left_forearm: joint force
-  const Real t1933 = c_r_7_ * t1931;
-  const Real t1934 = s_r_7_ * t1930;
-  const Real t1935 = t1933 - t1934;
-  const Real t1936 = constant<Real>(0.01L) * t1935;
-  const Real t1937 = t1935 + t1112;
-  const Real t1938 = t1925 * constant<Real>(0.01L);
-  const Real t1939 = t1925 + t1115;
-  const Real t1940 = s_r_7_ * t1931;
-  const Real t1941 = c_r_7_ * t1930;
-  const Real t1942 = t1940 + t1941;
-  const Real t1943 = t1942 - t1104;
-
-  // left_upper_arm: joint force
-  const Real t1944 = t1943 * c_r_6_;
-  const Real t1945 = t1939 * s_r_6_;
-  const Real t1946 = t1944 - t1945;
-  const Real t1947 = t1067 + t1946;
-  const Real t1948 = constant<Real>(0.01L) * t1937;
-  const Real t1949 = constant<Real>(0.01L) * t1946;
-  const Real t1950 = t1937 + t1096;
-  const Real t1951 = t1939 * c_r_6_;
-  const Real t1952 = t1943 * s_r_6_;
-  const Real t1953 = t1951 + t1952;
-  const Real t1954 = t1953 - t1099;
-
-  // left_upper_arm_roll: joint force
-  const Real t1955 = c_r_5_ * t1954;
-  const Real t1956 = s_r_5_ * t1950;
-  const Real t1957 = t1955 - t1956;
-  const Real t1958 = t1957 + t1064;
-  const Real t1959 = t1947 - t1059;
-  const Real t1960 = t1950 * c_r_5_;
-  const Real t1961 = s_r_5_ * t1954;
-  const Real t1962 = t1960 + t1961;
-  const Real t1963 = t1052 + t1962;
-
-  // left_shoulder: joint force
-  const Real t1964 = c_r_4_ * t1963;
-  const Real t1965 = s_r_4_ * t1959;
-  const Real t1966 = t1964 - t1965;
-  const Real t1967 = s_r_4_ * t1963;
-  const Real t1968 = t1959 * c_r_4_;
-  const Real t1969 = t1967 + t1968;
-
-  // head: joint force
-  const Real t1970 = t9 * t1042;
-  const Real t1971 = t8 * t1035;
-  const Real t1972 = t1970 - t1971;
-  const Real t1973 = t9 * t1035;
-  const Real t1974 = t8 * t1042;
-  const Real t1975 = t1973 + t1974;
-  const Real t1976 = t8 * t1031;
-  const Real t1977 = t9 * t1031;
-
-  // neck: joint force
-  const Real t1978 = constant<Real>(0.01L) * t1975;
-  const Real t1979 = t1972 * c_r_2_;
-  const Real t1980 = t1043 * s_r_2_;
-  const Real t1981 = t1979 - t1980;
-  const Real t1982 = t1972 * s_r_2_;
-  const Real t1983 = t1043 * c_r_2_;
-  const Real t1984 = t1982 + t1983;
-  const Real t1985 = constant<Real>(0.01L) * t1984;
-
-  // waist: motion
-  const Real t1986 = t41 * constant<Real>(0.17L);
-  const Real t1987 = t27 + t1986;
-  const Real t1988 = c_r_0_ * t1987;
-  const Real t1989 = t35 * constant<Real>(0.17L);
-  const Real t1990 = t33 + t1989;
-  const Real t1991 = t1990 * s_r_0_;
-  const Real t1992 = t1988 - t1991;
-  const Real t1993 = c_r_0_ * t1990;
-  const Real t1994 = s_r_0_ * t1987;
-  const Real t1995 = t1993 + t1994;
-
-  // torso: motion
-  const Real t1996 = s_r_1_ * t1995;
-  const Real t1997 = t1996 + t99;
-  const Real t1998 = c_r_1_ * t1995;
-  const Real t1999 = t1998 - t100;
-
-  // neck: motion
-  const Real t2000 = t135 - t149;
-  const Real t2001 = t1997 + t2000;
-  const Real t2002 = t86 * constant<Real>(0.45L);
-  const Real t2003 = t2002 - t127;
-  const Real t2004 = t2003 + t1999;
-  const Real t2005 = t2004 * c_r_2_;
-  const Real t2006 = t93 * constant<Real>(0.45L);
-  const Real t2007 = t2006 + t134;
-  const Real t2008 = t1992 + t2007;
-  const Real t2009 = t2008 * s_r_2_;
-  const Real t2010 = t2005 + t2009;
-  const Real t2011 = t2008 * c_r_2_;
-  const Real t2012 = t2004 * s_r_2_;
-  const Real t2013 = t2011 - t2012;
-
-  // head: motion
-  const Real t2014 = t9 * t2010;
-  const Real t2015 = t8 * t2001;
-  const Real t2016 = t2014 - t2015;
-
-  // left_shoulder: motion
-  const Real t2017 = constant<Real>(0.25L) * t92;
-  const Real t2018 = constant<Real>(0.25L) * t104;
-
-  // left_upper_arm: motion
-  const Real t2019 = t252 + t282;
-  const Real t2020 = t224 * constant<Real>(0.28L);
-  const Real t2021 = t239 - t2020;
-  const Real t2022 = t209 * constant<Real>(0.28L);
-  const Real t2023 = t248 + t2022;
-
-  // left_wrist_yaw_link: motion
-  const Real t2024 = constant<Real>(0.24L) * t293;
-  const Real t2025 = t294 - t2024;
-  const Real t2026 = t353 - t318;
-  const Real t2027 = t279 * constant<Real>(0.24L);
-  const Real t2028 = t2027 + t324;
-
-  // right_upper_arm: motion
-  const Real t2029 = t430 * constant<Real>(0.28L);
-  const Real t2030 = t2029 + t439;
-  const Real t2031 = t497 - t470;
-  const Real t2032 = t433 * constant<Real>(0.28L);
-  const Real t2033 = t468 - t2032;
-
-  // right_wrist_yaw_link: motion
-  const Real t2034 = t480 * constant<Real>(0.24L);
-  const Real t2035 = t2034 + t533;
-  const Real t2036 = t535 - t526;
-  const Real t2037 = constant<Real>(0.24L) * t502;
-  const Real t2038 = t527 - t2037;
+  // pelvis: acceleration
+  const Real t143 = eta[4] * eta[2];
+  const Real t144 = eta[5] * eta[1];
+  const Real t145 = t143 - t144;
+  const Real t146 = eta_dot[0] + t145;
+  const Real t147 = R[6] * constant<Real>(9.81L);
+  const Real t148 = t146 + t147;
 
   // left_hip_yaw_link: motion
-  const Real t2039 = t35 * constant<Real>(0.13L);
-  const Real t2040 = constant<Real>(0.13L) * t41;
-
-  // waist: wrench
-  const Real t2041 = constant<Real>(0.0175L) * t98;
-  const Real t2042 = t70 * constant<Real>(0.000096L);
-  const Real t2043 = t989 + t2042;
-  const Real t2044 = t2041 + t2043;
-  const Real t2045 = constant<Real>(0.0032L) * t98;
-  const Real t2046 = t997 * constant<Real>(0.000096L);
-  const Real t2047 = t2046 + t1001;
-  const Real t2048 = t2045 + t2047;
-  const Real t2049 = constant<Real>(0.0032L) * t1992;
-  const Real t2050 = constant<Real>(0.0175L) * t1995;
-  const Real t2051 = t2049 - t2050;
-  const Real t2052 = t68 * constant<Real>(0.000096L);
-  const Real t2053 = t1000 - t2052;
-  const Real t2054 = t2051 + t2053;
-
-  // torso: wrench
-  const Real t2055 = t1992 * constant<Real>(0.0968L);
-  const Real t2056 = constant<Real>(8.246L) * t1999;
-  const Real t2057 = t1997 * constant<Real>(0.0968L);
-  const Real t2058 = t2056 + t2057;
-  const Real t2059 = constant<Real>(8.246L) * t1992;
-
-  // head: wrench
-  const Real t2060 = constant<Real>(0.204831170943767747913L) * t2013;
-  const Real t2061 = t1034 - t2060;
-  const Real t2062 = t2016 * constant<Real>(0.204831170943767747913L);
-  const Real t2063 = t1041 + t2062;
-
-  // left_shoulder: wrench
-  const Real t2064 = t196 * constant<Real>(0.000068L);
-  const Real t2065 = t1046 + t2064;
-  const Real t2066 = t181 * constant<Real>(0.000058L);
-  const Real t2067 = t2065 - t2066;
-  const Real t2068 = t2067 - t1048;
-  const Real t2069 = t185 * constant<Real>(0.000068L);
-  const Real t2070 = t1055 - t2069;
-  const Real t2071 = t1060 * constant<Real>(0.000058L);
-  const Real t2072 = t2070 + t2071;
-  const Real t2073 = t1056 * constant<Real>(0.000068L);
-  const Real t2074 = t186 * constant<Real>(0.000058L);
-  const Real t2075 = t2074 - t1049;
-  const Real t2076 = t2075 + t1061;
-  const Real t2077 = t2073 + t2076;
-
-  // left_upper_arm: wrench
-  const Real t2078 = constant<Real>(0.00084L) * t257;
-  const Real t2079 = t1100 - t2078;
-  const Real t2080 = t1109 * constant<Real>(0.000605L);
-  const Real t2081 = t2079 - t2080;
-  const Real t2082 = constant<Real>(0.00084L) * t246;
-  const Real t2083 = t1107 + t2082;
-  const Real t2084 = constant<Real>(0.000605L) * t237;
-  const Real t2085 = t2083 + t2084;
-  const Real t2086 = constant<Real>(0.00084L) * t1108;
-  const Real t2087 = constant<Real>(0.000605L) * t260;
-  const Real t2088 = t1101 + t2087;
-  const Real t2089 = t2086 - t2088;
-
-  // left_wrist_yaw_link: wrench
-  const Real t2090 = t303 * constant<Real>(1e-6L);
-  const Real t2091 = t2090 + t1158;
-  const Real t2092 = t1155 * constant<Real>(1e-6L);
-  const Real t2093 = t1152 - t2092;
-  const Real t2094 = t319 * constant<Real>(1e-6L);
-  const Real t2095 = t2094 + t1159;
-
-  // right_shoulder: wrench
-  const Real t2096 = t402 * constant<Real>(0.000058L);
-  const Real t2097 = t1203 + t2096;
-  const Real t2098 = t1223 - t2097;
-  const Real t2099 = t1220 * constant<Real>(0.000068L);
-  const Real t2100 = t2098 - t2099;
-  const Real t2101 = t395 * constant<Real>(0.000068L);
-  const Real t2102 = t1213 + t2101;
-  const Real t2103 = t1204 * constant<Real>(0.000058L);
-  const Real t2104 = t2102 - t2103;
-  const Real t2105 = t400 * constant<Real>(0.000068L);
-  const Real t2106 = t1219 - t2105;
-  const Real t2107 = t408 * constant<Real>(0.000058L);
-  const Real t2108 = t2106 + t2107;
-  const Real t2109 = t2108 - t1222;
-
-  // right_upper_arm: wrench
-  const Real t2110 = constant<Real>(0.00084L) * t1265;
-  const Real t2111 = constant<Real>(0.000605L) * t469;
-  const Real t2112 = t2111 - t1264;
-  const Real t2113 = t2110 + t2112;
-  const Real t2114 = constant<Real>(0.00084L) * t448;
-  const Real t2115 = t1271 + t2114;
-  const Real t2116 = t456 * constant<Real>(0.000605L);
-  const Real t2117 = t2115 - t2116;
-  const Real t2118 = t1259 * constant<Real>(0.000605L);
-  const Real t2119 = constant<Real>(0.00084L) * t467;
-  const Real t2120 = t1260 - t2119;
-  const Real t2121 = t2118 + t2120;
-
-  // right_wrist_yaw_link: wrench
-  const Real t2122 = constant<Real>(1e-6L) * t531;
-  const Real t2123 = t1317 - t2122;
-  const Real t2124 = t1311 * constant<Real>(1e-6L);
-  const Real t2125 = t2124 + t1318;
-  const Real t2126 = t521 * constant<Real>(1e-6L);
-  const Real t2127 = t2126 - t1314;
-
-  // left_hip_yaw_link: wrench
-  const Real t2128 = constant<Real>(0.000028L) * t1362;
-  const Real t2129 = t608 * constant<Real>(0.001512L);
-  const Real t2130 = t2129 - t1379;
-  const Real t2131 = t1370 + t2130;
-  const Real t2132 = t2128 + t2131;
-  const Real t2133 = constant<Real>(0.000028L) * t621;
-  const Real t2134 = t1365 + t2133;
-  const Real t2135 = constant<Real>(0.001512L) * t613;
-  const Real t2136 = t2134 - t2135;
-  const Real t2137 = t2136 - t1372;
-  const Real t2138 = t1366 * constant<Real>(0.001512L);
-  const Real t2139 = constant<Real>(0.000028L) * t615;
-  const Real t2140 = t1382 - t2139;
-  const Real t2141 = t2138 + t2140;
-
-  // right_hip_yaw_link: wrench
-  const Real t2142 = constant<Real>(0.000028L) * t792;
-  const Real t2143 = t1548 - t2142;
-  const Real t2144 = t1544 * constant<Real>(0.001512L);
-  const Real t2145 = t2143 - t2144;
-  const Real t2146 = constant<Real>(0.000028L) * t796;
-  const Real t2147 = t2146 + t1558;
-  const Real t2148 = t790 * constant<Real>(0.001512L);
-  const Real t2149 = t2147 + t2148;
-  const Real t2150 = t2149 + t1543;
-  const Real t2151 = constant<Real>(0.000028L) * t1545;
-  const Real t2152 = t785 * constant<Real>(0.001512L);
-  const Real t2153 = t1541 + t2152;
-  const Real t2154 = t1549 + t2153;
-  const Real t2155 = t2151 - t2154;
-
-  // right_wrist_yaw_link: joint force
-  const Real t2156 = t1857 * constant<Real>(0.24L);
-  const Real t2157 = t1861 * constant<Real>(0.24L);
-  const Real t2158 = t1854 - t2157;
-
-  // right_upper_arm: joint force
-  const Real t2159 = t1884 * constant<Real>(0.28L);
-  const Real t2160 = t2159 - t1877;
-  const Real t2161 = constant<Real>(0.28L) * t1880;
-
-  // left_wrist_yaw_link: joint force
-  const Real t2162 = t1929 * constant<Real>(0.24L);
-  const Real t2163 = t1926 - t2162;
-  const Real t2164 = constant<Real>(0.24L) * t1924;
-
-  // left_upper_arm: joint force
-  const Real t2165 = t1946 * constant<Real>(0.28L);
-  const Real t2166 = t1953 * constant<Real>(0.28L);
-  const Real t2167 = t1948 + t2166;
-
-  // head: joint force
-  const Real t2168 = t2063 - t1025;
-  const Real t2169 = t8 * t2061;
-  const Real t2170 = t1977 - t2169;
-  const Real t2171 = t2170 + t1028;
-  const Real t2172 = t9 * t2061;
-  const Real t2173 = t1976 + t2172;
-  const Real t2174 = t2173 + t1024;
-
-  // neck: joint force
-  const Real t2175 = t2168 * s_r_2_;
-  const Real t2176 = t2168 * c_r_2_;
-  const Real t2177 = t2174 * s_r_2_;
-  const Real t2178 = t1981 * constant<Real>(0.45L);
-  const Real t2179 = t1984 * constant<Real>(0.45L);
-  const Real t2180 = t2174 * c_r_2_;
+  const Real t149 = t20 * constant<Real>(0.13L);
 
   // waist: joint force
-  const Real t2181 = t1966 + t1898;
-  const Real t2182 = t2181 - t1009;
-  const Real t2183 = t2182 - t1021;
-  const Real t2184 = t2183 - t1975;
-  const Real t2185 = c_r_1_ * t2184;
-  const Real t2186 = t1901 + t1969;
-  const Real t2187 = t1981 + t1005;
-  const Real t2188 = t2187 + t1012;
-  const Real t2189 = t2186 + t2188;
-  const Real t2190 = t2189 * s_r_1_;
-  const Real t2191 = t2185 - t2190;
-  const Real t2192 = t2191 + t996;
-  const Real t2193 = t2192 + t1830;
-  const Real t2194 = t21 + t647;
-  const Real t2195 = t593 + t2194;
-  const Real t2196 = constant<Real>(0.0111L) * t2195;
-  const Real t2197 = t2132 + t2196;
-  const Real t2198 = t27 - t2040;
-  const Real t2199 = t2198 - t602;
-  const Real t2200 = s_r_18_ * t2199;
-  const Real t2201 = t2039 - t33;
-  const Real t2202 = t601 - t2201;
-  const Real t2203 = t2202 * c_r_18_;
-  const Real t2204 = t2200 + t2203;
-  const Real t2205 = t2204 + t649;
-  const Real t2206 = t2205 * constant<Real>(0.021L);
-  const Real t2207 = t1390 - t2206;
-  const Real t2208 = t2205 * s_r_20_;
-  const Real t2209 = t623 + t2195;
-  const Real t2210 = t2209 * c_r_19_;
-  const Real t2211 = c_r_18_ * t2199;
-  const Real t2212 = t2202 * s_r_18_;
-  const Real t2213 = t2211 - t2212;
-  const Real t2214 = t2213 - t655;
-  const Real t2215 = t2214 * s_r_19_;
-  const Real t2216 = t2210 - t2215;
-  const Real t2217 = c_r_20_ * t2216;
-  const Real t2218 = t2208 + t2217;
-  const Real t2219 = constant<Real>(0.0448L) * t2218;
-  const Real t2220 = t2205 * c_r_20_;
-  const Real t2221 = s_r_20_ * t2216;
-  const Real t2222 = t2220 - t2221;
-  const Real t2223 = t2222 * constant<Real>(3.696L);
-  const Real t2224 = t2219 + t2223;
-  const Real t2225 = t1452 - t2224;
-  const Real t2226 = t2222 - t708;
-  const Real t2227 = c_r_21_ * t2226;
-  const Real t2228 = t685 + t2218;
-  const Real t2229 = s_r_21_ * t2228;
-  const Real t2230 = t2227 - t2229;
-  const Real t2231 = t2230 - t724;
-  const Real t2232 = c_r_22_ * t2231;
-  const Real t2233 = s_r_21_ * t2226;
-  const Real t2234 = c_r_21_ * t2228;
-  const Real t2235 = t2233 + t2234;
-  const Real t2236 = t725 + t2235;
-  const Real t2237 = s_r_22_ * t2236;
-  const Real t2238 = t2232 - t2237;
-  const Real t2239 = t2238 * constant<Real>(0.008L);
-  const Real t2240 = s_r_22_ * t2231;
-  const Real t2241 = c_r_22_ * t2236;
-  const Real t2242 = t2240 + t2241;
-  const Real t2243 = t2242 * constant<Real>(0.0323L);
-  const Real t2244 = t2239 + t2243;
-  const Real t2245 = t1493 - t2244;
-  const Real t2246 = t2238 * constant<Real>(0.105010713739122828609L);
-  const Real t2247 = t1526 - t2246;
-  const Real t2248 = t2247 * t2;
-  const Real t2249 = t1784 - t2248;
-  const Real t2250 = t2245 + t2249;
-  const Real t2251 = t2250 - t1788;
-  const Real t2252 = t2235 * constant<Real>(0.0429L);
-  const Real t2253 = constant<Real>(1.544L) * t2230;
-  const Real t2254 = t2252 - t2253;
-  const Real t2255 = t1473 + t2254;
-  const Real t2256 = t2251 + t2255;
-  const Real t2257 = t2256 - t1804;
-  const Real t2258 = t2225 + t2257;
-  const Real t2259 = t2207 + t2258;
-  const Real t2260 = c_r_19_ * t2259;
-  const Real t2261 = t2205 * constant<Real>(0.12L);
-  const Real t2262 = t1417 - t2261;
-  const Real t2263 = t2209 * s_r_19_;
-  const Real t2264 = t2214 * c_r_19_;
-  const Real t2265 = t2263 + t2264;
-  const Real t2266 = constant<Real>(0.0448L) * t2265;
-  const Real t2267 = t1431 + t2266;
-  const Real t2268 = t2265 - t714;
-  const Real t2269 = t2268 * constant<Real>(0.0429L);
-  const Real t2270 = t1463 - t2269;
-  const Real t2271 = t3 * t2247;
-  const Real t2272 = t2271 + t1782;
-  const Real t2273 = t2268 - t733;
-  const Real t2274 = t2273 * constant<Real>(0.0323L);
-  const Real t2275 = t2274 + t1505;
-  const Real t2276 = t2272 + t2275;
-  const Real t2277 = c_r_22_ * t2276;
-  const Real t2278 = constant<Real>(0.008L) * t2273;
-  const Real t2279 = t2278 + t1508;
-  const Real t2280 = t2242 * t3;
-  const Real t2281 = t2273 * t2;
-  const Real t2282 = t2280 - t2281;
-  const Real t2283 = t2282 * constant<Real>(0.105010713739122828609L);
-  const Real t2284 = t2283 + t1536;
-  const Real t2285 = t2279 + t2284;
-  const Real t2286 = s_r_22_ * t2285;
-  const Real t2287 = t2277 - t2286;
-  const Real t2288 = t2270 + t2287;
-  const Real t2289 = t2288 * c_r_21_;
-  const Real t2290 = t2268 * constant<Real>(1.544L);
-  const Real t2291 = t2290 - t1481;
-  const Real t2292 = s_r_22_ * t2276;
-  const Real t2293 = c_r_22_ * t2285;
-  const Real t2294 = t2292 + t2293;
-  const Real t2295 = t1789 + t2294;
-  const Real t2296 = t2291 + t2295;
-  const Real t2297 = s_r_21_ * t2296;
-  const Real t2298 = t2289 - t2297;
-  const Real t2299 = t2267 + t2298;
-  const Real t2300 = c_r_20_ * t2299;
-  const Real t2301 = t2288 * s_r_21_;
-  const Real t2302 = c_r_21_ * t2296;
-  const Real t2303 = t2301 + t2302;
-  const Real t2304 = t2303 + t1806;
-  const Real t2305 = t2265 * constant<Real>(3.696L);
-  const Real t2306 = t1439 + t2305;
-  const Real t2307 = t2304 + t2306;
-  const Real t2308 = s_r_20_ * t2307;
-  const Real t2309 = t2300 - t2308;
-  const Real t2310 = t2262 + t2309;
-  const Real t2311 = t2310 * s_r_19_;
-  const Real t2312 = t2260 - t2311;
-  const Real t2313 = t2197 + t2312;
-  const Real t2314 = t2313 * c_r_18_;
-  const Real t2315 = t2194 - t593;
-  const Real t2316 = t2315 * constant<Real>(0.3168L);
-  const Real t2317 = t2145 - t2316;
-  const Real t2318 = t601 + t2201;
-  const Real t2319 = s_r_24_ * t2318;
-  const Real t2320 = t602 + t2198;
-  const Real t2321 = t2320 * c_r_24_;
-  const Real t2322 = t2319 + t2321;
-  const Real t2323 = t818 + t2322;
-  const Real t2324 = t2323 * c_r_25_;
-  const Real t2325 = t2315 - t820;
-  const Real t2326 = s_r_25_ * t2325;
-  const Real t2327 = t2324 + t2326;
-  const Real t2328 = t2327 * constant<Real>(3.696L);
-  const Real t2329 = t1618 + t2328;
-  const Real t2330 = t2327 - t861;
-  const Real t2331 = t2330 * constant<Real>(0.0429L);
-  const Real t2332 = t1663 - t2331;
-  const Real t2333 = s_r_24_ * t2320;
-  const Real t2334 = c_r_24_ * t2318;
-  const Real t2335 = t2333 - t2334;
-  const Real t2336 = t2335 - t831;
-  const Real t2337 = c_r_26_ * t2336;
-  const Real t2338 = t2325 * c_r_25_;
-  const Real t2339 = s_r_25_ * t2323;
-  const Real t2340 = t2338 - t2339;
-  const Real t2341 = t2340 * s_r_26_;
-  const Real t2342 = t2337 - t2341;
-  const Real t2343 = t2342 - t884;
-  const Real t2344 = t2343 * c_r_27_;
-  const Real t2345 = t2340 * c_r_26_;
-  const Real t2346 = s_r_26_ * t2336;
-  const Real t2347 = t2345 + t2346;
-  const Real t2348 = t2347 + t883;
-  const Real t2349 = t2348 * s_r_27_;
-  const Real t2350 = t2344 - t2349;
-  const Real t2351 = t2350 - t898;
-  const Real t2352 = c_r_28_ * t2351;
-  const Real t2353 = t2348 * c_r_27_;
-  const Real t2354 = t2343 * s_r_27_;
-  const Real t2355 = t2353 + t2354;
-  const Real t2356 = t900 + t2355;
-  const Real t2357 = s_r_28_ * t2356;
-  const Real t2358 = t2352 - t2357;
-  const Real t2359 = t2358 * constant<Real>(0.105010713739122828609L);
-  const Real t2360 = t1703 - t2359;
-  const Real t2361 = t2360 * t15;
-  const Real t2362 = t2361 + t1715;
-  const Real t2363 = t2330 - t899;
-  const Real t2364 = t2363 * constant<Real>(0.0323L);
-  const Real t2365 = t1675 + t2364;
-  const Real t2366 = t2362 + t2365;
-  const Real t2367 = c_r_28_ * t2366;
-  const Real t2368 = s_r_28_ * t2351;
-  const Real t2369 = t2356 * c_r_28_;
-  const Real t2370 = t2368 + t2369;
-  const Real t2371 = t15 * t2370;
-  const Real t2372 = t2363 * t14;
-  const Real t2373 = t2371 - t2372;
-  const Real t2374 = t2373 * constant<Real>(0.105010713739122828609L);
-  const Real t2375 = t1695 + t2374;
-  const Real t2376 = t2363 * constant<Real>(0.008L);
-  const Real t2377 = t1666 + t2376;
-  const Real t2378 = t2375 + t2377;
-  const Real t2379 = s_r_28_ * t2378;
-  const Real t2380 = t2367 - t2379;
-  const Real t2381 = t2332 + t2380;
-  const Real t2382 = t2381 * s_r_27_;
-  const Real t2383 = s_r_28_ * t2366;
-  const Real t2384 = c_r_28_ * t2378;
-  const Real t2385 = t2383 + t2384;
-  const Real t2386 = t2385 + t1734;
-  const Real t2387 = t2330 * constant<Real>(1.544L);
-  const Real t2388 = t1636 + t2387;
-  const Real t2389 = t2386 + t2388;
-  const Real t2390 = t2389 * c_r_27_;
-  const Real t2391 = t2382 + t2390;
-  const Real t2392 = t1740 + t2391;
-  const Real t2393 = t2329 + t2392;
-  const Real t2394 = c_r_26_ * t2393;
-  const Real t2395 = constant<Real>(0.0448L) * t2327;
-  const Real t2396 = t2395 + t1610;
-  const Real t2397 = t2381 * c_r_27_;
-  const Real t2398 = t2389 * s_r_27_;
-  const Real t2399 = t2397 - t2398;
-  const Real t2400 = t2396 + t2399;
-  const Real t2401 = t2400 * s_r_26_;
-  const Real t2402 = t2394 + t2401;
-  const Real t2403 = t2327 * constant<Real>(0.021L);
-  const Real t2404 = t2340 * constant<Real>(0.12L);
-  const Real t2405 = t2403 - t2404;
-  const Real t2406 = t2405 + t1584;
-  const Real t2407 = t2402 + t2406;
-  const Real t2408 = t2407 - t1763;
-  const Real t2409 = t2317 + t2408;
-  const Real t2410 = s_r_24_ * t2409;
-  const Real t2411 = t2314 + t2410;
-  const Real t2412 = t2315 * constant<Real>(0.0111L);
-  const Real t2413 = t2412 + t2155;
-  const Real t2414 = t2336 * constant<Real>(0.021L);
-  const Real t2415 = t1566 - t2414;
-  const Real t2416 = constant<Real>(0.0448L) * t2347;
-  const Real t2417 = t2342 * constant<Real>(3.696L);
-  const Real t2418 = t2416 + t2417;
-  const Real t2419 = t1628 - t2418;
-  const Real t2420 = constant<Real>(0.0429L) * t2355;
-  const Real t2421 = constant<Real>(1.544L) * t2350;
-  const Real t2422 = t2420 - t2421;
-  const Real t2423 = t1652 + t2422;
-  const Real t2424 = t2360 * t14;
-  const Real t2425 = t1724 - t2424;
-  const Real t2426 = t2358 * constant<Real>(0.008L);
-  const Real t2427 = t2370 * constant<Real>(0.0323L);
-  const Real t2428 = t2426 + t2427;
-  const Real t2429 = t1672 - t2428;
-  const Real t2430 = t2425 + t2429;
-  const Real t2431 = t2430 - t1735;
-  const Real t2432 = t2423 + t2431;
-  const Real t2433 = t2432 - t1739;
-  const Real t2434 = t2419 + t2433;
-  const Real t2435 = t2415 + t2434;
-  const Real t2436 = t2435 * c_r_25_;
-  const Real t2437 = t2400 * c_r_26_;
-  const Real t2438 = s_r_26_ * t2393;
-  const Real t2439 = t2437 - t2438;
-  const Real t2440 = t2336 * constant<Real>(0.12L);
-  const Real t2441 = t1574 + t2440;
-  const Real t2442 = t2439 + t2441;
-  const Real t2443 = t2442 * s_r_25_;
-  const Real t2444 = t2436 - t2443;
-  const Real t2445 = t2413 + t2444;
-  const Real t2446 = t2445 * c_r_24_;
-  const Real t2447 = t951 + t2446;
-  const Real t2448 = t2411 + t2447;
-  const Real t2449 = t2189 * c_r_1_;
-  const Real t2450 = s_r_1_ * t2184;
-  const Real t2451 = t2449 + t2450;
-  const Real t2452 = t2451 + t992;
-  const Real t2453 = c_r_0_ * t2452;
-  const Real t2454 = t1984 + t1023;
-  const Real t2455 = t988 + t2454;
-  const Real t2456 = t1958 + t1895;
-  const Real t2457 = t2455 + t2456;
-  const Real t2458 = t2457 - t1007;
-  const Real t2459 = t2458 - t993;
-  const Real t2460 = s_r_0_ * t2459;
-  const Real t2461 = t2453 - t2460;
-  const Real t2462 = t2461 * constant<Real>(0.17L);
-  const Real t2463 = t2186 * constant<Real>(0.3L);
-  const Real t2464 = t2463 - t1020;
-  const Real t2465 = t2464 - t1014;
-  const Real t2466 = t1978 + t2177;
-  const Real t2467 = constant<Real>(0.005L) * t2181;
-  const Real t2468 = t2178 - t2467;
-  const Real t2469 = t2466 + t2468;
-  const Real t2470 = t2465 + t2469;
-  const Real t2471 = t2176 + t1006;
-  const Real t2472 = t1003 + t1019;
-  const Real t2473 = t2471 + t2472;
-  const Real t2474 = t1997 + t187;
-  const Real t2475 = t192 - t2474;
-  const Real t2476 = t2017 - t2475;
-  const Real t2477 = c_r_4_ * t2476;
-  const Real t2478 = t191 + t1999;
-  const Real t2479 = t198 - t2478;
-  const Real t2480 = t2018 - t2479;
-  const Real t2481 = s_r_4_ * t2480;
-  const Real t2482 = t2477 + t2481;
-  const Real t2483 = t2482 * constant<Real>(0.0038L);
-  const Real t2484 = t2480 * c_r_4_;
-  const Real t2485 = s_r_4_ * t2476;
-  const Real t2486 = t2484 - t2485;
-  const Real t2487 = constant<Real>(0.0056L) * t2486;
-  const Real t2488 = t2483 + t2487;
-  const Real t2489 = t2068 - t2488;
-  const Real t2490 = t2482 * c_r_5_;
-  const Real t2491 = t190 + t1992;
-  const Real t2492 = t2491 - t226;
-  const Real t2493 = s_r_5_ * t2492;
-  const Real t2494 = t2490 - t2493;
-  const Real t2495 = t2019 + t2494;
-  const Real t2496 = t271 + t2495;
-  const Real t2497 = c_r_7_ * t2496;
-  const Real t2498 = t2486 + t2021;
-  const Real t2499 = t2498 * c_r_6_;
-  const Real t2500 = c_r_5_ * t2492;
-  const Real t2501 = s_r_5_ * t2482;
-  const Real t2502 = t2500 + t2501;
-  const Real t2503 = t2502 - t2023;
-  const Real t2504 = t2503 * s_r_6_;
-  const Real t2505 = t2499 + t2504;
-  const Real t2506 = t2505 - t280;
-  const Real t2507 = t2506 * s_r_7_;
-  const Real t2508 = t2497 + t2507;
-  const Real t2509 = t2026 + t2508;
-  const Real t2510 = t2509 * constant<Real>(0.0007L);
-  const Real t2511 = t2510 + t2093;
-  const Real t2512 = t2503 * c_r_6_;
-  const Real t2513 = t2498 * s_r_6_;
-  const Real t2514 = t2512 - t2513;
-  const Real t2515 = t281 + t2514;
-  const Real t2516 = t2515 - t2028;
-  const Real t2517 = c_r_8_ * t2516;
-  const Real t2518 = t2506 * c_r_7_;
-  const Real t2519 = s_r_7_ * t2496;
-  const Real t2520 = t2518 - t2519;
-  const Real t2521 = t2025 + t2520;
-  const Real t2522 = s_r_8_ * t2521;
-  const Real t2523 = t2517 - t2522;
-  const Real t2524 = t2523 * constant<Real>(0.0033L);
-  const Real t2525 = t2524 + t1167;
-  const Real t2526 = t2516 * s_r_8_;
-  const Real t2527 = c_r_8_ * t2521;
-  const Real t2528 = t2526 + t2527;
-  const Real t2529 = c_r_9_ * t2528;
-  const Real t2530 = s_r_9_ * t2509;
-  const Real t2531 = t2529 - t2530;
-  const Real t2532 = t2531 * constant<Real>(0.0385628059145078290295L);
-  const Real t2533 = t1184 - t2532;
-  const Real t2534 = t6 * t2533;
-  const Real t2535 = t1903 + t2534;
-  const Real t2536 = t2525 + t2535;
-  const Real t2537 = s_r_9_ * t2536;
-  const Real t2538 = c_r_9_ * t2509;
-  const Real t2539 = s_r_9_ * t2528;
-  const Real t2540 = t2538 + t2539;
-  const Real t2541 = t2540 * t6;
-  const Real t2542 = t5 * t2523;
-  const Real t2543 = t2541 - t2542;
-  const Real t2544 = t2543 * constant<Real>(0.0385628059145078290295L);
-  const Real t2545 = t1194 + t2544;
-  const Real t2546 = t2523 * constant<Real>(0.003L);
-  const Real t2547 = t2546 - t1166;
-  const Real t2548 = t2545 + t2547;
-  const Real t2549 = c_r_9_ * t2548;
-  const Real t2550 = t2537 + t2549;
-  const Real t2551 = t2511 + t2550;
-  const Real t2552 = t2551 * c_r_8_;
-  const Real t2553 = t5 * t2533;
-  const Real t2554 = t1902 - t2553;
-  const Real t2555 = t2531 * constant<Real>(0.003L);
-  const Real t2556 = t2540 * constant<Real>(0.0033L);
-  const Real t2557 = t2555 + t2556;
-  const Real t2558 = t1165 - t2557;
-  const Real t2559 = t2554 + t2558;
-  const Real t2560 = t2559 - t2095;
-  const Real t2561 = t2560 * s_r_8_;
-  const Real t2562 = t2552 - t2561;
-  const Real t2563 = t2164 + t2562;
-  const Real t2564 = constant<Real>(0.368L) * t2515;
-  const Real t2565 = t1142 + t2564;
-  const Real t2566 = t2563 + t2565;
-  const Real t2567 = t2566 * c_r_7_;
-  const Real t2568 = t2515 * constant<Real>(0.0182L);
-  const Real t2569 = t1150 - t2568;
-  const Real t2570 = t2528 * constant<Real>(0.0007L);
-  const Real t2571 = t2091 - t2570;
-  const Real t2572 = c_r_9_ * t2536;
-  const Real t2573 = s_r_9_ * t2548;
-  const Real t2574 = t2572 - t2573;
-  const Real t2575 = t2571 + t2574;
-  const Real t2576 = t2575 - t1932;
-  const Real t2577 = t2569 + t2576;
-  const Real t2578 = s_r_7_ * t2577;
-  const Real t2579 = t2567 + t2578;
-  const Real t2580 = t2495 * constant<Real>(0.0027L);
-  const Real t2581 = t2081 - t2580;
-  const Real t2582 = t2579 + t2581;
-  const Real t2583 = t2582 * s_r_6_;
-  const Real t2584 = constant<Real>(0.0305L) * t2495;
-  const Real t2585 = t2089 - t2584;
-  const Real t2586 = t2551 * s_r_8_;
-  const Real t2587 = c_r_8_ * t2560;
-  const Real t2588 = t2586 + t2587;
-  const Real t2589 = t2588 + t2163;
-  const Real t2590 = t2508 * constant<Real>(0.0182L);
-  const Real t2591 = constant<Real>(0.368L) * t2520;
-  const Real t2592 = t2590 - t2591;
-  const Real t2593 = t1125 + t2592;
-  const Real t2594 = t2589 + t2593;
-  const Real t2595 = t2594 - t1936;
-  const Real t2596 = t2585 + t2595;
-  const Real t2597 = t2596 * c_r_6_;
-  const Real t2598 = t2583 + t2597;
-  const Real t2599 = t2598 - t2165;
-  const Real t2600 = t2486 * constant<Real>(1.031L);
-  const Real t2601 = t1075 - t2600;
-  const Real t2602 = t2599 + t2601;
-  const Real t2603 = t2602 * c_r_5_;
-  const Real t2604 = t2486 * constant<Real>(0.0515L);
-  const Real t2605 = t1093 - t2604;
-  const Real t2606 = constant<Real>(0.0305L) * t2514;
-  const Real t2607 = t2505 * constant<Real>(0.0027L);
-  const Real t2608 = t2606 + t2607;
-  const Real t2609 = t2085 + t2608;
-  const Real t2610 = c_r_7_ * t2577;
-  const Real t2611 = t2566 * s_r_7_;
-  const Real t2612 = t2610 - t2611;
-  const Real t2613 = t1938 + t2612;
-  const Real t2614 = t2609 + t2613;
-  const Real t2615 = t2614 - t1949;
-  const Real t2616 = t2605 + t2615;
-  const Real t2617 = s_r_5_ * t2616;
-  const Real t2618 = t2603 - t2617;
-  const Real t2619 = t2489 + t2618;
-  const Real t2620 = t2475 + t2017;
-  const Real t2621 = s_r_11_ * t2620;
-  const Real t2622 = t2479 + t2018;
-  const Real t2623 = t2622 * c_r_11_;
-  const Real t2624 = t2621 - t2623;
-  const Real t2625 = constant<Real>(0.0056L) * t2624;
-  const Real t2626 = c_r_11_ * t2620;
-  const Real t2627 = t2622 * s_r_11_;
-  const Real t2628 = t2626 + t2627;
-  const Real t2629 = t2628 * constant<Real>(0.0038L);
-  const Real t2630 = t2625 - t2629;
-  const Real t2631 = t2109 - t2630;
-  const Real t2632 = t2491 + t226;
-  const Real t2633 = t2632 * c_r_12_;
-  const Real t2634 = s_r_12_ * t2628;
-  const Real t2635 = t2633 - t2634;
-  const Real t2636 = t2635 + t2033;
-  const Real t2637 = c_r_13_ * t2636;
-  const Real t2638 = t2624 - t2030;
-  const Real t2639 = t2638 * s_r_13_;
-  const Real t2640 = t2637 - t2639;
-  const Real t2641 = t2640 + t503;
-  const Real t2642 = t2641 - t2035;
-  const Real t2643 = c_r_15_ * t2642;
-  const Real t2644 = t2636 * s_r_13_;
-  const Real t2645 = c_r_13_ * t2638;
-  const Real t2646 = t2644 + t2645;
-  const Real t2647 = t2646 - t499;
-  const Real t2648 = c_r_14_ * t2647;
-  const Real t2649 = t2628 * c_r_12_;
-  const Real t2650 = t2632 * s_r_12_;
-  const Real t2651 = t2649 + t2650;
-  const Real t2652 = t2031 - t2651;
-  const Real t2653 = t498 + t2652;
-  const Real t2654 = t2653 * s_r_14_;
-  const Real t2655 = t2648 - t2654;
-  const Real t2656 = t2655 + t2038;
-  const Real t2657 = s_r_15_ * t2656;
-  const Real t2658 = t2643 - t2657;
-  const Real t2659 = t2658 * constant<Real>(0.003L);
-  const Real t2660 = t2659 - t1319;
-  const Real t2661 = t2653 * c_r_14_;
-  const Real t2662 = t2647 * s_r_14_;
-  const Real t2663 = t2661 + t2662;
-  const Real t2664 = t2036 + t2663;
-  const Real t2665 = c_r_16_ * t2664;
-  const Real t2666 = c_r_15_ * t2656;
-  const Real t2667 = s_r_15_ * t2642;
-  const Real t2668 = t2666 + t2667;
-  const Real t2669 = t2668 * s_r_16_;
-  const Real t2670 = t2665 + t2669;
-  const Real t2671 = t2670 * t12;
-  const Real t2672 = t11 * t2658;
-  const Real t2673 = t2671 - t2672;
-  const Real t2674 = t2673 * constant<Real>(0.0385628059145078290295L);
-  const Real t2675 = t2674 + t1361;
-  const Real t2676 = t2660 + t2675;
-  const Real t2677 = t2676 * c_r_16_;
-  const Real t2678 = constant<Real>(0.0033L) * t2658;
-  const Real t2679 = t1329 + t2678;
-  const Real t2680 = t2668 * c_r_16_;
-  const Real t2681 = t2664 * s_r_16_;
-  const Real t2682 = t2680 - t2681;
-  const Real t2683 = t2682 * constant<Real>(0.0385628059145078290295L);
-  const Real t2684 = t1350 - t2683;
-  const Real t2685 = t2684 * t12;
-  const Real t2686 = t2685 + t1844;
-  const Real t2687 = t2679 + t2686;
-  const Real t2688 = t2687 * s_r_16_;
-  const Real t2689 = t2677 + t2688;
-  const Real t2690 = t2664 * constant<Real>(0.0007L);
-  const Real t2691 = t2125 - t2690;
-  const Real t2692 = t2689 + t2691;
-  const Real t2693 = t2692 * s_r_15_;
-  const Real t2694 = t2684 * t11;
-  const Real t2695 = t1843 - t2694;
-  const Real t2696 = t2682 * constant<Real>(0.003L);
-  const Real t2697 = t2670 * constant<Real>(0.0033L);
-  const Real t2698 = t2696 + t2697;
-  const Real t2699 = t1325 - t2698;
-  const Real t2700 = t2695 + t2699;
-  const Real t2701 = t2700 + t2127;
-  const Real t2702 = c_r_15_ * t2701;
-  const Real t2703 = t2693 + t2702;
-  const Real t2704 = t2158 + t2703;
-  const Real t2705 = constant<Real>(0.0182L) * t2663;
-  const Real t2706 = t2655 * constant<Real>(0.368L);
-  const Real t2707 = t2705 - t2706;
-  const Real t2708 = t2707 + t1306;
-  const Real t2709 = t2704 + t2708;
-  const Real t2710 = t2709 - t1869;
-  const Real t2711 = constant<Real>(0.0305L) * t2652;
-  const Real t2712 = t2113 - t2711;
-  const Real t2713 = t2710 + t2712;
-  const Real t2714 = c_r_13_ * t2713;
-  const Real t2715 = t2668 * constant<Real>(0.0007L);
-  const Real t2716 = t2715 + t2123;
-  const Real t2717 = t2687 * c_r_16_;
-  const Real t2718 = t2676 * s_r_16_;
-  const Real t2719 = t2717 - t2718;
-  const Real t2720 = t2716 + t2719;
-  const Real t2721 = t2720 - t1863;
-  const Real t2722 = t2641 * constant<Real>(0.0182L);
-  const Real t2723 = t1293 - t2722;
-  const Real t2724 = t2721 + t2723;
-  const Real t2725 = t2724 * s_r_14_;
-  const Real t2726 = t2692 * c_r_15_;
-  const Real t2727 = s_r_15_ * t2701;
-  const Real t2728 = t2726 - t2727;
-  const Real t2729 = t2156 + t2728;
-  const Real t2730 = t2641 * constant<Real>(0.368L);
-  const Real t2731 = t1282 + t2730;
-  const Real t2732 = t2729 + t2731;
-  const Real t2733 = t2732 * c_r_14_;
-  const Real t2734 = t2725 + t2733;
-  const Real t2735 = t2652 * constant<Real>(0.0027L);
-  const Real t2736 = t2735 + t2121;
-  const Real t2737 = t2734 + t2736;
-  const Real t2738 = t2737 * s_r_13_;
-  const Real t2739 = t2714 + t2738;
-  const Real t2740 = t2739 - t2161;
-  const Real t2741 = constant<Real>(1.031L) * t2624;
-  const Real t2742 = t1237 - t2741;
-  const Real t2743 = t2740 + t2742;
-  const Real t2744 = c_r_12_ * t2743;
-  const Real t2745 = constant<Real>(0.0515L) * t2624;
-  const Real t2746 = t2745 - t1248;
-  const Real t2747 = t2724 * c_r_14_;
-  const Real t2748 = t2732 * s_r_14_;
-  const Real t2749 = t2747 - t2748;
-  const Real t2750 = t1865 + t2749;
-  const Real t2751 = t2640 * constant<Real>(0.0305L);
-  const Real t2752 = t2646 * constant<Real>(0.0027L);
-  const Real t2753 = t2751 - t2752;
-  const Real t2754 = t2753 + t2117;
-  const Real t2755 = t2750 + t2754;
-  const Real t2756 = t2755 + t1881;
-  const Real t2757 = t2746 + t2756;
-  const Real t2758 = s_r_12_ * t2757;
-  const Real t2759 = t2744 - t2758;
-  const Real t2760 = t2631 + t2759;
-  const Real t2761 = t2619 + t2760;
-  const Real t2762 = t2058 + t2761;
-  const Real t2763 = t2473 + t2762;
-  const Real t2764 = t2470 + t2763;
-  const Real t2765 = t2764 - t2048;
-  const Real t2766 = c_r_0_ * t2765;
-  const Real t2767 = t2462 + t2766;
-  const Real t2768 = s_r_20_ * t2299;
-  const Real t2769 = c_r_20_ * t2307;
-  const Real t2770 = t2768 + t2769;
-  const Real t2771 = constant<Real>(0.12L) * t2216;
-  const Real t2772 = t2265 * constant<Real>(0.021L);
-  const Real t2773 = t2771 + t2772;
-  const Real t2774 = t1409 + t2773;
-  const Real t2775 = t2770 + t2774;
-  const Real t2776 = t2775 + t1826;
-  const Real t2777 = constant<Real>(0.3168L) * t2195;
-  const Real t2778 = t2777 + t2141;
-  const Real t2779 = t2776 + t2778;
-  const Real t2780 = s_r_18_ * t2779;
-  const Real t2781 = constant<Real>(0.005L) * t2456;
-  const Real t2782 = t2781 + t1985;
-  const Real t2783 = t1901 - t1969;
-  const Real t2784 = constant<Real>(0.25L) * t2783;
-  const Real t2785 = constant<Real>(0.0056L) * t2492;
-  const Real t2786 = t2785 + t2077;
-  const Real t2787 = t2582 * c_r_6_;
-  const Real t2788 = t2596 * s_r_6_;
-  const Real t2789 = t2787 - t2788;
-  const Real t2790 = t2789 + t2167;
-  const Real t2791 = constant<Real>(0.0515L) * t2494;
-  const Real t2792 = constant<Real>(1.031L) * t2502;
-  const Real t2793 = t2791 + t2792;
-  const Real t2794 = t2793 + t1085;
-  const Real t2795 = t2790 + t2794;
-  const Real t2796 = t2786 + t2795;
-  const Real t2797 = t2796 * s_r_4_;
-  const Real t2798 = t2784 - t2797;
-  const Real t2799 = t2782 + t2798;
-  const Real t2800 = constant<Real>(0.0038L) * t2492;
-  const Real t2801 = t2072 + t2800;
-  const Real t2802 = s_r_5_ * t2602;
-  const Real t2803 = t2616 * c_r_5_;
-  const Real t2804 = t2802 + t2803;
-  const Real t2805 = t2801 + t2804;
-  const Real t2806 = t2805 * c_r_4_;
-  const Real t2807 = t2632 * constant<Real>(0.0038L);
-  const Real t2808 = t2104 + t2807;
-  const Real t2809 = s_r_12_ * t2743;
-  const Real t2810 = t2757 * c_r_12_;
-  const Real t2811 = t2809 + t2810;
-  const Real t2812 = t2808 + t2811;
-  const Real t2813 = c_r_11_ * t2812;
-  const Real t2814 = t2806 + t2813;
-  const Real t2815 = t1002 + t2171;
-  const Real t2816 = t2814 + t2815;
-  const Real t2817 = t2799 + t2816;
-  const Real t2818 = t2635 * constant<Real>(1.031L);
-  const Real t2819 = t2651 * constant<Real>(0.0515L);
-  const Real t2820 = t2818 + t2819;
-  const Real t2821 = t2820 + t1258;
-  const Real t2822 = c_r_13_ * t2737;
-  const Real t2823 = t2713 * s_r_13_;
-  const Real t2824 = t2822 - t2823;
-  const Real t2825 = t2824 + t2160;
-  const Real t2826 = t2821 + t2825;
-  const Real t2827 = constant<Real>(0.0056L) * t2632;
-  const Real t2828 = t2827 + t2100;
-  const Real t2829 = t2826 + t2828;
-  const Real t2830 = t2829 * s_r_11_;
-  const Real t2831 = t1008 + t2830;
-  const Real t2832 = t1016 + t1017;
-  const Real t2833 = t2831 + t2832;
-  const Real t2834 = t2055 + t2833;
-  const Real t2835 = t2817 - t2834;
-  const Real t2836 = s_r_1_ * t2835;
-  const Real t2837 = t1004 + t1011;
-  const Real t2838 = s_r_4_ * t2805;
-  const Real t2839 = t2796 * c_r_4_;
-  const Real t2840 = t2838 + t2839;
-  const Real t2841 = t2837 + t2840;
-  const Real t2842 = s_r_11_ * t2812;
-  const Real t2843 = t2829 * c_r_11_;
-  const Real t2844 = t2842 + t2843;
-  const Real t2845 = t1966 - t1898;
-  const Real t2846 = constant<Real>(0.25L) * t2845;
-  const Real t2847 = t2846 + t2180;
-  const Real t2848 = t2844 + t2847;
-  const Real t2849 = t2841 + t2848;
-  const Real t2850 = t2175 + t2179;
-  const Real t2851 = constant<Real>(0.3L) * t2456;
-  const Real t2852 = t2851 + t1018;
-  const Real t2853 = t1022 + t2059;
-  const Real t2854 = t2852 + t2853;
-  const Real t2855 = t2850 + t2854;
-  const Real t2856 = t2849 - t2855;
-  const Real t2857 = t2856 * c_r_1_;
-  const Real t2858 = t2836 + t2857;
-  const Real t2859 = t2044 + t2858;
-  const Real t2860 = t2859 * s_r_0_;
-  const Real t2861 = t2780 + t2860;
-  const Real t2862 = t2767 + t2861;
-  const Real t2863 = t2448 + t2862;
-  const Real t2864 = t949 + t972;
-  const Real t2865 = t977 + t987;
-  const Real t2866 = t2864 + t2865;
-  const Real t2867 = t1770 + t1829;
-  const Real t2868 = constant<Real>(0.13L) * t2867;
-  const Real t2869 = t971 - t2868;
-  const Real t2870 = t2869 - t979;
-  const Real t2871 = t2866 + t2870;
-  const Real t2872 = t2863 + t2871;
-  const Real t2873 = c_r_0_ * t2459;
-  const Real t2874 = t2452 * s_r_0_;
-  const Real t2875 = t2873 + t2874;
-  const Real t2876 = t2875 + t973;
-  const Real t2877 = t956 + t2876;
-  const Real t2878 = t1833 + t1773;
-  const Real t2879 = t2877 + t2878;
-  const Real t2880 = t2879 - t958;
-  const Real t2881 = t2880 - t974;
-  const Real t2882 = constant<Real>(0.0111L) * t2213;
-  const Real t2883 = constant<Real>(0.3168L) * t2204;
-  const Real t2884 = t2882 + t2883;
-  const Real t2885 = t2137 - t2884;
-  const Real t2886 = s_r_19_ * t2259;
-  const Real t2887 = t2310 * c_r_19_;
-  const Real t2888 = t2886 + t2887;
-  const Real t2889 = t2888 - t1825;
-  const Real t2890 = t2885 + t2889;
-  const Real t2891 = t954 + t2890;
-  const Real t2892 = constant<Real>(0.3168L) * t2335;
-  const Real t2893 = t2322 * constant<Real>(0.0111L);
-  const Real t2894 = t2892 - t2893;
-  const Real t2895 = t2894 + t2150;
-  const Real t2896 = t2442 * c_r_25_;
-  const Real t2897 = s_r_25_ * t2435;
-  const Real t2898 = t2896 + t2897;
-  const Real t2899 = t2898 + t1766;
-  const Real t2900 = t2895 + t2899;
-  const Real t2901 = t2900 + t969;
-  const Real t2902 = t2891 + t2901;
-  const Real t2903 = c_r_1_ * t2835;
-  const Real t2904 = t2856 * s_r_1_;
-  const Real t2905 = t2903 - t2904;
-  const Real t2906 = t2054 + t2905;
-  const Real t2907 = t1770 - t1829;
-  const Real t2908 = constant<Real>(0.1L) * t2907;
-  const Real t2909 = t2906 + t2908;
-  const Real t2910 = t952 + t953;
-  const Real t2911 = t2909 - t2910;
-  const Real t2912 = t2902 + t2911;
-  const Real t2913 = t955 + t964;
-  const Real t2914 = t978 + t2913;
-  const Real t2915 = t2912 - t2914;
-  const Real t2916 = t2461 + t975;
-  const Real t2917 = t976 + t2916;
-  const Real t2918 = t2917 + t968;
-  const Real t2919 = t2918 + t962;
-  const Real t2920 = t2919 + t2867;
-  const Real t2921 = c_r_24_ * t2409;
-  const Real t2922 = t2921 + t965;
-  const Real t2923 = t961 + t967;
-  const Real t2924 = t2922 + t2923;
-  const Real t2925 = c_r_0_ * t2859;
-  const Real t2926 = c_r_18_ * t2779;
-  const Real t2927 = t2925 + t2926;
-  const Real t2928 = constant<Real>(0.13L) * t2878;
-  const Real t2929 = t1820 - t1765;
-  const Real t2930 = t2929 * constant<Real>(0.1L);
-  const Real t2931 = t2928 + t2930;
-  const Real t2932 = t2927 + t2931;
-  const Real t2933 = t2924 + t2932;
-  const Real t2934 = t959 + t970;
-  const Real t2935 = s_r_24_ * t2445;
-  const Real t2936 = t2935 + t960;
-  const Real t2937 = t2934 + t2936;
-  const Real t2938 = t2313 * s_r_18_;
-  const Real t2939 = t957 + t2938;
-  const Real t2940 = t2875 * constant<Real>(0.17L);
-  const Real t2941 = t2765 * s_r_0_;
-  const Real t2942 = t2940 + t2941;
-  const Real t2943 = t2939 + t2942;
-  const Real t2944 = t2937 + t2943;
-  const Real t2945 = t2933 - t2944;
+  const Real t150 = t149 - t148;
 
-  base_wrench[0] = t2920;
-  base_wrench[1] = t2881;
-  base_wrench[2] = t2193;
-  base_wrench[3] = t2945;
-  base_wrench[4] = t2872;
-  base_wrench[5] = t2915;
-  tau_out[0] = t2906;
-  tau_out[1] = t2764;
-  tau_out[2] = t2171;
-  tau_out[3] = t2063;
-  tau_out[4] = t2619;
-  tau_out[5] = t2795;
-  tau_out[6] = t2614;
-  tau_out[7] = t2594;
-  tau_out[8] = t2575;
-  tau_out[9] = t2559;
-  tau_out[10] = t2545;
-  tau_out[11] = t2760;
-  tau_out[12] = t2826;
-  tau_out[13] = t2755;
-  tau_out[14] = t2709;
-  tau_out[15] = t2720;
-  tau_out[16] = t2700;
-  tau_out[17] = t2675;
-  tau_out[18] = t2890;
-  tau_out[19] = t2775;
-  tau_out[20] = t2258;
-  tau_out[21] = t2256;
-  tau_out[22] = t2250;
-  tau_out[23] = t2284;
-  tau_out[24] = t2900;
-  tau_out[25] = t2407;
-  tau_out[26] = t2434;
-  tau_out[27] = t2432;
-  tau_out[28] = t2430;
-  tau_out[29] = t2375;
+  // joint angles
+  const Real t151 = eta[4] * eta[3];
+  const Real t152 = t151 - eta_dot[5];
+
+  // left_hip_yaw_link: motion
+  const Real t153 = constant<Real>(0.1L) * t152;
+
+  // waist: joint force
+  const Real t154 = t153 + t150;
+  const Real t155 = s_r_24_ * t154;
+
+  // pelvis: acceleration
+  const Real t156 = eta[5] * eta[0];
+  const Real t157 = eta[3] * eta[2];
+  const Real t158 = t156 - t157;
+  const Real t159 = eta_dot[1] + t158;
+  const Real t160 = R[7] * constant<Real>(9.81L);
+  const Real t161 = t160 + t159;
+
+  // left_hip_yaw_link: motion
+  const Real t162 = constant<Real>(0.13L) * t17;
+
+  // waist: joint force
+  const Real t163 = t161 - t162;
+
+  // joint angles
+  const Real t164 = eta[5] * eta[5];
+  const Real t165 = eta[3] * eta[3];
+  const Real t166 = t164 + t165;
+
+  // left_hip_yaw_link: motion
+  const Real t167 = constant<Real>(0.1L) * t166;
+
+  // waist: joint force
+  const Real t168 = t167 + t163;
+  const Real t169 = t168 * c_r_24_;
+  const Real t170 = t155 + t169;
+
+  // right_hip_yaw_link: motion
+  const Real t171 = t25 * t25;
+  const Real t172 = t26 * t26;
+  const Real t173 = t171 + t172;
+
+  // right_hip_roll_link: motion
+  const Real t174 = t173 * constant<Real>(0.02L);
+
+  // waist: joint force
+  const Real t175 = t174 + t170;
+  const Real t176 = s_r_25_ * t175;
+
+  // pelvis: acceleration
+  const Real t177 = eta[3] * eta[1];
+  const Real t178 = eta[4] * eta[0];
+  const Real t179 = t177 - t178;
+  const Real t180 = eta_dot[2] + t179;
+  const Real t181 = constant<Real>(9.81L) * R[8];
+  const Real t182 = t180 + t181;
+
+  // joint angles
+  const Real t183 = eta[4] * eta[4];
+  const Real t184 = t183 + t165;
+
+  // left_hip_roll_link: motion
+  const Real t185 = constant<Real>(0.13L) * t184;
+
+  // waist: joint force
+  const Real t186 = t182 + t185;
+
+  // joint angles
+  const Real t187 = eta_dot[3] + t16;
+
+  // left_hip_yaw_link: motion
+  const Real t188 = t187 * constant<Real>(0.1L);
+
+  // waist: joint force
+  const Real t189 = t186 - t188;
+
+  // right_hip_roll_link: motion
+  const Real t190 = constant<Real>(0.02L) * t51;
+
+  // waist: joint force
+  const Real t191 = t189 - t190;
+  const Real t192 = t191 * c_r_25_;
+  const Real t193 = t192 - t176;
+  const Real t194 = t193 * s_r_26_;
+  const Real t195 = s_r_24_ * t168;
+  const Real t196 = c_r_24_ * t154;
+  const Real t197 = t195 - t196;
+
+  // right_hip_yaw_link: motion
+  const Real t198 = t34 - t35;
+
+  // right_hip_roll_link: motion
+  const Real t199 = t198 * constant<Real>(0.02L);
+
+  // waist: joint force
+  const Real t200 = t197 - t199;
+  const Real t201 = c_r_26_ * t200;
+  const Real t202 = t201 - t194;
+
+  // right_thigh: motion
+  const Real t203 = t76 * t80;
+  const Real t204 = t203 + t124;
+
+  // right_shank: motion
+  const Real t205 = constant<Real>(0.4L) * t204;
+
+  // waist: joint force
+  const Real t206 = t202 - t205;
+  const Real t207 = t206 * c_r_27_;
+  const Real t208 = t193 * c_r_26_;
+  const Real t209 = s_r_26_ * t200;
+  const Real t210 = t208 + t209;
+
+  // right_thigh: motion
+  const Real t211 = t80 * t80;
+  const Real t212 = t89 * t89;
+  const Real t213 = t212 + t211;
+
+  // right_shank: motion
+  const Real t214 = constant<Real>(0.4L) * t213;
+
+  // waist: joint force
+  const Real t215 = t210 + t214;
+  const Real t216 = t215 * s_r_27_;
+  const Real t217 = t207 - t216;
+
+  // right_shank: motion
+  const Real t218 = t86 * t82;
+  const Real t219 = t218 + t125;
+
+  // right_ankle: motion
+  const Real t220 = constant<Real>(0.4L) * t219;
+
+  // waist: joint force
+  const Real t221 = t217 - t220;
+  const Real t222 = s_r_28_ * t221;
+  const Real t223 = t215 * c_r_27_;
+  const Real t224 = t206 * s_r_27_;
+  const Real t225 = t223 + t224;
+
+  // right_shank: motion
+  const Real t226 = t86 * t86;
+  const Real t227 = t90 * t90;
+  const Real t228 = t226 + t227;
+
+  // right_ankle: motion
+  const Real t229 = constant<Real>(0.4L) * t228;
+
+  // waist: joint force
+  const Real t230 = t229 + t225;
+  const Real t231 = t230 * c_r_28_;
+  const Real t232 = t222 + t231;
+  const Real t233 = t15 * t232;
+
+  // right_shank: motion
+  const Real t234 = t90 * constant<Real>(2.0L);
+  const Real t235 = t234 * t82;
+  const Real t236 = t235 - t71;
+
+  // right_ankle: motion
+  const Real t237 = constant<Real>(0.4L) * t236;
+
+  // right_thigh: motion
+  const Real t238 = t89 * constant<Real>(2.0L);
+  const Real t239 = t76 * t238;
+  const Real t240 = t239 - t65;
+
+  // right_shank: motion
+  const Real t241 = constant<Real>(0.4L) * t240;
+
+  // waist: joint force
+  const Real t242 = t175 * c_r_25_;
+  const Real t243 = s_r_25_ * t191;
+  const Real t244 = t242 + t243;
+  const Real t245 = t244 - t241;
+  const Real t246 = t245 - t237;
+  const Real t247 = t246 * t14;
+  const Real t248 = t233 - t247;
+  const Real t249 = t248 * constant<Real>(0.105010713739122828609L);
+  const Real t250 = t142 + t249;
+
+  // right_foot: motion
+  const Real t251 = t112 + r_dot[29];
+  const Real t252 = t251 * constant<Real>(2.0L);
+  const Real t253 = t97 * t252;
+  const Real t254 = t253 - t135;
+
+  // right_foot: wrench
+  const Real t255 = constant<Real>(0.00766503029993878800245L) * t254;
+  const Real t256 = t104 * constant<Real>(0.0000328537906005553296336L);
+  const Real t257 = t256 - t255;
+
+  // right_foot: motion
+  const Real t258 = t100 * t252;
+  const Real t259 = t258 - t130;
+
+  // right_foot: wrench
+  const Real t260 = constant<Real>(0.0000271209957151601713936L) * t259;
+  const Real t261 = t260 + t257;
+
+  // right_foot: motion
+  const Real t262 = t251 * t251;
+
+  // right_foot: wrench
+  const Real t263 = t139 - t262;
+  const Real t264 = constant<Real>(0.00310484748070548142703L) * t263;
+  const Real t265 = t261 + t264;
+
+  // waist: joint force
+  const Real t266 = c_r_28_ * t221;
+  const Real t267 = s_r_28_ * t230;
+  const Real t268 = t266 - t267;
+  const Real t269 = t268 * constant<Real>(0.105010713739122828609L);
+  const Real t270 = t265 - t269;
+  const Real t271 = t270 * t14;
+
+  // right_foot: wrench
+  const Real t272 = constant<Real>(0.00151146970006121199755L) * t259;
+  const Real t273 = constant<Real>(0.0000271209957151601713936L) * t254;
+  const Real t274 = t272 - t273;
+  const Real t275 = t102 * constant<Real>(0.00310484748070548142703L);
+  const Real t276 = t274 - t275;
+  const Real t277 = t262 - t138;
+  const Real t278 = t277 * constant<Real>(0.0000328537906005553296336L);
+  const Real t279 = t278 + t276;
+
+  // right_foot: joint force
+  const Real t280 = t279 * t15;
+
+  // waist: joint force
+  const Real t281 = t280 - t271;
+  const Real t282 = t268 * constant<Real>(0.008L);
+  const Real t283 = t232 * constant<Real>(0.0323L);
+  const Real t284 = t282 + t283;
+
+  // right_ankle: motion
+  const Real t285 = t127 + t126;
+
+  // right_ankle: wrench
+  const Real t286 = constant<Real>(0.00032L) * t285;
+  const Real t287 = constant<Real>(0.0081023L) * t128;
+  const Real t288 = t286 - t287;
+
+  // right_ankle: motion
+  const Real t289 = t112 * t112;
+  const Real t290 = t88 * t88;
+
+  // right_ankle: wrench
+  const Real t291 = t289 - t290;
+  const Real t292 = t291 * constant<Real>(8e-6L);
+  const Real t293 = t288 - t292;
+
+  // waist: joint force
+  const Real t294 = t293 - t284;
+  const Real t295 = t281 + t294;
+
+  // right_foot: wrench
+  const Real t296 = t102 * constant<Real>(0.105010713739122828609L);
+
+  // right_foot: joint force
+  const Real t297 = t15 * t296;
+
+  // right_foot: motion
+  const Real t298 = t138 + t262;
+
+  // right_foot: wrench
+  const Real t299 = constant<Real>(0.105010713739122828609L) * t298;
+
+  // right_foot: joint force
+  const Real t300 = t14 * t299;
+  const Real t301 = t297 - t300;
+
+  // right_ankle: wrench
+  const Real t302 = t128 * constant<Real>(0.0323L);
+
+  // right_ankle: motion
+  const Real t303 = t91 * t91;
+  const Real t304 = t303 + t289;
+
+  // right_ankle: wrench
+  const Real t305 = constant<Real>(0.008L) * t304;
+  const Real t306 = t302 + t305;
+
+  // right_foot: joint force
+  const Real t307 = t301 + t306;
+
+  // right_ankle: joint force
+  const Real t308 = s_r_28_ * t307;
+
+  // right_foot: wrench
+  const Real t309 = constant<Real>(0.105010713739122828609L) * t254;
+
+  // right_ankle: wrench
+  const Real t310 = constant<Real>(0.008L) * t285;
+
+  // right_ankle: motion
+  const Real t311 = t290 + t303;
+
+  // right_ankle: wrench
+  const Real t312 = t311 * constant<Real>(0.0323L);
+  const Real t313 = t310 + t312;
+
+  // right_foot: joint force
+  const Real t314 = t309 - t313;
+
+  // right_ankle: joint force
+  const Real t315 = t314 * c_r_28_;
+  const Real t316 = t308 + t315;
+  const Real t317 = constant<Real>(0.4L) * t316;
+
+  // waist: joint force
+  const Real t318 = t295 - t317;
+  const Real t319 = constant<Real>(0.0429L) * t225;
+  const Real t320 = constant<Real>(1.544L) * t217;
+  const Real t321 = t319 - t320;
+
+  // right_shank: wrench
+  const Real t322 = t219 * constant<Real>(0.51477L);
+
+  // right_shank: motion
+  const Real t323 = t218 - t125;
+
+  // right_shank: wrench
+  const Real t324 = constant<Real>(0.0037219L) * t323;
+  const Real t325 = t322 - t324;
+  const Real t326 = constant<Real>(0.003296L) * t67;
+  const Real t327 = t326 + t325;
+  const Real t328 = constant<Real>(0.0002716L) * t71;
+  const Real t329 = t327 - t328;
+
+  // right_shank: motion
+  const Real t330 = t82 * t82;
+
+  // right_shank: wrench
+  const Real t331 = t226 - t330;
+  const Real t332 = constant<Real>(0.010564L) * t331;
+  const Real t333 = t329 + t332;
+
+  // waist: joint force
+  const Real t334 = t333 + t321;
+  const Real t335 = t334 + t318;
+
+  // right_shank: wrench
+  const Real t336 = t219 * constant<Real>(1.544L);
+
+  // right_shank: motion
+  const Real t337 = t227 + t330;
+
+  // right_shank: wrench
+  const Real t338 = constant<Real>(0.0429L) * t337;
+  const Real t339 = t338 - t336;
+
+  // right_ankle: joint force
+  const Real t340 = t339 + t316;
+
+  // right_shank: joint force
+  const Real t341 = t340 * c_r_27_;
+
+  // right_ankle: joint force
+  const Real t342 = c_r_28_ * t307;
+  const Real t343 = t314 * s_r_28_;
+  const Real t344 = t342 - t343;
+
+  // right_shank: wrench
+  const Real t345 = constant<Real>(0.0429L) * t323;
+  const Real t346 = constant<Real>(1.544L) * t228;
+  const Real t347 = t346 - t345;
+
+  // right_ankle: joint force
+  const Real t348 = t347 + t344;
+
+  // right_shank: joint force
+  const Real t349 = t348 * s_r_27_;
+  const Real t350 = t341 + t349;
+  const Real t351 = constant<Real>(0.4L) * t350;
+
+  // waist: joint force
+  const Real t352 = t335 - t351;
+
+  // right_thigh: wrench
+  const Real t353 = t204 * constant<Real>(1.308375L);
+
+  // right_thigh: motion
+  const Real t354 = t203 - t124;
+
+  // right_thigh: wrench
+  const Real t355 = t354 * constant<Real>(0.0093286L);
+  const Real t356 = t353 - t355;
+  const Real t357 = t61 * constant<Real>(0.02108L);
+  const Real t358 = t357 + t356;
+  const Real t359 = constant<Real>(0.000072L) * t65;
+  const Real t360 = t359 + t358;
+
+  // right_thigh: motion
+  const Real t361 = t76 * t76;
+
+  // right_thigh: wrench
+  const Real t362 = t211 - t361;
+  const Real t363 = constant<Real>(0.010612L) * t362;
+  const Real t364 = t360 - t363;
+
+  // waist: joint force
+  const Real t365 = constant<Real>(0.0448L) * t210;
+  const Real t366 = t202 * constant<Real>(3.696L);
+  const Real t367 = t365 + t366;
+  const Real t368 = t364 - t367;
+  const Real t369 = t368 + t352;
+  const Real t370 = t270 * t15;
+
+  // right_foot: joint force
+  const Real t371 = t14 * t279;
+
+  // waist: joint force
+  const Real t372 = t370 + t371;
+
+  // right_ankle: wrench
+  const Real t373 = constant<Real>(0.0081023L) * t115;
+
+  // right_ankle: motion
+  const Real t374 = t88 * t113;
+  const Real t375 = t374 - t73;
+
+  // right_ankle: wrench
+  const Real t376 = constant<Real>(8e-6L) * t375;
+  const Real t377 = t373 - t376;
+
+  // waist: joint force
+  const Real t378 = t246 * constant<Real>(0.0323L);
+  const Real t379 = t377 + t378;
+  const Real t380 = t372 + t379;
+  const Real t381 = s_r_28_ * t380;
+
+  // right_ankle: wrench
+  const Real t382 = constant<Real>(8e-6L) * t115;
+  const Real t383 = constant<Real>(0.00032L) * t375;
+  const Real t384 = t382 - t383;
+
+  // waist: joint force
+  const Real t385 = t246 * constant<Real>(0.008L);
+  const Real t386 = t384 + t385;
+  const Real t387 = t250 + t386;
+  const Real t388 = c_r_28_ * t387;
+  const Real t389 = t381 + t388;
+
+  // right_foot: joint force
+  const Real t390 = t14 * t296;
+  const Real t391 = t15 * t299;
+  const Real t392 = t391 + t390;
+
+  // right_ankle: wrench
+  const Real t393 = t115 * constant<Real>(0.0323L);
+  const Real t394 = constant<Real>(0.008L) * t375;
+  const Real t395 = t393 - t394;
+
+  // right_foot: joint force
+  const Real t396 = t395 - t392;
+
+  // right_ankle: joint force
+  const Real t397 = constant<Real>(0.4L) * t396;
+
+  // waist: joint force
+  const Real t398 = t389 + t397;
+
+  // right_shank: wrench
+  const Real t399 = t236 * constant<Real>(0.51477L);
+  const Real t400 = constant<Real>(0.0002716L) * t323;
+  const Real t401 = t400 - t399;
+
+  // right_shank: motion
+  const Real t402 = t234 * t86;
+  const Real t403 = t402 - t67;
+
+  // right_shank: wrench
+  const Real t404 = constant<Real>(0.010564L) * t403;
+  const Real t405 = t401 - t404;
+  const Real t406 = t330 - t227;
+  const Real t407 = constant<Real>(0.003296L) * t406;
+  const Real t408 = t407 + t405;
+
+  // waist: joint force
+  const Real t409 = t245 * constant<Real>(1.544L);
+  const Real t410 = t408 + t409;
+  const Real t411 = t398 + t410;
+  const Real t412 = t411 * c_r_27_;
+  const Real t413 = c_r_28_ * t380;
+  const Real t414 = s_r_28_ * t387;
+  const Real t415 = t413 - t414;
+
+  // right_shank: wrench
+  const Real t416 = constant<Real>(0.010564L) * t236;
+  const Real t417 = t403 * constant<Real>(0.0037219L);
+  const Real t418 = t416 + t417;
+  const Real t419 = constant<Real>(0.003296L) * t219;
+  const Real t420 = t418 - t419;
+  const Real t421 = t227 - t226;
+  const Real t422 = constant<Real>(0.0002716L) * t421;
+  const Real t423 = t422 + t420;
+
+  // waist: joint force
+  const Real t424 = t245 * constant<Real>(0.0429L);
+  const Real t425 = t423 - t424;
+  const Real t426 = t425 + t415;
+  const Real t427 = t426 * s_r_27_;
+  const Real t428 = t427 + t412;
+
+  // right_shank: wrench
+  const Real t429 = t403 * constant<Real>(0.0429L);
+  const Real t430 = t236 * constant<Real>(1.544L);
+  const Real t431 = t429 + t430;
+
+  // right_ankle: joint force
+  const Real t432 = t396 - t431;
+
+  // right_shank: joint force
+  const Real t433 = t432 * constant<Real>(0.4L);
+
+  // waist: joint force
+  const Real t434 = t433 + t428;
+
+  // right_thigh: wrench
+  const Real t435 = constant<Real>(0.000072L) * t354;
+  const Real t436 = t240 * constant<Real>(1.308375L);
+  const Real t437 = t435 + t436;
+
+  // right_thigh: motion
+  const Real t438 = t80 * t238;
+  const Real t439 = t438 - t61;
+
+  // right_thigh: wrench
+  const Real t440 = t439 * constant<Real>(0.010612L);
+  const Real t441 = t440 - t437;
+  const Real t442 = t361 - t212;
+  const Real t443 = t442 * constant<Real>(0.02108L);
+  const Real t444 = t443 + t441;
+
+  // waist: joint force
+  const Real t445 = t244 * constant<Real>(3.696L);
+  const Real t446 = t444 + t445;
+  const Real t447 = t446 + t434;
+  const Real t448 = c_r_26_ * t447;
+  const Real t449 = t411 * s_r_27_;
+  const Real t450 = t426 * c_r_27_;
+  const Real t451 = t450 - t449;
+
+  // right_thigh: wrench
+  const Real t452 = t439 * constant<Real>(0.0093286L);
+  const Real t453 = t240 * constant<Real>(0.010612L);
+  const Real t454 = t452 - t453;
+  const Real t455 = t204 * constant<Real>(0.02108L);
+  const Real t456 = t454 - t455;
+  const Real t457 = t212 - t211;
+  const Real t458 = constant<Real>(0.000072L) * t457;
+  const Real t459 = t456 - t458;
+
+  // waist: joint force
+  const Real t460 = constant<Real>(0.0448L) * t244;
+  const Real t461 = t460 + t459;
+  const Real t462 = t461 + t451;
+  const Real t463 = t462 * s_r_26_;
+  const Real t464 = t448 + t463;
+  const Real t465 = t244 * constant<Real>(0.021L);
+  const Real t466 = t193 * constant<Real>(0.12L);
+  const Real t467 = t465 - t466;
+
+  // right_hip_roll_link: wrench
+  const Real t468 = t59 * constant<Real>(0.014119L);
+
+  // right_hip_roll_link: motion
+  const Real t469 = t58 - t54;
+
+  // right_hip_roll_link: wrench
+  const Real t470 = t469 * constant<Real>(0.00196L);
+  const Real t471 = t468 - t470;
+  const Real t472 = constant<Real>(0.0002328L) * t119;
+  const Real t473 = t471 - t472;
+  const Real t474 = constant<Real>(0.000068L) * t38;
+  const Real t475 = t473 - t474;
+
+  // right_hip_roll_link: motion
+  const Real t476 = t57 * t57;
+  const Real t477 = t43 * t43;
+
+  // right_hip_roll_link: wrench
+  const Real t478 = t476 - t477;
+  const Real t479 = constant<Real>(0.000184L) * t478;
+  const Real t480 = t479 + t475;
+
+  // waist: joint force
+  const Real t481 = t467 + t480;
+  const Real t482 = t464 + t481;
+  const Real t483 = s_r_26_ * t447;
+  const Real t484 = t462 * c_r_26_;
+  const Real t485 = t484 - t483;
+
+  // right_hip_roll_link: wrench
+  const Real t486 = t469 * constant<Real>(0.000068L);
+  const Real t487 = constant<Real>(0.014119L) * t45;
+  const Real t488 = t486 - t487;
+  const Real t489 = t121 * constant<Real>(0.000184L);
+  const Real t490 = t488 - t489;
+
+  // right_hip_roll_link: motion
+  const Real t491 = t39 * t39;
+
+  // right_hip_roll_link: wrench
+  const Real t492 = t477 - t491;
+  const Real t493 = constant<Real>(0.0002328L) * t492;
+  const Real t494 = t490 - t493;
+
+  // waist: joint force
+  const Real t495 = t200 * constant<Real>(0.12L);
+  const Real t496 = t494 + t495;
+  const Real t497 = t485 + t496;
+  const Real t498 = t497 * c_r_25_;
+
+  // right_hip_roll_link: wrench
+  const Real t499 = constant<Real>(0.000184L) * t45;
+  const Real t500 = t121 * constant<Real>(0.00196L);
+  const Real t501 = t499 + t500;
+  const Real t502 = t59 * constant<Real>(0.0002328L);
+  const Real t503 = t501 + t502;
+  const Real t504 = t491 - t476;
+  const Real t505 = t504 * constant<Real>(0.000068L);
+  const Real t506 = t503 + t505;
+
+  // waist: joint force
+  const Real t507 = t200 * constant<Real>(0.021L);
+  const Real t508 = t506 - t507;
+  const Real t509 = t508 + t369;
+  const Real t510 = s_r_25_ * t509;
+  const Real t511 = t498 + t510;
+
+  // right_shank: joint force
+  const Real t512 = t348 * c_r_27_;
+  const Real t513 = t340 * s_r_27_;
+  const Real t514 = t512 - t513;
+
+  // right_thigh: wrench
+  const Real t515 = constant<Real>(0.0448L) * t354;
+  const Real t516 = t213 * constant<Real>(3.696L);
+  const Real t517 = t515 + t516;
+
+  // right_shank: joint force
+  const Real t518 = t517 + t514;
+
+  // right_thigh: joint force
+  const Real t519 = s_r_26_ * t518;
+
+  // right_thigh: wrench
+  const Real t520 = t204 * constant<Real>(3.696L);
+
+  // right_thigh: motion
+  const Real t521 = t212 + t361;
+
+  // right_thigh: wrench
+  const Real t522 = constant<Real>(0.0448L) * t521;
+  const Real t523 = t520 + t522;
+
+  // right_shank: joint force
+  const Real t524 = t350 - t523;
+
+  // right_thigh: joint force
+  const Real t525 = t524 * c_r_26_;
+  const Real t526 = t519 + t525;
+
+  // right_hip_roll_link: wrench
+  const Real t527 = constant<Real>(0.12L) * t45;
+  const Real t528 = t121 * constant<Real>(0.021L);
+  const Real t529 = t527 + t528;
+
+  // right_thigh: joint force
+  const Real t530 = t526 - t529;
+
+  // right_hip_roll_link: joint force
+  const Real t531 = constant<Real>(0.02L) * t530;
+
+  // waist: joint force
+  const Real t532 = t511 + t531;
+  const Real t533 = constant<Real>(0.3168L) * t197;
+  const Real t534 = t170 * constant<Real>(0.0111L);
+  const Real t535 = t533 - t534;
+
+  // right_hip_yaw_link: wrench
+  const Real t536 = t36 * constant<Real>(0.004255L);
+  const Real t537 = t198 * constant<Real>(0.0077371L);
+  const Real t538 = t536 - t537;
+
+  // right_hip_yaw_link: wrench
+  const Real t539 = constant<Real>(0.000028L) * t49;
+  const Real t540 = t539 + t538;
+  const Real t541 = t22 * constant<Real>(0.001512L);
+  const Real t542 = t540 + t541;
+
+  // right_hip_yaw_link: motion
+  const Real t543 = t33 * t33;
+
+  // right_hip_yaw_link: wrench
+  const Real t544 = t543 - t171;
+  const Real t545 = constant<Real>(0.0003676L) * t544;
+
+  // right_hip_yaw_link: wrench
+  const Real t546 = t542 + t545;
+
+  // waist: joint force
+  const Real t547 = t535 + t546;
+  const Real t548 = t547 + t532;
+  const Real t549 = t163 - t167;
+  const Real t550 = c_r_18_ * t549;
+  const Real t551 = t153 - t150;
+  const Real t552 = t551 * s_r_18_;
+  const Real t553 = t550 - t552;
+
+  // left_hip_yaw_link: motion
+  const Real t554 = eta[4] * s_r_18_;
+  const Real t555 = eta[3] * c_r_18_;
+  const Real t556 = t554 + t555;
+  const Real t557 = t556 * t556;
+  const Real t558 = eta[5] + r_dot[18];
+  const Real t559 = t558 * t558;
+  const Real t560 = t557 + t559;
+
+  // left_hip_roll_link: motion
+  const Real t561 = constant<Real>(0.02L) * t560;
+
+  // waist: joint force
+  const Real t562 = t553 - t561;
+  const Real t563 = t562 * s_r_19_;
+
+  // left_hip_yaw_link: motion
+  const Real t564 = t17 * c_r_18_;
+  const Real t565 = t20 * s_r_18_;
+  const Real t566 = t564 - t565;
+  const Real t567 = eta[4] * c_r_18_;
+  const Real t568 = eta[3] * s_r_18_;
+  const Real t569 = t567 - t568;
+  const Real t570 = t558 * constant<Real>(2.0L);
+  const Real t571 = t569 * t570;
+  const Real t572 = t571 - t566;
+
+  // left_hip_roll_link: motion
+  const Real t573 = constant<Real>(0.02L) * t572;
+
+  // waist: joint force
+  const Real t574 = t188 + t186;
+  const Real t575 = t573 + t574;
+  const Real t576 = t575 * c_r_19_;
+  const Real t577 = t576 - t563;
+  const Real t578 = s_r_20_ * t577;
+  const Real t579 = s_r_18_ * t549;
+  const Real t580 = t551 * c_r_18_;
+  const Real t581 = t579 + t580;
+
+  // left_hip_yaw_link: motion
+  const Real t582 = t569 * t556;
+  const Real t583 = eta_dot[5] + r_ddot[18];
+  const Real t584 = t582 - t583;
+
+  // left_hip_roll_link: motion
+  const Real t585 = constant<Real>(0.02L) * t584;
+
+  // waist: joint force
+  const Real t586 = t581 + t585;
+  const Real t587 = t586 * c_r_20_;
+  const Real t588 = t587 - t578;
+
+  // left_hip_yaw_link: motion
+  const Real t589 = t17 * s_r_18_;
+  const Real t590 = t20 * c_r_18_;
+  const Real t591 = t589 + t590;
+  const Real t592 = t556 * t570;
+  const Real t593 = t592 - t591;
+
+  // left_hip_roll_link: motion
+  const Real t594 = t593 * c_r_19_;
+
+  // left_hip_yaw_link: motion
+  const Real t595 = t583 + t582;
+
+  // left_hip_roll_link: motion
+  const Real t596 = t595 * s_r_19_;
+  const Real t597 = t594 - t596;
+  const Real t598 = t569 * s_r_19_;
+  const Real t599 = t558 * c_r_19_;
+  const Real t600 = t599 - t598;
+  const Real t601 = t556 + r_dot[19];
+  const Real t602 = t601 * constant<Real>(2.0L);
+  const Real t603 = t600 * t602;
+  const Real t604 = t603 - t597;
+
+  // left_thigh: motion
+  const Real t605 = t600 * t601;
+  const Real t606 = t604 - t605;
+  const Real t607 = r_ddot[20] + t606;
+  const Real t608 = t600 * s_r_20_;
+  const Real t609 = c_r_20_ * t601;
+  const Real t610 = t609 - t608;
+  const Real t611 = t600 * c_r_20_;
+  const Real t612 = s_r_20_ * t601;
+  const Real t613 = t611 + t612;
+  const Real t614 = t610 * t613;
+  const Real t615 = t607 + t614;
+
+  // left_shank: motion
+  const Real t616 = constant<Real>(0.4L) * t615;
+
+  // waist: joint force
+  const Real t617 = t588 - t616;
+  const Real t618 = c_r_21_ * t617;
+  const Real t619 = c_r_20_ * t577;
+  const Real t620 = t586 * s_r_20_;
+  const Real t621 = t620 + t619;
+
+  // left_thigh: motion
+  const Real t622 = t610 * t610;
+
+  // left_hip_roll_link: motion
+  const Real t623 = t569 * c_r_19_;
+  const Real t624 = t558 * s_r_19_;
+  const Real t625 = t624 + t623;
+
+  // left_thigh: motion
+  const Real t626 = r_dot[20] + t625;
+  const Real t627 = t626 * t626;
+  const Real t628 = t622 + t627;
+
+  // left_shank: motion
+  const Real t629 = constant<Real>(0.4L) * t628;
+
+  // waist: joint force
+  const Real t630 = t629 + t621;
+  const Real t631 = s_r_21_ * t630;
+  const Real t632 = t618 - t631;
+
+  // left_shank: motion
+  const Real t633 = t607 + r_ddot[21];
+  const Real t634 = t610 * s_r_21_;
+  const Real t635 = c_r_21_ * t613;
+  const Real t636 = t634 + t635;
+  const Real t637 = t610 * c_r_21_;
+  const Real t638 = s_r_21_ * t613;
+  const Real t639 = t637 - t638;
+  const Real t640 = t636 * t639;
+  const Real t641 = t640 + t633;
+
+  // left_ankle: motion
+  const Real t642 = constant<Real>(0.4L) * t641;
+
+  // waist: joint force
+  const Real t643 = t632 - t642;
+  const Real t644 = s_r_22_ * t643;
+  const Real t645 = s_r_21_ * t617;
+  const Real t646 = c_r_21_ * t630;
+  const Real t647 = t645 + t646;
+
+  // left_shank: motion
+  const Real t648 = t639 * t639;
+  const Real t649 = t626 + r_dot[21];
+  const Real t650 = t649 * t649;
+  const Real t651 = t648 + t650;
+
+  // left_ankle: motion
+  const Real t652 = constant<Real>(0.4L) * t651;
+
+  // waist: joint force
+  const Real t653 = t652 + t647;
+  const Real t654 = c_r_22_ * t653;
+  const Real t655 = t644 + t654;
+  const Real t656 = t655 * t3;
+
+  // left_hip_roll_link: motion
+  const Real t657 = t569 * t558;
+  const Real t658 = t572 - t657;
+  const Real t659 = t658 + r_ddot[19];
+  const Real t660 = t625 * t600;
+  const Real t661 = t659 + t660;
+
+  // left_thigh: motion
+  const Real t662 = t661 * c_r_20_;
+
+  // left_hip_roll_link: motion
+  const Real t663 = t593 * s_r_19_;
+  const Real t664 = t595 * c_r_19_;
+  const Real t665 = t664 + t663;
+  const Real t666 = t625 * t602;
+  const Real t667 = t666 - t665;
+
+  // left_thigh: motion
+  const Real t668 = s_r_20_ * t667;
+  const Real t669 = t662 + t668;
+
+  // left_shank: motion
+  const Real t670 = t669 * c_r_21_;
+
+  // left_thigh: motion
+  const Real t671 = t667 * c_r_20_;
+  const Real t672 = t661 * s_r_20_;
+  const Real t673 = t671 - t672;
+
+  // left_shank: motion
+  const Real t674 = t673 * s_r_21_;
+  const Real t675 = t670 + t674;
+  const Real t676 = t649 * constant<Real>(2.0L);
+  const Real t677 = t636 * t676;
+  const Real t678 = t677 - t675;
+
+  // left_ankle: motion
+  const Real t679 = constant<Real>(0.4L) * t678;
+
+  // left_thigh: motion
+  const Real t680 = t626 * constant<Real>(2.0L);
+  const Real t681 = t680 * t613;
+  const Real t682 = t681 - t669;
+
+  // left_shank: motion
+  const Real t683 = t682 * constant<Real>(0.4L);
+
+  // waist: joint force
+  const Real t684 = t562 * c_r_19_;
+  const Real t685 = t575 * s_r_19_;
+  const Real t686 = t685 + t684;
+  const Real t687 = t686 - t683;
+  const Real t688 = t687 - t679;
+  const Real t689 = t688 * t2;
+  const Real t690 = t656 - t689;
+  const Real t691 = t690 * constant<Real>(0.105010713739122828609L);
+
+  // left_shank: motion
+  const Real t692 = c_r_21_ * t673;
+  const Real t693 = t669 * s_r_21_;
+  const Real t694 = t692 - t693;
+
+  // left_ankle: motion
+  const Real t695 = t694 * s_r_22_;
+  const Real t696 = c_r_22_ * t675;
+  const Real t697 = t695 + t696;
+  const Real t698 = c_r_22_ * t636;
+  const Real t699 = s_r_22_ * t639;
+  const Real t700 = t698 + t699;
+  const Real t701 = t649 + r_dot[22];
+
+  // left_foot: motion
+  const Real t702 = t700 * t701;
+  const Real t703 = t697 - t702;
+  const Real t704 = r_ddot[23] + t703;
+  const Real t705 = t700 * t3;
+  const Real t706 = t701 * t2;
+  const Real t707 = t705 - t706;
+  const Real t708 = t700 * t2;
+  const Real t709 = t701 * t3;
+  const Real t710 = t708 + t709;
+  const Real t711 = t707 * t710;
+  const Real t712 = t704 + t711;
+
+  // left_foot: wrench
+  const Real t713 = constant<Real>(0.00766503029993878800245L) * t712;
+
+  // left_foot: motion
+  const Real t714 = t711 - t704;
+
+  // left_foot: wrench
+  const Real t715 = constant<Real>(0.00151146970006121199755L) * t714;
+  const Real t716 = t713 - t715;
+
+  // left_ankle: motion
+  const Real t717 = t694 * c_r_22_;
+  const Real t718 = s_r_22_ * t675;
+  const Real t719 = t717 - t718;
+  const Real t720 = c_r_22_ * t639;
+  const Real t721 = s_r_22_ * t636;
+  const Real t722 = t720 - t721;
+  const Real t723 = t701 * constant<Real>(2.0L);
+  const Real t724 = t722 * t723;
+  const Real t725 = t724 - t719;
+
+  // left_foot: motion
+  const Real t726 = t725 * t2;
+
+  // left_ankle: motion
+  const Real t727 = t633 + r_ddot[22];
+  const Real t728 = t700 * t722;
+  const Real t729 = t728 - t727;
+
+  // left_foot: motion
+  const Real t730 = t729 * t3;
+  const Real t731 = t730 - t726;
+
+  // left_foot: wrench
+  const Real t732 = constant<Real>(0.00310484748070548142703L) * t731;
+  const Real t733 = t716 + t732;
+
+  // left_foot: motion
+  const Real t734 = t3 * t725;
+  const Real t735 = t729 * t2;
+  const Real t736 = t735 + t734;
+
+  // left_foot: wrench
+  const Real t737 = t736 * constant<Real>(0.0000328537906005553296336L);
+  const Real t738 = t733 + t737;
+
+  // left_foot: motion
+  const Real t739 = t707 * t707;
+  const Real t740 = t710 * t710;
+
+  // left_foot: wrench
+  const Real t741 = t739 - t740;
+  const Real t742 = constant<Real>(0.0000271209957151601713936L) * t741;
+  const Real t743 = t742 + t738;
+
+  // waist: joint force
+  const Real t744 = t691 + t743;
+
+  // left_foot: motion
+  const Real t745 = r_dot[23] + t722;
+  const Real t746 = t745 * constant<Real>(2.0L);
+  const Real t747 = t710 * t746;
+  const Real t748 = t747 - t736;
+
+  // left_foot: wrench
+  const Real t749 = constant<Real>(0.00766503029993878800245L) * t748;
+  const Real t750 = constant<Real>(0.0000328537906005553296336L) * t714;
+  const Real t751 = t750 + t749;
+
+  // left_foot: motion
+  const Real t752 = t707 * t746;
+  const Real t753 = t752 - t731;
+
+  // left_foot: wrench
+  const Real t754 = constant<Real>(0.0000271209957151601713936L) * t753;
+  const Real t755 = t751 + t754;
+
+  // left_foot: motion
+  const Real t756 = t745 * t745;
+
+  // left_foot: wrench
+  const Real t757 = t740 - t756;
+  const Real t758 = constant<Real>(0.00310484748070548142703L) * t757;
+  const Real t759 = t758 - t755;
+
+  // waist: joint force
+  const Real t760 = c_r_22_ * t643;
+  const Real t761 = s_r_22_ * t653;
+  const Real t762 = t760 - t761;
+  const Real t763 = t762 * constant<Real>(0.105010713739122828609L);
+  const Real t764 = t759 - t763;
+  const Real t765 = t764 * t2;
+
+  // left_foot: wrench
+  const Real t766 = constant<Real>(0.0000271209957151601713936L) * t748;
+  const Real t767 = constant<Real>(0.00151146970006121199755L) * t753;
+  const Real t768 = t766 + t767;
+  const Real t769 = constant<Real>(0.00310484748070548142703L) * t712;
+  const Real t770 = t768 - t769;
+  const Real t771 = t756 - t739;
+  const Real t772 = t771 * constant<Real>(0.0000328537906005553296336L);
+  const Real t773 = t770 - t772;
+
+  // left_foot: joint force
+  const Real t774 = t773 * t3;
+
+  // waist: joint force
+  const Real t775 = t774 - t765;
+  const Real t776 = t762 * constant<Real>(0.008L);
+  const Real t777 = t655 * constant<Real>(0.0323L);
+  const Real t778 = t776 + t777;
+
+  // left_ankle: motion
+  const Real t779 = t728 + t727;
+
+  // left_ankle: wrench
+  const Real t780 = t779 * constant<Real>(0.00032L);
+  const Real t781 = t729 * constant<Real>(0.0081023L);
+  const Real t782 = t780 - t781;
+
+  // left_ankle: motion
+  const Real t783 = t722 * t722;
+  const Real t784 = t700 * t700;
+
+  // left_ankle: wrench
+  const Real t785 = t783 - t784;
+  const Real t786 = constant<Real>(8e-6L) * t785;
+  const Real t787 = t782 - t786;
+
+  // waist: joint force
+  const Real t788 = t787 - t778;
+  const Real t789 = t788 + t775;
+
+  // left_foot: wrench
+  const Real t790 = constant<Real>(0.105010713739122828609L) * t712;
+
+  // left_foot: joint force
+  const Real t791 = t3 * t790;
+
+  // left_foot: motion
+  const Real t792 = t756 + t739;
+
+  // left_foot: wrench
+  const Real t793 = t792 * constant<Real>(0.105010713739122828609L);
+
+  // left_foot: joint force
+  const Real t794 = t793 * t2;
+  const Real t795 = t791 - t794;
+
+  // left_ankle: wrench
+  const Real t796 = t729 * constant<Real>(0.0323L);
+
+  // left_ankle: motion
+  const Real t797 = t701 * t701;
+  const Real t798 = t797 + t783;
+
+  // left_ankle: wrench
+  const Real t799 = t798 * constant<Real>(0.008L);
+  const Real t800 = t796 + t799;
+
+  // left_foot: joint force
+  const Real t801 = t800 + t795;
+
+  // left_ankle: joint force
+  const Real t802 = s_r_22_ * t801;
+
+  // left_foot: wrench
+  const Real t803 = constant<Real>(0.105010713739122828609L) * t748;
+
+  // left_ankle: wrench
+  const Real t804 = constant<Real>(0.008L) * t779;
+
+  // left_ankle: motion
+  const Real t805 = t797 + t784;
+
+  // left_ankle: wrench
+  const Real t806 = t805 * constant<Real>(0.0323L);
+  const Real t807 = t806 + t804;
+
+  // left_foot: joint force
+  const Real t808 = t803 - t807;
+
+  // left_ankle: joint force
+  const Real t809 = c_r_22_ * t808;
+  const Real t810 = t802 + t809;
+  const Real t811 = constant<Real>(0.4L) * t810;
+
+  // waist: joint force
+  const Real t812 = t789 - t811;
+  const Real t813 = t647 * constant<Real>(0.0429L);
+  const Real t814 = constant<Real>(1.544L) * t632;
+  const Real t815 = t813 - t814;
+
+  // left_shank: wrench
+  const Real t816 = t641 * constant<Real>(0.51477L);
+
+  // left_shank: motion
+  const Real t817 = t640 - t633;
+
+  // left_shank: wrench
+  const Real t818 = constant<Real>(0.0037219L) * t817;
+  const Real t819 = t816 - t818;
+  const Real t820 = t694 * constant<Real>(0.003296L);
+  const Real t821 = t819 - t820;
+  const Real t822 = constant<Real>(0.0002716L) * t675;
+  const Real t823 = t822 + t821;
+
+  // left_shank: motion
+  const Real t824 = t636 * t636;
+
+  // left_shank: wrench
+  const Real t825 = t648 - t824;
+  const Real t826 = constant<Real>(0.010564L) * t825;
+  const Real t827 = t823 + t826;
+
+  // waist: joint force
+  const Real t828 = t827 + t815;
+  const Real t829 = t812 + t828;
+
+  // left_ankle: joint force
+  const Real t830 = c_r_22_ * t801;
+  const Real t831 = s_r_22_ * t808;
+  const Real t832 = t830 - t831;
+
+  // left_shank: wrench
+  const Real t833 = constant<Real>(0.0429L) * t817;
+  const Real t834 = t651 * constant<Real>(1.544L);
+  const Real t835 = t834 - t833;
+
+  // left_ankle: joint force
+  const Real t836 = t832 + t835;
+
+  // left_shank: joint force
+  const Real t837 = t836 * s_r_21_;
+
+  // left_shank: wrench
+  const Real t838 = t641 * constant<Real>(1.544L);
+
+  // left_shank: motion
+  const Real t839 = t824 + t650;
+
+  // left_shank: wrench
+  const Real t840 = constant<Real>(0.0429L) * t839;
+  const Real t841 = t840 - t838;
+
+  // left_ankle: joint force
+  const Real t842 = t841 + t810;
+
+  // left_shank: joint force
+  const Real t843 = c_r_21_ * t842;
+  const Real t844 = t837 + t843;
+  const Real t845 = constant<Real>(0.4L) * t844;
+
+  // waist: joint force
+  const Real t846 = t829 - t845;
+
+  // left_thigh: wrench
+  const Real t847 = constant<Real>(1.308375L) * t615;
+
+  // left_thigh: motion
+  const Real t848 = t614 - t607;
+
+  // left_thigh: wrench
+  const Real t849 = t848 * constant<Real>(0.0093286L);
+  const Real t850 = t847 - t849;
+  const Real t851 = constant<Real>(0.02108L) * t673;
+  const Real t852 = t850 - t851;
+  const Real t853 = constant<Real>(0.000072L) * t669;
+  const Real t854 = t852 - t853;
+
+  // left_thigh: motion
+  const Real t855 = t613 * t613;
+
+  // left_thigh: wrench
+  const Real t856 = t622 - t855;
+  const Real t857 = t856 * constant<Real>(0.010612L);
+  const Real t858 = t854 - t857;
+
+  // waist: joint force
+  const Real t859 = constant<Real>(0.0448L) * t621;
+  const Real t860 = t588 * constant<Real>(3.696L);
+  const Real t861 = t859 + t860;
+  const Real t862 = t858 - t861;
+  const Real t863 = t862 + t846;
+  const Real t864 = t3 * t764;
+
+  // left_foot: joint force
+  const Real t865 = t773 * t2;
+
+  // waist: joint force
+  const Real t866 = t864 + t865;
+
+  // left_ankle: wrench
+  const Real t867 = constant<Real>(0.0081023L) * t725;
+
+  // left_ankle: motion
+  const Real t868 = t700 * t723;
+  const Real t869 = t868 - t697;
+
+  // left_ankle: wrench
+  const Real t870 = constant<Real>(8e-6L) * t869;
+  const Real t871 = t867 - t870;
+
+  // waist: joint force
+  const Real t872 = t688 * constant<Real>(0.0323L);
+  const Real t873 = t872 + t871;
+  const Real t874 = t866 + t873;
+  const Real t875 = s_r_22_ * t874;
+
+  // left_ankle: wrench
+  const Real t876 = constant<Real>(8e-6L) * t725;
+  const Real t877 = t869 * constant<Real>(0.00032L);
+  const Real t878 = t876 - t877;
+
+  // waist: joint force
+  const Real t879 = constant<Real>(0.008L) * t688;
+  const Real t880 = t879 + t878;
+  const Real t881 = t880 + t744;
+  const Real t882 = c_r_22_ * t881;
+  const Real t883 = t875 + t882;
+
+  // left_foot: joint force
+  const Real t884 = t790 * t2;
+  const Real t885 = t3 * t793;
+  const Real t886 = t884 + t885;
+
+  // left_ankle: wrench
+  const Real t887 = t725 * constant<Real>(0.0323L);
+  const Real t888 = constant<Real>(0.008L) * t869;
+  const Real t889 = t887 - t888;
+
+  // left_foot: joint force
+  const Real t890 = t889 - t886;
+
+  // left_ankle: joint force
+  const Real t891 = constant<Real>(0.4L) * t890;
+
+  // waist: joint force
+  const Real t892 = t891 + t883;
+
+  // left_shank: wrench
+  const Real t893 = constant<Real>(0.51477L) * t678;
+  const Real t894 = constant<Real>(0.0002716L) * t817;
+  const Real t895 = t893 + t894;
+
+  // left_shank: motion
+  const Real t896 = t639 * t676;
+  const Real t897 = t896 - t694;
+
+  // left_shank: wrench
+  const Real t898 = t897 * constant<Real>(0.010564L);
+  const Real t899 = t898 + t895;
+  const Real t900 = t824 - t650;
+  const Real t901 = constant<Real>(0.003296L) * t900;
+  const Real t902 = t899 + t901;
+
+  // waist: joint force
+  const Real t903 = t687 * constant<Real>(1.544L);
+  const Real t904 = t903 - t902;
+  const Real t905 = t904 + t892;
+  const Real t906 = c_r_21_ * t905;
+  const Real t907 = c_r_22_ * t874;
+  const Real t908 = s_r_22_ * t881;
+  const Real t909 = t907 - t908;
+
+  // left_shank: wrench
+  const Real t910 = constant<Real>(0.010564L) * t678;
+  const Real t911 = t897 * constant<Real>(0.0037219L);
+  const Real t912 = t910 + t911;
+  const Real t913 = constant<Real>(0.003296L) * t641;
+  const Real t914 = t912 + t913;
+  const Real t915 = t650 - t648;
+  const Real t916 = constant<Real>(0.0002716L) * t915;
+  const Real t917 = t914 - t916;
+
+  // waist: joint force
+  const Real t918 = t687 * constant<Real>(0.0429L);
+  const Real t919 = t917 - t918;
+  const Real t920 = t919 + t909;
+  const Real t921 = t920 * s_r_21_;
+  const Real t922 = t921 + t906;
+
+  // left_shank: wrench
+  const Real t923 = constant<Real>(1.544L) * t678;
+  const Real t924 = t897 * constant<Real>(0.0429L);
+  const Real t925 = t923 + t924;
+
+  // left_ankle: joint force
+  const Real t926 = t890 - t925;
+
+  // left_shank: joint force
+  const Real t927 = constant<Real>(0.4L) * t926;
+
+  // waist: joint force
+  const Real t928 = t922 + t927;
+
+  // left_thigh: wrench
+  const Real t929 = constant<Real>(0.000072L) * t848;
+  const Real t930 = t682 * constant<Real>(1.308375L);
+  const Real t931 = t929 - t930;
+
+  // left_thigh: motion
+  const Real t932 = t680 * t610;
+  const Real t933 = t932 - t673;
+
+  // left_thigh: wrench
+  const Real t934 = constant<Real>(0.010612L) * t933;
+  const Real t935 = t931 + t934;
+  const Real t936 = t855 - t627;
+  const Real t937 = constant<Real>(0.02108L) * t936;
+  const Real t938 = t935 - t937;
+
+  // waist: joint force
+  const Real t939 = t686 * constant<Real>(3.696L);
+  const Real t940 = t938 + t939;
+  const Real t941 = t928 + t940;
+  const Real t942 = c_r_20_ * t941;
+  const Real t943 = s_r_21_ * t905;
+  const Real t944 = t920 * c_r_21_;
+  const Real t945 = t944 - t943;
+
+  // left_thigh: wrench
+  const Real t946 = constant<Real>(0.0093286L) * t933;
+  const Real t947 = t682 * constant<Real>(0.010612L);
+  const Real t948 = t946 - t947;
+  const Real t949 = constant<Real>(0.02108L) * t615;
+  const Real t950 = t948 + t949;
+  const Real t951 = t627 - t622;
+  const Real t952 = constant<Real>(0.000072L) * t951;
+  const Real t953 = t950 + t952;
+
+  // waist: joint force
+  const Real t954 = constant<Real>(0.0448L) * t686;
+  const Real t955 = t953 + t954;
+  const Real t956 = t955 + t945;
+  const Real t957 = s_r_20_ * t956;
+  const Real t958 = t957 + t942;
+
+  // left_hip_roll_link: wrench
+  const Real t959 = t661 * constant<Real>(0.014119L);
+
+  // left_hip_roll_link: motion
+  const Real t960 = t660 - t659;
+
+  // left_hip_roll_link: wrench
+  const Real t961 = t960 * constant<Real>(0.00196L);
+  const Real t962 = t959 - t961;
+  const Real t963 = t597 * constant<Real>(0.0002328L);
+  const Real t964 = t962 + t963;
+  const Real t965 = t665 * constant<Real>(0.000068L);
+  const Real t966 = t964 - t965;
+
+  // left_hip_roll_link: motion
+  const Real t967 = t600 * t600;
+  const Real t968 = t625 * t625;
+
+  // left_hip_roll_link: wrench
+  const Real t969 = t967 - t968;
+  const Real t970 = constant<Real>(0.000184L) * t969;
+  const Real t971 = t966 - t970;
+
+  // waist: joint force
+  const Real t972 = constant<Real>(0.12L) * t577;
+  const Real t973 = t686 * constant<Real>(0.021L);
+  const Real t974 = t972 + t973;
+  const Real t975 = t971 + t974;
+  const Real t976 = t958 + t975;
+  const Real t977 = s_r_20_ * t941;
+  const Real t978 = c_r_20_ * t956;
+  const Real t979 = t978 - t977;
+
+  // left_hip_roll_link: wrench
+  const Real t980 = t960 * constant<Real>(0.000068L);
+  const Real t981 = t667 * constant<Real>(0.014119L);
+  const Real t982 = t980 - t981;
+  const Real t983 = constant<Real>(0.000184L) * t604;
+  const Real t984 = t983 + t982;
+
+  // left_hip_roll_link: motion
+  const Real t985 = t601 * t601;
+
+  // left_hip_roll_link: wrench
+  const Real t986 = t968 - t985;
+  const Real t987 = t986 * constant<Real>(0.0002328L);
+  const Real t988 = t987 + t984;
+
+  // waist: joint force
+  const Real t989 = t586 * constant<Real>(0.12L);
+  const Real t990 = t988 - t989;
+  const Real t991 = t990 + t979;
+  const Real t992 = t991 * c_r_19_;
+
+  // left_hip_roll_link: wrench
+  const Real t993 = constant<Real>(0.00196L) * t604;
+  const Real t994 = constant<Real>(0.000184L) * t667;
+  const Real t995 = t993 - t994;
+  const Real t996 = t661 * constant<Real>(0.0002328L);
+  const Real t997 = t995 - t996;
+  const Real t998 = t985 - t967;
+  const Real t999 = constant<Real>(0.000068L) * t998;
+  const Real t1000 = t999 + t997;
+
+  // waist: joint force
+  const Real t1001 = t586 * constant<Real>(0.021L);
+  const Real t1002 = t1000 - t1001;
+  const Real t1003 = t1002 + t863;
+  const Real t1004 = s_r_19_ * t1003;
+  const Real t1005 = t1004 + t992;
+
+  // left_thigh: wrench
+  const Real t1006 = t615 * constant<Real>(3.696L);
+
+  // left_thigh: motion
+  const Real t1007 = t855 + t627;
+
+  // left_thigh: wrench
+  const Real t1008 = constant<Real>(0.0448L) * t1007;
+  const Real t1009 = t1006 + t1008;
+
+  // left_shank: joint force
+  const Real t1010 = t844 - t1009;
+
+  // left_thigh: joint force
+  const Real t1011 = c_r_20_ * t1010;
+
+  // left_shank: joint force
+  const Real t1012 = c_r_21_ * t836;
+  const Real t1013 = s_r_21_ * t842;
+  const Real t1014 = t1012 - t1013;
+
+  // left_thigh: wrench
+  const Real t1015 = constant<Real>(0.0448L) * t848;
+  const Real t1016 = constant<Real>(3.696L) * t628;
+  const Real t1017 = t1016 + t1015;
+
+  // left_shank: joint force
+  const Real t1018 = t1017 + t1014;
+
+  // left_thigh: joint force
+  const Real t1019 = t1018 * s_r_20_;
+  const Real t1020 = t1011 + t1019;
+
+  // left_hip_roll_link: wrench
+  const Real t1021 = t667 * constant<Real>(0.12L);
+  const Real t1022 = constant<Real>(0.021L) * t604;
+  const Real t1023 = t1021 - t1022;
+
+  // left_thigh: joint force
+  const Real t1024 = t1020 + t1023;
+
+  // left_hip_roll_link: joint force
+  const Real t1025 = t1024 * constant<Real>(0.02L);
+
+  // waist: joint force
+  const Real t1026 = t1005 - t1025;
+  const Real t1027 = constant<Real>(0.0111L) * t553;
+  const Real t1028 = constant<Real>(0.3168L) * t581;
+  const Real t1029 = t1027 + t1028;
+
+  // left_hip_yaw_link: wrench
+  const Real t1030 = t595 * constant<Real>(0.004255L);
+  const Real t1031 = constant<Real>(0.0077371L) * t584;
+  const Real t1032 = t1030 - t1031;
+
+  // left_hip_yaw_link: wrench
+  const Real t1033 = constant<Real>(0.000028L) * t566;
+  const Real t1034 = t1032 + t1033;
+  const Real t1035 = constant<Real>(0.001512L) * t591;
+  const Real t1036 = t1034 - t1035;
+
+  // left_hip_yaw_link: motion
+  const Real t1037 = t569 * t569;
+
+  // left_hip_yaw_link: wrench
+  const Real t1038 = t1037 - t557;
+  const Real t1039 = constant<Real>(0.0003676L) * t1038;
+
+  // left_hip_yaw_link: wrench
+  const Real t1040 = t1036 - t1039;
+
+  // waist: joint force
+  const Real t1041 = t1040 - t1029;
+  const Real t1042 = t1041 + t1026;
+
+  // waist: motion
+  const Real t1043 = c_r_0_ * t17;
+  const Real t1044 = t20 * s_r_0_;
+  const Real t1045 = t1043 - t1044;
+  const Real t1046 = eta[5] + r_dot[0];
+  const Real t1047 = t1046 * constant<Real>(2.0L);
+  const Real t1048 = c_r_0_ * eta[4];
+  const Real t1049 = s_r_0_ * eta[3];
+  const Real t1050 = t1048 - t1049;
+  const Real t1051 = t1047 * t1050;
+  const Real t1052 = t1051 - t1045;
+
+  // torso: motion
+  const Real t1053 = t1052 * s_r_1_;
+
+  // waist: motion
+  const Real t1054 = c_r_0_ * eta[3];
+  const Real t1055 = s_r_0_ * eta[4];
+  const Real t1056 = t1054 + t1055;
+  const Real t1057 = t1050 * t1056;
+  const Real t1058 = r_ddot[0] + eta_dot[5];
+  const Real t1059 = t1057 - t1058;
+
+  // torso: motion
+  const Real t1060 = t1059 * c_r_1_;
+  const Real t1061 = t1060 - t1053;
+
+  // right_shoulder: motion
+  const Real t1062 = c_r_11_ * t1061;
+
+  // torso: motion
+  const Real t1063 = c_r_1_ * t1052;
+  const Real t1064 = t1059 * s_r_1_;
+  const Real t1065 = t1063 + t1064;
+
+  // right_shoulder: motion
+  const Real t1066 = t1065 * s_r_11_;
+  const Real t1067 = t1062 - t1066;
+
+  // torso: motion
+  const Real t1068 = c_r_1_ * t1056;
+  const Real t1069 = s_r_1_ * t1046;
+  const Real t1070 = t1068 - t1069;
+
+  // right_shoulder: motion
+  const Real t1071 = t1070 * c_r_11_;
+
+  // torso: motion
+  const Real t1072 = s_r_1_ * t1056;
+  const Real t1073 = c_r_1_ * t1046;
+  const Real t1074 = t1073 + t1072;
+
+  // right_shoulder: motion
+  const Real t1075 = t1074 * s_r_11_;
+  const Real t1076 = t1071 - t1075;
+
+  // torso: motion
+  const Real t1077 = r_dot[1] + t1050;
+
+  // right_shoulder: motion
+  const Real t1078 = r_dot[11] + t1077;
+  const Real t1079 = t1078 * constant<Real>(2.0L);
+  const Real t1080 = t1076 * t1079;
+  const Real t1081 = t1080 - t1067;
+
+  // right_upper_arm_roll: motion
+  const Real t1082 = t1081 * s_r_12_;
+
+  // right_shoulder: motion
+  const Real t1083 = t1074 * c_r_11_;
+  const Real t1084 = t1070 * s_r_11_;
+  const Real t1085 = t1083 + t1084;
+  const Real t1086 = t1076 * t1085;
+
+  // waist: motion
+  const Real t1087 = s_r_0_ * t17;
+  const Real t1088 = c_r_0_ * t20;
+  const Real t1089 = t1087 + t1088;
+
+  // torso: motion
+  const Real t1090 = t1046 * t1056;
+  const Real t1091 = t1089 - t1090;
+  const Real t1092 = r_ddot[1] + t1091;
+
+  // right_shoulder: motion
+  const Real t1093 = t1092 + r_ddot[11];
+  const Real t1094 = t1086 - t1093;
+
+  // right_upper_arm_roll: motion
+  const Real t1095 = t1094 * c_r_12_;
+  const Real t1096 = t1095 - t1082;
+  const Real t1097 = t1085 * c_r_12_;
+  const Real t1098 = s_r_12_ * t1078;
+  const Real t1099 = t1097 - t1098;
+  const Real t1100 = t1076 + r_dot[12];
+  const Real t1101 = t1100 * constant<Real>(2.0L);
+  const Real t1102 = t1099 * t1101;
+  const Real t1103 = t1102 - t1096;
+
+  // right_upper_arm: motion
+  const Real t1104 = t1103 * s_r_13_;
+
+  // right_shoulder: motion
+  const Real t1105 = t1065 * c_r_11_;
+  const Real t1106 = s_r_11_ * t1061;
+  const Real t1107 = t1105 + t1106;
+
+  // right_upper_arm_roll: motion
+  const Real t1108 = t1085 * t1078;
+  const Real t1109 = t1107 - t1108;
+  const Real t1110 = r_ddot[12] + t1109;
+  const Real t1111 = s_r_12_ * t1085;
+  const Real t1112 = c_r_12_ * t1078;
+  const Real t1113 = t1112 + t1111;
+  const Real t1114 = t1113 * t1099;
+  const Real t1115 = t1114 - t1110;
+
+  // right_upper_arm: motion
+  const Real t1116 = c_r_13_ * t1115;
+  const Real t1117 = t1116 - t1104;
+  const Real t1118 = t1113 * c_r_13_;
+  const Real t1119 = t1100 * s_r_13_;
+  const Real t1120 = t1118 - t1119;
+  const Real t1121 = t1099 + r_dot[13];
+  const Real t1122 = t1121 * constant<Real>(2.0L);
+  const Real t1123 = t1120 * t1122;
+  const Real t1124 = t1123 - t1117;
+
+  // right_forearm: motion
+  const Real t1125 = t1124 * c_r_14_;
+
+  // right_upper_arm_roll: motion
+  const Real t1126 = t1081 * c_r_12_;
+  const Real t1127 = t1094 * s_r_12_;
+  const Real t1128 = t1127 + t1126;
+
+  // right_upper_arm: motion
+  const Real t1129 = t1113 * t1100;
+  const Real t1130 = t1128 - t1129;
+  const Real t1131 = t1130 + r_ddot[13];
+  const Real t1132 = t1113 * s_r_13_;
+  const Real t1133 = t1100 * c_r_13_;
+  const Real t1134 = t1132 + t1133;
+  const Real t1135 = t1134 * t1120;
+  const Real t1136 = t1135 - t1131;
+
+  // right_forearm: motion
+  const Real t1137 = s_r_14_ * t1136;
+  const Real t1138 = t1125 + t1137;
+  const Real t1139 = t1134 * s_r_14_;
+  const Real t1140 = t1121 * c_r_14_;
+  const Real t1141 = t1139 + t1140;
+  const Real t1142 = t1120 + r_dot[14];
+  const Real t1143 = t1142 * constant<Real>(2.0L);
+  const Real t1144 = t1141 * t1143;
+  const Real t1145 = t1144 - t1138;
+
+  // right_wrist_yaw_link: motion
+  const Real t1146 = t1145 * c_r_15_;
+
+  // right_upper_arm: motion
+  const Real t1147 = c_r_13_ * t1103;
+  const Real t1148 = t1115 * s_r_13_;
+  const Real t1149 = t1148 + t1147;
+
+  // right_forearm: motion
+  const Real t1150 = t1134 * t1121;
+  const Real t1151 = t1149 - t1150;
+  const Real t1152 = r_ddot[14] + t1151;
+  const Real t1153 = t1134 * c_r_14_;
+  const Real t1154 = t1121 * s_r_14_;
+  const Real t1155 = t1153 - t1154;
+  const Real t1156 = t1141 * t1155;
+  const Real t1157 = t1156 + t1152;
+
+  // right_wrist_yaw_link: motion
+  const Real t1158 = s_r_15_ * t1157;
+  const Real t1159 = t1146 - t1158;
+  const Real t1160 = r_dot[15] + t1141;
+  const Real t1161 = t1160 * constant<Real>(2.0L);
+  const Real t1162 = s_r_15_ * t1155;
+  const Real t1163 = t1142 * c_r_15_;
+  const Real t1164 = t1163 - t1162;
+  const Real t1165 = t1161 * t1164;
+  const Real t1166 = t1165 - t1159;
+
+  // right_wrist: motion
+  const Real t1167 = t1166 * c_r_16_;
+
+  // right_forearm: motion
+  const Real t1168 = t1124 * s_r_14_;
+  const Real t1169 = c_r_14_ * t1136;
+  const Real t1170 = t1169 - t1168;
+  const Real t1171 = t1143 * t1155;
+  const Real t1172 = t1171 - t1170;
+
+  // right_wrist_yaw_link: motion
+  const Real t1173 = t1142 * t1155;
+  const Real t1174 = t1172 - t1173;
+  const Real t1175 = r_ddot[15] + t1174;
+  const Real t1176 = c_r_15_ * t1155;
+  const Real t1177 = t1142 * s_r_15_;
+  const Real t1178 = t1177 + t1176;
+  const Real t1179 = t1178 * t1164;
+  const Real t1180 = t1179 - t1175;
+
+  // right_wrist: motion
+  const Real t1181 = t1180 * s_r_16_;
+  const Real t1182 = t1167 + t1181;
+  const Real t1183 = t1178 * s_r_16_;
+  const Real t1184 = t1160 * c_r_16_;
+  const Real t1185 = t1184 + t1183;
+  const Real t1186 = t1164 + r_dot[16];
+
+  // right_hand: motion
+  const Real t1187 = t1186 * t1185;
+  const Real t1188 = t1182 - t1187;
+  const Real t1189 = t1188 + r_ddot[17];
+  const Real t1190 = t12 * t1185;
+  const Real t1191 = t11 * t1186;
+  const Real t1192 = t1190 - t1191;
+  const Real t1193 = t11 * t1185;
+  const Real t1194 = t1186 * t12;
+  const Real t1195 = t1193 + t1194;
+  const Real t1196 = t1192 * t1195;
+  const Real t1197 = t1196 + t1189;
+
+  // right_hand: wrench
+  const Real t1198 = constant<Real>(0.00336830219690805532954L) * t1197;
+
+  // right_hand: motion
+  const Real t1199 = t1196 - t1189;
+
+  // right_hand: wrench
+  const Real t1200 = constant<Real>(0.000288797803091944670464L) * t1199;
+  const Real t1201 = t1198 - t1200;
+
+  // right_wrist: motion
+  const Real t1202 = t1180 * c_r_16_;
+  const Real t1203 = t1166 * s_r_16_;
+  const Real t1204 = t1202 - t1203;
+  const Real t1205 = t1178 * c_r_16_;
+  const Real t1206 = t1160 * s_r_16_;
+  const Real t1207 = t1205 - t1206;
+  const Real t1208 = t1186 * constant<Real>(2.0L);
+  const Real t1209 = t1207 * t1208;
+  const Real t1210 = t1209 - t1204;
+
+  // right_hand: motion
+  const Real t1211 = t11 * t1210;
+
+  // right_wrist_yaw_link: motion
+  const Real t1212 = t1145 * s_r_15_;
+  const Real t1213 = c_r_15_ * t1157;
+  const Real t1214 = t1212 + t1213;
+
+  // right_wrist: motion
+  const Real t1215 = t1178 * t1160;
+  const Real t1216 = t1214 - t1215;
+  const Real t1217 = t1216 + r_ddot[16];
+  const Real t1218 = t1207 * t1185;
+  const Real t1219 = t1218 - t1217;
+
+  // right_hand: motion
+  const Real t1220 = t12 * t1219;
+  const Real t1221 = t1220 - t1211;
+
+  // right_hand: wrench
+  const Real t1222 = t1221 * constant<Real>(0.000292420111363255831432L);
+  const Real t1223 = t1201 + t1222;
+
+  // right_hand: motion
+  const Real t1224 = t1210 * t12;
+  const Real t1225 = t11 * t1219;
+  const Real t1226 = t1224 + t1225;
+
+  // right_hand: wrench
+  const Real t1227 = t1226 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1228 = t1223 - t1227;
+
+  // right_hand: motion
+  const Real t1229 = t1192 * t1192;
+  const Real t1230 = t1195 * t1195;
+
+  // right_hand: wrench
+  const Real t1231 = t1229 - t1230;
+  const Real t1232 = t1231 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1233 = t1228 + t1232;
+
+  // waist: motion
+  const Real t1234 = t20 * constant<Real>(0.17L);
+  const Real t1235 = t148 + t1234;
+  const Real t1236 = c_r_0_ * t1235;
+  const Real t1237 = t17 * constant<Real>(0.17L);
+  const Real t1238 = t161 + t1237;
+  const Real t1239 = s_r_0_ * t1238;
+  const Real t1240 = t1236 + t1239;
+
+  // torso: motion
+  const Real t1241 = s_r_1_ * t1240;
+
+  // torso: motion
+  const Real t1242 = t184 * constant<Real>(0.17L);
+  const Real t1243 = t182 - t1242;
+  const Real t1244 = c_r_1_ * t1243;
+
+  // torso: motion
+  const Real t1245 = t1241 + t1244;
+
+  // torso: motion
+  const Real t1246 = t1074 * t1070;
+  const Real t1247 = t1246 - t1092;
+
+  // left_shoulder: motion
+  const Real t1248 = constant<Real>(0.005L) * t1247;
+
+  // waist: joint force
+  const Real t1249 = t1245 + t1248;
+
+  // torso: motion
+  const Real t1250 = t1070 * t1070;
+  const Real t1251 = t1077 * t1077;
+  const Real t1252 = t1250 + t1251;
+
+  // left_shoulder: motion
+  const Real t1253 = constant<Real>(0.3L) * t1252;
+
+  // waist: joint force
+  const Real t1254 = t1253 - t1249;
+
+  // left_shoulder: motion
+  const Real t1255 = constant<Real>(0.25L) * t1065;
+
+  // waist: joint force
+  const Real t1256 = t1254 + t1255;
+  const Real t1257 = c_r_11_ * t1256;
+
+  // torso: motion
+  const Real t1258 = c_r_1_ * t1240;
+
+  // torso: motion
+  const Real t1259 = s_r_1_ * t1243;
+
+  // torso: motion
+  const Real t1260 = t1258 - t1259;
+
+  // torso: motion
+  const Real t1261 = t1092 + t1246;
+
+  // left_shoulder: motion
+  const Real t1262 = constant<Real>(0.3L) * t1261;
+
+  // waist: joint force
+  const Real t1263 = t1262 + t1260;
+
+  // torso: motion
+  const Real t1264 = t1074 * t1074;
+  const Real t1265 = t1264 + t1251;
+
+  // left_shoulder: motion
+  const Real t1266 = constant<Real>(0.005L) * t1265;
+
+  // waist: joint force
+  const Real t1267 = t1266 - t1263;
+
+  // left_shoulder: motion
+  const Real t1268 = constant<Real>(0.25L) * t1061;
+
+  // waist: joint force
+  const Real t1269 = t1267 + t1268;
+  const Real t1270 = t1269 * s_r_11_;
+  const Real t1271 = t1257 + t1270;
+  const Real t1272 = s_r_12_ * t1271;
+
+  // torso: motion
+  const Real t1273 = t1077 * constant<Real>(2.0L);
+  const Real t1274 = t1273 * t1070;
+  const Real t1275 = t1274 - t1061;
+
+  // left_shoulder: motion
+  const Real t1276 = constant<Real>(0.005L) * t1275;
+
+  // torso: motion
+  const Real t1277 = t1273 * t1074;
+  const Real t1278 = t1277 - t1065;
+
+  // left_shoulder: motion
+  const Real t1279 = constant<Real>(0.3L) * t1278;
+  const Real t1280 = t1276 + t1279;
+
+  // waist: motion
+  const Real t1281 = c_r_0_ * t1238;
+  const Real t1282 = t1235 * s_r_0_;
+  const Real t1283 = t1281 - t1282;
+
+  // waist: joint force
+  const Real t1284 = t1280 + t1283;
+
+  // waist: motion
+  const Real t1285 = t1056 * t1056;
+  const Real t1286 = t1046 * t1046;
+  const Real t1287 = t1286 + t1285;
+
+  // left_upper_arm_roll: motion
+  const Real t1288 = constant<Real>(0.25L) * t1287;
+
+  // waist: joint force
+  const Real t1289 = t1284 + t1288;
+  const Real t1290 = t1289 * c_r_12_;
+  const Real t1291 = t1290 - t1272;
+
+  // right_upper_arm: motion
+  const Real t1292 = t1115 * constant<Real>(0.28L);
+
+  // right_upper_arm_roll: motion
+  const Real t1293 = t1099 * t1099;
+  const Real t1294 = t1100 * t1100;
+  const Real t1295 = t1294 + t1293;
+
+  // right_upper_arm: motion
+  const Real t1296 = constant<Real>(0.01L) * t1295;
+
+  // right_upper_arm: motion
+  const Real t1297 = t1296 - t1292;
+
+  // waist: joint force
+  const Real t1298 = t1291 + t1297;
+  const Real t1299 = t1298 * s_r_13_;
+
+  // right_upper_arm: motion
+  const Real t1300 = t1103 * constant<Real>(0.28L);
+
+  // right_upper_arm_roll: motion
+  const Real t1301 = t1113 * t1101;
+  const Real t1302 = t1301 - t1128;
+
+  // right_upper_arm: motion
+  const Real t1303 = constant<Real>(0.01L) * t1302;
+
+  // right_upper_arm: motion
+  const Real t1304 = t1300 + t1303;
+
+  // waist: joint force
+  const Real t1305 = s_r_11_ * t1256;
+  const Real t1306 = t1269 * c_r_11_;
+  const Real t1307 = t1305 - t1306;
+  const Real t1308 = t1307 - t1304;
+  const Real t1309 = c_r_13_ * t1308;
+  const Real t1310 = t1299 + t1309;
+
+  // right_upper_arm: motion
+  const Real t1311 = t1120 * t1120;
+  const Real t1312 = t1121 * t1121;
+  const Real t1313 = t1311 + t1312;
+
+  // right_forearm: motion
+  const Real t1314 = constant<Real>(0.01L) * t1313;
+
+  // waist: joint force
+  const Real t1315 = t1310 - t1314;
+  const Real t1316 = c_r_14_ * t1315;
+
+  // right_upper_arm: motion
+  const Real t1317 = t1134 * t1122;
+  const Real t1318 = t1317 - t1149;
+
+  // right_forearm: motion
+  const Real t1319 = constant<Real>(0.01L) * t1318;
+
+  // waist: joint force
+  const Real t1320 = t1271 * c_r_12_;
+  const Real t1321 = t1289 * s_r_12_;
+  const Real t1322 = t1320 + t1321;
+
+  // right_upper_arm_roll: motion
+  const Real t1323 = t1114 + t1110;
+
+  // right_upper_arm: motion
+  const Real t1324 = constant<Real>(0.01L) * t1323;
+
+  // right_upper_arm_roll: motion
+  const Real t1325 = t1113 * t1113;
+  const Real t1326 = t1325 + t1294;
+
+  // right_forearm: motion
+  const Real t1327 = t1326 * constant<Real>(0.28L);
+
+  // right_upper_arm: motion
+  const Real t1328 = t1327 - t1324;
+
+  // waist: joint force
+  const Real t1329 = t1328 - t1322;
+  const Real t1330 = t1319 + t1329;
+  const Real t1331 = t1330 * s_r_14_;
+  const Real t1332 = t1316 - t1331;
+
+  // right_wrist_yaw_link: motion
+  const Real t1333 = constant<Real>(0.24L) * t1157;
+
+  // right_forearm: motion
+  const Real t1334 = t1141 * t1141;
+  const Real t1335 = t1142 * t1142;
+  const Real t1336 = t1335 + t1334;
+
+  // right_wrist_yaw_link: motion
+  const Real t1337 = constant<Real>(0.01L) * t1336;
+
+  // right_wrist_yaw_link: motion
+  const Real t1338 = t1337 - t1333;
+
+  // waist: joint force
+  const Real t1339 = t1332 + t1338;
+  const Real t1340 = c_r_15_ * t1339;
+
+  // right_wrist_yaw_link: motion
+  const Real t1341 = t1145 * constant<Real>(0.24L);
+
+  // right_wrist_yaw_link: motion
+  const Real t1342 = t1172 * constant<Real>(0.01L);
+
+  // right_wrist_yaw_link: motion
+  const Real t1343 = t1341 + t1342;
+
+  // waist: joint force
+  const Real t1344 = c_r_13_ * t1298;
+  const Real t1345 = t1308 * s_r_13_;
+  const Real t1346 = t1344 - t1345;
+
+  // right_upper_arm: motion
+  const Real t1347 = t1135 + t1131;
+
+  // right_forearm: motion
+  const Real t1348 = constant<Real>(0.01L) * t1347;
+
+  // waist: joint force
+  const Real t1349 = t1346 + t1348;
+  const Real t1350 = t1349 - t1343;
+  const Real t1351 = s_r_15_ * t1350;
+  const Real t1352 = t1340 + t1351;
+  const Real t1353 = t1352 * s_r_16_;
+  const Real t1354 = t1315 * s_r_14_;
+  const Real t1355 = t1330 * c_r_14_;
+  const Real t1356 = t1355 + t1354;
+
+  // right_forearm: motion
+  const Real t1357 = t1156 - t1152;
+
+  // right_wrist_yaw_link: motion
+  const Real t1358 = constant<Real>(0.01L) * t1357;
+
+  // right_forearm: motion
+  const Real t1359 = t1155 * t1155;
+  const Real t1360 = t1335 + t1359;
+
+  // right_wrist: motion
+  const Real t1361 = constant<Real>(0.24L) * t1360;
+
+  // right_wrist_yaw_link: motion
+  const Real t1362 = t1361 - t1358;
+
+  // waist: joint force
+  const Real t1363 = t1362 + t1356;
+  const Real t1364 = c_r_16_ * t1363;
+  const Real t1365 = t1364 + t1353;
+  const Real t1366 = t1365 * t12;
+  const Real t1367 = s_r_15_ * t1339;
+  const Real t1368 = c_r_15_ * t1350;
+  const Real t1369 = t1368 - t1367;
+  const Real t1370 = t11 * t1369;
+  const Real t1371 = t1366 - t1370;
+  const Real t1372 = t1371 * constant<Real>(0.0385628059145078290295L);
+  const Real t1373 = t1372 + t1233;
+
+  // right_hand: motion
+  const Real t1374 = t1207 + r_dot[17];
+  const Real t1375 = t1374 * constant<Real>(2.0L);
+  const Real t1376 = t1375 * t1195;
+  const Real t1377 = t1376 - t1226;
+
+  // right_hand: wrench
+  const Real t1378 = t1377 * constant<Real>(0.00336830219690805532954L);
+  const Real t1379 = t1199 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1380 = t1379 - t1378;
+
+  // right_hand: motion
+  const Real t1381 = t1192 * t1375;
+  const Real t1382 = t1381 - t1221;
+
+  // right_hand: wrench
+  const Real t1383 = t1382 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1384 = t1380 - t1383;
+
+  // right_hand: motion
+  const Real t1385 = t1374 * t1374;
+
+  // right_hand: wrench
+  const Real t1386 = t1230 - t1385;
+  const Real t1387 = constant<Real>(0.000292420111363255831432L) * t1386;
+  const Real t1388 = t1384 + t1387;
+
+  // waist: joint force
+  const Real t1389 = t1352 * c_r_16_;
+  const Real t1390 = t1363 * s_r_16_;
+  const Real t1391 = t1389 - t1390;
+  const Real t1392 = t1391 * constant<Real>(0.0385628059145078290295L);
+  const Real t1393 = t1388 - t1392;
+  const Real t1394 = t1393 * t11;
+
+  // right_hand: wrench
+  const Real t1395 = t1377 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1396 = constant<Real>(0.000288797803091944670464L) * t1382;
+  const Real t1397 = t1395 + t1396;
+  const Real t1398 = constant<Real>(0.000292420111363255831432L) * t1197;
+  const Real t1399 = t1397 - t1398;
+  const Real t1400 = t1385 - t1229;
+  const Real t1401 = t1400 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1402 = t1401 + t1399;
+
+  // right_hand: joint force
+  const Real t1403 = t1402 * t12;
+
+  // waist: joint force
+  const Real t1404 = t1403 - t1394;
+  const Real t1405 = t1391 * constant<Real>(0.003L);
+  const Real t1406 = t1365 * constant<Real>(0.0033L);
+  const Real t1407 = t1405 + t1406;
+
+  // right_wrist: motion
+  const Real t1408 = t1218 + t1217;
+
+  // right_wrist: wrench
+  const Real t1409 = t1408 * constant<Real>(0.00007L);
+  const Real t1410 = constant<Real>(0.0001744L) * t1219;
+  const Real t1411 = t1409 - t1410;
+
+  // waist: joint force
+  const Real t1412 = t1411 - t1407;
+  const Real t1413 = t1404 + t1412;
+  const Real t1414 = t1393 * t12;
+
+  // right_hand: joint force
+  const Real t1415 = t11 * t1402;
+
+  // waist: joint force
+  const Real t1416 = t1414 + t1415;
+
+  // right_wrist: wrench
+  const Real t1417 = t1210 * constant<Real>(0.0001744L);
+
+  // waist: joint force
+  const Real t1418 = constant<Real>(0.0033L) * t1369;
+  const Real t1419 = t1417 + t1418;
+  const Real t1420 = t1419 + t1416;
+  const Real t1421 = t1420 * c_r_16_;
+  const Real t1422 = t1369 * constant<Real>(0.003L);
+
+  // right_wrist: motion
+  const Real t1423 = t1208 * t1185;
+  const Real t1424 = t1423 - t1182;
+
+  // right_wrist: wrench
+  const Real t1425 = constant<Real>(0.00007L) * t1424;
+
+  // waist: joint force
+  const Real t1426 = t1422 - t1425;
+  const Real t1427 = t1426 + t1373;
+  const Real t1428 = t1427 * s_r_16_;
+  const Real t1429 = t1421 - t1428;
+  const Real t1430 = t1352 * constant<Real>(0.0007L);
+
+  // right_wrist_yaw_link: motion
+  const Real t1431 = t1175 + t1179;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1432 = t1431 * constant<Real>(0.00014585L);
+  const Real t1433 = constant<Real>(0.00018655L) * t1180;
+  const Real t1434 = t1432 - t1433;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1435 = constant<Real>(1e-6L) * t1214;
+  const Real t1436 = t1434 - t1435;
+
+  // waist: joint force
+  const Real t1437 = t1430 + t1436;
+  const Real t1438 = t1437 + t1429;
+  const Real t1439 = t1420 * s_r_16_;
+  const Real t1440 = t1427 * c_r_16_;
+  const Real t1441 = t1440 + t1439;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1442 = constant<Real>(0.00018655L) * t1166;
+
+  // right_wrist_yaw_link: motion
+  const Real t1443 = t1164 * t1164;
+  const Real t1444 = t1160 * t1160;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1445 = t1444 - t1443;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1446 = t1445 * constant<Real>(1e-6L);
+  const Real t1447 = t1446 + t1442;
+
+  // waist: joint force
+  const Real t1448 = t1363 * constant<Real>(0.0007L);
+  const Real t1449 = t1447 - t1448;
+  const Real t1450 = t1441 + t1449;
+  const Real t1451 = t1450 * s_r_15_;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1452 = t1180 * constant<Real>(1e-6L);
+
+  // right_wrist_yaw_link: motion
+  const Real t1453 = t1178 * t1161;
+  const Real t1454 = t1453 - t1214;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1455 = t1454 * constant<Real>(0.00014585L);
+
+  // right_wrist_yaw_link: wrench
+  const Real t1456 = t1452 - t1455;
+
+  // waist: joint force
+  const Real t1457 = t1413 + t1456;
+  const Real t1458 = c_r_15_ * t1457;
+  const Real t1459 = t1451 + t1458;
+
+  // right_hand: wrench
+  const Real t1460 = t1197 * constant<Real>(0.0385628059145078290295L);
+
+  // right_hand: joint force
+  const Real t1461 = t1460 * t12;
+
+  // right_hand: motion
+  const Real t1462 = t1385 + t1229;
+
+  // right_hand: wrench
+  const Real t1463 = t1462 * constant<Real>(0.0385628059145078290295L);
+
+  // right_hand: joint force
+  const Real t1464 = t11 * t1463;
+  const Real t1465 = t1461 - t1464;
+
+  // right_wrist: wrench
+  const Real t1466 = constant<Real>(0.0033L) * t1219;
+
+  // right_wrist: motion
+  const Real t1467 = t1207 * t1207;
+  const Real t1468 = t1186 * t1186;
+  const Real t1469 = t1467 + t1468;
+
+  // right_wrist: wrench
+  const Real t1470 = t1469 * constant<Real>(0.003L);
+  const Real t1471 = t1470 + t1466;
+
+  // right_hand: joint force
+  const Real t1472 = t1471 + t1465;
+
+  // right_wrist: joint force
+  const Real t1473 = t1472 * s_r_16_;
+
+  // right_hand: wrench
+  const Real t1474 = t1377 * constant<Real>(0.0385628059145078290295L);
+
+  // right_wrist: wrench
+  const Real t1475 = t1408 * constant<Real>(0.003L);
+
+  // right_wrist: motion
+  const Real t1476 = t1185 * t1185;
+  const Real t1477 = t1476 + t1468;
+
+  // right_wrist: wrench
+  const Real t1478 = t1477 * constant<Real>(0.0033L);
+  const Real t1479 = t1478 + t1475;
+
+  // right_hand: joint force
+  const Real t1480 = t1474 - t1479;
+
+  // right_wrist: joint force
+  const Real t1481 = t1480 * c_r_16_;
+  const Real t1482 = t1473 + t1481;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1483 = t1180 * constant<Real>(0.0007L);
+
+  // right_wrist: joint force
+  const Real t1484 = t1482 - t1483;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1485 = t1484 * c_r_15_;
+
+  // right_hand: joint force
+  const Real t1486 = t11 * t1460;
+  const Real t1487 = t1463 * t12;
+  const Real t1488 = t1486 + t1487;
+
+  // right_wrist: wrench
+  const Real t1489 = t1210 * constant<Real>(0.0033L);
+  const Real t1490 = constant<Real>(0.003L) * t1424;
+  const Real t1491 = t1489 - t1490;
+
+  // right_hand: joint force
+  const Real t1492 = t1491 - t1488;
+
+  // right_wrist_yaw_link: motion
+  const Real t1493 = t1178 * t1178;
+  const Real t1494 = t1493 + t1444;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1495 = t1494 * constant<Real>(0.0007L);
+
+  // right_wrist: joint force
+  const Real t1496 = t1492 + t1495;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1497 = t1496 * s_r_15_;
+  const Real t1498 = t1485 - t1497;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1499 = t1498 * constant<Real>(0.24L);
+
+  // right_wrist: joint force
+  const Real t1500 = t1472 * c_r_16_;
+  const Real t1501 = t1480 * s_r_16_;
+  const Real t1502 = t1500 - t1501;
+
+  // right_wrist_yaw_link: wrench
+  const Real t1503 = t1166 * constant<Real>(0.0007L);
+
+  // right_wrist: joint force
+  const Real t1504 = t1502 - t1503;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1505 = constant<Real>(0.01L) * t1504;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1506 = t1505 - t1499;
+
+  // waist: joint force
+  const Real t1507 = t1506 + t1459;
+  const Real t1508 = constant<Real>(0.0182L) * t1356;
+  const Real t1509 = t1332 * constant<Real>(0.368L);
+  const Real t1510 = t1508 - t1509;
+
+  // right_forearm: wrench
+  const Real t1511 = constant<Real>(0.07335995L) * t1157;
+  const Real t1512 = t1357 * constant<Real>(0.0004331L);
+  const Real t1513 = t1511 - t1512;
+  const Real t1514 = constant<Real>(0.00001L) * t1170;
+  const Real t1515 = t1513 - t1514;
+  const Real t1516 = t1138 * constant<Real>(5.4e-6L);
+  const Real t1517 = t1515 - t1516;
+  const Real t1518 = t1359 - t1334;
+  const Real t1519 = constant<Real>(0.003165L) * t1518;
+  const Real t1520 = t1519 + t1517;
+
+  // waist: joint force
+  const Real t1521 = t1510 + t1520;
+  const Real t1522 = t1507 + t1521;
+  const Real t1523 = t1450 * c_r_15_;
+  const Real t1524 = s_r_15_ * t1457;
+  const Real t1525 = t1523 - t1524;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1526 = t1484 * s_r_15_;
+  const Real t1527 = t1496 * c_r_15_;
+  const Real t1528 = t1527 + t1526;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1529 = t1528 * constant<Real>(0.24L);
+
+  // waist: joint force
+  const Real t1530 = t1529 + t1525;
+
+  // right_forearm: wrench
+  const Real t1531 = t1145 * constant<Real>(0.07335995L);
+  const Real t1532 = t1357 * constant<Real>(5.4e-6L);
+  const Real t1533 = t1532 - t1531;
+  const Real t1534 = t1172 * constant<Real>(0.003165L);
+  const Real t1535 = t1533 - t1534;
+  const Real t1536 = t1334 - t1335;
+  const Real t1537 = constant<Real>(0.00001L) * t1536;
+  const Real t1538 = t1535 - t1537;
+
+  // waist: joint force
+  const Real t1539 = t1349 * constant<Real>(0.368L);
+  const Real t1540 = t1538 + t1539;
+  const Real t1541 = t1530 + t1540;
+  const Real t1542 = t1541 * s_r_14_;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1543 = constant<Real>(0.01L) * t1528;
+
+  // waist: joint force
+  const Real t1544 = t1438 - t1543;
+
+  // right_forearm: wrench
+  const Real t1545 = t1172 * constant<Real>(0.0004331L);
+  const Real t1546 = t1145 * constant<Real>(0.003165L);
+  const Real t1547 = t1545 + t1546;
+  const Real t1548 = constant<Real>(0.00001L) * t1157;
+  const Real t1549 = t1547 + t1548;
+  const Real t1550 = t1335 - t1359;
+  const Real t1551 = constant<Real>(5.4e-6L) * t1550;
+  const Real t1552 = t1549 + t1551;
+
+  // waist: joint force
+  const Real t1553 = t1349 * constant<Real>(0.0182L);
+  const Real t1554 = t1552 - t1553;
+  const Real t1555 = t1544 + t1554;
+  const Real t1556 = t1555 * c_r_14_;
+  const Real t1557 = t1556 - t1542;
+
+  // right_forearm: wrench
+  const Real t1558 = t1172 * constant<Real>(0.0182L);
+  const Real t1559 = t1145 * constant<Real>(0.368L);
+  const Real t1560 = t1558 + t1559;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1561 = t1528 - t1560;
+
+  // right_forearm: joint force
+  const Real t1562 = constant<Real>(0.01L) * t1561;
+
+  // waist: joint force
+  const Real t1563 = t1562 + t1557;
+  const Real t1564 = t1346 * constant<Real>(0.0305L);
+  const Real t1565 = t1310 * constant<Real>(0.0027L);
+  const Real t1566 = t1564 - t1565;
+
+  // right_upper_arm: wrench
+  const Real t1567 = t1347 * constant<Real>(0.0008815L);
+  const Real t1568 = constant<Real>(0.0008996L) * t1136;
+  const Real t1569 = t1567 - t1568;
+
+  // right_upper_arm: wrench
+  const Real t1570 = constant<Real>(0.00084L) * t1117;
+  const Real t1571 = t1569 + t1570;
+  const Real t1572 = t1149 * constant<Real>(0.000605L);
+  const Real t1573 = t1571 - t1572;
+
+  // waist: joint force
+  const Real t1574 = t1566 + t1573;
+  const Real t1575 = t1563 + t1574;
+  const Real t1576 = t1541 * c_r_14_;
+  const Real t1577 = t1555 * s_r_14_;
+  const Real t1578 = t1577 + t1576;
+
+  // right_upper_arm: wrench
+  const Real t1579 = t1124 * constant<Real>(0.0008996L);
+
+  // right_upper_arm: wrench
+  const Real t1580 = constant<Real>(0.00084L) * t1347;
+  const Real t1581 = t1579 - t1580;
+
+  // right_upper_arm: wrench
+  const Real t1582 = t1312 - t1311;
+
+  // right_upper_arm: wrench
+  const Real t1583 = t1582 * constant<Real>(0.000605L);
+  const Real t1584 = t1583 + t1581;
+
+  // waist: joint force
+  const Real t1585 = t1329 * constant<Real>(0.0027L);
+  const Real t1586 = t1585 + t1584;
+  const Real t1587 = t1578 + t1586;
+  const Real t1588 = c_r_13_ * t1587;
+
+  // right_forearm: wrench
+  const Real t1589 = constant<Real>(0.368L) * t1157;
+  const Real t1590 = t1336 * constant<Real>(0.0182L);
+  const Real t1591 = t1590 - t1589;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1592 = t1498 + t1591;
+
+  // right_forearm: joint force
+  const Real t1593 = t1592 * s_r_14_;
+
+  // right_forearm: wrench
+  const Real t1594 = t1357 * constant<Real>(0.0182L);
+  const Real t1595 = constant<Real>(0.368L) * t1360;
+  const Real t1596 = t1595 - t1594;
+
+  // right_wrist_yaw_link: joint force
+  const Real t1597 = t1504 + t1596;
+
+  // right_forearm: joint force
+  const Real t1598 = c_r_14_ * t1597;
+  const Real t1599 = t1598 - t1593;
+  const Real t1600 = constant<Real>(0.01L) * t1599;
+
+  // waist: joint force
+  const Real t1601 = t1522 - t1600;
+
+  // right_upper_arm: wrench
+  const Real t1602 = t1318 * constant<Real>(0.0008815L);
+
+  // right_upper_arm: wrench
+  const Real t1603 = constant<Real>(0.000605L) * t1136;
+  const Real t1604 = t1603 - t1602;
+
+  // right_upper_arm: motion
+  const Real t1605 = t1134 * t1134;
+
+  // right_upper_arm: wrench
+  const Real t1606 = t1605 - t1312;
+
+  // right_upper_arm: wrench
+  const Real t1607 = constant<Real>(0.00084L) * t1606;
+  const Real t1608 = t1607 + t1604;
+
+  // waist: joint force
+  const Real t1609 = constant<Real>(0.0305L) * t1329;
+  const Real t1610 = t1608 - t1609;
+  const Real t1611 = t1601 + t1610;
+  const Real t1612 = t1611 * s_r_13_;
+  const Real t1613 = t1588 - t1612;
+
+  // right_forearm: joint force
+  const Real t1614 = t1592 * c_r_14_;
+  const Real t1615 = s_r_14_ * t1597;
+  const Real t1616 = t1614 + t1615;
+
+  // right_upper_arm: wrench
+  const Real t1617 = t1136 * constant<Real>(0.0027L);
+  const Real t1618 = constant<Real>(0.0305L) * t1313;
+  const Real t1619 = t1617 - t1618;
+
+  // right_forearm: joint force
+  const Real t1620 = t1616 + t1619;
+
+  // right_upper_arm: joint force
+  const Real t1621 = s_r_13_ * t1620;
+
+  // right_upper_arm: wrench
+  const Real t1622 = constant<Real>(0.0305L) * t1347;
+
+  // right_upper_arm: motion
+  const Real t1623 = t1312 + t1605;
+
+  // right_upper_arm: wrench
+  const Real t1624 = t1623 * constant<Real>(0.0027L);
+  const Real t1625 = t1622 - t1624;
+
+  // right_forearm: joint force
+  const Real t1626 = t1561 + t1625;
+
+  // right_upper_arm: joint force
+  const Real t1627 = c_r_13_ * t1626;
+  const Real t1628 = t1621 + t1627;
+
+  // right_upper_arm: joint force
+  const Real t1629 = t1628 * constant<Real>(0.28L);
+
+  // right_upper_arm: wrench
+  const Real t1630 = t1124 * constant<Real>(0.0027L);
+  const Real t1631 = t1318 * constant<Real>(0.0305L);
+  const Real t1632 = t1630 + t1631;
+
+  // right_forearm: joint force
+  const Real t1633 = t1632 + t1599;
+
+  // right_upper_arm: joint force
+  const Real t1634 = constant<Real>(0.01L) * t1633;
+
+  // right_upper_arm: joint force
+  const Real t1635 = t1629 - t1634;
+
+  // waist: joint force
+  const Real t1636 = t1613 + t1635;
+  const Real t1637 = t1291 * constant<Real>(1.031L);
+  const Real t1638 = t1322 * constant<Real>(0.0515L);
+  const Real t1639 = t1637 + t1638;
+
+  // right_upper_arm_roll: wrench
+  const Real t1640 = t1323 * constant<Real>(0.001005L);
+  const Real t1641 = t1115 * constant<Real>(0.2556705L);
+  const Real t1642 = t1640 - t1641;
+  const Real t1643 = t1096 * constant<Real>(0.000024L);
+  const Real t1644 = t1642 - t1643;
+  const Real t1645 = constant<Real>(0.00022L) * t1128;
+  const Real t1646 = t1644 + t1645;
+  const Real t1647 = t1293 - t1325;
+  const Real t1648 = t1647 * constant<Real>(0.01061L);
+  const Real t1649 = t1648 + t1646;
+
+  // waist: joint force
+  const Real t1650 = t1639 + t1649;
+  const Real t1651 = t1650 + t1636;
+  const Real t1652 = t1587 * s_r_13_;
+  const Real t1653 = c_r_13_ * t1611;
+  const Real t1654 = t1653 + t1652;
+
+  // right_upper_arm: joint force
+  const Real t1655 = c_r_13_ * t1620;
+  const Real t1656 = s_r_13_ * t1626;
+  const Real t1657 = t1655 - t1656;
+
+  // right_upper_arm: joint force
+  const Real t1658 = constant<Real>(0.28L) * t1657;
+
+  // waist: joint force
+  const Real t1659 = t1654 - t1658;
+
+  // right_upper_arm_roll: wrench
+  const Real t1660 = constant<Real>(0.01061L) * t1302;
+  const Real t1661 = t1103 * constant<Real>(0.2556705L);
+  const Real t1662 = t1660 + t1661;
+  const Real t1663 = t1323 * constant<Real>(0.000024L);
+  const Real t1664 = t1662 + t1663;
+  const Real t1665 = t1294 - t1293;
+  const Real t1666 = constant<Real>(0.00022L) * t1665;
+  const Real t1667 = t1664 - t1666;
+
+  // waist: joint force
+  const Real t1668 = constant<Real>(1.031L) * t1307;
+  const Real t1669 = t1667 - t1668;
+  const Real t1670 = t1659 + t1669;
+  const Real t1671 = c_r_12_ * t1670;
+
+  // right_upper_arm: joint force
+  const Real t1672 = constant<Real>(0.01L) * t1657;
+
+  // waist: joint force
+  const Real t1673 = t1575 + t1672;
+
+  // right_upper_arm_roll: wrench
+  const Real t1674 = t1302 * constant<Real>(0.001005L);
+  const Real t1675 = constant<Real>(0.00022L) * t1115;
+  const Real t1676 = t1674 + t1675;
+  const Real t1677 = t1103 * constant<Real>(0.01061L);
+  const Real t1678 = t1677 + t1676;
+  const Real t1679 = t1325 - t1294;
+  const Real t1680 = t1679 * constant<Real>(0.000024L);
+  const Real t1681 = t1678 + t1680;
+
+  // waist: joint force
+  const Real t1682 = constant<Real>(0.0515L) * t1307;
+  const Real t1683 = t1682 - t1681;
+  const Real t1684 = t1683 + t1673;
+  const Real t1685 = s_r_12_ * t1684;
+  const Real t1686 = t1671 - t1685;
+  const Real t1687 = constant<Real>(0.0056L) * t1307;
+  const Real t1688 = t1271 * constant<Real>(0.0038L);
+  const Real t1689 = t1687 - t1688;
+
+  // right_shoulder: motion
+  const Real t1690 = t1093 + t1086;
+
+  // right_shoulder: wrench
+  const Real t1691 = t1690 * constant<Real>(0.0007689L);
+  const Real t1692 = constant<Real>(0.0012427L) * t1094;
+  const Real t1693 = t1691 - t1692;
+
+  // right_shoulder: wrench
+  const Real t1694 = t1067 * constant<Real>(0.000068L);
+  const Real t1695 = t1693 - t1694;
+  const Real t1696 = t1107 * constant<Real>(0.000058L);
+  const Real t1697 = t1695 + t1696;
+
+  // right_shoulder: motion
+  const Real t1698 = t1076 * t1076;
+  const Real t1699 = t1085 * t1085;
+
+  // right_shoulder: wrench
+  const Real t1700 = t1698 - t1699;
+  const Real t1701 = t1700 * constant<Real>(5.6e-6L);
+
+  // right_shoulder: wrench
+  const Real t1702 = t1697 - t1701;
+
+  // waist: joint force
+  const Real t1703 = t1702 - t1689;
+  const Real t1704 = t1703 + t1686;
+
+  // left_shoulder: motion
+  const Real t1705 = c_r_4_ * t1061;
+  const Real t1706 = t1065 * s_r_4_;
+  const Real t1707 = t1705 - t1706;
+  const Real t1708 = t1070 * c_r_4_;
+  const Real t1709 = t1074 * s_r_4_;
+  const Real t1710 = t1708 - t1709;
+  const Real t1711 = t1077 + r_dot[4];
+  const Real t1712 = constant<Real>(2.0L) * t1711;
+  const Real t1713 = t1712 * t1710;
+  const Real t1714 = t1713 - t1707;
+
+  // left_upper_arm_roll: motion
+  const Real t1715 = s_r_5_ * t1714;
+
+  // left_shoulder: motion
+  const Real t1716 = s_r_4_ * t1070;
+  const Real t1717 = t1074 * c_r_4_;
+  const Real t1718 = t1716 + t1717;
+  const Real t1719 = t1718 * t1710;
+  const Real t1720 = r_ddot[4] + t1092;
+  const Real t1721 = t1719 - t1720;
+
+  // left_upper_arm_roll: motion
+  const Real t1722 = t1721 * c_r_5_;
+  const Real t1723 = t1722 - t1715;
+  const Real t1724 = t1718 * c_r_5_;
+  const Real t1725 = s_r_5_ * t1711;
+  const Real t1726 = t1724 - t1725;
+  const Real t1727 = r_dot[5] + t1710;
+  const Real t1728 = t1727 * constant<Real>(2.0L);
+  const Real t1729 = t1726 * t1728;
+  const Real t1730 = t1729 - t1723;
+
+  // left_upper_arm: motion
+  const Real t1731 = t1730 * s_r_6_;
+
+  // left_shoulder: motion
+  const Real t1732 = s_r_4_ * t1061;
+  const Real t1733 = t1065 * c_r_4_;
+  const Real t1734 = t1732 + t1733;
+
+  // left_upper_arm_roll: motion
+  const Real t1735 = t1718 * t1711;
+  const Real t1736 = t1734 - t1735;
+  const Real t1737 = t1736 + r_ddot[5];
+  const Real t1738 = s_r_5_ * t1718;
+  const Real t1739 = c_r_5_ * t1711;
+  const Real t1740 = t1739 + t1738;
+  const Real t1741 = t1726 * t1740;
+  const Real t1742 = t1741 - t1737;
+
+  // left_upper_arm: motion
+  const Real t1743 = t1742 * c_r_6_;
+  const Real t1744 = t1743 - t1731;
+  const Real t1745 = t1740 * c_r_6_;
+  const Real t1746 = t1727 * s_r_6_;
+  const Real t1747 = t1745 - t1746;
+  const Real t1748 = t1726 + r_dot[6];
+  const Real t1749 = t1748 * constant<Real>(2.0L);
+  const Real t1750 = t1747 * t1749;
+  const Real t1751 = t1750 - t1744;
+
+  // left_forearm: motion
+  const Real t1752 = t1751 * s_r_7_;
+
+  // left_upper_arm_roll: motion
+  const Real t1753 = t1714 * c_r_5_;
+  const Real t1754 = s_r_5_ * t1721;
+  const Real t1755 = t1753 + t1754;
+
+  // left_upper_arm: motion
+  const Real t1756 = t1727 * t1740;
+  const Real t1757 = t1755 - t1756;
+  const Real t1758 = r_ddot[6] + t1757;
+  const Real t1759 = t1740 * s_r_6_;
+  const Real t1760 = t1727 * c_r_6_;
+  const Real t1761 = t1760 + t1759;
+  const Real t1762 = t1761 * t1747;
+  const Real t1763 = t1762 - t1758;
+
+  // left_forearm: motion
+  const Real t1764 = c_r_7_ * t1763;
+  const Real t1765 = t1764 - t1752;
+  const Real t1766 = c_r_7_ * t1761;
+  const Real t1767 = t1748 * s_r_7_;
+  const Real t1768 = t1766 - t1767;
+  const Real t1769 = r_dot[7] + t1747;
+  const Real t1770 = t1769 * constant<Real>(2.0L);
+  const Real t1771 = t1768 * t1770;
+  const Real t1772 = t1771 - t1765;
+
+  // left_wrist_yaw_link: motion
+  const Real t1773 = t1768 * t1769;
+  const Real t1774 = t1772 - t1773;
+  const Real t1775 = r_ddot[8] + t1774;
+  const Real t1776 = t1768 * s_r_8_;
+  const Real t1777 = c_r_8_ * t1769;
+  const Real t1778 = t1777 - t1776;
+  const Real t1779 = c_r_8_ * t1768;
+  const Real t1780 = t1769 * s_r_8_;
+  const Real t1781 = t1779 + t1780;
+  const Real t1782 = t1778 * t1781;
+  const Real t1783 = t1782 - t1775;
+
+  // left_wrist: motion
+  const Real t1784 = s_r_9_ * t1783;
+
+  // left_forearm: motion
+  const Real t1785 = t1751 * c_r_7_;
+  const Real t1786 = s_r_7_ * t1763;
+  const Real t1787 = t1785 + t1786;
+  const Real t1788 = s_r_7_ * t1761;
+  const Real t1789 = t1748 * c_r_7_;
+  const Real t1790 = t1788 + t1789;
+  const Real t1791 = t1790 * t1770;
+  const Real t1792 = t1791 - t1787;
+
+  // left_wrist_yaw_link: motion
+  const Real t1793 = t1792 * c_r_8_;
+
+  // left_upper_arm: motion
+  const Real t1794 = t1730 * c_r_6_;
+  const Real t1795 = t1742 * s_r_6_;
+  const Real t1796 = t1795 + t1794;
+
+  // left_forearm: motion
+  const Real t1797 = t1748 * t1761;
+  const Real t1798 = t1796 - t1797;
+  const Real t1799 = r_ddot[7] + t1798;
+  const Real t1800 = t1768 * t1790;
+  const Real t1801 = t1799 + t1800;
+
+  // left_wrist_yaw_link: motion
+  const Real t1802 = s_r_8_ * t1801;
+  const Real t1803 = t1793 - t1802;
+  const Real t1804 = r_dot[8] + t1790;
+  const Real t1805 = t1804 * constant<Real>(2.0L);
+  const Real t1806 = t1778 * t1805;
+  const Real t1807 = t1806 - t1803;
+
+  // left_wrist: motion
+  const Real t1808 = c_r_9_ * t1807;
+  const Real t1809 = t1784 + t1808;
+  const Real t1810 = s_r_9_ * t1781;
+  const Real t1811 = c_r_9_ * t1804;
+  const Real t1812 = t1810 + t1811;
+  const Real t1813 = r_dot[9] + t1778;
+
+  // left_hand: motion
+  const Real t1814 = t1813 * t1812;
+  const Real t1815 = t1809 - t1814;
+  const Real t1816 = r_ddot[10] + t1815;
+  const Real t1817 = t5 * t1812;
+  const Real t1818 = t6 * t1813;
+  const Real t1819 = t1817 + t1818;
+  const Real t1820 = t6 * t1812;
+  const Real t1821 = t5 * t1813;
+  const Real t1822 = t1820 - t1821;
+  const Real t1823 = t1819 * t1822;
+  const Real t1824 = t1823 + t1816;
+
+  // left_hand: wrench
+  const Real t1825 = constant<Real>(0.00336830219690805532954L) * t1824;
+
+  // left_hand: motion
+  const Real t1826 = t1823 - t1816;
+
+  // left_hand: wrench
+  const Real t1827 = constant<Real>(0.000288797803091944670464L) * t1826;
+  const Real t1828 = t1825 - t1827;
+
+  // left_wrist: motion
+  const Real t1829 = c_r_9_ * t1783;
+  const Real t1830 = s_r_9_ * t1807;
+  const Real t1831 = t1829 - t1830;
+  const Real t1832 = c_r_9_ * t1781;
+  const Real t1833 = s_r_9_ * t1804;
+  const Real t1834 = t1832 - t1833;
+  const Real t1835 = t1813 * constant<Real>(2.0L);
+  const Real t1836 = t1834 * t1835;
+  const Real t1837 = t1836 - t1831;
+
+  // left_hand: motion
+  const Real t1838 = t1837 * t5;
+
+  // left_wrist_yaw_link: motion
+  const Real t1839 = t1792 * s_r_8_;
+  const Real t1840 = c_r_8_ * t1801;
+  const Real t1841 = t1839 + t1840;
+
+  // left_wrist: motion
+  const Real t1842 = t1804 * t1781;
+  const Real t1843 = t1841 - t1842;
+  const Real t1844 = r_ddot[9] + t1843;
+  const Real t1845 = t1834 * t1812;
+  const Real t1846 = t1845 - t1844;
+
+  // left_hand: motion
+  const Real t1847 = t6 * t1846;
+  const Real t1848 = t1847 - t1838;
+
+  // left_hand: wrench
+  const Real t1849 = t1848 * constant<Real>(0.000292420111363255831432L);
+  const Real t1850 = t1849 + t1828;
+
+  // left_hand: motion
+  const Real t1851 = t6 * t1837;
+  const Real t1852 = t5 * t1846;
+  const Real t1853 = t1851 + t1852;
+
+  // left_hand: wrench
+  const Real t1854 = t1853 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1855 = t1854 + t1850;
+
+  // left_hand: motion
+  const Real t1856 = t1822 * t1822;
+  const Real t1857 = t1819 * t1819;
+
+  // left_hand: wrench
+  const Real t1858 = t1856 - t1857;
+  const Real t1859 = t1858 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1860 = t1855 - t1859;
+
+  // waist: joint force
+  const Real t1861 = t1255 - t1254;
+  const Real t1862 = c_r_4_ * t1861;
+  const Real t1863 = t1268 - t1267;
+  const Real t1864 = s_r_4_ * t1863;
+  const Real t1865 = t1862 + t1864;
+  const Real t1866 = s_r_5_ * t1865;
+  const Real t1867 = t1284 - t1288;
+  const Real t1868 = c_r_5_ * t1867;
+  const Real t1869 = t1868 + t1866;
+
+  // left_upper_arm: motion
+  const Real t1870 = t1742 * constant<Real>(0.28L);
+
+  // left_upper_arm_roll: motion
+  const Real t1871 = t1726 * t1726;
+  const Real t1872 = t1727 * t1727;
+  const Real t1873 = t1872 + t1871;
+
+  // left_upper_arm: motion
+  const Real t1874 = t1873 * constant<Real>(0.01L);
+
+  // left_upper_arm: motion
+  const Real t1875 = t1874 + t1870;
+
+  // waist: joint force
+  const Real t1876 = t1869 - t1875;
+  const Real t1877 = t1876 * s_r_6_;
+
+  // left_upper_arm_roll: motion
+  const Real t1878 = t1740 * t1728;
+  const Real t1879 = t1878 - t1755;
+
+  // left_upper_arm: motion
+  const Real t1880 = t1879 * constant<Real>(0.01L);
+
+  // left_upper_arm: motion
+  const Real t1881 = t1730 * constant<Real>(0.28L);
+  const Real t1882 = t1880 - t1881;
+
+  // waist: joint force
+  const Real t1883 = t1863 * c_r_4_;
+  const Real t1884 = s_r_4_ * t1861;
+  const Real t1885 = t1883 - t1884;
+  const Real t1886 = t1885 + t1882;
+  const Real t1887 = t1886 * c_r_6_;
+  const Real t1888 = t1887 + t1877;
+
+  // left_upper_arm: motion
+  const Real t1889 = t1747 * t1747;
+  const Real t1890 = t1748 * t1748;
+  const Real t1891 = t1890 + t1889;
+
+  // left_forearm: motion
+  const Real t1892 = constant<Real>(0.01L) * t1891;
+
+  // waist: joint force
+  const Real t1893 = t1888 - t1892;
+  const Real t1894 = t1893 * c_r_7_;
+
+  // left_upper_arm: motion
+  const Real t1895 = t1761 * t1749;
+  const Real t1896 = t1895 - t1796;
+
+  // left_forearm: motion
+  const Real t1897 = constant<Real>(0.01L) * t1896;
+
+  // waist: joint force
+  const Real t1898 = t1865 * c_r_5_;
+  const Real t1899 = s_r_5_ * t1867;
+  const Real t1900 = t1898 - t1899;
+
+  // left_upper_arm_roll: motion
+  const Real t1901 = t1741 + t1737;
+
+  // left_upper_arm: motion
+  const Real t1902 = constant<Real>(0.01L) * t1901;
+
+  // left_upper_arm_roll: motion
+  const Real t1903 = t1740 * t1740;
+  const Real t1904 = t1903 + t1872;
+
+  // left_forearm: motion
+  const Real t1905 = constant<Real>(0.28L) * t1904;
+
+  // left_upper_arm: motion
+  const Real t1906 = t1902 + t1905;
+
+  // waist: joint force
+  const Real t1907 = t1906 + t1900;
+  const Real t1908 = t1897 + t1907;
+  const Real t1909 = s_r_7_ * t1908;
+  const Real t1910 = t1894 - t1909;
+
+  // left_wrist_yaw_link: motion
+  const Real t1911 = constant<Real>(0.24L) * t1801;
+
+  // left_forearm: motion
+  const Real t1912 = t1790 * t1790;
+  const Real t1913 = t1769 * t1769;
+  const Real t1914 = t1912 + t1913;
+
+  // left_wrist_yaw_link: motion
+  const Real t1915 = constant<Real>(0.01L) * t1914;
+
+  // left_wrist_yaw_link: motion
+  const Real t1916 = t1915 - t1911;
+
+  // waist: joint force
+  const Real t1917 = t1916 + t1910;
+  const Real t1918 = c_r_8_ * t1917;
+
+  // left_wrist_yaw_link: motion
+  const Real t1919 = t1792 * constant<Real>(0.24L);
+
+  // left_wrist_yaw_link: motion
+  const Real t1920 = constant<Real>(0.01L) * t1772;
+
+  // left_wrist_yaw_link: motion
+  const Real t1921 = t1919 + t1920;
+
+  // waist: joint force
+  const Real t1922 = t1876 * c_r_6_;
+  const Real t1923 = t1886 * s_r_6_;
+  const Real t1924 = t1922 - t1923;
+
+  // left_upper_arm: motion
+  const Real t1925 = t1762 + t1758;
+
+  // left_forearm: motion
+  const Real t1926 = constant<Real>(0.01L) * t1925;
+
+  // waist: joint force
+  const Real t1927 = t1926 + t1924;
+  const Real t1928 = t1927 - t1921;
+  const Real t1929 = t1928 * s_r_8_;
+  const Real t1930 = t1929 + t1918;
+  const Real t1931 = s_r_9_ * t1930;
+  const Real t1932 = t1893 * s_r_7_;
+  const Real t1933 = c_r_7_ * t1908;
+  const Real t1934 = t1933 + t1932;
+
+  // left_forearm: motion
+  const Real t1935 = t1800 - t1799;
+
+  // left_wrist_yaw_link: motion
+  const Real t1936 = constant<Real>(0.01L) * t1935;
+
+  // left_forearm: motion
+  const Real t1937 = t1768 * t1768;
+  const Real t1938 = t1913 + t1937;
+
+  // left_wrist: motion
+  const Real t1939 = constant<Real>(0.24L) * t1938;
+
+  // left_wrist_yaw_link: motion
+  const Real t1940 = t1939 - t1936;
+
+  // waist: joint force
+  const Real t1941 = t1940 + t1934;
+  const Real t1942 = c_r_9_ * t1941;
+  const Real t1943 = t1942 + t1931;
+  const Real t1944 = t1943 * t6;
+  const Real t1945 = s_r_8_ * t1917;
+  const Real t1946 = c_r_8_ * t1928;
+  const Real t1947 = t1946 - t1945;
+  const Real t1948 = t5 * t1947;
+  const Real t1949 = t1944 - t1948;
+  const Real t1950 = t1949 * constant<Real>(0.0385628059145078290295L);
+  const Real t1951 = t1860 + t1950;
+
+  // left_hand: motion
+  const Real t1952 = r_dot[10] + t1834;
+  const Real t1953 = t1952 * constant<Real>(2.0L);
+  const Real t1954 = t1953 * t1819;
+  const Real t1955 = t1954 - t1853;
+
+  // left_hand: wrench
+  const Real t1956 = t1955 * constant<Real>(0.00336830219690805532954L);
+  const Real t1957 = t1826 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1958 = t1957 + t1956;
+
+  // left_hand: motion
+  const Real t1959 = t1953 * t1822;
+  const Real t1960 = t1959 - t1848;
+
+  // left_hand: wrench
+  const Real t1961 = t1960 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1962 = t1961 - t1958;
+
+  // left_hand: motion
+  const Real t1963 = t1952 * t1952;
+
+  // left_hand: wrench
+  const Real t1964 = t1857 - t1963;
+  const Real t1965 = constant<Real>(0.000292420111363255831432L) * t1964;
+  const Real t1966 = t1962 + t1965;
+
+  // waist: joint force
+  const Real t1967 = c_r_9_ * t1930;
+  const Real t1968 = s_r_9_ * t1941;
+  const Real t1969 = t1967 - t1968;
+  const Real t1970 = t1969 * constant<Real>(0.0385628059145078290295L);
+  const Real t1971 = t1966 - t1970;
+  const Real t1972 = t5 * t1971;
+
+  // left_hand: wrench
+  const Real t1973 = constant<Real>(0.000288797803091944670464L) * t1960;
+  const Real t1974 = t1955 * constant<Real>(0.0000287884458909682668836L);
+  const Real t1975 = t1973 - t1974;
+  const Real t1976 = constant<Real>(0.000292420111363255831432L) * t1824;
+  const Real t1977 = t1975 - t1976;
+  const Real t1978 = t1963 - t1856;
+  const Real t1979 = t1978 * constant<Real>(0.0000165444392561687557046L);
+  const Real t1980 = t1977 - t1979;
+
+  // left_hand: joint force
+  const Real t1981 = t6 * t1980;
+
+  // waist: joint force
+  const Real t1982 = t1981 - t1972;
+  const Real t1983 = t1969 * constant<Real>(0.003L);
+  const Real t1984 = t1943 * constant<Real>(0.0033L);
+  const Real t1985 = t1983 + t1984;
+
+  // left_wrist: motion
+  const Real t1986 = t1845 + t1844;
+
+  // left_wrist: wrench
+  const Real t1987 = t1986 * constant<Real>(0.00007L);
+  const Real t1988 = constant<Real>(0.0001744L) * t1846;
+  const Real t1989 = t1987 - t1988;
+
+  // waist: joint force
+  const Real t1990 = t1989 - t1985;
+  const Real t1991 = t1982 + t1990;
+  const Real t1992 = t6 * t1971;
+
+  // left_hand: joint force
+  const Real t1993 = t1980 * t5;
+
+  // waist: joint force
+  const Real t1994 = t1993 + t1992;
+  const Real t1995 = t1947 * constant<Real>(0.0033L);
+
+  // left_wrist: wrench
+  const Real t1996 = t1837 * constant<Real>(0.0001744L);
+
+  // waist: joint force
+  const Real t1997 = t1995 + t1996;
+  const Real t1998 = t1997 + t1994;
+  const Real t1999 = c_r_9_ * t1998;
+  const Real t2000 = t1947 * constant<Real>(0.003L);
+
+  // left_wrist: motion
+  const Real t2001 = t1835 * t1812;
+  const Real t2002 = t2001 - t1809;
+
+  // left_wrist: wrench
+  const Real t2003 = t2002 * constant<Real>(0.00007L);
+
+  // waist: joint force
+  const Real t2004 = t2000 - t2003;
+  const Real t2005 = t1951 + t2004;
+  const Real t2006 = s_r_9_ * t2005;
+  const Real t2007 = t1999 - t2006;
+  const Real t2008 = t1930 * constant<Real>(0.0007L);
+
+  // left_wrist_yaw_link: motion
+  const Real t2009 = t1775 + t1782;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2010 = t2009 * constant<Real>(0.00014585L);
+  const Real t2011 = constant<Real>(0.00018655L) * t1783;
+  const Real t2012 = t2010 - t2011;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2013 = t1841 * constant<Real>(1e-6L);
+  const Real t2014 = t2013 + t2012;
+
+  // waist: joint force
+  const Real t2015 = t2014 - t2008;
+  const Real t2016 = t2015 + t2007;
+  const Real t2017 = s_r_9_ * t1998;
+  const Real t2018 = c_r_9_ * t2005;
+  const Real t2019 = t2017 + t2018;
+  const Real t2020 = t1941 * constant<Real>(0.0007L);
+
+  // left_wrist_yaw_link: wrench
+  const Real t2021 = constant<Real>(0.00018655L) * t1807;
+
+  // left_wrist_yaw_link: motion
+  const Real t2022 = t1778 * t1778;
+  const Real t2023 = t1804 * t1804;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2024 = t2023 - t2022;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2025 = t2024 * constant<Real>(1e-6L);
+  const Real t2026 = t2021 - t2025;
+
+  // waist: joint force
+  const Real t2027 = t2020 + t2026;
+  const Real t2028 = t2027 + t2019;
+  const Real t2029 = t2028 * s_r_8_;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2030 = t1783 * constant<Real>(1e-6L);
+
+  // left_wrist_yaw_link: motion
+  const Real t2031 = t1805 * t1781;
+  const Real t2032 = t2031 - t1841;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2033 = t2032 * constant<Real>(0.00014585L);
+
+  // left_wrist_yaw_link: wrench
+  const Real t2034 = t2030 + t2033;
+
+  // waist: joint force
+  const Real t2035 = t1991 - t2034;
+  const Real t2036 = c_r_8_ * t2035;
+  const Real t2037 = t2029 + t2036;
+
+  // left_hand: wrench
+  const Real t2038 = t1824 * constant<Real>(0.0385628059145078290295L);
+
+  // left_hand: joint force
+  const Real t2039 = t2038 * t6;
+
+  // left_hand: motion
+  const Real t2040 = t1963 + t1856;
+
+  // left_hand: wrench
+  const Real t2041 = t2040 * constant<Real>(0.0385628059145078290295L);
+
+  // left_hand: joint force
+  const Real t2042 = t2041 * t5;
+  const Real t2043 = t2039 - t2042;
+
+  // left_wrist: wrench
+  const Real t2044 = constant<Real>(0.0033L) * t1846;
+
+  // left_wrist: motion
+  const Real t2045 = t1834 * t1834;
+  const Real t2046 = t1813 * t1813;
+  const Real t2047 = t2045 + t2046;
+
+  // left_wrist: wrench
+  const Real t2048 = t2047 * constant<Real>(0.003L);
+  const Real t2049 = t2048 + t2044;
+
+  // left_hand: joint force
+  const Real t2050 = t2049 + t2043;
+
+  // left_wrist: joint force
+  const Real t2051 = s_r_9_ * t2050;
+
+  // left_hand: wrench
+  const Real t2052 = t1955 * constant<Real>(0.0385628059145078290295L);
+
+  // left_wrist: wrench
+  const Real t2053 = t1986 * constant<Real>(0.003L);
+
+  // left_wrist: motion
+  const Real t2054 = t1812 * t1812;
+  const Real t2055 = t2054 + t2046;
+
+  // left_wrist: wrench
+  const Real t2056 = t2055 * constant<Real>(0.0033L);
+  const Real t2057 = t2053 + t2056;
+
+  // left_hand: joint force
+  const Real t2058 = t2052 - t2057;
+
+  // left_wrist: joint force
+  const Real t2059 = c_r_9_ * t2058;
+  const Real t2060 = t2059 + t2051;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2061 = t1783 * constant<Real>(0.0007L);
+
+  // left_wrist: joint force
+  const Real t2062 = t2060 + t2061;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2063 = t2062 * c_r_8_;
+
+  // left_hand: joint force
+  const Real t2064 = t2038 * t5;
+  const Real t2065 = t2041 * t6;
+  const Real t2066 = t2065 + t2064;
+
+  // left_wrist: wrench
+  const Real t2067 = t1837 * constant<Real>(0.0033L);
+  const Real t2068 = t2002 * constant<Real>(0.003L);
+  const Real t2069 = t2067 - t2068;
+
+  // left_hand: joint force
+  const Real t2070 = t2069 - t2066;
+
+  // left_wrist_yaw_link: motion
+  const Real t2071 = t1781 * t1781;
+  const Real t2072 = t2071 + t2023;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2073 = t2072 * constant<Real>(0.0007L);
+
+  // left_wrist: joint force
+  const Real t2074 = t2070 - t2073;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2075 = t2074 * s_r_8_;
+  const Real t2076 = t2063 - t2075;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2077 = t2076 * constant<Real>(0.24L);
+
+  // left_wrist: joint force
+  const Real t2078 = c_r_9_ * t2050;
+  const Real t2079 = s_r_9_ * t2058;
+  const Real t2080 = t2078 - t2079;
+
+  // left_wrist_yaw_link: wrench
+  const Real t2081 = t1807 * constant<Real>(0.0007L);
+
+  // left_wrist: joint force
+  const Real t2082 = t2081 + t2080;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2083 = constant<Real>(0.01L) * t2082;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2084 = t2083 - t2077;
+
+  // waist: joint force
+  const Real t2085 = t2037 + t2084;
+  const Real t2086 = t1934 * constant<Real>(0.0182L);
+  const Real t2087 = constant<Real>(0.368L) * t1910;
+  const Real t2088 = t2086 - t2087;
+
+  // left_forearm: wrench
+  const Real t2089 = constant<Real>(0.07335995L) * t1801;
+  const Real t2090 = constant<Real>(0.0004331L) * t1935;
+  const Real t2091 = t2089 - t2090;
+  const Real t2092 = constant<Real>(0.00001L) * t1765;
+  const Real t2093 = t2092 + t2091;
+  const Real t2094 = constant<Real>(5.4e-6L) * t1787;
+  const Real t2095 = t2094 + t2093;
+  const Real t2096 = t1937 - t1912;
+  const Real t2097 = constant<Real>(0.003165L) * t2096;
+  const Real t2098 = t2097 + t2095;
+
+  // waist: joint force
+  const Real t2099 = t2098 + t2088;
+  const Real t2100 = t2085 + t2099;
+  const Real t2101 = t2028 * c_r_8_;
+  const Real t2102 = t2035 * s_r_8_;
+  const Real t2103 = t2101 - t2102;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2104 = t2062 * s_r_8_;
+  const Real t2105 = c_r_8_ * t2074;
+  const Real t2106 = t2105 + t2104;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2107 = constant<Real>(0.24L) * t2106;
+
+  // waist: joint force
+  const Real t2108 = t2107 + t2103;
+
+  // left_forearm: wrench
+  const Real t2109 = constant<Real>(0.07335995L) * t1792;
+  const Real t2110 = constant<Real>(5.4e-6L) * t1935;
+  const Real t2111 = t2109 + t2110;
+  const Real t2112 = constant<Real>(0.003165L) * t1772;
+  const Real t2113 = t2111 + t2112;
+  const Real t2114 = t1912 - t1913;
+  const Real t2115 = constant<Real>(0.00001L) * t2114;
+  const Real t2116 = t2115 - t2113;
+
+  // waist: joint force
+  const Real t2117 = constant<Real>(0.368L) * t1927;
+  const Real t2118 = t2116 + t2117;
+  const Real t2119 = t2108 + t2118;
+  const Real t2120 = t2119 * s_r_7_;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2121 = constant<Real>(0.01L) * t2106;
+
+  // waist: joint force
+  const Real t2122 = t2016 - t2121;
+
+  // left_forearm: wrench
+  const Real t2123 = constant<Real>(0.003165L) * t1792;
+  const Real t2124 = t1772 * constant<Real>(0.0004331L);
+  const Real t2125 = t2123 + t2124;
+  const Real t2126 = constant<Real>(0.00001L) * t1801;
+  const Real t2127 = t2125 - t2126;
+  const Real t2128 = t1913 - t1937;
+  const Real t2129 = t2128 * constant<Real>(5.4e-6L);
+  const Real t2130 = t2127 - t2129;
+
+  // waist: joint force
+  const Real t2131 = t1927 * constant<Real>(0.0182L);
+  const Real t2132 = t2130 - t2131;
+  const Real t2133 = t2132 + t2122;
+  const Real t2134 = c_r_7_ * t2133;
+  const Real t2135 = t2134 - t2120;
+
+  // left_forearm: wrench
+  const Real t2136 = t1792 * constant<Real>(0.368L);
+  const Real t2137 = t1772 * constant<Real>(0.0182L);
+  const Real t2138 = t2136 + t2137;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2139 = t2106 - t2138;
+
+  // left_forearm: joint force
+  const Real t2140 = t2139 * constant<Real>(0.01L);
+
+  // waist: joint force
+  const Real t2141 = t2140 + t2135;
+  const Real t2142 = constant<Real>(0.0305L) * t1924;
+  const Real t2143 = t1888 * constant<Real>(0.0027L);
+  const Real t2144 = t2142 + t2143;
+
+  // left_upper_arm: wrench
+  const Real t2145 = t1925 * constant<Real>(0.0008815L);
+  const Real t2146 = constant<Real>(0.0008996L) * t1763;
+  const Real t2147 = t2145 - t2146;
+
+  // left_upper_arm: wrench
+  const Real t2148 = constant<Real>(0.00084L) * t1744;
+  const Real t2149 = t2147 + t2148;
+  const Real t2150 = constant<Real>(0.000605L) * t1796;
+  const Real t2151 = t2149 + t2150;
+
+  // waist: joint force
+  const Real t2152 = t2151 + t2144;
+  const Real t2153 = t2152 + t2141;
+  const Real t2154 = t2119 * c_r_7_;
+  const Real t2155 = s_r_7_ * t2133;
+  const Real t2156 = t2154 + t2155;
+
+  // left_upper_arm: wrench
+  const Real t2157 = t1751 * constant<Real>(0.0008996L);
+
+  // left_upper_arm: wrench
+  const Real t2158 = constant<Real>(0.00084L) * t1925;
+  const Real t2159 = t2157 - t2158;
+
+  // left_upper_arm: wrench
+  const Real t2160 = t1890 - t1889;
+
+  // left_upper_arm: wrench
+  const Real t2161 = t2160 * constant<Real>(0.000605L);
+  const Real t2162 = t2159 - t2161;
+
+  // waist: joint force
+  const Real t2163 = t1907 * constant<Real>(0.0027L);
+  const Real t2164 = t2162 - t2163;
+  const Real t2165 = t2156 + t2164;
+  const Real t2166 = t2165 * c_r_6_;
+
+  // left_forearm: wrench
+  const Real t2167 = constant<Real>(0.368L) * t1801;
+  const Real t2168 = constant<Real>(0.0182L) * t1914;
+  const Real t2169 = t2168 - t2167;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2170 = t2076 + t2169;
+
+  // left_forearm: joint force
+  const Real t2171 = s_r_7_ * t2170;
+
+  // left_forearm: wrench
+  const Real t2172 = constant<Real>(0.0182L) * t1935;
+  const Real t2173 = constant<Real>(0.368L) * t1938;
+  const Real t2174 = t2173 - t2172;
+
+  // left_wrist_yaw_link: joint force
+  const Real t2175 = t2082 + t2174;
+
+  // left_forearm: joint force
+  const Real t2176 = c_r_7_ * t2175;
+  const Real t2177 = t2176 - t2171;
+  const Real t2178 = constant<Real>(0.01L) * t2177;
+
+  // waist: joint force
+  const Real t2179 = t2100 - t2178;
+
+  // left_upper_arm: wrench
+  const Real t2180 = t1896 * constant<Real>(0.0008815L);
+
+  // left_upper_arm: wrench
+  const Real t2181 = constant<Real>(0.000605L) * t1763;
+  const Real t2182 = t2180 + t2181;
+
+  // left_upper_arm: motion
+  const Real t2183 = t1761 * t1761;
+
+  // left_upper_arm: wrench
+  const Real t2184 = t2183 - t1890;
+
+  // left_upper_arm: wrench
+  const Real t2185 = constant<Real>(0.00084L) * t2184;
+  const Real t2186 = t2185 - t2182;
+
+  // waist: joint force
+  const Real t2187 = constant<Real>(0.0305L) * t1907;
+  const Real t2188 = t2186 - t2187;
+  const Real t2189 = t2188 + t2179;
+  const Real t2190 = t2189 * s_r_6_;
+  const Real t2191 = t2166 - t2190;
+
+  // left_forearm: joint force
+  const Real t2192 = c_r_7_ * t2170;
+  const Real t2193 = s_r_7_ * t2175;
+  const Real t2194 = t2193 + t2192;
+
+  // left_upper_arm: wrench
+  const Real t2195 = t1763 * constant<Real>(0.0027L);
+  const Real t2196 = t1891 * constant<Real>(0.0305L);
+  const Real t2197 = t2195 + t2196;
+
+  // left_forearm: joint force
+  const Real t2198 = t2194 - t2197;
+
+  // left_upper_arm: joint force
+  const Real t2199 = t2198 * s_r_6_;
+
+  // left_upper_arm: wrench
+  const Real t2200 = t1925 * constant<Real>(0.0305L);
+
+  // left_upper_arm: motion
+  const Real t2201 = t1890 + t2183;
+
+  // left_upper_arm: wrench
+  const Real t2202 = t2201 * constant<Real>(0.0027L);
+  const Real t2203 = t2202 + t2200;
+
+  // left_forearm: joint force
+  const Real t2204 = t2139 + t2203;
+
+  // left_upper_arm: joint force
+  const Real t2205 = t2204 * c_r_6_;
+  const Real t2206 = t2205 + t2199;
+
+  // left_upper_arm: joint force
+  const Real t2207 = t2206 * constant<Real>(0.28L);
+
+  // left_upper_arm: wrench
+  const Real t2208 = t1896 * constant<Real>(0.0305L);
+  const Real t2209 = t1751 * constant<Real>(0.0027L);
+  const Real t2210 = t2208 - t2209;
+
+  // left_forearm: joint force
+  const Real t2211 = t2177 + t2210;
+
+  // left_upper_arm: joint force
+  const Real t2212 = constant<Real>(0.01L) * t2211;
+
+  // left_upper_arm: joint force
+  const Real t2213 = t2212 + t2207;
+
+  // waist: joint force
+  const Real t2214 = t2191 + t2213;
+  const Real t2215 = constant<Real>(0.0515L) * t1900;
+  const Real t2216 = constant<Real>(1.031L) * t1869;
+  const Real t2217 = t2215 + t2216;
+
+  // left_upper_arm_roll: wrench
+  const Real t2218 = t1901 * constant<Real>(0.001005L);
+  const Real t2219 = t1742 * constant<Real>(0.2556705L);
+  const Real t2220 = t2218 - t2219;
+  const Real t2221 = t1723 * constant<Real>(0.000024L);
+  const Real t2222 = t2221 + t2220;
+  const Real t2223 = constant<Real>(0.00022L) * t1755;
+  const Real t2224 = t2223 + t2222;
+  const Real t2225 = t1871 - t1903;
+  const Real t2226 = constant<Real>(0.01061L) * t2225;
+  const Real t2227 = t2224 - t2226;
+
+  // waist: joint force
+  const Real t2228 = t2217 + t2227;
+  const Real t2229 = t2214 + t2228;
+  const Real t2230 = t2165 * s_r_6_;
+  const Real t2231 = t2189 * c_r_6_;
+  const Real t2232 = t2230 + t2231;
+
+  // left_upper_arm: joint force
+  const Real t2233 = t2198 * c_r_6_;
+  const Real t2234 = t2204 * s_r_6_;
+  const Real t2235 = t2233 - t2234;
+
+  // left_upper_arm: joint force
+  const Real t2236 = t2235 * constant<Real>(0.28L);
+
+  // waist: joint force
+  const Real t2237 = t2232 - t2236;
+
+  // left_upper_arm_roll: wrench
+  const Real t2238 = t1730 * constant<Real>(0.2556705L);
+  const Real t2239 = t1879 * constant<Real>(0.01061L);
+  const Real t2240 = t2238 - t2239;
+  const Real t2241 = t1901 * constant<Real>(0.000024L);
+  const Real t2242 = t2240 - t2241;
+  const Real t2243 = t1872 - t1871;
+  const Real t2244 = constant<Real>(0.00022L) * t2243;
+  const Real t2245 = t2242 - t2244;
+
+  // waist: joint force
+  const Real t2246 = t1885 * constant<Real>(1.031L);
+  const Real t2247 = t2245 - t2246;
+  const Real t2248 = t2237 + t2247;
+  const Real t2249 = t2248 * c_r_5_;
+
+  // left_upper_arm: joint force
+  const Real t2250 = constant<Real>(0.01L) * t2235;
+
+  // waist: joint force
+  const Real t2251 = t2153 - t2250;
+
+  // left_upper_arm_roll: wrench
+  const Real t2252 = t1879 * constant<Real>(0.001005L);
+  const Real t2253 = t1742 * constant<Real>(0.00022L);
+  const Real t2254 = t2252 + t2253;
+  const Real t2255 = t1730 * constant<Real>(0.01061L);
+  const Real t2256 = t2255 - t2254;
+  const Real t2257 = t1903 - t1872;
+  const Real t2258 = constant<Real>(0.000024L) * t2257;
+  const Real t2259 = t2258 + t2256;
+
+  // waist: joint force
+  const Real t2260 = t1885 * constant<Real>(0.0515L);
+  const Real t2261 = t2259 - t2260;
+  const Real t2262 = t2261 + t2251;
+  const Real t2263 = s_r_5_ * t2262;
+  const Real t2264 = t2249 - t2263;
+  const Real t2265 = t1865 * constant<Real>(0.0038L);
+  const Real t2266 = constant<Real>(0.0056L) * t1885;
+  const Real t2267 = t2265 + t2266;
+
+  // left_shoulder: motion
+  const Real t2268 = t1719 + t1720;
+
+  // left_shoulder: wrench
+  const Real t2269 = t2268 * constant<Real>(0.0007689L);
+  const Real t2270 = constant<Real>(0.0012427L) * t1721;
+  const Real t2271 = t2269 - t2270;
+
+  // left_shoulder: wrench
+  const Real t2272 = t1707 * constant<Real>(0.000068L);
+  const Real t2273 = t2271 + t2272;
+  const Real t2274 = t1734 * constant<Real>(0.000058L);
+  const Real t2275 = t2273 - t2274;
+
+  // left_shoulder: motion
+  const Real t2276 = t1710 * t1710;
+  const Real t2277 = t1718 * t1718;
+
+  // left_shoulder: wrench
+  const Real t2278 = t2276 - t2277;
+  const Real t2279 = t2278 * constant<Real>(5.6e-6L);
+
+  // left_shoulder: wrench
+  const Real t2280 = t2275 - t2279;
+
+  // waist: joint force
+  const Real t2281 = t2280 - t2267;
+  const Real t2282 = t2281 + t2264;
+
+  // neck: motion
+  const Real t2283 = t1278 * s_r_2_;
+  const Real t2284 = t1261 * c_r_2_;
+  const Real t2285 = t2283 + t2284;
+  const Real t2286 = t1070 * c_r_2_;
+  const Real t2287 = t1077 * s_r_2_;
+  const Real t2288 = t2286 + t2287;
+  const Real t2289 = r_dot[2] + t1074;
+
+  // head: motion
+  const Real t2290 = t2288 * t2289;
+  const Real t2291 = t2285 - t2290;
+  const Real t2292 = t2291 + r_ddot[3];
+  const Real t2293 = t2288 * t8;
+  const Real t2294 = t2289 * t9;
+  const Real t2295 = t2294 + t2293;
+  const Real t2296 = t2288 * t9;
+  const Real t2297 = t2289 * t8;
+  const Real t2298 = t2296 - t2297;
+  const Real t2299 = t2295 * t2298;
+  const Real t2300 = t2299 + t2292;
+
+  // head: wrench
+  const Real t2301 = t2300 * constant<Real>(0.0243403889003640938417L);
+
+  // head: motion
+  const Real t2302 = t2299 - t2292;
+
+  // head: wrench
+  const Real t2303 = t2302 * constant<Real>(0.00696992484105879965887L);
+  const Real t2304 = t2301 - t2303;
+
+  // head: motion
+  const Real t2305 = t2298 * t2298;
+  const Real t2306 = t2295 * t2295;
+
+  // head: wrench
+  const Real t2307 = t2305 - t2306;
+  const Real t2308 = t2307 * constant<Real>(0.00126691013601806312038L);
+  const Real t2309 = t2304 - t2308;
+
+  // neck: motion
+  const Real t2310 = t1278 * constant<Real>(0.45L);
+
+  // neck: motion
+  const Real t2311 = constant<Real>(0.01L) * t1275;
+
+  // neck: motion
+  const Real t2312 = t2310 + t2311;
+  const Real t2313 = t1283 + t2312;
+  const Real t2314 = t2313 * s_r_2_;
+  const Real t2315 = t1261 * constant<Real>(0.45L);
+
+  // neck: motion
+  const Real t2316 = constant<Real>(0.01L) * t1265;
+
+  // neck: motion
+  const Real t2317 = t2315 - t2316;
+  const Real t2318 = t2317 + t1260;
+  const Real t2319 = t2318 * c_r_2_;
+  const Real t2320 = t2319 + t2314;
+
+  // head: motion
+  const Real t2321 = t9 * t2320;
+
+  // neck: motion
+  const Real t2322 = constant<Real>(0.01L) * t1247;
+
+  // head: motion
+  const Real t2323 = constant<Real>(0.45L) * t1252;
+
+  // neck: motion
+  const Real t2324 = t2322 - t2323;
+  const Real t2325 = t1245 + t2324;
+
+  // head: motion
+  const Real t2326 = t8 * t2325;
+  const Real t2327 = t2321 - t2326;
+
+  // head: wrench
+  const Real t2328 = t2327 * constant<Real>(0.204831170943767747913L);
+  const Real t2329 = t2309 + t2328;
+
+  // neck: motion
+  const Real t2330 = t1077 * t1070;
+  const Real t2331 = t1275 - t2330;
+  const Real t2332 = t2331 + r_ddot[2];
+  const Real t2333 = t1070 * s_r_2_;
+  const Real t2334 = t1077 * c_r_2_;
+  const Real t2335 = t2334 - t2333;
+  const Real t2336 = t2288 * t2335;
+  const Real t2337 = t2336 - t2332;
+
+  // head: motion
+  const Real t2338 = t9 * t2337;
+
+  // neck: motion
+  const Real t2339 = t1278 * c_r_2_;
+  const Real t2340 = t1261 * s_r_2_;
+  const Real t2341 = t2339 - t2340;
+  const Real t2342 = t2289 * constant<Real>(2.0L);
+  const Real t2343 = t2342 * t2335;
+  const Real t2344 = t2343 - t2341;
+
+  // head: motion
+  const Real t2345 = t8 * t2344;
+  const Real t2346 = t2338 - t2345;
+  const Real t2347 = t2335 + r_dot[3];
+  const Real t2348 = t2347 * constant<Real>(2.0L);
+  const Real t2349 = t2298 * t2348;
+  const Real t2350 = t2349 - t2346;
+
+  // head: wrench
+  const Real t2351 = t2350 * constant<Real>(0.00126691013601806312038L);
+
+  // head: motion
+  const Real t2352 = t8 * t2337;
+  const Real t2353 = t9 * t2344;
+  const Real t2354 = t2352 + t2353;
+  const Real t2355 = t2295 * t2348;
+  const Real t2356 = t2355 - t2354;
+
+  // head: wrench
+  const Real t2357 = constant<Real>(0.0243403889003640938417L) * t2356;
+  const Real t2358 = t2351 - t2357;
+
+  // neck: motion
+  const Real t2359 = t2313 * c_r_2_;
+  const Real t2360 = t2318 * s_r_2_;
+  const Real t2361 = t2359 - t2360;
+
+  // head: wrench
+  const Real t2362 = constant<Real>(0.204831170943767747913L) * t2361;
+  const Real t2363 = t2358 - t2362;
+
+  // head: joint force
+  const Real t2364 = t8 * t2363;
+
+  // head: wrench
+  const Real t2365 = constant<Real>(0.00696992484105879965887L) * t2350;
+  const Real t2366 = t2356 * constant<Real>(0.00126691013601806312038L);
+  const Real t2367 = t2365 - t2366;
+
+  // head: joint force
+  const Real t2368 = t9 * t2367;
+
+  // head: joint force
+  const Real t2369 = t2368 - t2364;
+
+  // neck: motion
+  const Real t2370 = t2336 + t2332;
+
+  // neck: wrench
+  const Real t2371 = t2370 * constant<Real>(0.00018375L);
+  const Real t2372 = t2337 * constant<Real>(0.00401775L);
+  const Real t2373 = t2371 - t2372;
+
+  // head: joint force
+  const Real t2374 = t2369 + t2373;
+
+  // waist: joint force
+  const Real t2375 = t2282 + t1704;
+
+  // torso: wrench
+  const Real t2376 = constant<Real>(8.246L) * t1260;
+  const Real t2377 = t1245 * constant<Real>(0.0968L);
+  const Real t2378 = t2376 + t2377;
+
+  // waist: joint force
+  const Real t2379 = t2378 + t2375;
+
+  // neck: motion
+  const Real t2380 = t2288 * t2342;
+  const Real t2381 = t2380 - t2285;
+
+  // neck: wrench
+  const Real t2382 = constant<Real>(0.00018375L) * t2381;
+
+  // head: joint force
+  const Real t2383 = t2329 - t2382;
+
+  // neck: joint force
+  const Real t2384 = t2383 * c_r_2_;
+
+  // torso: wrench
+  const Real t2385 = constant<Real>(0.0012925L) * t1065;
+
+  // waist: joint force
+  const Real t2386 = t2384 + t2385;
+
+  // torso: wrench
+  const Real t2387 = constant<Real>(0.003875L) * t1061;
+  const Real t2388 = t1261 * constant<Real>(2.51418505L);
+
+  // waist: joint force
+  const Real t2389 = t2387 + t2388;
+  const Real t2390 = t2386 + t2389;
+  const Real t2391 = t2390 + t2379;
+
+  // right_upper_arm_roll: wrench
+  const Real t2392 = t1115 * constant<Real>(1.031L);
+  const Real t2393 = t1295 * constant<Real>(0.0515L);
+  const Real t2394 = t2393 - t2392;
+
+  // right_upper_arm: joint force
+  const Real t2395 = t1628 + t2394;
+
+  // right_upper_arm_roll: joint force
+  const Real t2396 = s_r_12_ * t2395;
+
+  // right_upper_arm_roll: wrench
+  const Real t2397 = t1323 * constant<Real>(0.0515L);
+  const Real t2398 = t1326 * constant<Real>(1.031L);
+  const Real t2399 = t2398 - t2397;
+
+  // right_upper_arm: joint force
+  const Real t2400 = t2399 + t1633;
+
+  // right_upper_arm_roll: joint force
+  const Real t2401 = t2400 * c_r_12_;
+  const Real t2402 = t2401 + t2396;
+
+  // right_shoulder: motion
+  const Real t2403 = t1078 * t1078;
+  const Real t2404 = t1698 + t2403;
+
+  // right_shoulder: wrench
+  const Real t2405 = constant<Real>(0.0056L) * t2404;
+  const Real t2406 = t1094 * constant<Real>(0.0038L);
+  const Real t2407 = t2405 + t2406;
+
+  // right_upper_arm_roll: joint force
+  const Real t2408 = t2407 + t2402;
+
+  // right_shoulder: joint force
+  const Real t2409 = t2408 * s_r_11_;
+
+  // right_upper_arm_roll: wrench
+  const Real t2410 = constant<Real>(0.0515L) * t1302;
+  const Real t2411 = t1103 * constant<Real>(1.031L);
+  const Real t2412 = t2410 + t2411;
+
+  // right_upper_arm: joint force
+  const Real t2413 = t1657 - t2412;
+
+  // right_shoulder: wrench
+  const Real t2414 = constant<Real>(0.0056L) * t1690;
+
+  // right_shoulder: motion
+  const Real t2415 = t1699 + t2403;
+
+  // right_shoulder: wrench
+  const Real t2416 = t2415 * constant<Real>(0.0038L);
+  const Real t2417 = t2414 + t2416;
+
+  // right_upper_arm_roll: joint force
+  const Real t2418 = t2413 - t2417;
+
+  // right_shoulder: joint force
+  const Real t2419 = t2418 * c_r_11_;
+  const Real t2420 = t2409 + t2419;
+
+  // left_upper_arm_roll: wrench
+  const Real t2421 = t1742 * constant<Real>(1.031L);
+  const Real t2422 = t1873 * constant<Real>(0.0515L);
+  const Real t2423 = t2422 + t2421;
+
+  // left_upper_arm: joint force
+  const Real t2424 = t2206 - t2423;
+
+  // left_upper_arm_roll: joint force
+  const Real t2425 = s_r_5_ * t2424;
+
+  // left_upper_arm_roll: wrench
+  const Real t2426 = t1901 * constant<Real>(0.0515L);
+  const Real t2427 = constant<Real>(1.031L) * t1904;
+  const Real t2428 = t2427 + t2426;
+
+  // left_upper_arm: joint force
+  const Real t2429 = t2211 + t2428;
+
+  // left_upper_arm_roll: joint force
+  const Real t2430 = t2429 * c_r_5_;
+  const Real t2431 = t2430 + t2425;
+
+  // left_shoulder: motion
+  const Real t2432 = t1711 * t1711;
+  const Real t2433 = t2432 + t2276;
+
+  // left_shoulder: wrench
+  const Real t2434 = t2433 * constant<Real>(0.0056L);
+  const Real t2435 = t1721 * constant<Real>(0.0038L);
+  const Real t2436 = t2434 + t2435;
+
+  // left_upper_arm_roll: joint force
+  const Real t2437 = t2436 + t2431;
+
+  // left_shoulder: joint force
+  const Real t2438 = s_r_4_ * t2437;
+
+  // left_upper_arm_roll: wrench
+  const Real t2439 = t1879 * constant<Real>(0.0515L);
+  const Real t2440 = t1730 * constant<Real>(1.031L);
+  const Real t2441 = t2439 - t2440;
+
+  // left_upper_arm: joint force
+  const Real t2442 = t2441 + t2235;
+
+  // left_shoulder: wrench
+  const Real t2443 = constant<Real>(0.0056L) * t2268;
+
+  // left_shoulder: motion
+  const Real t2444 = t2432 + t2277;
+
+  // left_shoulder: wrench
+  const Real t2445 = t2444 * constant<Real>(0.0038L);
+  const Real t2446 = t2443 + t2445;
+
+  // left_upper_arm_roll: joint force
+  const Real t2447 = t2442 - t2446;
+
+  // left_shoulder: joint force
+  const Real t2448 = t2447 * c_r_4_;
+  const Real t2449 = t2438 + t2448;
+
+  // waist: joint force
+  const Real t2450 = t2420 + t2449;
+  const Real t2451 = t2450 * constant<Real>(0.3L);
+
+  // torso: wrench
+  const Real t2452 = constant<Real>(0.073347L) * t1247;
+
+  // waist: joint force
+  const Real t2453 = t2451 - t2452;
+
+  // torso: wrench
+  const Real t2454 = t1250 - t1264;
+  const Real t2455 = t2454 * constant<Real>(0.026965L);
+
+  // waist: joint force
+  const Real t2456 = t2453 - t2455;
+
+  // left_shoulder: joint force
+  const Real t2457 = c_r_4_ * t2437;
+  const Real t2458 = s_r_4_ * t2447;
+  const Real t2459 = t2457 - t2458;
+
+  // right_shoulder: joint force
+  const Real t2460 = t2408 * c_r_11_;
+  const Real t2461 = t2418 * s_r_11_;
+  const Real t2462 = t2460 - t2461;
+
+  // waist: joint force
+  const Real t2463 = t2459 + t2462;
+  const Real t2464 = constant<Real>(0.005L) * t2463;
+
+  // head: wrench
+  const Real t2465 = t2300 * constant<Real>(0.204831170943767747913L);
+
+  // head: joint force
+  const Real t2466 = t9 * t2465;
+
+  // head: motion
+  const Real t2467 = t2347 * t2347;
+  const Real t2468 = t2467 + t2305;
+
+  // head: wrench
+  const Real t2469 = constant<Real>(0.204831170943767747913L) * t2468;
+
+  // head: joint force
+  const Real t2470 = t8 * t2469;
+  const Real t2471 = t2466 - t2470;
+
+  // neck: joint force
+  const Real t2472 = t2471 * c_r_2_;
+
+  // head: wrench
+  const Real t2473 = constant<Real>(0.204831170943767747913L) * t2356;
+
+  // neck: joint force
+  const Real t2474 = t2473 * s_r_2_;
+  const Real t2475 = t2472 - t2474;
+
+  // neck: joint force
+  const Real t2476 = t2475 * constant<Real>(0.45L);
+
+  // waist: joint force
+  const Real t2477 = t2476 - t2464;
+
+  // head: joint force
+  const Real t2478 = t9 * t2363;
+
+  // head: joint force
+  const Real t2479 = t8 * t2367;
+
+  // head: joint force
+  const Real t2480 = t2479 + t2478;
+
+  // neck: wrench
+  const Real t2481 = constant<Real>(0.00401775L) * t2344;
+
+  // head: joint force
+  const Real t2482 = t2480 + t2481;
+
+  // neck: joint force
+  const Real t2483 = t2482 * s_r_2_;
+
+  // head: joint force
+  const Real t2484 = t8 * t2465;
+  const Real t2485 = t9 * t2469;
+  const Real t2486 = t2485 + t2484;
+
+  // neck: joint force
+  const Real t2487 = constant<Real>(0.01L) * t2486;
+
+  // waist: joint force
+  const Real t2488 = t2487 + t2483;
+  const Real t2489 = t2488 + t2477;
+  const Real t2490 = t2456 + t2489;
+  const Real t2491 = t2490 + t2391;
+  const Real t2492 = s_r_5_ * t2248;
+  const Real t2493 = t2262 * c_r_5_;
+  const Real t2494 = t2492 + t2493;
+
+  // left_shoulder: wrench
+  const Real t2495 = constant<Real>(0.0012427L) * t1714;
+
+  // left_shoulder: motion
+  const Real t2496 = t1718 * t1712;
+  const Real t2497 = t2496 - t1734;
+
+  // left_shoulder: wrench
+  const Real t2498 = t2497 * constant<Real>(5.6e-6L);
+  const Real t2499 = t2495 - t2498;
+
+  // left_shoulder: wrench
+  const Real t2500 = t2268 * constant<Real>(0.000068L);
+  const Real t2501 = t2499 - t2500;
+
+  // left_shoulder: wrench
+  const Real t2502 = t2432 - t2276;
+
+  // left_shoulder: wrench
+  const Real t2503 = t2502 * constant<Real>(0.000058L);
+  const Real t2504 = t2501 + t2503;
+
+  // waist: joint force
+  const Real t2505 = constant<Real>(0.0038L) * t1867;
+  const Real t2506 = t2504 + t2505;
+  const Real t2507 = t2506 + t2494;
+  const Real t2508 = t2507 * c_r_4_;
+  const Real t2509 = s_r_12_ * t1670;
+  const Real t2510 = t1684 * c_r_12_;
+  const Real t2511 = t2509 + t2510;
+
+  // right_shoulder: wrench
+  const Real t2512 = t1081 * constant<Real>(0.0012427L);
+
+  // right_shoulder: motion
+  const Real t2513 = t1085 * t1079;
+  const Real t2514 = t2513 - t1107;
+
+  // right_shoulder: wrench
+  const Real t2515 = t2514 * constant<Real>(5.6e-6L);
+  const Real t2516 = t2512 - t2515;
+
+  // right_shoulder: wrench
+  const Real t2517 = t1690 * constant<Real>(0.000068L);
+  const Real t2518 = t2516 + t2517;
+
+  // right_shoulder: wrench
+  const Real t2519 = t2403 - t1698;
+
+  // right_shoulder: wrench
+  const Real t2520 = t2519 * constant<Real>(0.000058L);
+  const Real t2521 = t2518 - t2520;
+
+  // waist: joint force
+  const Real t2522 = t1289 * constant<Real>(0.0038L);
+  const Real t2523 = t2521 + t2522;
+  const Real t2524 = t2523 + t2511;
+  const Real t2525 = c_r_11_ * t2524;
+  const Real t2526 = t2508 + t2525;
+
+  // torso: wrench
+  const Real t2527 = constant<Real>(0.073347L) * t1275;
+
+  // waist: joint force
+  const Real t2528 = t2527 + t2374;
+  const Real t2529 = t2526 + t2528;
+
+  // left_shoulder: wrench
+  const Real t2530 = t2497 * constant<Real>(0.0007689L);
+
+  // left_shoulder: wrench
+  const Real t2531 = t1721 * constant<Real>(0.000058L);
+  const Real t2532 = t2531 - t2530;
+
+  // left_shoulder: wrench
+  const Real t2533 = constant<Real>(5.6e-6L) * t1714;
+
+  // left_shoulder: wrench
+  const Real t2534 = t2532 + t2533;
+
+  // left_shoulder: wrench
+  const Real t2535 = t2277 - t2432;
+
+  // left_shoulder: wrench
+  const Real t2536 = t2535 * constant<Real>(0.000068L);
+  const Real t2537 = t2536 + t2534;
+
+  // waist: joint force
+  const Real t2538 = constant<Real>(0.0056L) * t1867;
+  const Real t2539 = t2538 + t2537;
+  const Real t2540 = t2539 + t2229;
+  const Real t2541 = t2540 * s_r_4_;
+  const Real t2542 = t2420 - t2449;
+  const Real t2543 = constant<Real>(0.25L) * t2542;
+  const Real t2544 = t2543 - t2541;
+
+  // right_upper_arm_roll: joint force
+  const Real t2545 = t2395 * c_r_12_;
+
+  // left_upper_arm_roll: joint force
+  const Real t2546 = c_r_5_ * t2424;
+
+  // waist: joint force
+  const Real t2547 = t2545 + t2546;
+  const Real t2548 = t1081 + t1714;
+  const Real t2549 = t2548 * constant<Real>(0.0038L);
+  const Real t2550 = t2497 + t2514;
+  const Real t2551 = constant<Real>(0.0056L) * t2550;
+  const Real t2552 = t2549 - t2551;
+  const Real t2553 = t2547 + t2552;
+
+  // right_upper_arm_roll: joint force
+  const Real t2554 = t2400 * s_r_12_;
+
+  // left_upper_arm_roll: joint force
+  const Real t2555 = s_r_5_ * t2429;
+
+  // waist: joint force
+  const Real t2556 = t2554 + t2555;
+  const Real t2557 = t2553 - t2556;
+  const Real t2558 = constant<Real>(0.005L) * t2557;
+
+  // neck: joint force
+  const Real t2559 = t2471 * s_r_2_;
+  const Real t2560 = t2473 * c_r_2_;
+  const Real t2561 = t2559 + t2560;
+  const Real t2562 = constant<Real>(0.01L) * t2561;
+
+  // waist: joint force
+  const Real t2563 = t2558 + t2562;
+  const Real t2564 = t2563 + t2544;
+  const Real t2565 = t2564 + t2529;
+
+  // right_shoulder: wrench
+  const Real t2566 = constant<Real>(0.0007689L) * t2514;
+
+  // right_shoulder: wrench
+  const Real t2567 = t1094 * constant<Real>(0.000058L);
+  const Real t2568 = t2566 + t2567;
+
+  // right_shoulder: wrench
+  const Real t2569 = t1081 * constant<Real>(5.6e-6L);
+
+  // right_shoulder: wrench
+  const Real t2570 = t2569 - t2568;
+
+  // right_shoulder: wrench
+  const Real t2571 = t1699 - t2403;
+
+  // right_shoulder: wrench
+  const Real t2572 = t2571 * constant<Real>(0.000068L);
+  const Real t2573 = t2570 - t2572;
+
+  // waist: joint force
+  const Real t2574 = constant<Real>(0.0056L) * t1289;
+  const Real t2575 = t2574 + t2573;
+  const Real t2576 = t1651 + t2575;
+  const Real t2577 = t2576 * s_r_11_;
+
+  // torso: wrench
+  const Real t2578 = t1278 * constant<Real>(0.026965L);
+
+  // waist: joint force
+  const Real t2579 = t2578 + t2577;
+
+  // torso: wrench
+  const Real t2580 = t1261 * constant<Real>(0.003875L);
+  const Real t2581 = t1251 - t1250;
+  const Real t2582 = constant<Real>(0.0012925L) * t2581;
+
+  // waist: joint force
+  const Real t2583 = t2582 + t2580;
+  const Real t2584 = t2579 + t2583;
+
+  // torso: wrench
+  const Real t2585 = t1283 * constant<Real>(0.0968L);
+
+  // waist: joint force
+  const Real t2586 = t2585 + t2584;
+  const Real t2587 = t2565 - t2586;
+  const Real t2588 = c_r_1_ * t2587;
+  const Real t2589 = s_r_4_ * t2507;
+  const Real t2590 = t2540 * c_r_4_;
+  const Real t2591 = t2589 + t2590;
+
+  // torso: wrench
+  const Real t2592 = constant<Real>(0.026965L) * t1275;
+  const Real t2593 = t1264 - t1251;
+  const Real t2594 = t2593 * constant<Real>(0.003875L);
+
+  // waist: joint force
+  const Real t2595 = t2592 + t2594;
+  const Real t2596 = t2595 + t2591;
+  const Real t2597 = s_r_11_ * t2524;
+  const Real t2598 = t2576 * c_r_11_;
+  const Real t2599 = t2597 + t2598;
+  const Real t2600 = t2459 - t2462;
+  const Real t2601 = constant<Real>(0.25L) * t2600;
+
+  // neck: joint force
+  const Real t2602 = t2482 * c_r_2_;
+
+  // waist: joint force
+  const Real t2603 = t2601 + t2602;
+  const Real t2604 = t2599 + t2603;
+  const Real t2605 = t2596 + t2604;
+  const Real t2606 = t2557 * constant<Real>(0.3L);
+
+  // torso: wrench
+  const Real t2607 = t1278 * constant<Real>(2.51418505L);
+
+  // waist: joint force
+  const Real t2608 = t2606 + t2607;
+
+  // torso: wrench
+  const Real t2609 = constant<Real>(0.0012925L) * t1247;
+
+  // torso: wrench
+  const Real t2610 = constant<Real>(8.246L) * t1283;
+
+  // waist: joint force
+  const Real t2611 = t2609 + t2610;
+  const Real t2612 = t2608 + t2611;
+
+  // neck: joint force
+  const Real t2613 = t2383 * s_r_2_;
+  const Real t2614 = t2561 * constant<Real>(0.45L);
+
+  // waist: joint force
+  const Real t2615 = t2613 + t2614;
+  const Real t2616 = t2615 + t2612;
+  const Real t2617 = t2605 - t2616;
+  const Real t2618 = s_r_1_ * t2617;
+  const Real t2619 = t2588 - t2618;
+
+  // waist: wrench
+  const Real t2620 = constant<Real>(0.0032L) * t1283;
+  const Real t2621 = constant<Real>(0.0175L) * t1240;
+  const Real t2622 = t2620 - t2621;
+
+  // waist: motion
+  const Real t2623 = t1057 + t1058;
+
+  // waist: wrench
+  const Real t2624 = constant<Real>(0.0010864L) * t2623;
+  const Real t2625 = constant<Real>(0.9513005L) * t1059;
+  const Real t2626 = t2624 - t2625;
+
+  // waist: wrench
+  const Real t2627 = t1045 * constant<Real>(0.000096L);
+  const Real t2628 = t2626 - t2627;
+  const Real t2629 = t2622 + t2628;
+
+  // waist: joint force
+  const Real t2630 = t2629 + t2619;
+
+  // right_thigh: joint force
+  const Real t2631 = t518 * c_r_26_;
+  const Real t2632 = t524 * s_r_26_;
+  const Real t2633 = t2631 - t2632;
+
+  // right_hip_roll_link: wrench
+  const Real t2634 = t59 * constant<Real>(0.12L);
+
+  // right_hip_roll_link: motion
+  const Real t2635 = t491 + t477;
+
+  // right_hip_roll_link: wrench
+  const Real t2636 = t2635 * constant<Real>(0.021L);
+  const Real t2637 = t2636 - t2634;
+
+  // right_thigh: joint force
+  const Real t2638 = t2637 + t2633;
+
+  // right_hip_roll_link: joint force
+  const Real t2639 = s_r_25_ * t2638;
+
+  // right_thigh: wrench
+  const Real t2640 = constant<Real>(0.0448L) * t439;
+  const Real t2641 = t240 * constant<Real>(3.696L);
+  const Real t2642 = t2640 - t2641;
+
+  // right_shank: joint force
+  const Real t2643 = t432 + t2642;
+
+  // right_hip_roll_link: wrench
+  const Real t2644 = t469 * constant<Real>(0.021L);
+
+  // right_hip_roll_link: motion
+  const Real t2645 = t491 + t476;
+
+  // right_hip_roll_link: wrench
+  const Real t2646 = constant<Real>(0.12L) * t2645;
+  const Real t2647 = t2646 - t2644;
+
+  // right_thigh: joint force
+  const Real t2648 = t2647 + t2643;
+
+  // right_hip_roll_link: joint force
+  const Real t2649 = t2648 * c_r_25_;
+  const Real t2650 = t2649 - t2639;
+
+  // right_hip_yaw_link: wrench
+  const Real t2651 = t173 * constant<Real>(0.3168L);
+  const Real t2652 = t36 * constant<Real>(0.0111L);
+  const Real t2653 = t2651 - t2652;
+
+  // right_hip_roll_link: joint force
+  const Real t2654 = t2653 + t2650;
+
+  // right_hip_yaw_link: joint force
+  const Real t2655 = s_r_24_ * t2654;
+
+  // right_hip_yaw_link: motion
+  const Real t2656 = t543 + t172;
+
+  // right_hip_yaw_link: wrench
+  const Real t2657 = constant<Real>(0.0111L) * t2656;
+  const Real t2658 = t198 * constant<Real>(0.3168L);
+  const Real t2659 = t2657 - t2658;
+
+  // right_hip_roll_link: joint force
+  const Real t2660 = t2659 + t530;
+
+  // right_hip_yaw_link: joint force
+  const Real t2661 = c_r_24_ * t2660;
+  const Real t2662 = t2661 - t2655;
+
+  // left_thigh: joint force
+  const Real t2663 = t1018 * c_r_20_;
+  const Real t2664 = s_r_20_ * t1010;
+  const Real t2665 = t2663 - t2664;
+
+  // left_hip_roll_link: wrench
+  const Real t2666 = t661 * constant<Real>(0.12L);
+
+  // left_hip_roll_link: motion
+  const Real t2667 = t968 + t985;
+
+  // left_hip_roll_link: wrench
+  const Real t2668 = t2667 * constant<Real>(0.021L);
+  const Real t2669 = t2666 + t2668;
+
+  // left_thigh: joint force
+  const Real t2670 = t2665 + t2669;
+
+  // left_hip_roll_link: joint force
+  const Real t2671 = s_r_19_ * t2670;
+
+  // left_thigh: wrench
+  const Real t2672 = constant<Real>(0.0448L) * t933;
+  const Real t2673 = t682 * constant<Real>(3.696L);
+  const Real t2674 = t2672 - t2673;
+
+  // left_shank: joint force
+  const Real t2675 = t2674 + t926;
+
+  // left_hip_roll_link: wrench
+  const Real t2676 = constant<Real>(0.021L) * t960;
+
+  // left_hip_roll_link: motion
+  const Real t2677 = t967 + t985;
+
+  // left_hip_roll_link: wrench
+  const Real t2678 = t2677 * constant<Real>(0.12L);
+  const Real t2679 = t2676 + t2678;
+
+  // left_thigh: joint force
+  const Real t2680 = t2675 - t2679;
+
+  // left_hip_roll_link: joint force
+  const Real t2681 = t2680 * c_r_19_;
+  const Real t2682 = t2681 - t2671;
+
+  // left_hip_yaw_link: wrench
+  const Real t2683 = constant<Real>(0.3168L) * t560;
+  const Real t2684 = t595 * constant<Real>(0.0111L);
+  const Real t2685 = t2683 + t2684;
+
+  // left_hip_roll_link: joint force
+  const Real t2686 = t2682 - t2685;
+
+  // left_hip_yaw_link: joint force
+  const Real t2687 = t2686 * s_r_18_;
+
+  // left_hip_yaw_link: motion
+  const Real t2688 = t559 + t1037;
+
+  // left_hip_yaw_link: wrench
+  const Real t2689 = t2688 * constant<Real>(0.0111L);
+  const Real t2690 = constant<Real>(0.3168L) * t584;
+  const Real t2691 = t2689 + t2690;
+
+  // left_hip_roll_link: joint force
+  const Real t2692 = t1024 + t2691;
+
+  // left_hip_yaw_link: joint force
+  const Real t2693 = t2692 * c_r_18_;
+  const Real t2694 = t2693 - t2687;
+
+  // waist: joint force
+  const Real t2695 = t2662 - t2694;
+  const Real t2696 = constant<Real>(0.1L) * t2695;
+  const Real t2697 = t2630 + t2696;
+
+  // pelvis: wrench
+  const Real t2698 = t152 * constant<Real>(0.3921142L);
+  const Real t2699 = t20 * constant<Real>(0.000076L);
+
+  // waist: joint force
+  const Real t2700 = t2698 + t2699;
+  const Real t2701 = t2697 - t2700;
+
+  // joint angles
+  const Real t2702 = t151 + eta_dot[5];
+
+  // pelvis: wrench
+  const Real t2703 = constant<Real>(0.0309962L) * t2702;
+
+  // waist: joint force
+  const Real t2704 = t2703 + t1042;
+
+  // pelvis: wrench
+  const Real t2705 = t17 * constant<Real>(0.001444L);
+
+  // waist: joint force
+  const Real t2706 = t548 + t2705;
+  const Real t2707 = t2704 + t2706;
+  const Real t2708 = t2707 + t2701;
+
+  // pelvis: wrench
+  const Real t2709 = constant<Real>(0.0092L) * t148;
+  const Real t2710 = t183 - t165;
+  const Real t2711 = constant<Real>(0.0004552L) * t2710;
+
+  // waist: joint force
+  const Real t2712 = t2709 + t2711;
+
+  // pelvis: wrench
+  const Real t2713 = constant<Real>(0.0552L) * t161;
+
+  // waist: joint force
+  const Real t2714 = t2713 + t2712;
+  const Real t2715 = t2708 - t2714;
+  const Real t2716 = c_r_1_ * t2617;
+  const Real t2717 = t2587 * s_r_1_;
+  const Real t2718 = t2716 + t2717;
+
+  // waist: wrench
+  const Real t2719 = constant<Real>(0.9513005L) * t1052;
+
+  // waist: wrench
+  const Real t2720 = t2623 * constant<Real>(0.000096L);
+  const Real t2721 = t2719 + t2720;
+  const Real t2722 = constant<Real>(0.0175L) * t1243;
+  const Real t2723 = t2722 + t2721;
+
+  // waist: joint force
+  const Real t2724 = t2723 + t2718;
+  const Real t2725 = t2724 * s_r_0_;
+
+  // left_hip_roll_link: joint force
+  const Real t2726 = c_r_19_ * t2670;
+  const Real t2727 = t2680 * s_r_19_;
+  const Real t2728 = t2726 + t2727;
+  const Real t2729 = t2728 * constant<Real>(0.02L);
+
+  // waist: joint force
+  const Real t2730 = t976 + t2729;
+
+  // left_hip_yaw_link: wrench
+  const Real t2731 = constant<Real>(0.0077371L) * t572;
+  const Real t2732 = t593 * constant<Real>(0.0003676L);
+  const Real t2733 = t2731 - t2732;
+
+  // left_hip_yaw_link: wrench
+  const Real t2734 = constant<Real>(0.000028L) * t595;
+  const Real t2735 = t2733 - t2734;
+
+  // left_hip_yaw_link: wrench
+  const Real t2736 = t559 - t1037;
+
+  // left_hip_yaw_link: wrench
+  const Real t2737 = t2736 * constant<Real>(0.001512L);
+  const Real t2738 = t2737 + t2735;
+
+  // waist: joint force
+  const Real t2739 = constant<Real>(0.3168L) * t574;
+  const Real t2740 = t2739 + t2738;
+  const Real t2741 = t2730 + t2740;
+  const Real t2742 = s_r_18_ * t2741;
+  const Real t2743 = t2742 + t2725;
+
+  // waist: motion
+  const Real t2744 = t1047 * t1056;
+  const Real t2745 = t2744 - t1089;
+
+  // waist: wrench
+  const Real t2746 = t2745 * constant<Real>(0.0010864L);
+  const Real t2747 = t1285 - t1286;
+
+  // waist: wrench
+  const Real t2748 = t2747 * constant<Real>(0.000096L);
+  const Real t2749 = t2748 + t2746;
+  const Real t2750 = constant<Real>(0.0032L) * t1243;
+  const Real t2751 = t2750 + t2749;
+
+  // waist: joint force
+  const Real t2752 = t2491 - t2751;
+  const Real t2753 = c_r_0_ * t2752;
+
+  // torso: wrench
+  const Real t2754 = constant<Real>(0.0968L) * t1247;
+
+  // waist: joint force
+  const Real t2755 = t2463 - t2754;
+
+  // torso: wrench
+  const Real t2756 = constant<Real>(8.246L) * t1252;
+
+  // waist: joint force
+  const Real t2757 = t2755 - t2756;
+  const Real t2758 = t2757 - t2486;
+  const Real t2759 = s_r_1_ * t2758;
+
+  // torso: wrench
+  const Real t2760 = t1265 * constant<Real>(0.0968L);
+
+  // waist: joint force
+  const Real t2761 = t2475 + t2760;
+
+  // torso: wrench
+  const Real t2762 = t1261 * constant<Real>(8.246L);
+
+  // waist: joint force
+  const Real t2763 = t2761 + t2762;
+  const Real t2764 = t2450 + t2763;
+  const Real t2765 = t2764 * c_r_1_;
+  const Real t2766 = t2765 + t2759;
+
+  // waist: wrench
+  const Real t2767 = t1059 * constant<Real>(0.0175L);
+
+  // waist: motion
+  const Real t2768 = t1050 * t1050;
+  const Real t2769 = t1286 + t2768;
+
+  // waist: wrench
+  const Real t2770 = constant<Real>(0.0032L) * t2769;
+  const Real t2771 = t2767 - t2770;
+
+  // waist: joint force
+  const Real t2772 = t2766 + t2771;
+  const Real t2773 = c_r_0_ * t2772;
+
+  // torso: wrench
+  const Real t2774 = t1278 * constant<Real>(8.246L);
+
+  // waist: joint force
+  const Real t2775 = t2561 + t2774;
+
+  // waist: wrench
+  const Real t2776 = constant<Real>(0.0032L) * t2623;
+
+  // waist: joint force
+  const Real t2777 = t2776 + t2775;
+  const Real t2778 = t2557 + t2777;
+
+  // torso: wrench
+  const Real t2779 = constant<Real>(0.0968L) * t1275;
+
+  // waist: joint force
+  const Real t2780 = t2778 - t2779;
+
+  // waist: wrench
+  const Real t2781 = constant<Real>(0.0175L) * t1287;
+
+  // waist: joint force
+  const Real t2782 = t2780 - t2781;
+  const Real t2783 = s_r_0_ * t2782;
+  const Real t2784 = t2773 - t2783;
+  const Real t2785 = t2784 * constant<Real>(0.17L);
+  const Real t2786 = t2753 + t2785;
+  const Real t2787 = t2743 + t2786;
+  const Real t2788 = t991 * s_r_19_;
+  const Real t2789 = c_r_19_ * t1003;
+  const Real t2790 = t2789 - t2788;
+
+  // left_hip_yaw_link: wrench
+  const Real t2791 = t593 * constant<Real>(0.004255L);
+
+  // left_hip_yaw_link: wrench
+  const Real t2792 = t584 * constant<Real>(0.001512L);
+  const Real t2793 = t2792 - t2791;
+
+  // left_hip_yaw_link: wrench
+  const Real t2794 = constant<Real>(0.0003676L) * t572;
+
+  // left_hip_yaw_link: wrench
+  const Real t2795 = t2794 + t2793;
+
+  // left_hip_yaw_link: wrench
+  const Real t2796 = t557 - t559;
+
+  // left_hip_yaw_link: wrench
+  const Real t2797 = constant<Real>(0.000028L) * t2796;
+  const Real t2798 = t2797 + t2795;
+
+  // waist: joint force
+  const Real t2799 = constant<Real>(0.0111L) * t574;
+  const Real t2800 = t2798 + t2799;
+  const Real t2801 = t2800 + t2790;
+  const Real t2802 = t2801 * c_r_18_;
+
+  // right_hip_roll_link: joint force
+  const Real t2803 = t2638 * c_r_25_;
+  const Real t2804 = s_r_25_ * t2648;
+  const Real t2805 = t2804 + t2803;
+  const Real t2806 = t2805 * constant<Real>(0.02L);
+
+  // waist: joint force
+  const Real t2807 = t482 - t2806;
+
+  // right_hip_yaw_link: wrench
+  const Real t2808 = constant<Real>(0.0077371L) * t51;
+  const Real t2809 = t29 * constant<Real>(0.0003676L);
+  const Real t2810 = t2808 + t2809;
+
+  // right_hip_yaw_link: wrench
+  const Real t2811 = constant<Real>(0.000028L) * t36;
+  const Real t2812 = t2810 - t2811;
+
+  // right_hip_yaw_link: wrench
+  const Real t2813 = t172 - t543;
+
+  // right_hip_yaw_link: wrench
+  const Real t2814 = t2813 * constant<Real>(0.001512L);
+  const Real t2815 = t2812 - t2814;
+
+  // waist: joint force
+  const Real t2816 = t189 * constant<Real>(0.3168L);
+  const Real t2817 = t2815 - t2816;
+  const Real t2818 = t2817 + t2807;
+  const Real t2819 = s_r_24_ * t2818;
+  const Real t2820 = t2802 + t2819;
+  const Real t2821 = t497 * s_r_25_;
+  const Real t2822 = t509 * c_r_25_;
+  const Real t2823 = t2822 - t2821;
+
+  // right_hip_yaw_link: wrench
+  const Real t2824 = t29 * constant<Real>(0.004255L);
+
+  // right_hip_yaw_link: wrench
+  const Real t2825 = t198 * constant<Real>(0.001512L);
+  const Real t2826 = t2824 + t2825;
+
+  // right_hip_yaw_link: wrench
+  const Real t2827 = t51 * constant<Real>(0.0003676L);
+
+  // right_hip_yaw_link: wrench
+  const Real t2828 = t2827 + t2826;
+
+  // right_hip_yaw_link: wrench
+  const Real t2829 = t171 - t172;
+
+  // right_hip_yaw_link: wrench
+  const Real t2830 = constant<Real>(0.000028L) * t2829;
+  const Real t2831 = t2830 - t2828;
+
+  // waist: joint force
+  const Real t2832 = t189 * constant<Real>(0.0111L);
+  const Real t2833 = t2832 + t2831;
+  const Real t2834 = t2833 + t2823;
+  const Real t2835 = t2834 * c_r_24_;
+
+  // pelvis: wrench
+  const Real t2836 = t165 - t164;
+  const Real t2837 = constant<Real>(0.001444L) * t2836;
+
+  // waist: joint force
+  const Real t2838 = t2837 + t2835;
+  const Real t2839 = t2820 + t2838;
+  const Real t2840 = t2839 + t2787;
+  const Real t2841 = t2662 + t2694;
+  const Real t2842 = constant<Real>(0.13L) * t2841;
+
+  // pelvis: wrench
+  const Real t2843 = constant<Real>(0.0552L) * t182;
+
+  // waist: joint force
+  const Real t2844 = t2843 - t2842;
+
+  // joint angles
+  const Real t2845 = t19 - eta_dot[4];
+
+  // pelvis: wrench
+  const Real t2846 = constant<Real>(0.0309962L) * t2845;
+
+  // waist: joint force
+  const Real t2847 = t2844 - t2846;
+
+  // pelvis: wrench
+  const Real t2848 = t148 * constant<Real>(2.0514L);
+  const Real t2849 = constant<Real>(0.0004552L) * t187;
+
+  // waist: joint force
+  const Real t2850 = t2848 + t2849;
+
+  // pelvis: wrench
+  const Real t2851 = constant<Real>(0.000076L) * t152;
+  const Real t2852 = t20 * constant<Real>(1.563735L);
+
+  // waist: joint force
+  const Real t2853 = t2851 + t2852;
+  const Real t2854 = t2850 + t2853;
+  const Real t2855 = t2854 + t2847;
+  const Real t2856 = t2840 + t2855;
+  const Real t2857 = c_r_0_ * t2724;
+  const Real t2858 = c_r_18_ * t2741;
+  const Real t2859 = t2857 + t2858;
+
+  // left_hip_yaw_link: joint force
+  const Real t2860 = t2686 * c_r_18_;
+  const Real t2861 = t2692 * s_r_18_;
+  const Real t2862 = t2860 + t2861;
+
+  // right_hip_yaw_link: joint force
+  const Real t2863 = c_r_24_ * t2654;
+  const Real t2864 = s_r_24_ * t2660;
+  const Real t2865 = t2864 + t2863;
+
+  // waist: joint force
+  const Real t2866 = t2862 + t2865;
+  const Real t2867 = constant<Real>(0.13L) * t2866;
+
+  // left_hip_yaw_link: wrench
+  const Real t2868 = constant<Real>(0.3168L) * t572;
+  const Real t2869 = t593 * constant<Real>(0.0111L);
+  const Real t2870 = t2868 - t2869;
+
+  // left_hip_roll_link: joint force
+  const Real t2871 = t2728 + t2870;
+
+  // right_hip_yaw_link: wrench
+  const Real t2872 = constant<Real>(0.3168L) * t51;
+  const Real t2873 = t29 * constant<Real>(0.0111L);
+  const Real t2874 = t2872 + t2873;
+
+  // right_hip_roll_link: joint force
+  const Real t2875 = t2805 - t2874;
+
+  // waist: joint force
+  const Real t2876 = t2871 - t2875;
+  const Real t2877 = t2876 * constant<Real>(0.1L);
+  const Real t2878 = t2867 + t2877;
+  const Real t2879 = t2878 + t2859;
+  const Real t2880 = c_r_24_ * t2818;
+
+  // pelvis: wrench
+  const Real t2881 = t187 * constant<Real>(0.3921142L);
+
+  // waist: joint force
+  const Real t2882 = t2880 + t2881;
+
+  // pelvis: wrench
+  const Real t2883 = t182 * constant<Real>(0.0092L);
+  const Real t2884 = t164 - t183;
+  const Real t2885 = constant<Real>(0.000076L) * t2884;
+
+  // waist: joint force
+  const Real t2886 = t2883 + t2885;
+  const Real t2887 = t2882 + t2886;
+  const Real t2888 = t2887 + t2879;
+  const Real t2889 = t2752 * s_r_0_;
+  const Real t2890 = t2772 * s_r_0_;
+  const Real t2891 = c_r_0_ * t2782;
+  const Real t2892 = t2891 + t2890;
+  const Real t2893 = constant<Real>(0.17L) * t2892;
+  const Real t2894 = t2893 + t2889;
+  const Real t2895 = t2801 * s_r_18_;
+
+  // pelvis: wrench
+  const Real t2896 = t161 * constant<Real>(2.0514L);
+
+  // waist: joint force
+  const Real t2897 = t2896 + t2895;
+  const Real t2898 = t2897 + t2894;
+  const Real t2899 = s_r_24_ * t2834;
+
+  // pelvis: wrench
+  const Real t2900 = t17 * constant<Real>(1.563735L);
+
+  // waist: joint force
+  const Real t2901 = t2899 + t2900;
+
+  // pelvis: wrench
+  const Real t2902 = t2702 * constant<Real>(0.001444L);
+  const Real t2903 = constant<Real>(0.0004552L) * t2845;
+
+  // waist: joint force
+  const Real t2904 = t2902 + t2903;
+  const Real t2905 = t2904 + t2901;
+  const Real t2906 = t2905 + t2898;
+  const Real t2907 = t2888 - t2906;
+  const Real t2908 = c_r_1_ * t2758;
+  const Real t2909 = t2764 * s_r_1_;
+  const Real t2910 = t2908 - t2909;
+
+  // waist: wrench
+  const Real t2911 = t1052 * constant<Real>(0.0175L);
+  const Real t2912 = t2745 * constant<Real>(0.0032L);
+  const Real t2913 = t2911 + t2912;
+
+  // waist: joint force
+  const Real t2914 = t2910 + t2913;
+
+  // pelvis: wrench
+  const Real t2915 = t182 * constant<Real>(77.62L);
+  const Real t2916 = t187 * constant<Real>(0.0092L);
+  const Real t2917 = constant<Real>(0.0552L) * t2845;
+  const Real t2918 = t2916 - t2917;
+  const Real t2919 = t184 * constant<Real>(2.0514L);
+  const Real t2920 = t2918 - t2919;
+  const Real t2921 = t2915 + t2920;
+
+  // right_hip_yaw_link: joint force
+  const Real t2922 = t2875 + t2921;
+
+  // left_hip_yaw_link: joint force
+  const Real t2923 = t2922 + t2871;
+
+  // waist: joint force
+  const Real t2924 = t2914 + t2923;
+
+  // pelvis: wrench
+  const Real t2925 = t17 * constant<Real>(2.0514L);
+
+  // waist: joint force
+  const Real t2926 = t2892 + t2925;
+
+  // pelvis: wrench
+  const Real t2927 = constant<Real>(77.62L) * t161;
+
+  // waist: joint force
+  const Real t2928 = t2927 + t2926;
+  const Real t2929 = t2928 + t2866;
+
+  // pelvis: wrench
+  const Real t2930 = constant<Real>(0.0092L) * t166;
+
+  // waist: joint force
+  const Real t2931 = t2929 - t2930;
+
+  // pelvis: wrench
+  const Real t2932 = constant<Real>(0.0552L) * t2702;
+
+  // waist: joint force
+  const Real t2933 = t2931 - t2932;
+
+  // pelvis: wrench
+  const Real t2934 = constant<Real>(0.0092L) * t152;
+
+  // waist: joint force
+  const Real t2935 = t2784 + t2934;
+
+  // joint angles
+  const Real t2936 = t183 + t164;
+
+  // pelvis: wrench
+  const Real t2937 = constant<Real>(0.0552L) * t2936;
+
+  // waist: joint force
+  const Real t2938 = t2935 + t2937;
+
+  // pelvis: wrench
+  const Real t2939 = t20 * constant<Real>(2.0514L);
+
+  // waist: joint force
+  const Real t2940 = t2939 + t2938;
+
+  // pelvis: wrench
+  const Real t2941 = constant<Real>(77.62L) * t148;
+
+  // waist: joint force
+  const Real t2942 = t2940 + t2941;
+  const Real t2943 = t2942 + t2841;
+
+  base_wrench[0] = t2943;
+  base_wrench[1] = t2933;
+  base_wrench[2] = t2924;
+  base_wrench[3] = t2907;
+  base_wrench[4] = t2856;
+  base_wrench[5] = t2715;
+  tau_out[0] = t2630;
+  tau_out[1] = t2491;
+  tau_out[2] = t2374;
+  tau_out[3] = t2329;
+  tau_out[4] = t2282;
+  tau_out[5] = t2229;
+  tau_out[6] = t2153;
+  tau_out[7] = t2100;
+  tau_out[8] = t2016;
+  tau_out[9] = t1991;
+  tau_out[10] = t1951;
+  tau_out[11] = t1704;
+  tau_out[12] = t1651;
+  tau_out[13] = t1575;
+  tau_out[14] = t1522;
+  tau_out[15] = t1438;
+  tau_out[16] = t1413;
+  tau_out[17] = t1373;
+  tau_out[18] = t1042;
+  tau_out[19] = t976;
+  tau_out[20] = t863;
+  tau_out[21] = t829;
+  tau_out[22] = t789;
+  tau_out[23] = t744;
+  tau_out[24] = t548;
+  tau_out[25] = t482;
+  tau_out[26] = t369;
+  tau_out[27] = t335;
+  tau_out[28] = t295;
+  tau_out[29] = t250;
 }
 
 /// What gravity alone asks of the joints and of the reference body, at rest.

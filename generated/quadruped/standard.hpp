@@ -5,11 +5,11 @@
 //   sha256  dfef0e38850f9616ef035419bda6ee7e655cd040cd498640a99c046323b1a62a
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   inverse_dynamics  606 add, 662 mul, 12 sin, 12 cos
-//   bias_forces       570 add, 655 mul, 12 sin, 12 cos
+//   inverse_dynamics  606 add, 658 mul, 12 sin, 12 cos
+//   bias_forces       570 add, 651 mul, 12 sin, 12 cos
 //   gravity_forces    87 add, 126 mul, 12 sin, 12 cos
-//   mass_matrix       280 add, 272 mul, 21 neg, 12 sin, 12 cos
-//   forward_dynamics  1246 add, 1348 mul, 14 div, 1 neg, 12 sin, 12 cos
+//   mass_matrix       264 add, 253 mul, 28 neg, 12 sin, 12 cos
+//   forward_dynamics  1242 add, 1340 mul, 14 div, 1 neg, 12 sin, 12 cos
 //   prepare           none, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
@@ -91,7 +91,7 @@ inline Prepared<Real> prepare(const Parameters<Real>&) noexcept {
 
 /// Joint forces and, for a moving reference body, the wrench on it that a motion needs.
 /// route: frames slid to the tips, tips turned, regrouped
-/// operations: 606 add, 662 mul, 12 sin, 12 cos
+/// operations: 606 add, 658 mul, 12 sin, 12 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r
@@ -701,818 +701,814 @@ inline void inverse_dynamics(const Prepared<Real>&,
   const Real t534 = t70 * constant<Real>(0.17239L);
   const Real t535 = constant<Real>(0.0013L) * t79;
   const Real t536 = t534 - t535;
-  const Real t537 = constant<Real>(0.17239L) * t84;
-  const Real t538 = t64 * constant<Real>(0.0013L);
-  const Real t539 = t537 + t538;
-  const Real t540 = t72 - t73;
-  const Real t541 = t540 * constant<Real>(0.0002678L);
-  const Real t542 = t84 * constant<Real>(0.0000473L);
-  const Real t543 = t64 * constant<Real>(0.0008138L);
-  const Real t544 = t542 + t543;
-  const Real t545 = t70 * constant<Real>(0.0360627L);
-  const Real t546 = t544 - t545;
-  const Real t547 = t541 + t546;
-  const Real t548 = t47 * constant<Real>(0.0013L);
-  const Real t549 = t547 + t548;
-  const Real t550 = constant<Real>(0.0002678L) * t71;
-  const Real t551 = constant<Real>(0.01168088L) * t84;
-  const Real t552 = t550 - t551;
-  const Real t553 = t64 * constant<Real>(0.0000473L);
-  const Real t554 = t552 - t553;
-  const Real t555 = t78 - t72;
-  const Real t556 = constant<Real>(0.0360627L) * t555;
-  const Real t557 = t554 + t556;
-  const Real t558 = t47 * constant<Real>(0.17239L);
+  const Real t537 = t72 - t73;
+  const Real t538 = t537 * constant<Real>(0.0002678L);
+  const Real t539 = t84 * constant<Real>(0.0000473L);
+  const Real t540 = t64 * constant<Real>(0.0008138L);
+  const Real t541 = t539 + t540;
+  const Real t542 = t70 * constant<Real>(0.0360627L);
+  const Real t543 = t541 - t542;
+  const Real t544 = t538 + t543;
+  const Real t545 = t47 * constant<Real>(0.0013L);
+  const Real t546 = t544 + t545;
+  const Real t547 = constant<Real>(0.0002678L) * t71;
+  const Real t548 = constant<Real>(0.01168088L) * t84;
+  const Real t549 = t547 - t548;
+  const Real t550 = t64 * constant<Real>(0.0000473L);
+  const Real t551 = t549 - t550;
+  const Real t552 = t78 - t72;
+  const Real t553 = constant<Real>(0.0360627L) * t552;
+  const Real t554 = t551 + t553;
+  const Real t555 = t47 * constant<Real>(0.17239L);
+  const Real t556 = t554 - t555;
+  const Real t557 = constant<Real>(0.0013L) * t71;
+  const Real t558 = t74 * constant<Real>(0.17239L);
   const Real t559 = t557 - t558;
-  const Real t560 = constant<Real>(0.0013L) * t71;
-  const Real t561 = t74 * constant<Real>(0.17239L);
+  const Real t560 = t54 * constant<Real>(0.17239L);
+  const Real t561 = constant<Real>(0.0013L) * t77;
   const Real t562 = t560 - t561;
-  const Real t563 = t54 * constant<Real>(0.17239L);
-  const Real t564 = constant<Real>(0.0013L) * t77;
-  const Real t565 = t563 - t564;
-  const Real t566 = t73 - t78;
-  const Real t567 = t566 * constant<Real>(0.0000473L);
-  const Real t568 = t70 * constant<Real>(0.01168088L);
-  const Real t569 = constant<Real>(0.0008138L) * t71;
-  const Real t570 = t568 - t569;
-  const Real t571 = constant<Real>(0.0360627L) * t63;
-  const Real t572 = t570 + t571;
-  const Real t573 = constant<Real>(0.0002678L) * t83;
-  const Real t574 = t572 - t573;
-  const Real t575 = t567 + t574;
-  const Real t576 = t565 + t575;
+  const Real t563 = t73 - t78;
+  const Real t564 = t563 * constant<Real>(0.0000473L);
+  const Real t565 = t70 * constant<Real>(0.01168088L);
+  const Real t566 = constant<Real>(0.0008138L) * t71;
+  const Real t567 = t565 - t566;
+  const Real t568 = constant<Real>(0.0360627L) * t63;
+  const Real t569 = t567 + t568;
+  const Real t570 = constant<Real>(0.0002678L) * t83;
+  const Real t571 = t569 - t570;
+  const Real t572 = t564 + t571;
+  const Real t573 = t562 + t572;
 
   // front_left_thigh: wrench
-  const Real t577 = t111 * constant<Real>(0.2108L);
-  const Real t578 = constant<Real>(0.0051L) * t120;
-  const Real t579 = t577 - t578;
-  const Real t580 = constant<Real>(0.2108L) * t125;
-  const Real t581 = constant<Real>(0.0051L) * t117;
-  const Real t582 = t580 + t581;
-  const Real t583 = constant<Real>(0.0051L) * t119;
-  const Real t584 = t95 * constant<Real>(0.2108L);
+  const Real t574 = t111 * constant<Real>(0.2108L);
+  const Real t575 = constant<Real>(0.0051L) * t120;
+  const Real t576 = t574 - t575;
+  const Real t577 = constant<Real>(0.2108L) * t125;
+  const Real t578 = constant<Real>(0.0051L) * t117;
+  const Real t579 = t577 + t578;
+  const Real t580 = constant<Real>(0.0051L) * t119;
+  const Real t581 = t95 * constant<Real>(0.2108L);
+  const Real t582 = t580 - t581;
+  const Real t583 = constant<Real>(0.0007093L) * t117;
+  const Real t584 = t125 * constant<Real>(0.0003348L);
   const Real t585 = t583 - t584;
-  const Real t586 = constant<Real>(0.0007093L) * t117;
-  const Real t587 = t125 * constant<Real>(0.0003348L);
-  const Real t588 = t586 - t587;
-  const Real t589 = t95 * constant<Real>(0.0148652L);
-  const Real t590 = t588 + t589;
-  const Real t591 = t110 - t108;
-  const Real t592 = t591 * constant<Real>(0.0003909L);
-  const Real t593 = t590 - t592;
-  const Real t594 = constant<Real>(0.0051L) * t107;
-  const Real t595 = t593 - t594;
-  const Real t596 = t117 * constant<Real>(0.0003348L);
-  const Real t597 = constant<Real>(0.0003909L) * t120;
-  const Real t598 = constant<Real>(0.0421328L) * t125;
-  const Real t599 = t597 + t598;
-  const Real t600 = t596 - t599;
-  const Real t601 = t118 - t110;
-  const Real t602 = constant<Real>(0.0148652L) * t601;
-  const Real t603 = t600 - t602;
-  const Real t604 = t107 * constant<Real>(0.2108L);
-  const Real t605 = t603 + t604;
-  const Real t606 = t95 * constant<Real>(0.0421328L);
-  const Real t607 = constant<Real>(0.0007093L) * t120;
-  const Real t608 = t606 - t607;
-  const Real t609 = constant<Real>(0.0148652L) * t116;
-  const Real t610 = t608 - t609;
-  const Real t611 = t124 * constant<Real>(0.0003909L);
-  const Real t612 = t610 + t611;
-  const Real t613 = t108 - t118;
-  const Real t614 = t613 * constant<Real>(0.0003348L);
-  const Real t615 = t612 - t614;
-  const Real t616 = constant<Real>(0.0051L) * t105;
-  const Real t617 = t102 * constant<Real>(0.2108L);
-  const Real t618 = t616 - t617;
-  const Real t619 = t615 + t618;
+  const Real t586 = t95 * constant<Real>(0.0148652L);
+  const Real t587 = t585 + t586;
+  const Real t588 = t110 - t108;
+  const Real t589 = t588 * constant<Real>(0.0003909L);
+  const Real t590 = t587 - t589;
+  const Real t591 = constant<Real>(0.0051L) * t107;
+  const Real t592 = t590 - t591;
+  const Real t593 = t117 * constant<Real>(0.0003348L);
+  const Real t594 = constant<Real>(0.0003909L) * t120;
+  const Real t595 = constant<Real>(0.0421328L) * t125;
+  const Real t596 = t594 + t595;
+  const Real t597 = t593 - t596;
+  const Real t598 = t118 - t110;
+  const Real t599 = constant<Real>(0.0148652L) * t598;
+  const Real t600 = t597 - t599;
+  const Real t601 = t107 * constant<Real>(0.2108L);
+  const Real t602 = t600 + t601;
+  const Real t603 = t95 * constant<Real>(0.0421328L);
+  const Real t604 = constant<Real>(0.0007093L) * t120;
+  const Real t605 = t603 - t604;
+  const Real t606 = constant<Real>(0.0148652L) * t116;
+  const Real t607 = t605 - t606;
+  const Real t608 = t124 * constant<Real>(0.0003909L);
+  const Real t609 = t607 + t608;
+  const Real t610 = t108 - t118;
+  const Real t611 = t610 * constant<Real>(0.0003348L);
+  const Real t612 = t609 - t611;
+  const Real t613 = constant<Real>(0.0051L) * t105;
+  const Real t614 = t102 * constant<Real>(0.2108L);
+  const Real t615 = t613 - t614;
+  const Real t616 = t612 + t615;
 
   // front_left_shank: wrench
-  const Real t620 = t135 * constant<Real>(0.0687462028042276673933L);
-  const Real t621 = constant<Real>(0.0687462028042276673933L) * t160;
-  const Real t622 = constant<Real>(0.00603717424774589637822L) * t149;
-  const Real t623 = t153 * constant<Real>(0.0129142756403275773944L);
-  const Real t624 = t144 * constant<Real>(0.0000328443596724226056129L);
-  const Real t625 = t623 - t624;
-  const Real t626 = t622 + t625;
-  const Real t627 = t134 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t628 = t626 + t627;
-  const Real t629 = t140 - t145;
-  const Real t630 = constant<Real>(4.68432916485436730503e-6L) * t629;
-  const Real t631 = t628 + t630;
-  const Real t632 = t621 + t631;
-  const Real t633 = constant<Real>(0.0687462028042276673933L) * t153;
-  const Real t634 = t150 * constant<Real>(0.0000328443596724226056129L);
-  const Real t635 = t135 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t636 = t634 + t635;
-  const Real t637 = constant<Real>(0.00603717424774589637822L) * t153;
-  const Real t638 = t636 - t637;
-  const Real t639 = t136 - t140;
-  const Real t640 = constant<Real>(4.58207125849616419464e-7L) * t639;
-  const Real t641 = t638 - t640;
-  const Real t642 = t141 * constant<Real>(0.0687462028042276673933L);
-  const Real t643 = t145 - t136;
-  const Real t644 = constant<Real>(0.00603717424774589637822L) * t643;
-  const Real t645 = constant<Real>(4.68432916485436730503e-6L) * t150;
-  const Real t646 = t135 * constant<Real>(0.0129142756403275773944L);
-  const Real t647 = t144 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t648 = t646 + t647;
-  const Real t649 = t645 + t648;
-  const Real t650 = t644 - t649;
-  const Real t651 = t152 * constant<Real>(0.0687462028042276673933L);
-  const Real t652 = t650 - t651;
+  const Real t617 = t135 * constant<Real>(0.0687462028042276673933L);
+  const Real t618 = constant<Real>(0.0687462028042276673933L) * t160;
+  const Real t619 = constant<Real>(0.00603717424774589637822L) * t149;
+  const Real t620 = t153 * constant<Real>(0.0129142756403275773944L);
+  const Real t621 = t144 * constant<Real>(0.0000328443596724226056129L);
+  const Real t622 = t620 - t621;
+  const Real t623 = t619 + t622;
+  const Real t624 = t134 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t625 = t623 + t624;
+  const Real t626 = t140 - t145;
+  const Real t627 = constant<Real>(4.68432916485436730503e-6L) * t626;
+  const Real t628 = t625 + t627;
+  const Real t629 = t618 + t628;
+  const Real t630 = constant<Real>(0.0687462028042276673933L) * t153;
+  const Real t631 = t150 * constant<Real>(0.0000328443596724226056129L);
+  const Real t632 = t135 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t633 = t631 + t632;
+  const Real t634 = constant<Real>(0.00603717424774589637822L) * t153;
+  const Real t635 = t633 - t634;
+  const Real t636 = t136 - t140;
+  const Real t637 = constant<Real>(4.58207125849616419464e-7L) * t636;
+  const Real t638 = t635 - t637;
+  const Real t639 = t141 * constant<Real>(0.0687462028042276673933L);
+  const Real t640 = t145 - t136;
+  const Real t641 = constant<Real>(0.00603717424774589637822L) * t640;
+  const Real t642 = constant<Real>(4.68432916485436730503e-6L) * t150;
+  const Real t643 = t135 * constant<Real>(0.0129142756403275773944L);
+  const Real t644 = t144 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t645 = t643 + t644;
+  const Real t646 = t642 + t645;
+  const Real t647 = t641 - t646;
+  const Real t648 = t152 * constant<Real>(0.0687462028042276673933L);
+  const Real t649 = t647 - t648;
 
   // front_right_hip: wrench
-  const Real t653 = constant<Real>(0.0013L) * t190;
-  const Real t654 = t191 * constant<Real>(0.17239L);
-  const Real t655 = t653 + t654;
-  const Real t656 = constant<Real>(0.0013L) * t196;
-  const Real t657 = t188 * constant<Real>(0.17239L);
-  const Real t658 = t656 - t657;
-  const Real t659 = constant<Real>(0.01168088L) * t191;
-  const Real t660 = t174 * constant<Real>(0.0008138L);
-  const Real t661 = t659 - t660;
-  const Real t662 = constant<Real>(0.0360627L) * t195;
-  const Real t663 = t661 - t662;
-  const Real t664 = constant<Real>(0.0002678L) * t187;
-  const Real t665 = t663 - t664;
-  const Real t666 = t176 - t189;
-  const Real t667 = t666 * constant<Real>(0.0000473L);
-  const Real t668 = t665 - t667;
-  const Real t669 = t182 * constant<Real>(0.17239L);
-  const Real t670 = t165 * constant<Real>(0.0013L);
-  const Real t671 = t669 + t670;
-  const Real t672 = t668 - t671;
-  const Real t673 = t174 * constant<Real>(0.0013L);
-  const Real t674 = t179 * constant<Real>(0.17239L);
-  const Real t675 = t673 + t674;
-  const Real t676 = t196 * constant<Real>(0.0000473L);
-  const Real t677 = t174 * constant<Real>(0.0002678L);
-  const Real t678 = constant<Real>(0.01168088L) * t188;
-  const Real t679 = t677 - t678;
-  const Real t680 = t676 + t679;
-  const Real t681 = t189 - t178;
-  const Real t682 = constant<Real>(0.0360627L) * t681;
-  const Real t683 = t680 - t682;
-  const Real t684 = t175 * constant<Real>(0.17239L);
-  const Real t685 = t683 + t684;
-  const Real t686 = t175 * constant<Real>(0.0013L);
-  const Real t687 = t178 - t176;
-  const Real t688 = constant<Real>(0.0002678L) * t687;
-  const Real t689 = constant<Real>(0.0008138L) * t196;
-  const Real t690 = t188 * constant<Real>(0.0000473L);
-  const Real t691 = t689 - t690;
-  const Real t692 = constant<Real>(0.0360627L) * t191;
-  const Real t693 = t691 + t692;
-  const Real t694 = t688 + t693;
-  const Real t695 = t686 + t694;
+  const Real t650 = constant<Real>(0.0013L) * t190;
+  const Real t651 = t191 * constant<Real>(0.17239L);
+  const Real t652 = t650 + t651;
+  const Real t653 = constant<Real>(0.01168088L) * t191;
+  const Real t654 = t174 * constant<Real>(0.0008138L);
+  const Real t655 = t653 - t654;
+  const Real t656 = constant<Real>(0.0360627L) * t195;
+  const Real t657 = t655 - t656;
+  const Real t658 = constant<Real>(0.0002678L) * t187;
+  const Real t659 = t657 - t658;
+  const Real t660 = t176 - t189;
+  const Real t661 = t660 * constant<Real>(0.0000473L);
+  const Real t662 = t659 - t661;
+  const Real t663 = t182 * constant<Real>(0.17239L);
+  const Real t664 = t165 * constant<Real>(0.0013L);
+  const Real t665 = t663 + t664;
+  const Real t666 = t662 - t665;
+  const Real t667 = t174 * constant<Real>(0.0013L);
+  const Real t668 = t179 * constant<Real>(0.17239L);
+  const Real t669 = t667 + t668;
+  const Real t670 = t196 * constant<Real>(0.0000473L);
+  const Real t671 = t174 * constant<Real>(0.0002678L);
+  const Real t672 = constant<Real>(0.01168088L) * t188;
+  const Real t673 = t671 - t672;
+  const Real t674 = t670 + t673;
+  const Real t675 = t189 - t178;
+  const Real t676 = constant<Real>(0.0360627L) * t675;
+  const Real t677 = t674 - t676;
+  const Real t678 = t175 * constant<Real>(0.17239L);
+  const Real t679 = t677 + t678;
+  const Real t680 = t175 * constant<Real>(0.0013L);
+  const Real t681 = t178 - t176;
+  const Real t682 = constant<Real>(0.0002678L) * t681;
+  const Real t683 = constant<Real>(0.0008138L) * t196;
+  const Real t684 = t188 * constant<Real>(0.0000473L);
+  const Real t685 = t683 - t684;
+  const Real t686 = constant<Real>(0.0360627L) * t191;
+  const Real t687 = t685 + t686;
+  const Real t688 = t682 + t687;
+  const Real t689 = t680 + t688;
 
   // front_right_thigh: wrench
-  const Real t696 = t214 * constant<Real>(0.0007093L);
-  const Real t697 = t224 * constant<Real>(0.0003348L);
-  const Real t698 = t696 - t697;
-  const Real t699 = t219 * constant<Real>(0.0148652L);
-  const Real t700 = t698 - t699;
-  const Real t701 = t202 - t226;
-  const Real t702 = t701 * constant<Real>(0.0003909L);
-  const Real t703 = t700 + t702;
-  const Real t704 = constant<Real>(0.0051L) * t205;
-  const Real t705 = t703 - t704;
-  const Real t706 = t214 * constant<Real>(0.0003348L);
-  const Real t707 = t225 * constant<Real>(0.0003909L);
-  const Real t708 = constant<Real>(0.0421328L) * t224;
-  const Real t709 = t707 - t708;
-  const Real t710 = t706 + t709;
-  const Real t711 = t200 - t202;
-  const Real t712 = constant<Real>(0.0148652L) * t711;
-  const Real t713 = t710 + t712;
-  const Real t714 = t205 * constant<Real>(0.2108L);
+  const Real t690 = t214 * constant<Real>(0.0007093L);
+  const Real t691 = t224 * constant<Real>(0.0003348L);
+  const Real t692 = t690 - t691;
+  const Real t693 = t219 * constant<Real>(0.0148652L);
+  const Real t694 = t692 - t693;
+  const Real t695 = t202 - t226;
+  const Real t696 = t695 * constant<Real>(0.0003909L);
+  const Real t697 = t694 + t696;
+  const Real t698 = constant<Real>(0.0051L) * t205;
+  const Real t699 = t697 - t698;
+  const Real t700 = t214 * constant<Real>(0.0003348L);
+  const Real t701 = t225 * constant<Real>(0.0003909L);
+  const Real t702 = constant<Real>(0.0421328L) * t224;
+  const Real t703 = t701 - t702;
+  const Real t704 = t700 + t703;
+  const Real t705 = t200 - t202;
+  const Real t706 = constant<Real>(0.0148652L) * t705;
+  const Real t707 = t704 + t706;
+  const Real t708 = t205 * constant<Real>(0.2108L);
+  const Real t709 = t707 + t708;
+  const Real t710 = t227 * constant<Real>(0.2108L);
+  const Real t711 = constant<Real>(0.0051L) * t225;
+  const Real t712 = t710 - t711;
+  const Real t713 = constant<Real>(0.0051L) * t214;
+  const Real t714 = t224 * constant<Real>(0.2108L);
   const Real t715 = t713 + t714;
-  const Real t716 = t227 * constant<Real>(0.2108L);
-  const Real t717 = constant<Real>(0.0051L) * t225;
-  const Real t718 = t716 - t717;
-  const Real t719 = constant<Real>(0.0051L) * t214;
-  const Real t720 = t224 * constant<Real>(0.2108L);
-  const Real t721 = t719 + t720;
-  const Real t722 = t213 * constant<Real>(0.0148652L);
-  const Real t723 = constant<Real>(0.0421328L) * t219;
-  const Real t724 = t225 * constant<Real>(0.0007093L);
-  const Real t725 = t723 - t724;
-  const Real t726 = t722 + t725;
-  const Real t727 = t223 * constant<Real>(0.0003909L);
+  const Real t716 = t213 * constant<Real>(0.0148652L);
+  const Real t717 = constant<Real>(0.0421328L) * t219;
+  const Real t718 = t225 * constant<Real>(0.0007093L);
+  const Real t719 = t717 - t718;
+  const Real t720 = t716 + t719;
+  const Real t721 = t223 * constant<Real>(0.0003909L);
+  const Real t722 = t720 - t721;
+  const Real t723 = t226 - t200;
+  const Real t724 = t723 * constant<Real>(0.0003348L);
+  const Real t725 = t722 - t724;
+  const Real t726 = constant<Real>(0.0051L) * t236;
+  const Real t727 = constant<Real>(0.2108L) * t233;
   const Real t728 = t726 - t727;
-  const Real t729 = t226 - t200;
-  const Real t730 = t729 * constant<Real>(0.0003348L);
-  const Real t731 = t728 - t730;
-  const Real t732 = constant<Real>(0.0051L) * t236;
-  const Real t733 = constant<Real>(0.2108L) * t233;
-  const Real t734 = t732 - t733;
-  const Real t735 = t731 + t734;
-  const Real t736 = t203 * constant<Real>(0.0051L);
-  const Real t737 = t219 * constant<Real>(0.2108L);
-  const Real t738 = t736 - t737;
+  const Real t729 = t725 + t728;
+  const Real t730 = t203 * constant<Real>(0.0051L);
+  const Real t731 = t219 * constant<Real>(0.2108L);
+  const Real t732 = t730 - t731;
 
   // front_right_shank: wrench
-  const Real t739 = constant<Real>(0.00603717424774589637822L) * t265;
-  const Real t740 = constant<Real>(4.68432916485436730503e-6L) * t270;
-  const Real t741 = t252 * constant<Real>(0.0000328443596724226056129L);
-  const Real t742 = t740 + t741;
-  const Real t743 = t739 + t742;
-  const Real t744 = t254 - t253;
-  const Real t745 = t744 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t746 = t743 + t745;
-  const Real t747 = constant<Real>(0.0687462028042276673933L) * t270;
-  const Real t748 = t264 * constant<Real>(0.0687462028042276673933L);
-  const Real t749 = t265 * constant<Real>(0.0129142756403275773944L);
-  const Real t750 = t245 * constant<Real>(0.0000328443596724226056129L);
-  const Real t751 = t749 - t750;
-  const Real t752 = constant<Real>(0.00603717424774589637822L) * t251;
-  const Real t753 = t751 - t752;
-  const Real t754 = constant<Real>(4.58207125849616419464e-7L) * t269;
-  const Real t755 = t753 - t754;
-  const Real t756 = t253 - t271;
-  const Real t757 = constant<Real>(4.68432916485436730503e-6L) * t756;
-  const Real t758 = t755 + t757;
-  const Real t759 = t748 + t758;
-  const Real t760 = t245 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t761 = t270 * constant<Real>(0.0129142756403275773944L);
-  const Real t762 = t760 - t761;
-  const Real t763 = t252 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t764 = t762 - t763;
-  const Real t765 = t271 - t254;
-  const Real t766 = constant<Real>(0.00603717424774589637822L) * t765;
-  const Real t767 = t764 - t766;
-  const Real t768 = t257 * constant<Real>(0.0687462028042276673933L);
-  const Real t769 = t767 - t768;
-  const Real t770 = t255 * constant<Real>(0.0687462028042276673933L);
-  const Real t771 = t265 * constant<Real>(0.0687462028042276673933L);
+  const Real t733 = constant<Real>(0.00603717424774589637822L) * t265;
+  const Real t734 = constant<Real>(4.68432916485436730503e-6L) * t270;
+  const Real t735 = t252 * constant<Real>(0.0000328443596724226056129L);
+  const Real t736 = t734 + t735;
+  const Real t737 = t733 + t736;
+  const Real t738 = t254 - t253;
+  const Real t739 = t738 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t740 = t737 + t739;
+  const Real t741 = constant<Real>(0.0687462028042276673933L) * t270;
+  const Real t742 = t264 * constant<Real>(0.0687462028042276673933L);
+  const Real t743 = t265 * constant<Real>(0.0129142756403275773944L);
+  const Real t744 = t245 * constant<Real>(0.0000328443596724226056129L);
+  const Real t745 = t743 - t744;
+  const Real t746 = constant<Real>(0.00603717424774589637822L) * t251;
+  const Real t747 = t745 - t746;
+  const Real t748 = constant<Real>(4.58207125849616419464e-7L) * t269;
+  const Real t749 = t747 - t748;
+  const Real t750 = t253 - t271;
+  const Real t751 = constant<Real>(4.68432916485436730503e-6L) * t750;
+  const Real t752 = t749 + t751;
+  const Real t753 = t742 + t752;
+  const Real t754 = t245 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t755 = t270 * constant<Real>(0.0129142756403275773944L);
+  const Real t756 = t754 - t755;
+  const Real t757 = t252 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t758 = t756 - t757;
+  const Real t759 = t271 - t254;
+  const Real t760 = constant<Real>(0.00603717424774589637822L) * t759;
+  const Real t761 = t758 - t760;
+  const Real t762 = t257 * constant<Real>(0.0687462028042276673933L);
+  const Real t763 = t761 - t762;
+  const Real t764 = t255 * constant<Real>(0.0687462028042276673933L);
+  const Real t765 = t265 * constant<Real>(0.0687462028042276673933L);
 
   // hind_left_hip: wrench
-  const Real t772 = constant<Real>(0.0013L) * t304;
-  const Real t773 = t284 * constant<Real>(0.17239L);
+  const Real t766 = constant<Real>(0.0013L) * t304;
+  const Real t767 = t284 * constant<Real>(0.17239L);
+  const Real t768 = t766 - t767;
+  const Real t769 = t300 * constant<Real>(0.17239L);
+  const Real t770 = t287 * constant<Real>(0.0013L);
+  const Real t771 = t769 - t770;
+  const Real t772 = constant<Real>(0.01168088L) * t303;
+  const Real t773 = constant<Real>(0.0008138L) * t304;
   const Real t774 = t772 - t773;
-  const Real t775 = t300 * constant<Real>(0.17239L);
-  const Real t776 = t287 * constant<Real>(0.0013L);
-  const Real t777 = t775 - t776;
-  const Real t778 = constant<Real>(0.01168088L) * t303;
-  const Real t779 = constant<Real>(0.0008138L) * t304;
-  const Real t780 = t778 - t779;
-  const Real t781 = constant<Real>(0.0360627L) * t280;
-  const Real t782 = t780 - t781;
-  const Real t783 = constant<Real>(0.0002678L) * t294;
-  const Real t784 = t782 + t783;
-  const Real t785 = t282 - t296;
-  const Real t786 = t785 * constant<Real>(0.0000473L);
-  const Real t787 = t784 + t786;
-  const Real t788 = t777 + t787;
-  const Real t789 = t295 * constant<Real>(0.0000473L);
-  const Real t790 = t281 * constant<Real>(0.0008138L);
-  const Real t791 = t789 + t790;
-  const Real t792 = constant<Real>(0.0360627L) * t303;
-  const Real t793 = t791 + t792;
-  const Real t794 = t283 - t282;
-  const Real t795 = constant<Real>(0.0002678L) * t794;
-  const Real t796 = t793 - t795;
-  const Real t797 = t796 + t548;
-  const Real t798 = t281 * constant<Real>(0.0000473L);
-  const Real t799 = t295 * constant<Real>(0.01168088L);
-  const Real t800 = constant<Real>(0.0002678L) * t304;
-  const Real t801 = t799 + t800;
-  const Real t802 = t798 + t801;
-  const Real t803 = t296 - t283;
-  const Real t804 = constant<Real>(0.0360627L) * t803;
-  const Real t805 = t802 + t804;
-  const Real t806 = t558 + t805;
-  const Real t807 = t281 * constant<Real>(0.0013L);
-  const Real t808 = t295 * constant<Real>(0.17239L);
-  const Real t809 = t807 + t808;
-  const Real t810 = t303 * constant<Real>(0.17239L);
-  const Real t811 = constant<Real>(0.0013L) * t297;
-  const Real t812 = t810 - t811;
+  const Real t775 = constant<Real>(0.0360627L) * t280;
+  const Real t776 = t774 - t775;
+  const Real t777 = constant<Real>(0.0002678L) * t294;
+  const Real t778 = t776 + t777;
+  const Real t779 = t282 - t296;
+  const Real t780 = t779 * constant<Real>(0.0000473L);
+  const Real t781 = t778 + t780;
+  const Real t782 = t771 + t781;
+  const Real t783 = t295 * constant<Real>(0.0000473L);
+  const Real t784 = t281 * constant<Real>(0.0008138L);
+  const Real t785 = t783 + t784;
+  const Real t786 = constant<Real>(0.0360627L) * t303;
+  const Real t787 = t785 + t786;
+  const Real t788 = t283 - t282;
+  const Real t789 = constant<Real>(0.0002678L) * t788;
+  const Real t790 = t787 - t789;
+  const Real t791 = t790 + t545;
+  const Real t792 = t281 * constant<Real>(0.0000473L);
+  const Real t793 = t295 * constant<Real>(0.01168088L);
+  const Real t794 = constant<Real>(0.0002678L) * t304;
+  const Real t795 = t793 + t794;
+  const Real t796 = t792 + t795;
+  const Real t797 = t296 - t283;
+  const Real t798 = constant<Real>(0.0360627L) * t797;
+  const Real t799 = t796 + t798;
+  const Real t800 = t555 + t799;
+  const Real t801 = t303 * constant<Real>(0.17239L);
+  const Real t802 = constant<Real>(0.0013L) * t297;
+  const Real t803 = t801 - t802;
 
   // hind_left_thigh: wrench
-  const Real t813 = t327 * constant<Real>(0.2108L);
-  const Real t814 = t340 * constant<Real>(0.0003348L);
-  const Real t815 = t319 * constant<Real>(0.0003909L);
-  const Real t816 = constant<Real>(0.0421328L) * t325;
-  const Real t817 = t815 + t816;
-  const Real t818 = t814 - t817;
-  const Real t819 = t310 - t306;
-  const Real t820 = constant<Real>(0.0148652L) * t819;
-  const Real t821 = t818 - t820;
-  const Real t822 = t813 + t821;
-  const Real t823 = constant<Real>(0.0051L) * t340;
-  const Real t824 = t325 * constant<Real>(0.2108L);
-  const Real t825 = t823 + t824;
-  const Real t826 = constant<Real>(0.0007093L) * t340;
-  const Real t827 = t325 * constant<Real>(0.0003348L);
-  const Real t828 = t826 - t827;
-  const Real t829 = constant<Real>(0.0148652L) * t344;
-  const Real t830 = t828 + t829;
-  const Real t831 = t306 - t334;
-  const Real t832 = t831 * constant<Real>(0.0003909L);
-  const Real t833 = t830 - t832;
-  const Real t834 = constant<Real>(0.0051L) * t327;
-  const Real t835 = t833 - t834;
-  const Real t836 = constant<Real>(0.0051L) * t333;
-  const Real t837 = constant<Real>(0.2108L) * t343;
-  const Real t838 = t836 - t837;
-  const Real t839 = constant<Real>(0.0421328L) * t344;
-  const Real t840 = t319 * constant<Real>(0.0007093L);
-  const Real t841 = t839 - t840;
-  const Real t842 = t339 * constant<Real>(0.0148652L);
+  const Real t804 = t327 * constant<Real>(0.2108L);
+  const Real t805 = t340 * constant<Real>(0.0003348L);
+  const Real t806 = t319 * constant<Real>(0.0003909L);
+  const Real t807 = constant<Real>(0.0421328L) * t325;
+  const Real t808 = t806 + t807;
+  const Real t809 = t805 - t808;
+  const Real t810 = t310 - t306;
+  const Real t811 = constant<Real>(0.0148652L) * t810;
+  const Real t812 = t809 - t811;
+  const Real t813 = t804 + t812;
+  const Real t814 = constant<Real>(0.0051L) * t340;
+  const Real t815 = t325 * constant<Real>(0.2108L);
+  const Real t816 = t814 + t815;
+  const Real t817 = constant<Real>(0.0007093L) * t340;
+  const Real t818 = t325 * constant<Real>(0.0003348L);
+  const Real t819 = t817 - t818;
+  const Real t820 = constant<Real>(0.0148652L) * t344;
+  const Real t821 = t819 + t820;
+  const Real t822 = t306 - t334;
+  const Real t823 = t822 * constant<Real>(0.0003909L);
+  const Real t824 = t821 - t823;
+  const Real t825 = constant<Real>(0.0051L) * t327;
+  const Real t826 = t824 - t825;
+  const Real t827 = constant<Real>(0.0051L) * t333;
+  const Real t828 = constant<Real>(0.2108L) * t343;
+  const Real t829 = t827 - t828;
+  const Real t830 = constant<Real>(0.0421328L) * t344;
+  const Real t831 = t319 * constant<Real>(0.0007093L);
+  const Real t832 = t830 - t831;
+  const Real t833 = t339 * constant<Real>(0.0148652L);
+  const Real t834 = t832 - t833;
+  const Real t835 = t324 * constant<Real>(0.0003909L);
+  const Real t836 = t834 + t835;
+  const Real t837 = t334 - t310;
+  const Real t838 = t837 * constant<Real>(0.0003348L);
+  const Real t839 = t836 - t838;
+  const Real t840 = t829 + t839;
+  const Real t841 = t335 * constant<Real>(0.2108L);
+  const Real t842 = constant<Real>(0.0051L) * t319;
   const Real t843 = t841 - t842;
-  const Real t844 = t324 * constant<Real>(0.0003909L);
-  const Real t845 = t843 + t844;
-  const Real t846 = t334 - t310;
-  const Real t847 = t846 * constant<Real>(0.0003348L);
-  const Real t848 = t845 - t847;
-  const Real t849 = t838 + t848;
-  const Real t850 = t335 * constant<Real>(0.2108L);
-  const Real t851 = constant<Real>(0.0051L) * t319;
-  const Real t852 = t850 - t851;
-  const Real t853 = t311 * constant<Real>(0.0051L);
-  const Real t854 = constant<Real>(0.2108L) * t344;
-  const Real t855 = t853 - t854;
+  const Real t844 = t311 * constant<Real>(0.0051L);
+  const Real t845 = constant<Real>(0.2108L) * t344;
+  const Real t846 = t844 - t845;
 
   // hind_left_shank: wrench
-  const Real t856 = t362 * constant<Real>(0.0687462028042276673933L);
-  const Real t857 = t368 - t346;
-  const Real t858 = constant<Real>(0.00603717424774589637822L) * t857;
-  const Real t859 = t362 * constant<Real>(0.0129142756403275773944L);
-  const Real t860 = constant<Real>(4.58207125849616419464e-7L) * t371;
-  const Real t861 = t859 + t860;
-  const Real t862 = t367 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t863 = t861 + t862;
-  const Real t864 = t858 - t863;
-  const Real t865 = t353 * constant<Real>(0.0687462028042276673933L);
-  const Real t866 = t864 - t865;
-  const Real t867 = t351 * constant<Real>(0.0687462028042276673933L);
-  const Real t868 = t361 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t869 = t379 * constant<Real>(0.0129142756403275773944L);
-  const Real t870 = t371 * constant<Real>(0.0000328443596724226056129L);
-  const Real t871 = t869 - t870;
-  const Real t872 = constant<Real>(0.00603717424774589637822L) * t366;
+  const Real t847 = t362 * constant<Real>(0.0687462028042276673933L);
+  const Real t848 = t368 - t346;
+  const Real t849 = constant<Real>(0.00603717424774589637822L) * t848;
+  const Real t850 = t362 * constant<Real>(0.0129142756403275773944L);
+  const Real t851 = constant<Real>(4.58207125849616419464e-7L) * t371;
+  const Real t852 = t850 + t851;
+  const Real t853 = t367 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t854 = t852 + t853;
+  const Real t855 = t849 - t854;
+  const Real t856 = t353 * constant<Real>(0.0687462028042276673933L);
+  const Real t857 = t855 - t856;
+  const Real t858 = t351 * constant<Real>(0.0687462028042276673933L);
+  const Real t859 = t361 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t860 = t379 * constant<Real>(0.0129142756403275773944L);
+  const Real t861 = t371 * constant<Real>(0.0000328443596724226056129L);
+  const Real t862 = t860 - t861;
+  const Real t863 = constant<Real>(0.00603717424774589637822L) * t366;
+  const Real t864 = t862 + t863;
+  const Real t865 = t859 + t864;
+  const Real t866 = t350 - t368;
+  const Real t867 = t866 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t868 = t865 + t867;
+  const Real t869 = t378 * constant<Real>(0.0687462028042276673933L);
+  const Real t870 = t868 + t869;
+  const Real t871 = t367 * constant<Real>(0.0000328443596724226056129L);
+  const Real t872 = t362 * constant<Real>(4.68432916485436730503e-6L);
   const Real t873 = t871 + t872;
-  const Real t874 = t868 + t873;
-  const Real t875 = t350 - t368;
-  const Real t876 = t875 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t877 = t874 + t876;
-  const Real t878 = t378 * constant<Real>(0.0687462028042276673933L);
-  const Real t879 = t877 + t878;
-  const Real t880 = t367 * constant<Real>(0.0000328443596724226056129L);
-  const Real t881 = t362 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t882 = t880 + t881;
-  const Real t883 = constant<Real>(0.00603717424774589637822L) * t379;
-  const Real t884 = t882 - t883;
-  const Real t885 = t346 - t350;
-  const Real t886 = t885 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t887 = t884 - t886;
-  const Real t888 = constant<Real>(0.0687462028042276673933L) * t379;
+  const Real t874 = constant<Real>(0.00603717424774589637822L) * t379;
+  const Real t875 = t873 - t874;
+  const Real t876 = t346 - t350;
+  const Real t877 = t876 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t878 = t875 - t877;
+  const Real t879 = constant<Real>(0.0687462028042276673933L) * t379;
 
   // hind_right_hip: wrench
-  const Real t889 = constant<Real>(0.17239L) * t412;
-  const Real t890 = t394 * constant<Real>(0.0013L);
-  const Real t891 = t889 + t890;
-  const Real t892 = t400 * constant<Real>(0.0013L);
-  const Real t893 = t408 * constant<Real>(0.17239L);
-  const Real t894 = t892 - t893;
-  const Real t895 = constant<Real>(0.0013L) * t403;
-  const Real t896 = t389 * constant<Real>(0.17239L);
-  const Real t897 = t895 + t896;
-  const Real t898 = t400 * constant<Real>(0.0000473L);
-  const Real t899 = constant<Real>(0.0002678L) * t403;
-  const Real t900 = constant<Real>(0.01168088L) * t408;
-  const Real t901 = t899 + t900;
-  const Real t902 = t898 - t901;
-  const Real t903 = t393 - t384;
-  const Real t904 = t903 * constant<Real>(0.0360627L);
-  const Real t905 = t902 + t904;
-  const Real t906 = t905 + t684;
-  const Real t907 = constant<Real>(0.0002678L) * t407;
-  const Real t908 = constant<Real>(0.0360627L) * t399;
-  const Real t909 = constant<Real>(0.01168088L) * t412;
-  const Real t910 = t403 * constant<Real>(0.0008138L);
+  const Real t880 = constant<Real>(0.17239L) * t412;
+  const Real t881 = t394 * constant<Real>(0.0013L);
+  const Real t882 = t880 + t881;
+  const Real t883 = constant<Real>(0.0013L) * t403;
+  const Real t884 = t389 * constant<Real>(0.17239L);
+  const Real t885 = t883 + t884;
+  const Real t886 = t400 * constant<Real>(0.0000473L);
+  const Real t887 = constant<Real>(0.0002678L) * t403;
+  const Real t888 = constant<Real>(0.01168088L) * t408;
+  const Real t889 = t887 + t888;
+  const Real t890 = t886 - t889;
+  const Real t891 = t393 - t384;
+  const Real t892 = t891 * constant<Real>(0.0360627L);
+  const Real t893 = t890 + t892;
+  const Real t894 = t893 + t678;
+  const Real t895 = constant<Real>(0.0002678L) * t407;
+  const Real t896 = constant<Real>(0.0360627L) * t399;
+  const Real t897 = constant<Real>(0.01168088L) * t412;
+  const Real t898 = t403 * constant<Real>(0.0008138L);
+  const Real t899 = t897 - t898;
+  const Real t900 = t896 + t899;
+  const Real t901 = t895 + t900;
+  const Real t902 = t388 - t393;
+  const Real t903 = t902 * constant<Real>(0.0000473L);
+  const Real t904 = t901 - t903;
+  const Real t905 = constant<Real>(0.0013L) * t411;
+  const Real t906 = t382 * constant<Real>(0.17239L);
+  const Real t907 = t905 + t906;
+  const Real t908 = t904 - t907;
+  const Real t909 = t400 * constant<Real>(0.0008138L);
+  const Real t910 = t408 * constant<Real>(0.0000473L);
   const Real t911 = t909 - t910;
-  const Real t912 = t908 + t911;
-  const Real t913 = t907 + t912;
-  const Real t914 = t388 - t393;
-  const Real t915 = t914 * constant<Real>(0.0000473L);
+  const Real t912 = constant<Real>(0.0360627L) * t412;
+  const Real t913 = t911 - t912;
+  const Real t914 = t384 - t388;
+  const Real t915 = constant<Real>(0.0002678L) * t914;
   const Real t916 = t913 - t915;
-  const Real t917 = constant<Real>(0.0013L) * t411;
-  const Real t918 = t382 * constant<Real>(0.17239L);
-  const Real t919 = t917 + t918;
-  const Real t920 = t916 - t919;
-  const Real t921 = t400 * constant<Real>(0.0008138L);
-  const Real t922 = t408 * constant<Real>(0.0000473L);
-  const Real t923 = t921 - t922;
-  const Real t924 = constant<Real>(0.0360627L) * t412;
-  const Real t925 = t923 - t924;
-  const Real t926 = t384 - t388;
-  const Real t927 = constant<Real>(0.0002678L) * t926;
-  const Real t928 = t925 - t927;
-  const Real t929 = t686 + t928;
+  const Real t917 = t680 + t916;
 
   // hind_right_thigh: wrench
-  const Real t930 = t433 * constant<Real>(0.0148652L);
-  const Real t931 = t423 * constant<Real>(0.0421328L);
-  const Real t932 = t428 * constant<Real>(0.0007093L);
-  const Real t933 = t931 - t932;
-  const Real t934 = t930 + t933;
-  const Real t935 = t449 * constant<Real>(0.0003909L);
-  const Real t936 = t934 - t935;
-  const Real t937 = t444 - t424;
-  const Real t938 = t937 * constant<Real>(0.0003348L);
-  const Real t939 = t936 - t938;
-  const Real t940 = constant<Real>(0.0051L) * t443;
-  const Real t941 = t440 * constant<Real>(0.2108L);
-  const Real t942 = t940 - t941;
-  const Real t943 = t939 + t942;
-  const Real t944 = t434 * constant<Real>(0.0003348L);
-  const Real t945 = t428 * constant<Real>(0.0003909L);
-  const Real t946 = constant<Real>(0.0421328L) * t450;
+  const Real t918 = t433 * constant<Real>(0.0148652L);
+  const Real t919 = t423 * constant<Real>(0.0421328L);
+  const Real t920 = t428 * constant<Real>(0.0007093L);
+  const Real t921 = t919 - t920;
+  const Real t922 = t918 + t921;
+  const Real t923 = t449 * constant<Real>(0.0003909L);
+  const Real t924 = t922 - t923;
+  const Real t925 = t444 - t424;
+  const Real t926 = t925 * constant<Real>(0.0003348L);
+  const Real t927 = t924 - t926;
+  const Real t928 = constant<Real>(0.0051L) * t443;
+  const Real t929 = t440 * constant<Real>(0.2108L);
+  const Real t930 = t928 - t929;
+  const Real t931 = t927 + t930;
+  const Real t932 = t434 * constant<Real>(0.0003348L);
+  const Real t933 = t428 * constant<Real>(0.0003909L);
+  const Real t934 = constant<Real>(0.0421328L) * t450;
+  const Real t935 = t933 - t934;
+  const Real t936 = t932 + t935;
+  const Real t937 = t424 - t426;
+  const Real t938 = constant<Real>(0.0148652L) * t937;
+  const Real t939 = t936 + t938;
+  const Real t940 = constant<Real>(0.2108L) * t452;
+  const Real t941 = t939 + t940;
+  const Real t942 = constant<Real>(0.0051L) * t434;
+  const Real t943 = constant<Real>(0.2108L) * t450;
+  const Real t944 = t942 + t943;
+  const Real t945 = t445 * constant<Real>(0.2108L);
+  const Real t946 = constant<Real>(0.0051L) * t428;
   const Real t947 = t945 - t946;
-  const Real t948 = t944 + t947;
-  const Real t949 = t424 - t426;
-  const Real t950 = constant<Real>(0.0148652L) * t949;
-  const Real t951 = t948 + t950;
-  const Real t952 = constant<Real>(0.2108L) * t452;
-  const Real t953 = t951 + t952;
-  const Real t954 = constant<Real>(0.0051L) * t434;
-  const Real t955 = constant<Real>(0.2108L) * t450;
-  const Real t956 = t954 + t955;
-  const Real t957 = t445 * constant<Real>(0.2108L);
-  const Real t958 = constant<Real>(0.0051L) * t428;
-  const Real t959 = t957 - t958;
-  const Real t960 = t426 - t444;
-  const Real t961 = t960 * constant<Real>(0.0003909L);
-  const Real t962 = t434 * constant<Real>(0.0007093L);
-  const Real t963 = t450 * constant<Real>(0.0003348L);
-  const Real t964 = t962 - t963;
-  const Real t965 = t423 * constant<Real>(0.0148652L);
-  const Real t966 = t964 - t965;
-  const Real t967 = t961 + t966;
-  const Real t968 = constant<Real>(0.0051L) * t452;
-  const Real t969 = t967 - t968;
-  const Real t970 = t427 * constant<Real>(0.0051L);
-  const Real t971 = t423 * constant<Real>(0.2108L);
-  const Real t972 = t970 - t971;
+  const Real t948 = t426 - t444;
+  const Real t949 = t948 * constant<Real>(0.0003909L);
+  const Real t950 = t434 * constant<Real>(0.0007093L);
+  const Real t951 = t450 * constant<Real>(0.0003348L);
+  const Real t952 = t950 - t951;
+  const Real t953 = t423 * constant<Real>(0.0148652L);
+  const Real t954 = t952 - t953;
+  const Real t955 = t949 + t954;
+  const Real t956 = constant<Real>(0.0051L) * t452;
+  const Real t957 = t955 - t956;
+  const Real t958 = t427 * constant<Real>(0.0051L);
+  const Real t959 = t423 * constant<Real>(0.2108L);
+  const Real t960 = t958 - t959;
 
   // hind_right_shank: wrench
-  const Real t973 = t465 * constant<Real>(0.0129142756403275773944L);
-  const Real t974 = t475 * constant<Real>(0.0000328443596724226056129L);
+  const Real t961 = t465 * constant<Real>(0.0129142756403275773944L);
+  const Real t962 = t475 * constant<Real>(0.0000328443596724226056129L);
+  const Real t963 = t961 - t962;
+  const Real t964 = constant<Real>(0.00603717424774589637822L) * t486;
+  const Real t965 = t963 - t964;
+  const Real t966 = constant<Real>(4.58207125849616419464e-7L) * t481;
+  const Real t967 = t965 - t966;
+  const Real t968 = t458 - t476;
+  const Real t969 = constant<Real>(4.68432916485436730503e-6L) * t968;
+  const Real t970 = t967 + t969;
+  const Real t971 = t472 * constant<Real>(0.0687462028042276673933L);
+  const Real t972 = t970 + t971;
+  const Real t973 = constant<Real>(4.58207125849616419464e-7L) * t475;
+  const Real t974 = t482 * constant<Real>(0.0129142756403275773944L);
   const Real t975 = t973 - t974;
-  const Real t976 = constant<Real>(0.00603717424774589637822L) * t486;
+  const Real t976 = constant<Real>(4.68432916485436730503e-6L) * t487;
   const Real t977 = t975 - t976;
-  const Real t978 = constant<Real>(4.58207125849616419464e-7L) * t481;
-  const Real t979 = t977 - t978;
-  const Real t980 = t458 - t476;
-  const Real t981 = constant<Real>(4.68432916485436730503e-6L) * t980;
-  const Real t982 = t979 + t981;
-  const Real t983 = t472 * constant<Real>(0.0687462028042276673933L);
-  const Real t984 = t982 + t983;
-  const Real t985 = constant<Real>(4.58207125849616419464e-7L) * t475;
-  const Real t986 = t482 * constant<Real>(0.0129142756403275773944L);
-  const Real t987 = t985 - t986;
-  const Real t988 = constant<Real>(4.68432916485436730503e-6L) * t487;
-  const Real t989 = t987 - t988;
-  const Real t990 = t476 - t454;
-  const Real t991 = constant<Real>(0.00603717424774589637822L) * t990;
-  const Real t992 = t989 - t991;
-  const Real t993 = t474 * constant<Real>(0.0687462028042276673933L);
-  const Real t994 = t992 - t993;
-  const Real t995 = t459 * constant<Real>(0.0687462028042276673933L);
-  const Real t996 = t465 * constant<Real>(0.0687462028042276673933L);
-  const Real t997 = constant<Real>(0.0687462028042276673933L) * t482;
-  const Real t998 = t454 - t458;
-  const Real t999 = constant<Real>(4.58207125849616419464e-7L) * t998;
-  const Real t1000 = constant<Real>(0.00603717424774589637822L) * t465;
-  const Real t1001 = constant<Real>(4.68432916485436730503e-6L) * t482;
-  const Real t1002 = constant<Real>(0.0000328443596724226056129L) * t487;
-  const Real t1003 = t1001 + t1002;
-  const Real t1004 = t1000 + t1003;
-  const Real t1005 = t999 + t1004;
+  const Real t978 = t476 - t454;
+  const Real t979 = constant<Real>(0.00603717424774589637822L) * t978;
+  const Real t980 = t977 - t979;
+  const Real t981 = t474 * constant<Real>(0.0687462028042276673933L);
+  const Real t982 = t980 - t981;
+  const Real t983 = t459 * constant<Real>(0.0687462028042276673933L);
+  const Real t984 = t465 * constant<Real>(0.0687462028042276673933L);
+  const Real t985 = constant<Real>(0.0687462028042276673933L) * t482;
+  const Real t986 = t454 - t458;
+  const Real t987 = constant<Real>(4.58207125849616419464e-7L) * t986;
+  const Real t988 = constant<Real>(0.00603717424774589637822L) * t465;
+  const Real t989 = constant<Real>(4.68432916485436730503e-6L) * t482;
+  const Real t990 = constant<Real>(0.0000328443596724226056129L) * t487;
+  const Real t991 = t989 + t990;
+  const Real t992 = t988 + t991;
+  const Real t993 = t987 + t992;
 
   // hind_right_shank: joint force
-  const Real t1006 = t994 * t9;
-  const Real t1007 = t8 * t1005;
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = constant<Real>(0.0164990886730146401744L) * t482;
-  const Real t1010 = t1008 + t1009;
-  const Real t1011 = t953 + t1010;
-  const Real t1012 = t996 * t9;
-  const Real t1013 = t8 * t995;
-  const Real t1014 = t1012 - t1013;
-  const Real t1015 = constant<Real>(0.24L) * t1014;
-  const Real t1016 = t984 - t1015;
-  const Real t1017 = t1016 + t943;
-  const Real t1018 = t1014 + t972;
-  const Real t1019 = t997 - t956;
-  const Real t1020 = t9 * t1005;
-  const Real t1021 = t8 * t994;
-  const Real t1022 = t1020 - t1021;
-  const Real t1023 = t969 + t1022;
-  const Real t1024 = t8 * t996;
-  const Real t1025 = t995 * t9;
-  const Real t1026 = t1024 + t1025;
-  const Real t1027 = t959 - t1026;
+  const Real t994 = t982 * t9;
+  const Real t995 = t8 * t993;
+  const Real t996 = t994 + t995;
+  const Real t997 = constant<Real>(0.0164990886730146401744L) * t482;
+  const Real t998 = t996 + t997;
+  const Real t999 = t941 + t998;
+  const Real t1000 = t984 * t9;
+  const Real t1001 = t8 * t983;
+  const Real t1002 = t1000 - t1001;
+  const Real t1003 = constant<Real>(0.24L) * t1002;
+  const Real t1004 = t972 - t1003;
+  const Real t1005 = t1004 + t931;
+  const Real t1006 = t1002 + t960;
+  const Real t1007 = t985 - t944;
+  const Real t1008 = t9 * t993;
+  const Real t1009 = t8 * t982;
+  const Real t1010 = t1008 - t1009;
+  const Real t1011 = t957 + t1010;
+  const Real t1012 = t8 * t984;
+  const Real t1013 = t983 * t9;
+  const Real t1014 = t1012 + t1013;
+  const Real t1015 = t947 - t1014;
 
   // hind_right_thigh: joint force
-  const Real t1028 = t1027 * s_r_10_;
-  const Real t1029 = t1018 * c_r_10_;
-  const Real t1030 = t1028 + t1029;
-  const Real t1031 = t894 + t1030;
-  const Real t1032 = t897 + t1019;
-  const Real t1033 = c_r_10_ * t1023;
-  const Real t1034 = t1011 * s_r_10_;
-  const Real t1035 = t1033 - t1034;
-  const Real t1036 = constant<Real>(0.21L) * t1019;
-  const Real t1037 = t1035 - t1036;
-  const Real t1038 = t1037 + t906;
-  const Real t1039 = t1023 * s_r_10_;
-  const Real t1040 = t1011 * c_r_10_;
-  const Real t1041 = t1039 + t1040;
-  const Real t1042 = t1041 + t920;
-  const Real t1043 = c_r_10_ * t1027;
-  const Real t1044 = t1018 * s_r_10_;
-  const Real t1045 = t1043 - t1044;
-  const Real t1046 = t1045 - t891;
-  const Real t1047 = t1045 * constant<Real>(0.21L);
-  const Real t1048 = t1017 + t1047;
-  const Real t1049 = t1048 + t929;
+  const Real t1016 = t1015 * s_r_10_;
+  const Real t1017 = t1006 * c_r_10_;
+  const Real t1018 = t1016 + t1017;
+  const Real t1019 = t885 + t1007;
+  const Real t1020 = c_r_10_ * t1011;
+  const Real t1021 = t999 * s_r_10_;
+  const Real t1022 = t1020 - t1021;
+  const Real t1023 = constant<Real>(0.21L) * t1007;
+  const Real t1024 = t1022 - t1023;
+  const Real t1025 = t1024 + t894;
+  const Real t1026 = t1011 * s_r_10_;
+  const Real t1027 = t999 * c_r_10_;
+  const Real t1028 = t1026 + t1027;
+  const Real t1029 = t1028 + t908;
+  const Real t1030 = c_r_10_ * t1015;
+  const Real t1031 = t1006 * s_r_10_;
+  const Real t1032 = t1030 - t1031;
+  const Real t1033 = t1032 - t882;
+  const Real t1034 = t1032 * constant<Real>(0.21L);
+  const Real t1035 = t1005 + t1034;
+  const Real t1036 = t1035 + t917;
 
   // hind_right_hip: joint force
-  const Real t1050 = c_r_9_ * t1046;
-  const Real t1051 = s_r_9_ * t1032;
-  const Real t1052 = t1050 + t1051;
-  const Real t1053 = s_r_9_ * t1049;
-  const Real t1054 = c_r_9_ * t1038;
-  const Real t1055 = t1053 + t1054;
-  const Real t1056 = c_r_9_ * t1032;
-  const Real t1057 = s_r_9_ * t1046;
-  const Real t1058 = t1056 - t1057;
-  const Real t1059 = t1058 + t519;
-  const Real t1060 = c_r_9_ * t1049;
-  const Real t1061 = s_r_9_ * t1038;
-  const Real t1062 = t1060 - t1061;
-  const Real t1063 = t1062 + t533;
+  const Real t1037 = c_r_9_ * t1033;
+  const Real t1038 = s_r_9_ * t1019;
+  const Real t1039 = t1037 + t1038;
+  const Real t1040 = s_r_9_ * t1036;
+  const Real t1041 = c_r_9_ * t1025;
+  const Real t1042 = t1040 + t1041;
+  const Real t1043 = c_r_9_ * t1019;
+  const Real t1044 = s_r_9_ * t1033;
+  const Real t1045 = t1043 - t1044;
+  const Real t1046 = t1045 + t519;
+  const Real t1047 = c_r_9_ * t1036;
+  const Real t1048 = s_r_9_ * t1025;
+  const Real t1049 = t1047 - t1048;
+  const Real t1050 = t1049 + t533;
 
   // hind_left_shank: joint force
-  const Real t1064 = t362 * constant<Real>(0.0164990886730146401744L);
-  const Real t1065 = t5 * t887;
-  const Real t1066 = t6 * t866;
-  const Real t1067 = t1065 + t1066;
-  const Real t1068 = t1064 + t1067;
-  const Real t1069 = t822 + t1068;
-  const Real t1070 = t856 - t825;
-  const Real t1071 = t6 * t888;
-  const Real t1072 = t5 * t867;
-  const Real t1073 = t1071 - t1072;
-  const Real t1074 = t1073 * constant<Real>(0.24L);
-  const Real t1075 = t879 - t1074;
-  const Real t1076 = t849 + t1075;
-  const Real t1077 = t6 * t887;
-  const Real t1078 = t5 * t866;
-  const Real t1079 = t1077 - t1078;
-  const Real t1080 = t835 + t1079;
-  const Real t1081 = t6 * t867;
-  const Real t1082 = t5 * t888;
-  const Real t1083 = t1081 + t1082;
-  const Real t1084 = t852 - t1083;
-  const Real t1085 = t1073 + t855;
+  const Real t1051 = t362 * constant<Real>(0.0164990886730146401744L);
+  const Real t1052 = t5 * t878;
+  const Real t1053 = t6 * t857;
+  const Real t1054 = t1052 + t1053;
+  const Real t1055 = t1051 + t1054;
+  const Real t1056 = t813 + t1055;
+  const Real t1057 = t847 - t816;
+  const Real t1058 = t6 * t879;
+  const Real t1059 = t5 * t858;
+  const Real t1060 = t1058 - t1059;
+  const Real t1061 = t1060 * constant<Real>(0.24L);
+  const Real t1062 = t870 - t1061;
+  const Real t1063 = t840 + t1062;
+  const Real t1064 = t6 * t878;
+  const Real t1065 = t5 * t857;
+  const Real t1066 = t1064 - t1065;
+  const Real t1067 = t826 + t1066;
+  const Real t1068 = t6 * t858;
+  const Real t1069 = t5 * t879;
+  const Real t1070 = t1068 + t1069;
+  const Real t1071 = t843 - t1070;
+  const Real t1072 = t1060 + t846;
 
   // hind_left_thigh: joint force
-  const Real t1086 = c_r_7_ * t1084;
-  const Real t1087 = s_r_7_ * t1085;
-  const Real t1088 = t1086 - t1087;
-  const Real t1089 = t1088 + t812;
-  const Real t1090 = c_r_7_ * t1085;
-  const Real t1091 = s_r_7_ * t1084;
+  const Real t1073 = c_r_7_ * t1071;
+  const Real t1074 = s_r_7_ * t1072;
+  const Real t1075 = t1073 - t1074;
+  const Real t1076 = t1075 + t803;
+  const Real t1077 = t1067 * c_r_7_;
+  const Real t1078 = t1056 * s_r_7_;
+  const Real t1079 = t1077 - t1078;
+  const Real t1080 = t1057 * constant<Real>(0.21L);
+  const Real t1081 = t1079 - t1080;
+  const Real t1082 = t1081 - t800;
+  const Real t1083 = t768 + t1057;
+  const Real t1084 = c_r_7_ * t1072;
+  const Real t1085 = s_r_7_ * t1071;
+  const Real t1086 = t1084 + t1085;
+  const Real t1087 = constant<Real>(0.21L) * t1075;
+  const Real t1088 = t1063 + t1087;
+  const Real t1089 = t791 + t1088;
+  const Real t1090 = t1056 * c_r_7_;
+  const Real t1091 = t1067 * s_r_7_;
   const Real t1092 = t1090 + t1091;
-  const Real t1093 = t1092 + t809;
-  const Real t1094 = t1080 * c_r_7_;
-  const Real t1095 = t1069 * s_r_7_;
-  const Real t1096 = t1094 - t1095;
-  const Real t1097 = t1070 * constant<Real>(0.21L);
-  const Real t1098 = t1096 - t1097;
-  const Real t1099 = t1098 - t806;
-  const Real t1100 = t774 + t1070;
-  const Real t1101 = constant<Real>(0.21L) * t1088;
-  const Real t1102 = t1076 + t1101;
-  const Real t1103 = t797 + t1102;
-  const Real t1104 = t1069 * c_r_7_;
-  const Real t1105 = t1080 * s_r_7_;
-  const Real t1106 = t1104 + t1105;
-  const Real t1107 = t788 + t1106;
+  const Real t1093 = t782 + t1092;
 
   // hind_left_hip: joint force
-  const Real t1108 = t1100 * c_r_6_;
-  const Real t1109 = t1089 * s_r_6_;
-  const Real t1110 = t1108 - t1109;
-  const Real t1111 = t1110 + t1059;
-  const Real t1112 = t1103 * c_r_6_;
-  const Real t1113 = t1099 * s_r_6_;
-  const Real t1114 = t1112 - t1113;
-  const Real t1115 = t1114 + t1063;
-  const Real t1116 = t1099 * c_r_6_;
-  const Real t1117 = t1100 * s_r_6_;
-  const Real t1118 = t1089 * c_r_6_;
-  const Real t1119 = t1117 + t1118;
-  const Real t1120 = t1103 * s_r_6_;
+  const Real t1094 = t1083 * c_r_6_;
+  const Real t1095 = t1076 * s_r_6_;
+  const Real t1096 = t1094 - t1095;
+  const Real t1097 = t1096 + t1046;
+  const Real t1098 = t1089 * c_r_6_;
+  const Real t1099 = t1082 * s_r_6_;
+  const Real t1100 = t1098 - t1099;
+  const Real t1101 = t1100 + t1050;
+  const Real t1102 = t1082 * c_r_6_;
+  const Real t1103 = t1083 * s_r_6_;
+  const Real t1104 = t1076 * c_r_6_;
+  const Real t1105 = t1103 + t1104;
+  const Real t1106 = t1089 * s_r_6_;
 
   // front_right_shank: joint force
-  const Real t1121 = t3 * t771;
-  const Real t1122 = t2 * t770;
-  const Real t1123 = t1121 - t1122;
-  const Real t1124 = t1123 * constant<Real>(0.24L);
-  const Real t1125 = t759 - t1124;
-  const Real t1126 = t1125 + t735;
-  const Real t1127 = t746 * t3;
-  const Real t1128 = t2 * t769;
-  const Real t1129 = t1127 - t1128;
-  const Real t1130 = t705 + t1129;
-  const Real t1131 = t2 * t746;
-  const Real t1132 = t769 * t3;
-  const Real t1133 = t1131 + t1132;
-  const Real t1134 = constant<Real>(0.0164990886730146401744L) * t270;
-  const Real t1135 = t1133 + t1134;
-  const Real t1136 = t715 + t1135;
-  const Real t1137 = t1123 + t738;
-  const Real t1138 = t2 * t771;
-  const Real t1139 = t770 * t3;
-  const Real t1140 = t1138 + t1139;
-  const Real t1141 = t718 - t1140;
-  const Real t1142 = t747 - t721;
+  const Real t1107 = t3 * t765;
+  const Real t1108 = t2 * t764;
+  const Real t1109 = t1107 - t1108;
+  const Real t1110 = t1109 * constant<Real>(0.24L);
+  const Real t1111 = t753 - t1110;
+  const Real t1112 = t1111 + t729;
+  const Real t1113 = t740 * t3;
+  const Real t1114 = t2 * t763;
+  const Real t1115 = t1113 - t1114;
+  const Real t1116 = t699 + t1115;
+  const Real t1117 = t2 * t740;
+  const Real t1118 = t763 * t3;
+  const Real t1119 = t1117 + t1118;
+  const Real t1120 = constant<Real>(0.0164990886730146401744L) * t270;
+  const Real t1121 = t1119 + t1120;
+  const Real t1122 = t709 + t1121;
+  const Real t1123 = t1109 + t732;
+  const Real t1124 = t2 * t765;
+  const Real t1125 = t764 * t3;
+  const Real t1126 = t1124 + t1125;
+  const Real t1127 = t712 - t1126;
+  const Real t1128 = t741 - t715;
 
   // front_right_thigh: joint force
-  const Real t1143 = t1141 * c_r_4_;
-  const Real t1144 = s_r_4_ * t1137;
-  const Real t1145 = t1143 - t1144;
-  const Real t1146 = t1145 - t655;
-  const Real t1147 = t675 + t1142;
-  const Real t1148 = t1130 * c_r_4_;
-  const Real t1149 = s_r_4_ * t1136;
-  const Real t1150 = t1148 - t1149;
-  const Real t1151 = constant<Real>(0.21L) * t1142;
-  const Real t1152 = t1150 + t1151;
-  const Real t1153 = t1152 + t685;
-  const Real t1154 = t1145 * constant<Real>(0.21L);
-  const Real t1155 = t1126 - t1154;
-  const Real t1156 = t695 + t1155;
-  const Real t1157 = s_r_4_ * t1141;
-  const Real t1158 = t1137 * c_r_4_;
-  const Real t1159 = t1157 + t1158;
-  const Real t1160 = t658 + t1159;
-  const Real t1161 = t1136 * c_r_4_;
-  const Real t1162 = t1130 * s_r_4_;
-  const Real t1163 = t1161 + t1162;
-  const Real t1164 = t1163 + t672;
+  const Real t1129 = t1127 * c_r_4_;
+  const Real t1130 = s_r_4_ * t1123;
+  const Real t1131 = t1129 - t1130;
+  const Real t1132 = t1131 - t652;
+  const Real t1133 = t669 + t1128;
+  const Real t1134 = t1116 * c_r_4_;
+  const Real t1135 = s_r_4_ * t1122;
+  const Real t1136 = t1134 - t1135;
+  const Real t1137 = constant<Real>(0.21L) * t1128;
+  const Real t1138 = t1136 + t1137;
+  const Real t1139 = t1138 + t679;
+  const Real t1140 = t1131 * constant<Real>(0.21L);
+  const Real t1141 = t1112 - t1140;
+  const Real t1142 = t689 + t1141;
+  const Real t1143 = t1122 * c_r_4_;
+  const Real t1144 = t1116 * s_r_4_;
+  const Real t1145 = t1143 + t1144;
+  const Real t1146 = t1145 + t666;
+  const Real t1147 = s_r_4_ * t1127;
+  const Real t1148 = t1123 * c_r_4_;
+  const Real t1149 = t1147 + t1148;
 
   // front_right_hip: joint force
-  const Real t1165 = t1147 * c_r_3_;
-  const Real t1166 = t1146 * s_r_3_;
-  const Real t1167 = t1165 - t1166;
-  const Real t1168 = t1111 + t1167;
-  const Real t1169 = c_r_3_ * t1156;
-  const Real t1170 = t1153 * s_r_3_;
-  const Real t1171 = t1169 - t1170;
-  const Real t1172 = t1115 + t1171;
-  const Real t1173 = t1147 * s_r_3_;
-  const Real t1174 = t1146 * c_r_3_;
-  const Real t1175 = t1173 + t1174;
-  const Real t1176 = s_r_3_ * t1156;
-  const Real t1177 = c_r_3_ * t1153;
-  const Real t1178 = t1176 + t1177;
+  const Real t1150 = t1133 * c_r_3_;
+  const Real t1151 = t1132 * s_r_3_;
+  const Real t1152 = t1150 - t1151;
+  const Real t1153 = t1097 + t1152;
+  const Real t1154 = c_r_3_ * t1142;
+  const Real t1155 = t1139 * s_r_3_;
+  const Real t1156 = t1154 - t1155;
+  const Real t1157 = t1101 + t1156;
+  const Real t1158 = t1133 * s_r_3_;
+  const Real t1159 = t1132 * c_r_3_;
+  const Real t1160 = t1158 + t1159;
+  const Real t1161 = s_r_3_ * t1142;
+  const Real t1162 = c_r_3_ * t1139;
+  const Real t1163 = t1161 + t1162;
 
   // front_left_shank: joint force
-  const Real t1179 = t633 * t12;
-  const Real t1180 = t11 * t642;
-  const Real t1181 = t1179 - t1180;
-  const Real t1182 = t585 + t1181;
-  const Real t1183 = t1181 * constant<Real>(0.24L);
-  const Real t1184 = t632 - t1183;
-  const Real t1185 = t1184 + t619;
-  const Real t1186 = t641 * t12;
-  const Real t1187 = t11 * t652;
-  const Real t1188 = t1186 - t1187;
-  const Real t1189 = t595 + t1188;
-  const Real t1190 = t135 * constant<Real>(0.0164990886730146401744L);
-  const Real t1191 = t12 * t652;
-  const Real t1192 = t11 * t641;
-  const Real t1193 = t1191 + t1192;
-  const Real t1194 = t1190 + t1193;
-  const Real t1195 = t605 + t1194;
-  const Real t1196 = t620 - t582;
-  const Real t1197 = t11 * t633;
-  const Real t1198 = t12 * t642;
-  const Real t1199 = t1197 + t1198;
-  const Real t1200 = t579 - t1199;
+  const Real t1164 = t630 * t12;
+  const Real t1165 = t11 * t639;
+  const Real t1166 = t1164 - t1165;
+  const Real t1167 = t582 + t1166;
+  const Real t1168 = t1166 * constant<Real>(0.24L);
+  const Real t1169 = t629 - t1168;
+  const Real t1170 = t1169 + t616;
+  const Real t1171 = t638 * t12;
+  const Real t1172 = t11 * t649;
+  const Real t1173 = t1171 - t1172;
+  const Real t1174 = t592 + t1173;
+  const Real t1175 = t135 * constant<Real>(0.0164990886730146401744L);
+  const Real t1176 = t12 * t649;
+  const Real t1177 = t11 * t638;
+  const Real t1178 = t1176 + t1177;
+  const Real t1179 = t1175 + t1178;
+  const Real t1180 = t602 + t1179;
+  const Real t1181 = t617 - t579;
+  const Real t1182 = t11 * t630;
+  const Real t1183 = t12 * t639;
+  const Real t1184 = t1182 + t1183;
+  const Real t1185 = t576 - t1184;
 
   // front_left_thigh: joint force
-  const Real t1201 = c_r_1_ * t1200;
-  const Real t1202 = t1182 * s_r_1_;
+  const Real t1186 = c_r_1_ * t1185;
+  const Real t1187 = t1167 * s_r_1_;
+  const Real t1188 = t1186 - t1187;
+  const Real t1189 = t1188 * constant<Real>(0.21L);
+  const Real t1190 = t1170 - t1189;
+  const Real t1191 = t1190 + t546;
+  const Real t1192 = s_r_1_ * t1185;
+  const Real t1193 = t1167 * c_r_1_;
+  const Real t1194 = t1192 + t1193;
+  const Real t1195 = t1188 + t536;
+  const Real t1196 = t1174 * s_r_1_;
+  const Real t1197 = c_r_1_ * t1180;
+  const Real t1198 = t1196 + t1197;
+  const Real t1199 = t1198 + t573;
+  const Real t1200 = constant<Real>(0.21L) * t1181;
+  const Real t1201 = t1174 * c_r_1_;
+  const Real t1202 = s_r_1_ * t1180;
   const Real t1203 = t1201 - t1202;
-  const Real t1204 = t1203 * constant<Real>(0.21L);
-  const Real t1205 = t1185 - t1204;
-  const Real t1206 = t1205 + t549;
-  const Real t1207 = t1203 + t536;
-  const Real t1208 = s_r_1_ * t1200;
-  const Real t1209 = t1182 * c_r_1_;
-  const Real t1210 = t1208 + t1209;
-  const Real t1211 = t1210 + t539;
-  const Real t1212 = t1189 * s_r_1_;
-  const Real t1213 = c_r_1_ * t1195;
-  const Real t1214 = t1212 + t1213;
-  const Real t1215 = t1214 + t576;
-  const Real t1216 = constant<Real>(0.21L) * t1196;
-  const Real t1217 = t1189 * c_r_1_;
-  const Real t1218 = s_r_1_ * t1195;
-  const Real t1219 = t1217 - t1218;
-  const Real t1220 = t1216 + t1219;
-  const Real t1221 = t559 + t1220;
-  const Real t1222 = t562 + t1196;
+  const Real t1204 = t1200 + t1203;
+  const Real t1205 = t556 + t1204;
+  const Real t1206 = t559 + t1181;
 
   // front_left_hip: joint force
-  const Real t1223 = c_r_0_ * t1221;
-  const Real t1224 = t1206 * s_r_0_;
-  const Real t1225 = t1206 * c_r_0_;
-  const Real t1226 = s_r_0_ * t1221;
-  const Real t1227 = t1225 - t1226;
-  const Real t1228 = t1172 + t1227;
-  const Real t1229 = c_r_0_ * t1207;
-  const Real t1230 = s_r_0_ * t1222;
-  const Real t1231 = t1229 + t1230;
-  const Real t1232 = c_r_0_ * t1222;
-  const Real t1233 = s_r_0_ * t1207;
-  const Real t1234 = t1232 - t1233;
-  const Real t1235 = t1234 + t1168;
+  const Real t1207 = c_r_0_ * t1205;
+  const Real t1208 = t1191 * s_r_0_;
+  const Real t1209 = t1191 * c_r_0_;
+  const Real t1210 = s_r_0_ * t1205;
+  const Real t1211 = t1209 - t1210;
+  const Real t1212 = t1157 + t1211;
+  const Real t1213 = c_r_0_ * t1195;
+  const Real t1214 = s_r_0_ * t1206;
+  const Real t1215 = t1213 + t1214;
+  const Real t1216 = c_r_0_ * t1206;
+  const Real t1217 = s_r_0_ * t1195;
+  const Real t1218 = t1216 - t1217;
+  const Real t1219 = t1218 + t1153;
 
   // front_left_hip: joint force
-  const Real t1236 = t1031 + t1160;
-  const Real t1237 = t1093 + t1211;
-  const Real t1238 = t1236 - t1237;
-  const Real t1239 = t1238 * constant<Real>(0.06L);
-  const Real t1240 = t1239 + t1224;
-  const Real t1241 = t492 + t510;
-  const Real t1242 = t1240 - t1241;
-  const Real t1243 = t1116 + t505;
-  const Real t1244 = t1223 + t1120;
-  const Real t1245 = t1243 + t1244;
-  const Real t1246 = t1242 + t1245;
-  const Real t1247 = t1055 + t1178;
-  const Real t1248 = t499 + t507;
-  const Real t1249 = t503 + t504;
-  const Real t1250 = t1248 + t1249;
-  const Real t1251 = t1247 + t1250;
-  const Real t1252 = t1246 + t1251;
-  const Real t1253 = t1052 + t1175;
-  const Real t1254 = t497 + t500;
-  const Real t1255 = t1253 + t1254;
-  const Real t1256 = t1231 + t1119;
-  const Real t1257 = t1255 + t1256;
-  const Real t1258 = t1257 - t488;
-  const Real t1259 = t1258 - t501;
-  const Real t1260 = t489 + t508;
-  const Real t1261 = t1236 + t1260;
-  const Real t1262 = t1237 + t1261;
-  const Real t1263 = t1262 - t506;
-  const Real t1264 = t1263 - t511;
-  const Real t1265 = t1042 + t502;
-  const Real t1266 = t1215 + t1107;
-  const Real t1267 = t1265 + t1266;
-  const Real t1268 = t1256 - t1253;
-  const Real t1269 = t1268 * constant<Real>(0.06L);
-  const Real t1270 = t1269 + t1164;
-  const Real t1271 = t496 + t512;
-  const Real t1272 = t1270 - t1271;
-  const Real t1273 = t1267 + t1272;
-  const Real t1274 = t491 + t498;
-  const Real t1275 = t495 + t1274;
-  const Real t1276 = t1273 - t1275;
+  const Real t1220 = t1102 + t505;
+  const Real t1221 = t1207 + t1106;
+  const Real t1222 = t1220 + t1221;
+  const Real t1223 = t400 + t196;
+  const Real t1224 = t1223 * constant<Real>(0.0013L);
+  const Real t1225 = t188 + t408;
+  const Real t1226 = t1225 * constant<Real>(0.17239L);
+  const Real t1227 = t1224 - t1226;
+  const Real t1228 = t1018 + t1149;
+  const Real t1229 = t1227 + t1228;
+  const Real t1230 = t1194 + t1086;
+  const Real t1231 = t281 + t64;
+  const Real t1232 = constant<Real>(0.0013L) * t1231;
+  const Real t1233 = t295 + t84;
+  const Real t1234 = constant<Real>(0.17239L) * t1233;
+  const Real t1235 = t1232 + t1234;
+  const Real t1236 = t1230 + t1235;
+  const Real t1237 = t1229 - t1236;
+  const Real t1238 = t1237 * constant<Real>(0.06L);
+  const Real t1239 = t1208 + t1238;
+  const Real t1240 = t492 + t510;
+  const Real t1241 = t1239 - t1240;
+  const Real t1242 = t1222 + t1241;
+  const Real t1243 = t1042 + t1163;
+  const Real t1244 = t499 + t507;
+  const Real t1245 = t503 + t504;
+  const Real t1246 = t1244 + t1245;
+  const Real t1247 = t1243 + t1246;
+  const Real t1248 = t1242 + t1247;
+  const Real t1249 = t489 + t508;
+  const Real t1250 = t1229 + t1249;
+  const Real t1251 = t1250 + t1236;
+  const Real t1252 = t1251 - t506;
+  const Real t1253 = t1252 - t511;
+  const Real t1254 = t1039 + t1160;
+  const Real t1255 = t497 + t500;
+  const Real t1256 = t1254 + t1255;
+  const Real t1257 = t1215 + t1105;
+  const Real t1258 = t1256 + t1257;
+  const Real t1259 = t1258 - t488;
+  const Real t1260 = t1259 - t501;
+  const Real t1261 = t1029 + t502;
+  const Real t1262 = t1199 + t1093;
+  const Real t1263 = t1261 + t1262;
+  const Real t1264 = t1257 - t1254;
+  const Real t1265 = t1264 * constant<Real>(0.06L);
+  const Real t1266 = t1265 + t1146;
+  const Real t1267 = t496 + t512;
+  const Real t1268 = t1266 - t1267;
+  const Real t1269 = t1263 + t1268;
+  const Real t1270 = t491 + t498;
+  const Real t1271 = t495 + t1270;
+  const Real t1272 = t1269 - t1271;
 
-  base_wrench[0] = t1264;
-  base_wrench[1] = t1235;
-  base_wrench[2] = t1259;
-  base_wrench[3] = t1276;
-  base_wrench[4] = t1228;
-  base_wrench[5] = t1252;
-  tau_out[0] = t1215;
-  tau_out[1] = t1185;
-  tau_out[2] = t632;
-  tau_out[3] = t1164;
-  tau_out[4] = t1126;
-  tau_out[5] = t759;
-  tau_out[6] = t1107;
-  tau_out[7] = t1076;
-  tau_out[8] = t879;
-  tau_out[9] = t1042;
-  tau_out[10] = t1017;
-  tau_out[11] = t984;
+  base_wrench[0] = t1253;
+  base_wrench[1] = t1219;
+  base_wrench[2] = t1260;
+  base_wrench[3] = t1272;
+  base_wrench[4] = t1212;
+  base_wrench[5] = t1248;
+  tau_out[0] = t1199;
+  tau_out[1] = t1170;
+  tau_out[2] = t629;
+  tau_out[3] = t1146;
+  tau_out[4] = t1112;
+  tau_out[5] = t753;
+  tau_out[6] = t1093;
+  tau_out[7] = t1063;
+  tau_out[8] = t870;
+  tau_out[9] = t1029;
+  tau_out[10] = t1005;
+  tau_out[11] = t972;
 }
 
 /// What inverse dynamics needs without accelerations: Coriolis, centrifugal and gravity forces, friction.
 /// route: frames slid to the tips, tips turned, regrouped
-/// operations: 570 add, 655 mul, 12 sin, 12 cos
+/// operations: 570 add, 651 mul, 12 sin, 12 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r
@@ -2261,687 +2257,683 @@ inline void bias_forces(const Prepared<Real>&,
   const Real t617 = t615 - t616;
   const Real t618 = t244 + t617;
   const Real t619 = t612 + t618;
-  const Real t620 = t353 * constant<Real>(0.17239L);
-  const Real t621 = constant<Real>(0.0013L) * t357;
-  const Real t622 = t620 + t621;
-  const Real t623 = t40 * constant<Real>(0.17239L);
-  const Real t624 = t623 - t248;
-  const Real t625 = constant<Real>(0.0002678L) * t40;
-  const Real t626 = t353 * constant<Real>(0.01168088L);
-  const Real t627 = t625 - t626;
-  const Real t628 = t357 * constant<Real>(0.0000473L);
+  const Real t620 = t40 * constant<Real>(0.17239L);
+  const Real t621 = t620 - t248;
+  const Real t622 = constant<Real>(0.0002678L) * t40;
+  const Real t623 = t353 * constant<Real>(0.01168088L);
+  const Real t624 = t622 - t623;
+  const Real t625 = t357 * constant<Real>(0.0000473L);
+  const Real t626 = t624 - t625;
+  const Real t627 = t626 + t247;
+  const Real t628 = constant<Real>(0.17239L) * t362;
   const Real t629 = t627 - t628;
-  const Real t630 = t629 + t247;
-  const Real t631 = constant<Real>(0.17239L) * t362;
-  const Real t632 = t630 - t631;
 
   // front_left_thigh: wrench
-  const Real t633 = constant<Real>(0.0051L) * t384;
-  const Real t634 = t372 * constant<Real>(0.2108L);
-  const Real t635 = t633 + t634;
-  const Real t636 = t375 * constant<Real>(0.0421328L);
-  const Real t637 = t374 * constant<Real>(0.0007093L);
-  const Real t638 = t636 - t637;
-  const Real t639 = constant<Real>(0.0148652L) * t383;
-  const Real t640 = t638 - t639;
-  const Real t641 = constant<Real>(0.0003909L) * t371;
-  const Real t642 = t640 + t641;
-  const Real t643 = t642 - t250;
-  const Real t644 = constant<Real>(0.0051L) * t378;
-  const Real t645 = t368 * constant<Real>(0.2108L);
-  const Real t646 = t644 - t645;
-  const Real t647 = t643 + t646;
-  const Real t648 = t375 * constant<Real>(0.0148652L);
-  const Real t649 = t384 * constant<Real>(0.0007093L);
-  const Real t650 = t372 * constant<Real>(0.0003348L);
-  const Real t651 = t649 - t650;
-  const Real t652 = t648 + t651;
-  const Real t653 = t652 - t252;
-  const Real t654 = constant<Real>(0.0051L) * t380;
-  const Real t655 = t653 - t654;
-  const Real t656 = constant<Real>(0.0051L) * t374;
-  const Real t657 = t253 - t656;
-  const Real t658 = t375 * constant<Real>(0.2108L);
-  const Real t659 = t254 - t658;
-  const Real t660 = t384 * constant<Real>(0.0003348L);
-  const Real t661 = t374 * constant<Real>(0.0003909L);
-  const Real t662 = t372 * constant<Real>(0.0421328L);
-  const Real t663 = t661 + t662;
-  const Real t664 = t660 - t663;
-  const Real t665 = t664 - t256;
-  const Real t666 = t380 * constant<Real>(0.2108L);
-  const Real t667 = t665 + t666;
+  const Real t630 = constant<Real>(0.0051L) * t384;
+  const Real t631 = t372 * constant<Real>(0.2108L);
+  const Real t632 = t630 + t631;
+  const Real t633 = t375 * constant<Real>(0.0421328L);
+  const Real t634 = t374 * constant<Real>(0.0007093L);
+  const Real t635 = t633 - t634;
+  const Real t636 = constant<Real>(0.0148652L) * t383;
+  const Real t637 = t635 - t636;
+  const Real t638 = constant<Real>(0.0003909L) * t371;
+  const Real t639 = t637 + t638;
+  const Real t640 = t639 - t250;
+  const Real t641 = constant<Real>(0.0051L) * t378;
+  const Real t642 = t368 * constant<Real>(0.2108L);
+  const Real t643 = t641 - t642;
+  const Real t644 = t640 + t643;
+  const Real t645 = t375 * constant<Real>(0.0148652L);
+  const Real t646 = t384 * constant<Real>(0.0007093L);
+  const Real t647 = t372 * constant<Real>(0.0003348L);
+  const Real t648 = t646 - t647;
+  const Real t649 = t645 + t648;
+  const Real t650 = t649 - t252;
+  const Real t651 = constant<Real>(0.0051L) * t380;
+  const Real t652 = t650 - t651;
+  const Real t653 = constant<Real>(0.0051L) * t374;
+  const Real t654 = t253 - t653;
+  const Real t655 = t375 * constant<Real>(0.2108L);
+  const Real t656 = t254 - t655;
+  const Real t657 = t384 * constant<Real>(0.0003348L);
+  const Real t658 = t374 * constant<Real>(0.0003909L);
+  const Real t659 = t372 * constant<Real>(0.0421328L);
+  const Real t660 = t658 + t659;
+  const Real t661 = t657 - t660;
+  const Real t662 = t661 - t256;
+  const Real t663 = t380 * constant<Real>(0.2108L);
+  const Real t664 = t662 + t663;
 
   // front_left_shank: wrench
-  const Real t668 = constant<Real>(4.68432916485436730503e-6L) * t402;
-  const Real t669 = constant<Real>(0.0000328443596724226056129L) * t397;
-  const Real t670 = t668 + t669;
-  const Real t671 = constant<Real>(0.00603717424774589637822L) * t387;
-  const Real t672 = t670 - t671;
-  const Real t673 = t672 - t262;
-  const Real t674 = constant<Real>(0.0687462028042276673933L) * t402;
-  const Real t675 = t387 * constant<Real>(0.0687462028042276673933L);
-  const Real t676 = t402 * constant<Real>(0.0129142756403275773944L);
-  const Real t677 = constant<Real>(4.58207125849616419464e-7L) * t398;
-  const Real t678 = t676 + t677;
-  const Real t679 = constant<Real>(4.68432916485436730503e-6L) * t397;
-  const Real t680 = t678 + t679;
-  const Real t681 = t258 - t680;
-  const Real t682 = t386 * constant<Real>(0.0687462028042276673933L);
-  const Real t683 = t681 - t682;
-  const Real t684 = t401 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t685 = t396 * constant<Real>(0.00603717424774589637822L);
-  const Real t686 = t387 * constant<Real>(0.0129142756403275773944L);
-  const Real t687 = constant<Real>(0.0000328443596724226056129L) * t398;
-  const Real t688 = t686 - t687;
-  const Real t689 = t685 + t688;
-  const Real t690 = t684 + t689;
-  const Real t691 = t690 + t260;
-  const Real t692 = t393 * constant<Real>(0.0687462028042276673933L);
-  const Real t693 = t691 + t692;
+  const Real t665 = constant<Real>(4.68432916485436730503e-6L) * t402;
+  const Real t666 = constant<Real>(0.0000328443596724226056129L) * t397;
+  const Real t667 = t665 + t666;
+  const Real t668 = constant<Real>(0.00603717424774589637822L) * t387;
+  const Real t669 = t667 - t668;
+  const Real t670 = t669 - t262;
+  const Real t671 = constant<Real>(0.0687462028042276673933L) * t402;
+  const Real t672 = t387 * constant<Real>(0.0687462028042276673933L);
+  const Real t673 = t402 * constant<Real>(0.0129142756403275773944L);
+  const Real t674 = constant<Real>(4.58207125849616419464e-7L) * t398;
+  const Real t675 = t673 + t674;
+  const Real t676 = constant<Real>(4.68432916485436730503e-6L) * t397;
+  const Real t677 = t675 + t676;
+  const Real t678 = t258 - t677;
+  const Real t679 = t386 * constant<Real>(0.0687462028042276673933L);
+  const Real t680 = t678 - t679;
+  const Real t681 = t401 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t682 = t396 * constant<Real>(0.00603717424774589637822L);
+  const Real t683 = t387 * constant<Real>(0.0129142756403275773944L);
+  const Real t684 = constant<Real>(0.0000328443596724226056129L) * t398;
+  const Real t685 = t683 - t684;
+  const Real t686 = t682 + t685;
+  const Real t687 = t681 + t686;
+  const Real t688 = t687 + t260;
+  const Real t689 = t393 * constant<Real>(0.0687462028042276673933L);
+  const Real t690 = t688 + t689;
 
   // front_right_hip: wrench
-  const Real t694 = constant<Real>(0.0013L) * t415;
-  const Real t695 = t406 * constant<Real>(0.17239L);
-  const Real t696 = t694 - t695;
-  const Real t697 = constant<Real>(0.0360627L) * t100;
-  const Real t698 = constant<Real>(0.0008138L) * t415;
-  const Real t699 = t406 * constant<Real>(0.0000473L);
-  const Real t700 = t698 - t699;
-  const Real t701 = t697 + t700;
-  const Real t702 = t701 + t266;
-  const Real t703 = constant<Real>(0.0013L) * t419;
-  const Real t704 = t702 + t703;
-  const Real t705 = constant<Real>(0.17239L) * t100;
-  const Real t706 = t264 + t705;
-  const Real t707 = constant<Real>(0.0013L) * t100;
-  const Real t708 = t271 + t707;
-  const Real t709 = t100 * constant<Real>(0.01086708L);
-  const Real t710 = t414 * constant<Real>(0.0360627L);
-  const Real t711 = t709 - t710;
-  const Real t712 = constant<Real>(0.0002678L) * t405;
-  const Real t713 = t711 - t712;
-  const Real t714 = t713 - t268;
-  const Real t715 = t418 * constant<Real>(0.17239L);
-  const Real t716 = constant<Real>(0.0013L) * t411;
-  const Real t717 = t715 + t716;
-  const Real t718 = t714 - t717;
-  const Real t719 = t419 * constant<Real>(0.17239L);
-  const Real t720 = t415 * constant<Real>(0.0000473L);
-  const Real t721 = constant<Real>(0.0002678L) * t100;
-  const Real t722 = t406 * constant<Real>(0.01168088L);
-  const Real t723 = t721 - t722;
-  const Real t724 = t720 + t723;
-  const Real t725 = t724 - t270;
-  const Real t726 = t719 + t725;
+  const Real t691 = constant<Real>(0.0360627L) * t100;
+  const Real t692 = constant<Real>(0.0008138L) * t415;
+  const Real t693 = t406 * constant<Real>(0.0000473L);
+  const Real t694 = t692 - t693;
+  const Real t695 = t691 + t694;
+  const Real t696 = t695 + t266;
+  const Real t697 = constant<Real>(0.0013L) * t419;
+  const Real t698 = t696 + t697;
+  const Real t699 = constant<Real>(0.17239L) * t100;
+  const Real t700 = t264 + t699;
+  const Real t701 = constant<Real>(0.0013L) * t100;
+  const Real t702 = t271 + t701;
+  const Real t703 = t100 * constant<Real>(0.01086708L);
+  const Real t704 = t414 * constant<Real>(0.0360627L);
+  const Real t705 = t703 - t704;
+  const Real t706 = constant<Real>(0.0002678L) * t405;
+  const Real t707 = t705 - t706;
+  const Real t708 = t707 - t268;
+  const Real t709 = t418 * constant<Real>(0.17239L);
+  const Real t710 = constant<Real>(0.0013L) * t411;
+  const Real t711 = t709 + t710;
+  const Real t712 = t708 - t711;
+  const Real t713 = t419 * constant<Real>(0.17239L);
+  const Real t714 = t415 * constant<Real>(0.0000473L);
+  const Real t715 = constant<Real>(0.0002678L) * t100;
+  const Real t716 = t406 * constant<Real>(0.01168088L);
+  const Real t717 = t715 - t716;
+  const Real t718 = t714 + t717;
+  const Real t719 = t718 - t270;
+  const Real t720 = t713 + t719;
 
   // front_right_thigh: wrench
-  const Real t727 = constant<Real>(0.0051L) * t434;
-  const Real t728 = t277 - t727;
-  const Real t729 = t425 * constant<Real>(0.2108L);
-  const Real t730 = t272 - t729;
-  const Real t731 = t433 * constant<Real>(0.2108L);
-  const Real t732 = constant<Real>(0.0003909L) * t434;
-  const Real t733 = constant<Real>(0.0421328L) * t438;
-  const Real t734 = t732 - t733;
-  const Real t735 = t423 * constant<Real>(0.0003348L);
-  const Real t736 = t734 + t735;
-  const Real t737 = t736 + t276;
-  const Real t738 = t731 + t737;
-  const Real t739 = t423 * constant<Real>(0.0007093L);
-  const Real t740 = t438 * constant<Real>(0.0003348L);
-  const Real t741 = t739 - t740;
-  const Real t742 = constant<Real>(0.0148652L) * t425;
-  const Real t743 = t741 - t742;
-  const Real t744 = t743 + t279;
-  const Real t745 = constant<Real>(0.0051L) * t433;
+  const Real t721 = constant<Real>(0.0051L) * t434;
+  const Real t722 = t277 - t721;
+  const Real t723 = t425 * constant<Real>(0.2108L);
+  const Real t724 = t272 - t723;
+  const Real t725 = t433 * constant<Real>(0.2108L);
+  const Real t726 = constant<Real>(0.0003909L) * t434;
+  const Real t727 = constant<Real>(0.0421328L) * t438;
+  const Real t728 = t726 - t727;
+  const Real t729 = t423 * constant<Real>(0.0003348L);
+  const Real t730 = t728 + t729;
+  const Real t731 = t730 + t276;
+  const Real t732 = t725 + t731;
+  const Real t733 = t423 * constant<Real>(0.0007093L);
+  const Real t734 = t438 * constant<Real>(0.0003348L);
+  const Real t735 = t733 - t734;
+  const Real t736 = constant<Real>(0.0148652L) * t425;
+  const Real t737 = t735 - t736;
+  const Real t738 = t737 + t279;
+  const Real t739 = constant<Real>(0.0051L) * t433;
+  const Real t740 = t738 - t739;
+  const Real t741 = constant<Real>(0.0051L) * t423;
+  const Real t742 = t438 * constant<Real>(0.2108L);
+  const Real t743 = t741 + t742;
+  const Real t744 = constant<Real>(0.0051L) * t441;
+  const Real t745 = t431 * constant<Real>(0.2108L);
   const Real t746 = t744 - t745;
-  const Real t747 = constant<Real>(0.0051L) * t423;
-  const Real t748 = t438 * constant<Real>(0.2108L);
-  const Real t749 = t747 + t748;
-  const Real t750 = constant<Real>(0.0051L) * t441;
-  const Real t751 = t431 * constant<Real>(0.2108L);
-  const Real t752 = t750 - t751;
-  const Real t753 = constant<Real>(0.0148652L) * t422;
-  const Real t754 = constant<Real>(0.0421328L) * t425;
-  const Real t755 = constant<Real>(0.0007093L) * t434;
-  const Real t756 = t754 - t755;
-  const Real t757 = t753 + t756;
-  const Real t758 = t437 * constant<Real>(0.0003909L);
-  const Real t759 = t757 - t758;
-  const Real t760 = t759 - t274;
-  const Real t761 = t752 + t760;
+  const Real t747 = constant<Real>(0.0148652L) * t422;
+  const Real t748 = constant<Real>(0.0421328L) * t425;
+  const Real t749 = constant<Real>(0.0007093L) * t434;
+  const Real t750 = t748 - t749;
+  const Real t751 = t747 + t750;
+  const Real t752 = t437 * constant<Real>(0.0003909L);
+  const Real t753 = t751 - t752;
+  const Real t754 = t753 - t274;
+  const Real t755 = t746 + t754;
 
   // front_right_shank: wrench
-  const Real t762 = t453 * constant<Real>(0.0687462028042276673933L);
-  const Real t763 = t459 * constant<Real>(0.0129142756403275773944L);
-  const Real t764 = t458 * constant<Real>(0.0000328443596724226056129L);
-  const Real t765 = t763 - t764;
-  const Real t766 = constant<Real>(0.00603717424774589637822L) * t456;
-  const Real t767 = t765 - t766;
-  const Real t768 = t446 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t769 = t767 - t768;
-  const Real t770 = t769 + t286;
-  const Real t771 = t762 + t770;
-  const Real t772 = t447 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t773 = t457 * constant<Real>(0.0000328443596724226056129L);
-  const Real t774 = t772 + t773;
-  const Real t775 = constant<Real>(0.00603717424774589637822L) * t459;
-  const Real t776 = t774 + t775;
-  const Real t777 = t776 + t283;
-  const Real t778 = t447 * constant<Real>(0.0687462028042276673933L);
-  const Real t779 = constant<Real>(4.58207125849616419464e-7L) * t458;
-  const Real t780 = t447 * constant<Real>(0.0129142756403275773944L);
-  const Real t781 = t779 - t780;
-  const Real t782 = constant<Real>(4.68432916485436730503e-6L) * t457;
-  const Real t783 = t781 - t782;
-  const Real t784 = t783 - t281;
-  const Real t785 = t443 * constant<Real>(0.0687462028042276673933L);
-  const Real t786 = t784 - t785;
-  const Real t787 = constant<Real>(0.0687462028042276673933L) * t459;
+  const Real t756 = t453 * constant<Real>(0.0687462028042276673933L);
+  const Real t757 = t459 * constant<Real>(0.0129142756403275773944L);
+  const Real t758 = t458 * constant<Real>(0.0000328443596724226056129L);
+  const Real t759 = t757 - t758;
+  const Real t760 = constant<Real>(0.00603717424774589637822L) * t456;
+  const Real t761 = t759 - t760;
+  const Real t762 = t446 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t763 = t761 - t762;
+  const Real t764 = t763 + t286;
+  const Real t765 = t756 + t764;
+  const Real t766 = t447 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t767 = t457 * constant<Real>(0.0000328443596724226056129L);
+  const Real t768 = t766 + t767;
+  const Real t769 = constant<Real>(0.00603717424774589637822L) * t459;
+  const Real t770 = t768 + t769;
+  const Real t771 = t770 + t283;
+  const Real t772 = t447 * constant<Real>(0.0687462028042276673933L);
+  const Real t773 = constant<Real>(4.58207125849616419464e-7L) * t458;
+  const Real t774 = t447 * constant<Real>(0.0129142756403275773944L);
+  const Real t775 = t773 - t774;
+  const Real t776 = constant<Real>(4.68432916485436730503e-6L) * t457;
+  const Real t777 = t775 - t776;
+  const Real t778 = t777 - t281;
+  const Real t779 = t443 * constant<Real>(0.0687462028042276673933L);
+  const Real t780 = t778 - t779;
+  const Real t781 = constant<Real>(0.0687462028042276673933L) * t459;
 
   // hind_left_hip: wrench
-  const Real t788 = constant<Real>(0.01168088L) * t473;
-  const Real t789 = constant<Real>(0.0002678L) * t148;
-  const Real t790 = t788 + t789;
-  const Real t791 = t469 * constant<Real>(0.0000473L);
-  const Real t792 = t790 + t791;
-  const Real t793 = t792 + t288;
-  const Real t794 = t793 + t631;
-  const Real t795 = t462 * constant<Real>(0.17239L);
-  const Real t796 = t465 * constant<Real>(0.0013L);
-  const Real t797 = t795 - t796;
-  const Real t798 = constant<Real>(0.0002678L) * t472;
-  const Real t799 = t148 * constant<Real>(0.01086708L);
-  const Real t800 = t468 * constant<Real>(0.0360627L);
-  const Real t801 = t799 - t800;
-  const Real t802 = t798 + t801;
-  const Real t803 = t802 + t292;
-  const Real t804 = t797 + t803;
-  const Real t805 = constant<Real>(0.17239L) * t148;
-  const Real t806 = t805 - t289;
-  const Real t807 = constant<Real>(0.0013L) * t148;
-  const Real t808 = t807 - t290;
-  const Real t809 = constant<Real>(0.17239L) * t473;
-  const Real t810 = constant<Real>(0.0013L) * t469;
-  const Real t811 = t809 + t810;
-  const Real t812 = constant<Real>(0.0008138L) * t469;
-  const Real t813 = t473 * constant<Real>(0.0000473L);
-  const Real t814 = t812 + t813;
-  const Real t815 = constant<Real>(0.0360627L) * t148;
-  const Real t816 = t814 + t815;
-  const Real t817 = t816 - t294;
-  const Real t818 = t817 + t608;
+  const Real t782 = constant<Real>(0.01168088L) * t473;
+  const Real t783 = constant<Real>(0.0002678L) * t148;
+  const Real t784 = t782 + t783;
+  const Real t785 = t469 * constant<Real>(0.0000473L);
+  const Real t786 = t784 + t785;
+  const Real t787 = t786 + t288;
+  const Real t788 = t787 + t628;
+  const Real t789 = t462 * constant<Real>(0.17239L);
+  const Real t790 = t465 * constant<Real>(0.0013L);
+  const Real t791 = t789 - t790;
+  const Real t792 = constant<Real>(0.0002678L) * t472;
+  const Real t793 = t148 * constant<Real>(0.01086708L);
+  const Real t794 = t468 * constant<Real>(0.0360627L);
+  const Real t795 = t793 - t794;
+  const Real t796 = t792 + t795;
+  const Real t797 = t796 + t292;
+  const Real t798 = t791 + t797;
+  const Real t799 = constant<Real>(0.17239L) * t148;
+  const Real t800 = t799 - t289;
+  const Real t801 = constant<Real>(0.0013L) * t148;
+  const Real t802 = t801 - t290;
+  const Real t803 = constant<Real>(0.0008138L) * t469;
+  const Real t804 = t473 * constant<Real>(0.0000473L);
+  const Real t805 = t803 + t804;
+  const Real t806 = constant<Real>(0.0360627L) * t148;
+  const Real t807 = t805 + t806;
+  const Real t808 = t807 - t294;
+  const Real t809 = t808 + t608;
 
   // hind_left_thigh: wrench
-  const Real t819 = t485 * constant<Real>(0.0007093L);
-  const Real t820 = t490 * constant<Real>(0.0003348L);
-  const Real t821 = t819 - t820;
-  const Real t822 = constant<Real>(0.0148652L) * t486;
-  const Real t823 = t821 + t822;
-  const Real t824 = t823 - t300;
-  const Real t825 = constant<Real>(0.0051L) * t492;
-  const Real t826 = t824 - t825;
-  const Real t827 = t492 * constant<Real>(0.2108L);
-  const Real t828 = t485 * constant<Real>(0.0003348L);
-  const Real t829 = constant<Real>(0.0421328L) * t490;
-  const Real t830 = t475 * constant<Real>(0.0003909L);
-  const Real t831 = t829 + t830;
-  const Real t832 = t828 - t831;
-  const Real t833 = t832 - t297;
-  const Real t834 = t827 + t833;
-  const Real t835 = constant<Real>(0.0421328L) * t486;
-  const Real t836 = t475 * constant<Real>(0.0007093L);
-  const Real t837 = t835 - t836;
-  const Real t838 = constant<Real>(0.0148652L) * t484;
-  const Real t839 = t837 - t838;
-  const Real t840 = constant<Real>(0.0003909L) * t489;
-  const Real t841 = t839 + t840;
-  const Real t842 = t841 - t302;
-  const Real t843 = constant<Real>(0.0051L) * t495;
-  const Real t844 = t481 * constant<Real>(0.2108L);
-  const Real t845 = t843 - t844;
-  const Real t846 = t842 + t845;
-  const Real t847 = t486 * constant<Real>(0.2108L);
-  const Real t848 = t295 - t847;
-  const Real t849 = t475 * constant<Real>(0.0051L);
-  const Real t850 = t298 - t849;
-  const Real t851 = t490 * constant<Real>(0.2108L);
-  const Real t852 = constant<Real>(0.0051L) * t485;
-  const Real t853 = t851 + t852;
+  const Real t810 = t485 * constant<Real>(0.0007093L);
+  const Real t811 = t490 * constant<Real>(0.0003348L);
+  const Real t812 = t810 - t811;
+  const Real t813 = constant<Real>(0.0148652L) * t486;
+  const Real t814 = t812 + t813;
+  const Real t815 = t814 - t300;
+  const Real t816 = constant<Real>(0.0051L) * t492;
+  const Real t817 = t815 - t816;
+  const Real t818 = t492 * constant<Real>(0.2108L);
+  const Real t819 = t485 * constant<Real>(0.0003348L);
+  const Real t820 = constant<Real>(0.0421328L) * t490;
+  const Real t821 = t475 * constant<Real>(0.0003909L);
+  const Real t822 = t820 + t821;
+  const Real t823 = t819 - t822;
+  const Real t824 = t823 - t297;
+  const Real t825 = t818 + t824;
+  const Real t826 = constant<Real>(0.0421328L) * t486;
+  const Real t827 = t475 * constant<Real>(0.0007093L);
+  const Real t828 = t826 - t827;
+  const Real t829 = constant<Real>(0.0148652L) * t484;
+  const Real t830 = t828 - t829;
+  const Real t831 = constant<Real>(0.0003909L) * t489;
+  const Real t832 = t830 + t831;
+  const Real t833 = t832 - t302;
+  const Real t834 = constant<Real>(0.0051L) * t495;
+  const Real t835 = t481 * constant<Real>(0.2108L);
+  const Real t836 = t834 - t835;
+  const Real t837 = t833 + t836;
+  const Real t838 = t486 * constant<Real>(0.2108L);
+  const Real t839 = t295 - t838;
+  const Real t840 = t475 * constant<Real>(0.0051L);
+  const Real t841 = t298 - t840;
+  const Real t842 = t490 * constant<Real>(0.2108L);
+  const Real t843 = constant<Real>(0.0051L) * t485;
+  const Real t844 = t842 + t843;
 
   // hind_left_shank: wrench
-  const Real t854 = t503 * constant<Real>(0.0687462028042276673933L);
-  const Real t855 = t509 * constant<Real>(0.0687462028042276673933L);
-  const Real t856 = t503 * constant<Real>(0.0129142756403275773944L);
-  const Real t857 = t502 * constant<Real>(0.0000328443596724226056129L);
-  const Real t858 = t856 - t857;
-  const Real t859 = constant<Real>(0.00603717424774589637822L) * t512;
-  const Real t860 = t858 + t859;
-  const Real t861 = constant<Real>(4.58207125849616419464e-7L) * t498;
-  const Real t862 = t860 + t861;
-  const Real t863 = t862 + t307;
-  const Real t864 = t855 + t863;
-  const Real t865 = t513 * constant<Real>(0.0000328443596724226056129L);
-  const Real t866 = t499 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t867 = t865 + t866;
-  const Real t868 = constant<Real>(0.00603717424774589637822L) * t503;
+  const Real t845 = t503 * constant<Real>(0.0687462028042276673933L);
+  const Real t846 = t509 * constant<Real>(0.0687462028042276673933L);
+  const Real t847 = t503 * constant<Real>(0.0129142756403275773944L);
+  const Real t848 = t502 * constant<Real>(0.0000328443596724226056129L);
+  const Real t849 = t847 - t848;
+  const Real t850 = constant<Real>(0.00603717424774589637822L) * t512;
+  const Real t851 = t849 + t850;
+  const Real t852 = constant<Real>(4.58207125849616419464e-7L) * t498;
+  const Real t853 = t851 + t852;
+  const Real t854 = t853 + t307;
+  const Real t855 = t846 + t854;
+  const Real t856 = t513 * constant<Real>(0.0000328443596724226056129L);
+  const Real t857 = t499 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t858 = t856 + t857;
+  const Real t859 = constant<Real>(0.00603717424774589637822L) * t503;
+  const Real t860 = t858 - t859;
+  const Real t861 = t860 - t309;
+  const Real t862 = t502 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t863 = t499 * constant<Real>(0.0129142756403275773944L);
+  const Real t864 = t862 + t863;
+  const Real t865 = constant<Real>(4.68432916485436730503e-6L) * t513;
+  const Real t866 = t864 + t865;
+  const Real t867 = t304 - t866;
+  const Real t868 = t501 * constant<Real>(0.0687462028042276673933L);
   const Real t869 = t867 - t868;
-  const Real t870 = t869 - t309;
-  const Real t871 = t502 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t872 = t499 * constant<Real>(0.0129142756403275773944L);
-  const Real t873 = t871 + t872;
-  const Real t874 = constant<Real>(4.68432916485436730503e-6L) * t513;
-  const Real t875 = t873 + t874;
-  const Real t876 = t304 - t875;
-  const Real t877 = t501 * constant<Real>(0.0687462028042276673933L);
-  const Real t878 = t876 - t877;
-  const Real t879 = t499 * constant<Real>(0.0687462028042276673933L);
+  const Real t870 = t499 * constant<Real>(0.0687462028042276673933L);
 
   // hind_right_hip: wrench
-  const Real t880 = constant<Real>(0.17239L) * t198;
-  const Real t881 = t880 + t315;
-  const Real t882 = t517 * constant<Real>(0.0013L);
-  const Real t883 = t521 * constant<Real>(0.17239L);
-  const Real t884 = t882 - t883;
-  const Real t885 = t198 * constant<Real>(0.01086708L);
-  const Real t886 = t516 * constant<Real>(0.0360627L);
-  const Real t887 = t885 + t886;
-  const Real t888 = constant<Real>(0.0002678L) * t520;
-  const Real t889 = t887 + t888;
-  const Real t890 = t889 - t313;
-  const Real t891 = constant<Real>(0.0013L) * t524;
-  const Real t892 = constant<Real>(0.17239L) * t527;
+  const Real t871 = constant<Real>(0.17239L) * t198;
+  const Real t872 = t871 + t315;
+  const Real t873 = t198 * constant<Real>(0.01086708L);
+  const Real t874 = t516 * constant<Real>(0.0360627L);
+  const Real t875 = t873 + t874;
+  const Real t876 = constant<Real>(0.0002678L) * t520;
+  const Real t877 = t875 + t876;
+  const Real t878 = t877 - t313;
+  const Real t879 = constant<Real>(0.0013L) * t524;
+  const Real t880 = constant<Real>(0.17239L) * t527;
+  const Real t881 = t879 + t880;
+  const Real t882 = t878 - t881;
+  const Real t883 = t517 * constant<Real>(0.0008138L);
+  const Real t884 = t521 * constant<Real>(0.0000473L);
+  const Real t885 = t883 - t884;
+  const Real t886 = constant<Real>(0.0360627L) * t198;
+  const Real t887 = t885 - t886;
+  const Real t888 = t887 - t311;
+  const Real t889 = t888 + t697;
+  const Real t890 = t517 * constant<Real>(0.0000473L);
+  const Real t891 = constant<Real>(0.0002678L) * t198;
+  const Real t892 = t521 * constant<Real>(0.01168088L);
   const Real t893 = t891 + t892;
   const Real t894 = t890 - t893;
-  const Real t895 = t517 * constant<Real>(0.0008138L);
-  const Real t896 = t521 * constant<Real>(0.0000473L);
-  const Real t897 = t895 - t896;
-  const Real t898 = constant<Real>(0.0360627L) * t198;
-  const Real t899 = t897 - t898;
-  const Real t900 = t899 - t311;
-  const Real t901 = t900 + t703;
-  const Real t902 = t517 * constant<Real>(0.0000473L);
-  const Real t903 = constant<Real>(0.0002678L) * t198;
-  const Real t904 = t521 * constant<Real>(0.01168088L);
-  const Real t905 = t903 + t904;
-  const Real t906 = t902 - t905;
-  const Real t907 = t906 + t317;
-  const Real t908 = t907 + t719;
-  const Real t909 = constant<Real>(0.0013L) * t198;
-  const Real t910 = t909 + t314;
+  const Real t895 = t894 + t317;
+  const Real t896 = t895 + t713;
+  const Real t897 = constant<Real>(0.0013L) * t198;
+  const Real t898 = t897 + t314;
 
   // hind_right_thigh: wrench
-  const Real t911 = constant<Real>(0.0051L) * t533;
-  const Real t912 = t540 * constant<Real>(0.2108L);
-  const Real t913 = t911 - t912;
-  const Real t914 = constant<Real>(0.0421328L) * t537;
-  const Real t915 = t545 * constant<Real>(0.0007093L);
-  const Real t916 = t914 - t915;
-  const Real t917 = t543 * constant<Real>(0.0148652L);
-  const Real t918 = t916 + t917;
-  const Real t919 = t548 * constant<Real>(0.0003909L);
-  const Real t920 = t918 - t919;
-  const Real t921 = t920 - t325;
-  const Real t922 = t913 + t921;
-  const Real t923 = t549 * constant<Real>(0.2108L);
-  const Real t924 = constant<Real>(0.0051L) * t544;
-  const Real t925 = t923 + t924;
-  const Real t926 = t535 * constant<Real>(0.2108L);
-  const Real t927 = t544 * constant<Real>(0.0003348L);
-  const Real t928 = constant<Real>(0.0003909L) * t545;
-  const Real t929 = constant<Real>(0.0421328L) * t549;
+  const Real t899 = constant<Real>(0.0051L) * t533;
+  const Real t900 = t540 * constant<Real>(0.2108L);
+  const Real t901 = t899 - t900;
+  const Real t902 = constant<Real>(0.0421328L) * t537;
+  const Real t903 = t545 * constant<Real>(0.0007093L);
+  const Real t904 = t902 - t903;
+  const Real t905 = t543 * constant<Real>(0.0148652L);
+  const Real t906 = t904 + t905;
+  const Real t907 = t548 * constant<Real>(0.0003909L);
+  const Real t908 = t906 - t907;
+  const Real t909 = t908 - t325;
+  const Real t910 = t901 + t909;
+  const Real t911 = t549 * constant<Real>(0.2108L);
+  const Real t912 = constant<Real>(0.0051L) * t544;
+  const Real t913 = t911 + t912;
+  const Real t914 = t535 * constant<Real>(0.2108L);
+  const Real t915 = t544 * constant<Real>(0.0003348L);
+  const Real t916 = constant<Real>(0.0003909L) * t545;
+  const Real t917 = constant<Real>(0.0421328L) * t549;
+  const Real t918 = t916 - t917;
+  const Real t919 = t915 + t918;
+  const Real t920 = t319 + t919;
+  const Real t921 = t914 + t920;
+  const Real t922 = constant<Real>(0.0051L) * t545;
+  const Real t923 = t323 - t922;
+  const Real t924 = t537 * constant<Real>(0.2108L);
+  const Real t925 = t320 - t924;
+  const Real t926 = t544 * constant<Real>(0.0007093L);
+  const Real t927 = t549 * constant<Real>(0.0003348L);
+  const Real t928 = t926 - t927;
+  const Real t929 = t537 * constant<Real>(0.0148652L);
   const Real t930 = t928 - t929;
-  const Real t931 = t927 + t930;
-  const Real t932 = t319 + t931;
-  const Real t933 = t926 + t932;
-  const Real t934 = constant<Real>(0.0051L) * t545;
-  const Real t935 = t323 - t934;
-  const Real t936 = t537 * constant<Real>(0.2108L);
-  const Real t937 = t320 - t936;
-  const Real t938 = t544 * constant<Real>(0.0007093L);
-  const Real t939 = t549 * constant<Real>(0.0003348L);
-  const Real t940 = t938 - t939;
-  const Real t941 = t537 * constant<Real>(0.0148652L);
-  const Real t942 = t940 - t941;
-  const Real t943 = t322 + t942;
-  const Real t944 = constant<Real>(0.0051L) * t535;
-  const Real t945 = t943 - t944;
+  const Real t931 = t322 + t930;
+  const Real t932 = constant<Real>(0.0051L) * t535;
+  const Real t933 = t931 - t932;
 
   // hind_right_shank: wrench
-  const Real t946 = t556 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t947 = t555 * constant<Real>(0.0129142756403275773944L);
-  const Real t948 = t946 - t947;
-  const Real t949 = constant<Real>(4.68432916485436730503e-6L) * t560;
-  const Real t950 = t948 - t949;
-  const Real t951 = t950 - t331;
-  const Real t952 = t551 * constant<Real>(0.0687462028042276673933L);
+  const Real t934 = t556 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t935 = t555 * constant<Real>(0.0129142756403275773944L);
+  const Real t936 = t934 - t935;
+  const Real t937 = constant<Real>(4.68432916485436730503e-6L) * t560;
+  const Real t938 = t936 - t937;
+  const Real t939 = t938 - t331;
+  const Real t940 = t551 * constant<Real>(0.0687462028042276673933L);
+  const Real t941 = t939 - t940;
+  const Real t942 = constant<Real>(0.0687462028042276673933L) * t567;
+  const Real t943 = constant<Real>(0.00603717424774589637822L) * t567;
+  const Real t944 = t555 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t945 = t560 * constant<Real>(0.0000328443596724226056129L);
+  const Real t946 = t944 + t945;
+  const Real t947 = t943 + t946;
+  const Real t948 = t947 + t327;
+  const Real t949 = t555 * constant<Real>(0.0687462028042276673933L);
+  const Real t950 = t566 * constant<Real>(0.0687462028042276673933L);
+  const Real t951 = t567 * constant<Real>(0.0129142756403275773944L);
+  const Real t952 = t556 * constant<Real>(0.0000328443596724226056129L);
   const Real t953 = t951 - t952;
-  const Real t954 = constant<Real>(0.0687462028042276673933L) * t567;
-  const Real t955 = constant<Real>(0.00603717424774589637822L) * t567;
-  const Real t956 = t555 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t957 = t560 * constant<Real>(0.0000328443596724226056129L);
-  const Real t958 = t956 + t957;
-  const Real t959 = t955 + t958;
-  const Real t960 = t959 + t327;
-  const Real t961 = t555 * constant<Real>(0.0687462028042276673933L);
-  const Real t962 = t566 * constant<Real>(0.0687462028042276673933L);
-  const Real t963 = t567 * constant<Real>(0.0129142756403275773944L);
-  const Real t964 = t556 * constant<Real>(0.0000328443596724226056129L);
-  const Real t965 = t963 - t964;
-  const Real t966 = constant<Real>(0.00603717424774589637822L) * t559;
-  const Real t967 = t965 - t966;
-  const Real t968 = constant<Real>(4.58207125849616419464e-7L) * t554;
-  const Real t969 = t967 - t968;
-  const Real t970 = t329 + t969;
-  const Real t971 = t962 + t970;
+  const Real t954 = constant<Real>(0.00603717424774589637822L) * t559;
+  const Real t955 = t953 - t954;
+  const Real t956 = constant<Real>(4.58207125849616419464e-7L) * t554;
+  const Real t957 = t955 - t956;
+  const Real t958 = t329 + t957;
+  const Real t959 = t950 + t958;
 
   // hind_right_shank: joint force
-  const Real t972 = t555 * constant<Real>(0.0164990886730146401744L);
-  const Real t973 = t960 * t8;
-  const Real t974 = t953 * t9;
-  const Real t975 = t973 + t974;
-  const Real t976 = t972 + t975;
-  const Real t977 = t976 + t933;
-  const Real t978 = t954 * t9;
-  const Real t979 = t978 - t334;
-  const Real t980 = t979 + t937;
-  const Real t981 = t960 * t9;
-  const Real t982 = t953 * t8;
-  const Real t983 = t981 - t982;
-  const Real t984 = t983 + t945;
-  const Real t985 = t954 * t8;
-  const Real t986 = t333 + t985;
-  const Real t987 = t935 - t986;
-  const Real t988 = constant<Real>(0.24L) * t979;
-  const Real t989 = t971 - t988;
-  const Real t990 = t922 + t989;
-  const Real t991 = t961 - t925;
+  const Real t960 = t555 * constant<Real>(0.0164990886730146401744L);
+  const Real t961 = t948 * t8;
+  const Real t962 = t941 * t9;
+  const Real t963 = t961 + t962;
+  const Real t964 = t960 + t963;
+  const Real t965 = t964 + t921;
+  const Real t966 = t942 * t9;
+  const Real t967 = t966 - t334;
+  const Real t968 = t967 + t925;
+  const Real t969 = t948 * t9;
+  const Real t970 = t941 * t8;
+  const Real t971 = t969 - t970;
+  const Real t972 = t971 + t933;
+  const Real t973 = t942 * t8;
+  const Real t974 = t333 + t973;
+  const Real t975 = t923 - t974;
+  const Real t976 = constant<Real>(0.24L) * t967;
+  const Real t977 = t959 - t976;
+  const Real t978 = t910 + t977;
+  const Real t979 = t949 - t913;
 
   // hind_right_thigh: joint force
-  const Real t992 = t980 * c_r_10_;
-  const Real t993 = t987 * s_r_10_;
-  const Real t994 = t992 + t993;
-  const Real t995 = t884 + t994;
-  const Real t996 = t984 * c_r_10_;
-  const Real t997 = t977 * s_r_10_;
-  const Real t998 = t996 - t997;
-  const Real t999 = constant<Real>(0.21L) * t991;
-  const Real t1000 = t998 - t999;
-  const Real t1001 = t1000 + t908;
-  const Real t1002 = t987 * c_r_10_;
-  const Real t1003 = t980 * s_r_10_;
-  const Real t1004 = t1002 - t1003;
-  const Real t1005 = t1004 - t881;
-  const Real t1006 = constant<Real>(0.21L) * t1004;
-  const Real t1007 = t1006 + t990;
-  const Real t1008 = t901 + t1007;
-  const Real t1009 = t984 * s_r_10_;
-  const Real t1010 = t977 * c_r_10_;
-  const Real t1011 = t1009 + t1010;
-  const Real t1012 = t1011 + t894;
-  const Real t1013 = t910 + t991;
+  const Real t980 = t972 * c_r_10_;
+  const Real t981 = t965 * s_r_10_;
+  const Real t982 = t980 - t981;
+  const Real t983 = constant<Real>(0.21L) * t979;
+  const Real t984 = t982 - t983;
+  const Real t985 = t984 + t896;
+  const Real t986 = t975 * c_r_10_;
+  const Real t987 = t968 * s_r_10_;
+  const Real t988 = t986 - t987;
+  const Real t989 = t988 - t872;
+  const Real t990 = t968 * c_r_10_;
+  const Real t991 = t975 * s_r_10_;
+  const Real t992 = t990 + t991;
+  const Real t993 = constant<Real>(0.21L) * t988;
+  const Real t994 = t993 + t978;
+  const Real t995 = t889 + t994;
+  const Real t996 = t972 * s_r_10_;
+  const Real t997 = t965 * c_r_10_;
+  const Real t998 = t996 + t997;
+  const Real t999 = t998 + t882;
+  const Real t1000 = t898 + t979;
 
   // hind_right_hip: joint force
-  const Real t1014 = s_r_9_ * t1008;
-  const Real t1015 = s_r_9_ * t1013;
-  const Real t1016 = c_r_9_ * t1005;
-  const Real t1017 = t1015 + t1016;
-  const Real t1018 = c_r_9_ * t1008;
-  const Real t1019 = s_r_9_ * t1001;
-  const Real t1020 = t1018 - t1019;
-  const Real t1021 = t590 + t1020;
-  const Real t1022 = c_r_9_ * t1013;
-  const Real t1023 = s_r_9_ * t1005;
-  const Real t1024 = t1022 - t1023;
-  const Real t1025 = t580 + t1024;
-  const Real t1026 = c_r_9_ * t1001;
+  const Real t1001 = s_r_9_ * t995;
+  const Real t1002 = s_r_9_ * t1000;
+  const Real t1003 = c_r_9_ * t989;
+  const Real t1004 = t1002 + t1003;
+  const Real t1005 = c_r_9_ * t995;
+  const Real t1006 = s_r_9_ * t985;
+  const Real t1007 = t1005 - t1006;
+  const Real t1008 = t590 + t1007;
+  const Real t1009 = c_r_9_ * t1000;
+  const Real t1010 = s_r_9_ * t989;
+  const Real t1011 = t1009 - t1010;
+  const Real t1012 = t580 + t1011;
+  const Real t1013 = c_r_9_ * t985;
 
   // hind_left_shank: joint force
-  const Real t1027 = t6 * t854;
-  const Real t1028 = t1027 - t336;
-  const Real t1029 = t848 + t1028;
-  const Real t1030 = t5 * t870;
-  const Real t1031 = t6 * t878;
-  const Real t1032 = t1030 + t1031;
-  const Real t1033 = t499 * constant<Real>(0.0164990886730146401744L);
-  const Real t1034 = t1032 + t1033;
-  const Real t1035 = t834 + t1034;
-  const Real t1036 = t1028 * constant<Real>(0.24L);
-  const Real t1037 = t864 - t1036;
-  const Real t1038 = t846 + t1037;
-  const Real t1039 = t879 - t853;
-  const Real t1040 = t6 * t870;
-  const Real t1041 = t5 * t878;
-  const Real t1042 = t1040 - t1041;
-  const Real t1043 = t826 + t1042;
-  const Real t1044 = t854 * t5;
-  const Real t1045 = t335 + t1044;
-  const Real t1046 = t850 - t1045;
+  const Real t1014 = t6 * t845;
+  const Real t1015 = t1014 - t336;
+  const Real t1016 = t839 + t1015;
+  const Real t1017 = t5 * t861;
+  const Real t1018 = t6 * t869;
+  const Real t1019 = t1017 + t1018;
+  const Real t1020 = t499 * constant<Real>(0.0164990886730146401744L);
+  const Real t1021 = t1019 + t1020;
+  const Real t1022 = t825 + t1021;
+  const Real t1023 = t1015 * constant<Real>(0.24L);
+  const Real t1024 = t855 - t1023;
+  const Real t1025 = t837 + t1024;
+  const Real t1026 = t870 - t844;
+  const Real t1027 = t6 * t861;
+  const Real t1028 = t5 * t869;
+  const Real t1029 = t1027 - t1028;
+  const Real t1030 = t817 + t1029;
+  const Real t1031 = t845 * t5;
+  const Real t1032 = t335 + t1031;
+  const Real t1033 = t841 - t1032;
 
   // hind_left_thigh: joint force
-  const Real t1047 = c_r_7_ * t1043;
-  const Real t1048 = s_r_7_ * t1035;
-  const Real t1049 = t1047 - t1048;
-  const Real t1050 = constant<Real>(0.21L) * t1039;
-  const Real t1051 = t1049 - t1050;
-  const Real t1052 = t1051 - t794;
-  const Real t1053 = c_r_7_ * t1046;
-  const Real t1054 = s_r_7_ * t1029;
-  const Real t1055 = t1053 - t1054;
-  const Real t1056 = constant<Real>(0.21L) * t1055;
-  const Real t1057 = t1056 + t1038;
-  const Real t1058 = t1057 + t818;
-  const Real t1059 = t808 + t1039;
-  const Real t1060 = s_r_7_ * t1046;
-  const Real t1061 = c_r_7_ * t1029;
-  const Real t1062 = t1060 + t1061;
-  const Real t1063 = t1062 + t811;
-  const Real t1064 = c_r_7_ * t1035;
-  const Real t1065 = s_r_7_ * t1043;
-  const Real t1066 = t1064 + t1065;
-  const Real t1067 = t1066 + t804;
-  const Real t1068 = t806 + t1055;
+  const Real t1034 = c_r_7_ * t1030;
+  const Real t1035 = s_r_7_ * t1022;
+  const Real t1036 = t1034 - t1035;
+  const Real t1037 = constant<Real>(0.21L) * t1026;
+  const Real t1038 = t1036 - t1037;
+  const Real t1039 = t1038 - t788;
+  const Real t1040 = c_r_7_ * t1033;
+  const Real t1041 = s_r_7_ * t1016;
+  const Real t1042 = t1040 - t1041;
+  const Real t1043 = constant<Real>(0.21L) * t1042;
+  const Real t1044 = t1043 + t1025;
+  const Real t1045 = t1044 + t809;
+  const Real t1046 = t802 + t1026;
+  const Real t1047 = s_r_7_ * t1033;
+  const Real t1048 = c_r_7_ * t1016;
+  const Real t1049 = t1047 + t1048;
+  const Real t1050 = c_r_7_ * t1022;
+  const Real t1051 = s_r_7_ * t1030;
+  const Real t1052 = t1050 + t1051;
+  const Real t1053 = t1052 + t798;
+  const Real t1054 = t800 + t1042;
 
   // hind_left_hip: joint force
-  const Real t1069 = t1052 * c_r_6_;
-  const Real t1070 = t1058 * s_r_6_;
-  const Real t1071 = t1058 * c_r_6_;
-  const Real t1072 = t1052 * s_r_6_;
-  const Real t1073 = t1071 - t1072;
-  const Real t1074 = t1021 + t1073;
-  const Real t1075 = t1059 * c_r_6_;
-  const Real t1076 = t1068 * s_r_6_;
-  const Real t1077 = t1075 - t1076;
-  const Real t1078 = t1077 + t1025;
-  const Real t1079 = t1068 * c_r_6_;
-  const Real t1080 = t1059 * s_r_6_;
-  const Real t1081 = t1079 + t1080;
+  const Real t1055 = t1039 * c_r_6_;
+  const Real t1056 = t1045 * s_r_6_;
+  const Real t1057 = t1045 * c_r_6_;
+  const Real t1058 = t1039 * s_r_6_;
+  const Real t1059 = t1057 - t1058;
+  const Real t1060 = t1008 + t1059;
+  const Real t1061 = t1046 * c_r_6_;
+  const Real t1062 = t1054 * s_r_6_;
+  const Real t1063 = t1061 - t1062;
+  const Real t1064 = t1063 + t1012;
+  const Real t1065 = t1054 * c_r_6_;
+  const Real t1066 = t1046 * s_r_6_;
+  const Real t1067 = t1065 + t1066;
 
   // front_right_shank: joint force
-  const Real t1082 = t3 * t787;
-  const Real t1083 = t1082 - t338;
-  const Real t1084 = constant<Real>(0.24L) * t1083;
-  const Real t1085 = t771 - t1084;
-  const Real t1086 = t1085 + t761;
-  const Real t1087 = t2 * t787;
-  const Real t1088 = t1087 + t337;
-  const Real t1089 = t728 - t1088;
-  const Real t1090 = t2 * t777;
-  const Real t1091 = t3 * t786;
-  const Real t1092 = t1090 + t1091;
-  const Real t1093 = t447 * constant<Real>(0.0164990886730146401744L);
-  const Real t1094 = t1092 + t1093;
-  const Real t1095 = t738 + t1094;
-  const Real t1096 = t778 - t749;
-  const Real t1097 = t777 * t3;
-  const Real t1098 = t2 * t786;
-  const Real t1099 = t1097 - t1098;
-  const Real t1100 = t746 + t1099;
-  const Real t1101 = t730 + t1083;
+  const Real t1068 = t3 * t781;
+  const Real t1069 = t1068 - t338;
+  const Real t1070 = constant<Real>(0.24L) * t1069;
+  const Real t1071 = t765 - t1070;
+  const Real t1072 = t1071 + t755;
+  const Real t1073 = t2 * t781;
+  const Real t1074 = t1073 + t337;
+  const Real t1075 = t722 - t1074;
+  const Real t1076 = t2 * t771;
+  const Real t1077 = t3 * t780;
+  const Real t1078 = t1076 + t1077;
+  const Real t1079 = t447 * constant<Real>(0.0164990886730146401744L);
+  const Real t1080 = t1078 + t1079;
+  const Real t1081 = t732 + t1080;
+  const Real t1082 = t772 - t743;
+  const Real t1083 = t771 * t3;
+  const Real t1084 = t2 * t780;
+  const Real t1085 = t1083 - t1084;
+  const Real t1086 = t740 + t1085;
+  const Real t1087 = t724 + t1069;
 
   // front_right_thigh: joint force
-  const Real t1102 = t1095 * c_r_4_;
-  const Real t1103 = s_r_4_ * t1100;
-  const Real t1104 = t1102 + t1103;
-  const Real t1105 = t718 + t1104;
-  const Real t1106 = t1089 * c_r_4_;
-  const Real t1107 = s_r_4_ * t1101;
-  const Real t1108 = t1106 - t1107;
-  const Real t1109 = t1108 - t706;
-  const Real t1110 = t1100 * c_r_4_;
-  const Real t1111 = t1095 * s_r_4_;
-  const Real t1112 = t1110 - t1111;
-  const Real t1113 = t1096 * constant<Real>(0.21L);
-  const Real t1114 = t1112 + t1113;
-  const Real t1115 = t1114 + t726;
-  const Real t1116 = c_r_4_ * t1101;
-  const Real t1117 = t1089 * s_r_4_;
-  const Real t1118 = t1116 + t1117;
-  const Real t1119 = t696 + t1118;
-  const Real t1120 = t1108 * constant<Real>(0.21L);
-  const Real t1121 = t1086 - t1120;
-  const Real t1122 = t704 + t1121;
-  const Real t1123 = t708 + t1096;
+  const Real t1088 = t1081 * c_r_4_;
+  const Real t1089 = s_r_4_ * t1086;
+  const Real t1090 = t1088 + t1089;
+  const Real t1091 = t712 + t1090;
+  const Real t1092 = t1075 * c_r_4_;
+  const Real t1093 = s_r_4_ * t1087;
+  const Real t1094 = t1092 - t1093;
+  const Real t1095 = t1094 - t700;
+  const Real t1096 = c_r_4_ * t1087;
+  const Real t1097 = t1075 * s_r_4_;
+  const Real t1098 = t1096 + t1097;
+  const Real t1099 = t1086 * c_r_4_;
+  const Real t1100 = t1081 * s_r_4_;
+  const Real t1101 = t1099 - t1100;
+  const Real t1102 = t1082 * constant<Real>(0.21L);
+  const Real t1103 = t1101 + t1102;
+  const Real t1104 = t1103 + t720;
+  const Real t1105 = t1094 * constant<Real>(0.21L);
+  const Real t1106 = t1072 - t1105;
+  const Real t1107 = t698 + t1106;
+  const Real t1108 = t702 + t1082;
 
   // front_right_hip: joint force
-  const Real t1124 = t1109 * c_r_3_;
-  const Real t1125 = s_r_3_ * t1123;
-  const Real t1126 = t1124 + t1125;
-  const Real t1127 = c_r_3_ * t1122;
-  const Real t1128 = t1115 * s_r_3_;
-  const Real t1129 = t1127 - t1128;
-  const Real t1130 = t1129 + t1074;
-  const Real t1131 = c_r_3_ * t1123;
-  const Real t1132 = t1109 * s_r_3_;
-  const Real t1133 = t1131 - t1132;
-  const Real t1134 = t1133 + t1078;
-  const Real t1135 = s_r_3_ * t1122;
-  const Real t1136 = c_r_3_ * t1115;
-  const Real t1137 = t1135 + t1136;
+  const Real t1109 = t1095 * c_r_3_;
+  const Real t1110 = s_r_3_ * t1108;
+  const Real t1111 = t1109 + t1110;
+  const Real t1112 = c_r_3_ * t1107;
+  const Real t1113 = t1104 * s_r_3_;
+  const Real t1114 = t1112 - t1113;
+  const Real t1115 = t1114 + t1060;
+  const Real t1116 = c_r_3_ * t1108;
+  const Real t1117 = t1095 * s_r_3_;
+  const Real t1118 = t1116 - t1117;
+  const Real t1119 = t1118 + t1064;
+  const Real t1120 = s_r_3_ * t1107;
+  const Real t1121 = c_r_3_ * t1104;
+  const Real t1122 = t1120 + t1121;
 
   // front_left_shank: joint force
-  const Real t1138 = t11 * t675;
-  const Real t1139 = t340 + t1138;
-  const Real t1140 = t657 - t1139;
-  const Real t1141 = t673 * t12;
-  const Real t1142 = t11 * t683;
-  const Real t1143 = t1141 - t1142;
-  const Real t1144 = t655 + t1143;
-  const Real t1145 = t675 * t12;
-  const Real t1146 = t1145 - t339;
-  const Real t1147 = t1146 * constant<Real>(0.24L);
-  const Real t1148 = t693 - t1147;
-  const Real t1149 = t647 + t1148;
-  const Real t1150 = t1146 + t659;
-  const Real t1151 = t11 * t673;
-  const Real t1152 = t683 * t12;
-  const Real t1153 = t1151 + t1152;
-  const Real t1154 = constant<Real>(0.0164990886730146401744L) * t402;
-  const Real t1155 = t1153 + t1154;
-  const Real t1156 = t1155 + t667;
-  const Real t1157 = t674 - t635;
+  const Real t1123 = t11 * t672;
+  const Real t1124 = t340 + t1123;
+  const Real t1125 = t654 - t1124;
+  const Real t1126 = t670 * t12;
+  const Real t1127 = t11 * t680;
+  const Real t1128 = t1126 - t1127;
+  const Real t1129 = t652 + t1128;
+  const Real t1130 = t672 * t12;
+  const Real t1131 = t1130 - t339;
+  const Real t1132 = t1131 * constant<Real>(0.24L);
+  const Real t1133 = t690 - t1132;
+  const Real t1134 = t644 + t1133;
+  const Real t1135 = t1131 + t656;
+  const Real t1136 = t11 * t670;
+  const Real t1137 = t680 * t12;
+  const Real t1138 = t1136 + t1137;
+  const Real t1139 = constant<Real>(0.0164990886730146401744L) * t402;
+  const Real t1140 = t1138 + t1139;
+  const Real t1141 = t1140 + t664;
+  const Real t1142 = t671 - t632;
 
   // front_left_thigh: joint force
-  const Real t1158 = t1144 * s_r_1_;
-  const Real t1159 = c_r_1_ * t1156;
-  const Real t1160 = t1158 + t1159;
-  const Real t1161 = t1160 + t619;
-  const Real t1162 = constant<Real>(0.21L) * t1157;
-  const Real t1163 = t1144 * c_r_1_;
-  const Real t1164 = s_r_1_ * t1156;
-  const Real t1165 = t1163 - t1164;
-  const Real t1166 = t1162 + t1165;
-  const Real t1167 = t1166 + t632;
-  const Real t1168 = t1140 * c_r_1_;
-  const Real t1169 = t1150 * s_r_1_;
-  const Real t1170 = t1168 - t1169;
-  const Real t1171 = t1170 * constant<Real>(0.21L);
-  const Real t1172 = t1149 - t1171;
-  const Real t1173 = t609 + t1172;
-  const Real t1174 = c_r_1_ * t1150;
-  const Real t1175 = t1140 * s_r_1_;
-  const Real t1176 = t1174 + t1175;
-  const Real t1177 = t1176 + t622;
-  const Real t1178 = t1170 + t624;
-  const Real t1179 = t601 + t1157;
+  const Real t1143 = c_r_1_ * t1135;
+  const Real t1144 = t1125 * s_r_1_;
+  const Real t1145 = t1143 + t1144;
+  const Real t1146 = t1129 * s_r_1_;
+  const Real t1147 = c_r_1_ * t1141;
+  const Real t1148 = t1146 + t1147;
+  const Real t1149 = t1148 + t619;
+  const Real t1150 = constant<Real>(0.21L) * t1142;
+  const Real t1151 = t1129 * c_r_1_;
+  const Real t1152 = s_r_1_ * t1141;
+  const Real t1153 = t1151 - t1152;
+  const Real t1154 = t1150 + t1153;
+  const Real t1155 = t1154 + t629;
+  const Real t1156 = t1125 * c_r_1_;
+  const Real t1157 = t1135 * s_r_1_;
+  const Real t1158 = t1156 - t1157;
+  const Real t1159 = t1158 * constant<Real>(0.21L);
+  const Real t1160 = t1134 - t1159;
+  const Real t1161 = t609 + t1160;
+  const Real t1162 = t1158 + t621;
+  const Real t1163 = t601 + t1142;
 
   // front_left_hip: joint force
-  const Real t1180 = c_r_0_ * t1178;
-  const Real t1181 = s_r_0_ * t1179;
-  const Real t1182 = t1180 + t1181;
-  const Real t1183 = c_r_0_ * t1167;
-  const Real t1184 = t1173 * s_r_0_;
-  const Real t1185 = t1183 + t1184;
-  const Real t1186 = c_r_0_ * t1179;
-  const Real t1187 = s_r_0_ * t1178;
-  const Real t1188 = t1186 - t1187;
-  const Real t1189 = t1134 + t1188;
-  const Real t1190 = c_r_0_ * t1173;
-  const Real t1191 = t1167 * s_r_0_;
-  const Real t1192 = t1190 - t1191;
-  const Real t1193 = t1130 + t1192;
+  const Real t1164 = c_r_0_ * t1162;
+  const Real t1165 = s_r_0_ * t1163;
+  const Real t1166 = t1164 + t1165;
+  const Real t1167 = c_r_0_ * t1155;
+  const Real t1168 = t1161 * s_r_0_;
+  const Real t1169 = t1167 + t1168;
+  const Real t1170 = c_r_0_ * t1163;
+  const Real t1171 = s_r_0_ * t1162;
+  const Real t1172 = t1170 - t1171;
+  const Real t1173 = t1119 + t1172;
+  const Real t1174 = c_r_0_ * t1161;
+  const Real t1175 = t1155 * s_r_0_;
+  const Real t1176 = t1174 - t1175;
+  const Real t1177 = t1115 + t1176;
 
   // front_left_hip: joint force
-  const Real t1194 = t1067 + t599;
-  const Real t1195 = t1161 + t1012;
-  const Real t1196 = t1194 + t1195;
-  const Real t1197 = t1182 + t1081;
-  const Real t1198 = t1126 + t1017;
-  const Real t1199 = t1197 - t1198;
-  const Real t1200 = t1199 * constant<Real>(0.06L);
-  const Real t1201 = t1105 + t1200;
-  const Real t1202 = t572 + t593;
-  const Real t1203 = t1201 - t1202;
-  const Real t1204 = t1196 + t1203;
-  const Real t1205 = t568 + t233;
-  const Real t1206 = t1205 + t594;
-  const Real t1207 = t1204 - t1206;
-  const Real t1208 = t591 + t598;
-  const Real t1209 = t1197 + t1208;
-  const Real t1210 = t1209 + t1198;
-  const Real t1211 = t1210 - t571;
-  const Real t1212 = t1211 - t236;
-  const Real t1213 = t995 + t1119;
-  const Real t1214 = t1063 + t1177;
-  const Real t1215 = t1213 - t1214;
-  const Real t1216 = constant<Real>(0.06L) * t1215;
-  const Real t1217 = t1070 + t1216;
-  const Real t1218 = t1217 - t239;
-  const Real t1219 = t1014 + t596;
-  const Real t1220 = t1069 + t1026;
-  const Real t1221 = t1219 + t1220;
-  const Real t1222 = t1218 + t1221;
-  const Real t1223 = t574 + t595;
-  const Real t1224 = t569 + t573;
-  const Real t1225 = t1223 + t1224;
-  const Real t1226 = t1185 + t1137;
+  const Real t1178 = t1053 + t599;
+  const Real t1179 = t1149 + t999;
+  const Real t1180 = t1178 + t1179;
+  const Real t1181 = t1166 + t1067;
+  const Real t1182 = t1111 + t1004;
+  const Real t1183 = t1181 - t1182;
+  const Real t1184 = t1183 * constant<Real>(0.06L);
+  const Real t1185 = t1091 + t1184;
+  const Real t1186 = t572 + t593;
+  const Real t1187 = t1185 - t1186;
+  const Real t1188 = t1180 + t1187;
+  const Real t1189 = t568 + t233;
+  const Real t1190 = t1189 + t594;
+  const Real t1191 = t1188 - t1190;
+  const Real t1192 = t517 + t415;
+  const Real t1193 = t1192 * constant<Real>(0.0013L);
+  const Real t1194 = t406 + t521;
+  const Real t1195 = t1194 * constant<Real>(0.17239L);
+  const Real t1196 = t1193 - t1195;
+  const Real t1197 = t1098 + t992;
+  const Real t1198 = t1196 + t1197;
+  const Real t1199 = t570 + t592;
+  const Real t1200 = t1198 + t1199;
+  const Real t1201 = t469 + t357;
+  const Real t1202 = constant<Real>(0.0013L) * t1201;
+  const Real t1203 = t353 + t473;
+  const Real t1204 = constant<Real>(0.17239L) * t1203;
+  const Real t1205 = t1202 + t1204;
+  const Real t1206 = t1145 + t1049;
+  const Real t1207 = t1205 + t1206;
+  const Real t1208 = t1200 + t1207;
+  const Real t1209 = t1208 - t237;
+  const Real t1210 = t1209 - t597;
+  const Real t1211 = t591 + t598;
+  const Real t1212 = t1181 + t1211;
+  const Real t1213 = t1212 + t1182;
+  const Real t1214 = t1213 - t571;
+  const Real t1215 = t1214 - t236;
+  const Real t1216 = t574 + t595;
+  const Real t1217 = t569 + t573;
+  const Real t1218 = t1216 + t1217;
+  const Real t1219 = t1169 + t1122;
+  const Real t1220 = t1218 + t1219;
+  const Real t1221 = t1198 - t1207;
+  const Real t1222 = t1221 * constant<Real>(0.06L);
+  const Real t1223 = t1222 + t1056;
+  const Real t1224 = t1223 - t239;
+  const Real t1225 = t1001 + t596;
+  const Real t1226 = t1055 + t1013;
   const Real t1227 = t1225 + t1226;
-  const Real t1228 = t1222 + t1227;
-  const Real t1229 = t570 + t592;
-  const Real t1230 = t1229 + t1213;
-  const Real t1231 = t1214 + t1230;
-  const Real t1232 = t1231 - t237;
-  const Real t1233 = t1232 - t597;
+  const Real t1228 = t1224 + t1227;
+  const Real t1229 = t1220 + t1228;
 
-  base_wrench[0] = t1233;
-  base_wrench[1] = t1189;
-  base_wrench[2] = t1212;
-  base_wrench[3] = t1207;
-  base_wrench[4] = t1193;
-  base_wrench[5] = t1228;
-  tau_out[0] = t1161;
-  tau_out[1] = t1149;
-  tau_out[2] = t693;
-  tau_out[3] = t1105;
-  tau_out[4] = t1086;
-  tau_out[5] = t771;
-  tau_out[6] = t1067;
-  tau_out[7] = t1038;
-  tau_out[8] = t864;
-  tau_out[9] = t1012;
-  tau_out[10] = t990;
-  tau_out[11] = t971;
+  base_wrench[0] = t1210;
+  base_wrench[1] = t1173;
+  base_wrench[2] = t1215;
+  base_wrench[3] = t1191;
+  base_wrench[4] = t1177;
+  base_wrench[5] = t1229;
+  tau_out[0] = t1149;
+  tau_out[1] = t1134;
+  tau_out[2] = t690;
+  tau_out[3] = t1091;
+  tau_out[4] = t1072;
+  tau_out[5] = t765;
+  tau_out[6] = t1053;
+  tau_out[7] = t1025;
+  tau_out[8] = t855;
+  tau_out[9] = t999;
+  tau_out[10] = t978;
+  tau_out[11] = t959;
 }
 
 /// What gravity alone asks of the joints and of the reference body, at rest.
@@ -3300,7 +3292,7 @@ inline void gravity_forces(const Prepared<Real>&,
 
 /// Mass matrix M of (eta, r_dot).
 /// route: frames slid to the tips, tips turned, regrouped
-/// operations: 280 add, 272 mul, 21 neg, 12 sin, 12 cos
+/// operations: 264 add, 253 mul, 28 neg, 12 sin, 12 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  r
 ///     (12) rad or m: front_left_abduction, front_left_swing, front_left_knee, front_right_abduction,
@@ -3328,743 +3320,723 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   const Real c_r_9_ = cos(r[9]);
   const Real s_r_10_ = sin(r[10]);
   const Real c_r_10_ = cos(r[10]);
-  const Real t1 = constant<Real>(3.10492786928988668689L) + r[5];
-  const Real t2 = sin(t1);
-  const Real t3 = cos(t1);
-  const Real t4 = constant<Real>(3.10492786928988668689L) + r[8];
-  const Real t5 = sin(t4);
-  const Real t6 = cos(t4);
-  const Real t7 = constant<Real>(3.10492786928988668689L) + r[11];
-  const Real t8 = sin(t7);
-  const Real t9 = cos(t7);
-  const Real t10 = constant<Real>(3.10492786928988668689L) + r[2];
+  const Real t1 = constant<Real>(3.10492786928988668689L) + r[8];
+  const Real t2 = t1 + r[7];
+  const Real t3 = sin(t2);
+  const Real t4 = cos(t2);
+  const Real t5 = constant<Real>(3.10492786928988668689L) + r[5];
+  const Real t6 = t5 + r[4];
+  const Real t7 = sin(t6);
+  const Real t8 = cos(t6);
+  const Real t9 = constant<Real>(3.10492786928988668689L) + r[2];
+  const Real t10 = r[1] + t9;
   const Real t11 = sin(t10);
   const Real t12 = cos(t10);
+  const Real t13 = constant<Real>(3.10492786928988668689L) + r[11];
+  const Real t14 = r[10] + t13;
+  const Real t15 = sin(t14);
+  const Real t16 = cos(t14);
+
+  // joint angles
+  const Real t17 = constant<Real>(0.24L) * c_r_4_;
+  const Real t18 = c_r_7_ * constant<Real>(0.24L);
+  const Real t19 = constant<Real>(0.24L) * c_r_1_;
+  const Real t20 = s_r_4_ * constant<Real>(0.24L);
+  const Real t21 = constant<Real>(0.24L) * s_r_10_;
+  const Real t22 = constant<Real>(0.24L) * c_r_10_;
+  const Real t23 = s_r_7_ * constant<Real>(0.24L);
+  const Real t24 = constant<Real>(0.24L) * s_r_1_;
 
   // hind_right_shank: composite body
-  const Real t13 = constant<Real>(4.58207125849616419464e-7L) * t9;
-  const Real t14 = constant<Real>(0.00603717424774589637822L) * t8;
-  const Real t15 = t13 - t14;
-  const Real t16 = t15 + constant<Real>(0.0003909L);
-  const Real t17 = constant<Real>(9.36865832970873461006e-6L) * t9;
-  const Real t18 = constant<Real>(0.0128814312806551547888L) * t8;
-  const Real t19 = t17 + t18;
-  const Real t20 = t19 * t9;
-  const Real t21 = constant<Real>(0.0329981773460292803488L) * t9;
-  const Real t22 = constant<Real>(0.0164990886730146401744L) * t8;
-  const Real t23 = constant<Real>(4.58207125849616419464e-7L) * t8;
-  const Real t24 = constant<Real>(0.00603717424774589637822L) * t9;
-  const Real t25 = t23 + t24;
-  const Real t26 = t19 * t8;
-  const Real t27 = constant<Real>(0.000742144359672422605613L) + t26;
-  const Real t28 = constant<Real>(0.0687462028042276673933L) * t9;
-  const Real t29 = t8 * constant<Real>(0.0687462028042276673933L);
+  const Real t25 = t16 * constant<Real>(9.36865832970873461006e-6L);
+  const Real t26 = constant<Real>(0.0128814312806551547888L) * t15;
+  const Real t27 = t25 + t26;
+  const Real t28 = t16 * t27;
+  const Real t29 = t16 * constant<Real>(0.0687462028042276673933L);
+  const Real t30 = t29 * t21;
+  const Real t31 = constant<Real>(0.00603717424774589637822L) * t16;
+  const Real t32 = constant<Real>(4.58207125849616419464e-7L) * t15;
+  const Real t33 = t31 + t32;
+  const Real t34 = t29 * t22;
+  const Real t35 = t34 * constant<Real>(2.0L);
+  const Real t36 = t15 * t27;
+  const Real t37 = constant<Real>(0.00603717424774589637822L) * t15;
+  const Real t38 = constant<Real>(4.58207125849616419464e-7L) * t16;
+  const Real t39 = t15 * constant<Real>(0.0687462028042276673933L);
+  const Real t40 = t39 * t21;
+  const Real t41 = t34 + t40;
+  const Real t42 = constant<Real>(0.01294712L) - t41;
+  const Real t43 = t42 - t41;
+  const Real t44 = t39 * t22;
 
   // hind_right_thigh: composite body
-  const Real t30 = c_r_10_ * constant<Real>(2.0L);
-  const Real t31 = t16 * s_r_10_;
-  const Real t32 = t16 * c_r_10_;
+  const Real t45 = constant<Real>(0.0003909L) * s_r_10_;
+  const Real t46 = constant<Real>(0.0051L) * c_r_10_;
+  const Real t47 = constant<Real>(0.2108L) * s_r_10_;
+  const Real t48 = t46 + t47;
+  const Real t49 = constant<Real>(0.0428421L) + t43;
+  const Real t50 = constant<Real>(0.0414235L) * s_r_10_;
+  const Real t51 = constant<Real>(0.0006696L) * c_r_10_;
+  const Real t52 = t50 - t51;
+  const Real t53 = c_r_10_ * t52;
+  const Real t54 = c_r_10_ * constant<Real>(0.2108L);
+  const Real t55 = constant<Real>(0.0148652L) * c_r_10_;
+  const Real t56 = constant<Real>(0.0148652L) * s_r_10_;
+  const Real t57 = constant<Real>(0.0003909L) * c_r_10_;
+  const Real t58 = t56 + t57;
+  const Real t59 = t52 * s_r_10_;
+  const Real t60 = constant<Real>(0.0051L) * s_r_10_;
 
   // hind_right_hip: composite body
-  const Real t33 = s_r_9_ * constant<Real>(0.17239L);
-  const Real t34 = c_r_9_ * constant<Real>(0.17239L);
-  const Real t35 = c_r_9_ * constant<Real>(2.0L);
+  const Real t61 = s_r_9_ * constant<Real>(0.17239L);
+  const Real t62 = c_r_9_ * constant<Real>(0.17239L);
+  const Real t63 = c_r_9_ * constant<Real>(2.0L);
 
   // hind_left_shank: composite body
-  const Real t36 = constant<Real>(0.0128814312806551547888L) * t5;
-  const Real t37 = t6 * constant<Real>(9.36865832970873461006e-6L);
-  const Real t38 = t36 + t37;
-  const Real t39 = t6 * t38;
-  const Real t40 = t6 * constant<Real>(0.0329981773460292803488L);
-  const Real t41 = constant<Real>(0.00603717424774589637822L) * t5;
-  const Real t42 = t6 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t43 = t41 - t42;
-  const Real t44 = t5 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t45 = t6 * constant<Real>(0.00603717424774589637822L);
-  const Real t46 = t44 + t45;
-  const Real t47 = t6 * constant<Real>(0.0687462028042276673933L);
-  const Real t48 = t5 * constant<Real>(0.0687462028042276673933L);
-  const Real t49 = t5 * t38;
-  const Real t50 = constant<Real>(0.000742144359672422605613L) + t49;
-  const Real t51 = t5 * constant<Real>(0.0164990886730146401744L);
+  const Real t64 = constant<Real>(0.0128814312806551547888L) * t3;
+  const Real t65 = constant<Real>(9.36865832970873461006e-6L) * t4;
+  const Real t66 = t64 + t65;
+  const Real t67 = t66 * t3;
+  const Real t68 = t4 * constant<Real>(0.0687462028042276673933L);
+  const Real t69 = t68 * t18;
+  const Real t70 = t69 * constant<Real>(2.0L);
+  const Real t71 = t3 * constant<Real>(0.0687462028042276673933L);
+  const Real t72 = t18 * t71;
+  const Real t73 = constant<Real>(0.00603717424774589637822L) * t3;
+  const Real t74 = constant<Real>(4.58207125849616419464e-7L) * t4;
+  const Real t75 = t73 - t74;
+  const Real t76 = t68 * t23;
+  const Real t77 = t66 * t4;
+  const Real t78 = t71 * t23;
+  const Real t79 = t78 + t69;
+  const Real t80 = constant<Real>(0.01294712L) - t79;
+  const Real t81 = constant<Real>(0.00603717424774589637822L) * t4;
+  const Real t82 = t3 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t83 = t81 + t82;
 
   // hind_left_thigh: composite body
-  const Real t52 = c_r_7_ * constant<Real>(2.0L);
+  const Real t84 = constant<Real>(0.0006696L) * c_r_7_;
+  const Real t85 = constant<Real>(0.0148652L) * s_r_7_;
+  const Real t86 = c_r_7_ * constant<Real>(0.0003909L);
+  const Real t87 = t85 + t86;
+  const Real t88 = constant<Real>(0.0148652L) * c_r_7_;
+  const Real t89 = constant<Real>(0.0051L) * c_r_7_;
+  const Real t90 = s_r_7_ * constant<Real>(0.2108L);
+  const Real t91 = t89 + t90;
+  const Real t92 = s_r_7_ * constant<Real>(0.0414235L);
+  const Real t93 = s_r_7_ * constant<Real>(0.0003909L);
+  const Real t94 = c_r_7_ * constant<Real>(0.2108L);
+  const Real t95 = constant<Real>(0.0051L) * s_r_7_;
 
   // hind_left_hip: composite body
-  const Real t53 = constant<Real>(0.17239L) * c_r_6_;
-  const Real t54 = constant<Real>(0.17239L) * s_r_6_;
-  const Real t55 = c_r_6_ * constant<Real>(2.0L);
+  const Real t96 = constant<Real>(0.17239L) * c_r_6_;
+  const Real t97 = constant<Real>(0.17239L) * s_r_6_;
+  const Real t98 = c_r_6_ * constant<Real>(2.0L);
 
   // front_right_shank: composite body
-  const Real t56 = t3 * constant<Real>(0.0687462028042276673933L);
-  const Real t57 = t2 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t58 = constant<Real>(0.00603717424774589637822L) * t3;
-  const Real t59 = t57 + t58;
-  const Real t60 = constant<Real>(9.36865832970873461006e-6L) * t3;
-  const Real t61 = t2 * constant<Real>(0.0128814312806551547888L);
-  const Real t62 = t60 + t61;
-  const Real t63 = t2 * t62;
-  const Real t64 = constant<Real>(0.000742144359672422605613L) + t63;
-  const Real t65 = t2 * constant<Real>(0.00603717424774589637822L);
-  const Real t66 = t2 * constant<Real>(0.0164990886730146401744L);
-  const Real t67 = constant<Real>(0.0329981773460292803488L) * t3;
-  const Real t68 = t3 * t62;
-  const Real t69 = constant<Real>(4.58207125849616419464e-7L) * t3;
-  const Real t70 = t2 * constant<Real>(0.0687462028042276673933L);
+  const Real t99 = t8 * constant<Real>(9.36865832970873461006e-6L);
+  const Real t100 = constant<Real>(0.0128814312806551547888L) * t7;
+  const Real t101 = t99 + t100;
+  const Real t102 = t101 * t8;
+  const Real t103 = t101 * t7;
+  const Real t104 = t7 * constant<Real>(0.0687462028042276673933L);
+  const Real t105 = t17 * t104;
+  const Real t106 = constant<Real>(4.58207125849616419464e-7L) * t7;
+  const Real t107 = constant<Real>(0.00603717424774589637822L) * t8;
+  const Real t108 = t106 + t107;
+  const Real t109 = t8 * constant<Real>(0.0687462028042276673933L);
+  const Real t110 = t20 * t109;
+  const Real t111 = t17 * t109;
+  const Real t112 = t111 * constant<Real>(2.0L);
+  const Real t113 = constant<Real>(4.58207125849616419464e-7L) * t8;
+  const Real t114 = constant<Real>(0.00603717424774589637822L) * t7;
+  const Real t115 = t113 - t114;
+  const Real t116 = t20 * t104;
+  const Real t117 = t111 + t116;
+  const Real t118 = constant<Real>(0.01294712L) - t117;
+  const Real t119 = t118 - t117;
 
   // front_right_thigh: composite body
-  const Real t71 = c_r_4_ * constant<Real>(2.0L);
+  const Real t120 = constant<Real>(0.0006696L) * c_r_4_;
+  const Real t121 = constant<Real>(0.0428421L) + t119;
+  const Real t122 = constant<Real>(0.0051L) * c_r_4_;
+  const Real t123 = s_r_4_ * constant<Real>(0.2108L);
+  const Real t124 = t122 + t123;
+  const Real t125 = c_r_4_ * constant<Real>(0.2108L);
+  const Real t126 = constant<Real>(0.0003909L) * c_r_4_;
+  const Real t127 = constant<Real>(0.0148652L) * s_r_4_;
+  const Real t128 = t126 + t127;
+  const Real t129 = t128 + t115;
+  const Real t130 = constant<Real>(0.0148652L) * c_r_4_;
+  const Real t131 = s_r_4_ * constant<Real>(0.0003909L);
+  const Real t132 = t130 - t131;
+  const Real t133 = t132 - t108;
+  const Real t134 = constant<Real>(0.0051L) * s_r_4_;
+  const Real t135 = s_r_4_ * constant<Real>(0.0414235L);
 
   // front_right_hip: composite body
-  const Real t72 = c_r_3_ * constant<Real>(0.17239L);
-  const Real t73 = c_r_3_ * constant<Real>(2.0L);
-  const Real t74 = s_r_3_ * constant<Real>(0.17239L);
+  const Real t136 = c_r_3_ * constant<Real>(0.17239L);
+  const Real t137 = c_r_3_ * constant<Real>(2.0L);
+  const Real t138 = s_r_3_ * constant<Real>(0.17239L);
 
   // front_left_shank: composite body
-  const Real t75 = t12 * constant<Real>(0.0687462028042276673933L);
-  const Real t76 = constant<Real>(0.0128814312806551547888L) * t11;
-  const Real t77 = constant<Real>(9.36865832970873461006e-6L) * t12;
-  const Real t78 = t76 + t77;
-  const Real t79 = t78 * t12;
-  const Real t80 = t78 * t11;
-  const Real t81 = constant<Real>(0.000742144359672422605613L) + t80;
-  const Real t82 = constant<Real>(0.00603717424774589637822L) * t11;
-  const Real t83 = constant<Real>(4.58207125849616419464e-7L) * t12;
-  const Real t84 = t82 - t83;
-  const Real t85 = constant<Real>(0.0329981773460292803488L) * t12;
-  const Real t86 = t11 * constant<Real>(0.0687462028042276673933L);
-  const Real t87 = t11 * constant<Real>(0.0164990886730146401744L);
-  const Real t88 = t11 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t89 = constant<Real>(0.00603717424774589637822L) * t12;
-  const Real t90 = t88 + t89;
+  const Real t139 = constant<Real>(0.0687462028042276673933L) * t11;
+  const Real t140 = t139 * t24;
+  const Real t141 = t12 * constant<Real>(0.0687462028042276673933L);
+  const Real t142 = t19 * t141;
+  const Real t143 = t140 + t142;
+  const Real t144 = constant<Real>(0.01294712L) - t143;
+  const Real t145 = t144 - t143;
+  const Real t146 = t12 * constant<Real>(9.36865832970873461006e-6L);
+  const Real t147 = constant<Real>(0.0128814312806551547888L) * t11;
+  const Real t148 = t146 + t147;
+  const Real t149 = t148 * t11;
+  const Real t150 = t141 * t24;
+  const Real t151 = constant<Real>(0.00603717424774589637822L) * t12;
+  const Real t152 = constant<Real>(4.58207125849616419464e-7L) * t11;
+  const Real t153 = t151 + t152;
+  const Real t154 = t19 * t139;
+  const Real t155 = constant<Real>(0.00603717424774589637822L) * t11;
+  const Real t156 = t12 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t157 = t155 - t156;
+  const Real t158 = constant<Real>(2.0L) * t142;
+  const Real t159 = t12 * t148;
 
   // front_left_thigh: composite body
-  const Real t91 = c_r_1_ * constant<Real>(2.0L);
+  const Real t160 = s_r_1_ * constant<Real>(0.0414235L);
+  const Real t161 = constant<Real>(0.0006696L) * c_r_1_;
+  const Real t162 = t160 - t161;
+  const Real t163 = t162 * s_r_1_;
+  const Real t164 = constant<Real>(0.0148652L) * c_r_1_;
+  const Real t165 = constant<Real>(0.0051L) * s_r_1_;
+  const Real t166 = c_r_1_ * constant<Real>(0.2108L);
+  const Real t167 = t165 - t166;
+  const Real t168 = t167 + t141;
+  const Real t169 = t168 * constant<Real>(0.21L);
+  const Real t170 = t168 + constant<Real>(0.0013L);
+  const Real t171 = constant<Real>(0.0003909L) * s_r_1_;
+  const Real t172 = constant<Real>(0.0051L) * c_r_1_;
+  const Real t173 = s_r_1_ * constant<Real>(0.2108L);
+  const Real t174 = t172 + t173;
+  const Real t175 = t139 - t174;
+  const Real t176 = constant<Real>(0.21L) * t175;
+  const Real t177 = c_r_1_ * t162;
+  const Real t178 = t145 + constant<Real>(0.0428421L);
+  const Real t179 = c_r_1_ * constant<Real>(0.0003909L);
+  const Real t180 = constant<Real>(0.0148652L) * s_r_1_;
+  const Real t181 = t179 + t180;
+  const Real t182 = t157 - t181;
+  const Real t183 = t182 + constant<Real>(0.0360627L);
 
   // front_left_hip: composite body
-  const Real t92 = s_r_0_ * constant<Real>(0.17239L);
-  const Real t93 = c_r_0_ * constant<Real>(0.17239L);
-  const Real t94 = c_r_0_ * constant<Real>(2.0L);
+  const Real t184 = c_r_0_ * t183;
+  const Real t185 = s_r_0_ * constant<Real>(0.17239L);
+  const Real t186 = c_r_0_ * t170;
+  const Real t187 = t185 + t186;
+  const Real t188 = c_r_0_ * constant<Real>(0.17239L);
+  const Real t189 = s_r_0_ * t170;
+  const Real t190 = t188 - t189;
+  const Real t191 = c_r_0_ * constant<Real>(2.0L);
+  const Real t192 = s_r_0_ * t183;
+
+  // front_left_hip: mass matrix
+  const Real t193 = -t187;
+
+  // front_left_thigh: mass matrix
+  const Real t194 = t181 - t157;
+  const Real t195 = t168 * constant<Real>(0.06L);
 
   // front_left_shank: mass matrix
-  const Real t95 = c_r_1_ * t90;
-  const Real t96 = c_r_1_ * t86;
-  const Real t97 = t75 * s_r_1_;
-  const Real t98 = t96 + t97;
-  const Real t99 = c_r_0_ * t98;
-  const Real t100 = t99 * constant<Real>(0.06L);
-  const Real t101 = s_r_0_ * t98;
-  const Real t102 = s_r_1_ * t90;
-  const Real t103 = t75 * c_r_1_;
-  const Real t104 = s_r_1_ * t86;
-  const Real t105 = t103 - t104;
-  const Real t106 = t105 * constant<Real>(0.06L);
-  const Real t107 = constant<Real>(0.0164990886730146401744L) * t12;
-  const Real t108 = constant<Real>(0.01294712L) - t107;
-  const Real t109 = t98 * constant<Real>(0.21L);
-  const Real t110 = t108 + t109;
-  const Real t111 = s_r_0_ * t110;
-  const Real t112 = -t99;
-  const Real t113 = c_r_0_ * t110;
+  const Real t196 = s_r_0_ * t139;
+  const Real t197 = c_r_0_ * t139;
+  const Real t198 = t197 * constant<Real>(0.06L);
+  const Real t199 = -t197;
+  const Real t200 = t156 - t155;
+  const Real t201 = constant<Real>(0.0144367025888878101526L) * t11;
+  const Real t202 = t144 + t201;
+  const Real t203 = s_r_0_ * t202;
+  const Real t204 = c_r_0_ * t153;
+  const Real t205 = t203 - t204;
+  const Real t206 = t12 * constant<Real>(0.0041247721682536600436L);
+  const Real t207 = t205 - t206;
+  const Real t208 = c_r_0_ * t202;
+  const Real t209 = s_r_0_ * t153;
+  const Real t210 = t208 + t209;
 
   // front_right_thigh: mass matrix
-  const Real t114 = t59 - constant<Real>(0.0148652L);
-  const Real t115 = t114 * s_r_4_;
-  const Real t116 = t114 * c_r_4_;
+  const Real t211 = t124 - t104;
+  const Real t212 = constant<Real>(0.21L) * t211;
+  const Real t213 = t121 - t212;
+  const Real t214 = c_r_3_ * t213;
+  const Real t215 = s_r_3_ * t211;
+  const Real t216 = -t215;
+  const Real t217 = c_r_3_ * t211;
+  const Real t218 = t217 * constant<Real>(0.06L);
+  const Real t219 = t129 + t218;
+  const Real t220 = -t219;
+  const Real t221 = s_r_3_ * t213;
+  const Real t222 = -t129;
 
   // front_right_shank: mass matrix
-  const Real t117 = c_r_4_ * t70;
-  const Real t118 = t56 * s_r_4_;
-  const Real t119 = t117 + t118;
-  const Real t120 = t119 * s_r_3_;
-  const Real t121 = t65 - t69;
-  const Real t122 = s_r_4_ * t121;
-  const Real t123 = t56 * c_r_4_;
-  const Real t124 = s_r_4_ * t70;
-  const Real t125 = t123 - t124;
-  const Real t126 = constant<Real>(0.0164990886730146401744L) * t3;
-  const Real t127 = constant<Real>(0.01294712L) - t126;
-  const Real t128 = t119 * constant<Real>(0.21L);
-  const Real t129 = t127 + t128;
-  const Real t130 = s_r_3_ * t129;
-  const Real t131 = t59 * c_r_4_;
-  const Real t132 = c_r_3_ * t119;
-  const Real t133 = -t132;
-  const Real t134 = t59 * s_r_4_;
-  const Real t135 = c_r_4_ * t121;
-  const Real t136 = t134 + t135;
-  const Real t137 = constant<Real>(0.06L) * t132;
-  const Real t138 = t136 + t137;
-  const Real t139 = c_r_3_ * t129;
+  const Real t223 = t114 - t113;
+  const Real t224 = t8 * constant<Real>(0.0041247721682536600436L);
+  const Real t225 = constant<Real>(0.0144367025888878101526L) * t7;
+  const Real t226 = t225 + t118;
+  const Real t227 = t226 * s_r_3_;
+  const Real t228 = c_r_3_ * t108;
+  const Real t229 = t227 + t228;
+  const Real t230 = t224 + t229;
+  const Real t231 = s_r_3_ * t104;
+  const Real t232 = c_r_3_ * t104;
+  const Real t233 = -t232;
+  const Real t234 = t226 * c_r_3_;
+  const Real t235 = s_r_3_ * t108;
+  const Real t236 = t234 - t235;
+  const Real t237 = t232 * constant<Real>(0.06L);
+
+  // hind_left_thigh: mass matrix
+  const Real t238 = t91 - t71;
+  const Real t239 = t238 * c_r_6_;
+  const Real t240 = t239 * constant<Real>(0.06L);
+  const Real t241 = t87 - t75;
+  const Real t242 = t240 + t241;
+  const Real t243 = t238 * constant<Real>(0.21L);
+  const Real t244 = t238 * s_r_6_;
+  const Real t245 = -t244;
 
   // hind_left_shank: mass matrix
-  const Real t140 = t46 * s_r_7_;
-  const Real t141 = t46 * c_r_7_;
-  const Real t142 = c_r_7_ * t47;
-  const Real t143 = s_r_7_ * t48;
-  const Real t144 = t142 - t143;
-  const Real t145 = s_r_7_ * t47;
-  const Real t146 = c_r_7_ * t48;
-  const Real t147 = t145 + t146;
-  const Real t148 = c_r_6_ * t147;
-  const Real t149 = -t148;
-  const Real t150 = t6 * constant<Real>(0.0164990886730146401744L);
-  const Real t151 = constant<Real>(0.01294712L) - t150;
-  const Real t152 = constant<Real>(0.21L) * t147;
-  const Real t153 = t151 - t152;
-  const Real t154 = t153 * c_r_6_;
-  const Real t155 = t148 * constant<Real>(0.06L);
-  const Real t156 = s_r_6_ * t147;
-  const Real t157 = t153 * s_r_6_;
+  const Real t246 = s_r_6_ * t71;
+  const Real t247 = c_r_6_ * t83;
+  const Real t248 = t3 * constant<Real>(0.0144367025888878101526L);
+  const Real t249 = constant<Real>(0.0041247721682536600436L) * t4;
+  const Real t250 = s_r_6_ * t83;
+  const Real t251 = t74 - t73;
+  const Real t252 = t71 * c_r_6_;
+  const Real t253 = -t252;
+  const Real t254 = t252 * constant<Real>(0.06L);
 
   // hind_right_thigh: mass matrix
-  const Real t158 = t25 - constant<Real>(0.0148652L);
-  const Real t159 = t158 * s_r_10_;
-  const Real t160 = t159 - t32;
-  const Real t161 = c_r_10_ * t158;
-  const Real t162 = t161 + t31;
-  const Real t163 = s_r_9_ * t162;
-  const Real t164 = c_r_9_ * t162;
+  const Real t255 = t48 - t39;
+  const Real t256 = s_r_9_ * t255;
+  const Real t257 = -t256;
+  const Real t258 = c_r_9_ * t255;
+  const Real t259 = constant<Real>(0.06L) * t258;
+  const Real t260 = constant<Real>(0.21L) * t255;
+  const Real t261 = t260 + t49;
+  const Real t262 = c_r_9_ * t261;
+  const Real t263 = s_r_9_ * t261;
 
   // hind_right_shank: mass matrix
-  const Real t165 = constant<Real>(0.0164990886730146401744L) * t9;
-  const Real t166 = constant<Real>(0.01294712L) - t165;
-  const Real t167 = c_r_10_ * t29;
-  const Real t168 = t28 * s_r_10_;
-  const Real t169 = t167 + t168;
-  const Real t170 = t169 * constant<Real>(0.21L);
-  const Real t171 = t166 - t170;
-  const Real t172 = c_r_9_ * t171;
-  const Real t173 = s_r_9_ * t171;
-  const Real t174 = c_r_10_ * t28;
-  const Real t175 = s_r_10_ * t29;
-  const Real t176 = t174 - t175;
-  const Real t177 = s_r_9_ * t169;
-  const Real t178 = t25 * s_r_10_;
-  const Real t179 = c_r_9_ * t169;
-  const Real t180 = t179 * constant<Real>(0.06L);
-  const Real t181 = -t179;
-  const Real t182 = t25 * c_r_10_;
+  const Real t264 = s_r_9_ * t39;
+  const Real t265 = c_r_9_ * t39;
+  const Real t266 = -t265;
+  const Real t267 = constant<Real>(0.0144367025888878101526L) * t15;
+  const Real t268 = t42 - t267;
+  const Real t269 = c_r_9_ * t268;
+  const Real t270 = s_r_9_ * t33;
+  const Real t271 = t269 - t270;
+  const Real t272 = t265 * constant<Real>(0.06L);
+  const Real t273 = t37 - t38;
+  const Real t274 = t272 + t273;
+  const Real t275 = t16 * constant<Real>(0.0041247721682536600436L);
+  const Real t276 = c_r_9_ * t33;
+  const Real t277 = s_r_9_ * t268;
+  const Real t278 = t276 + t277;
+  const Real t279 = t275 + t278;
 
   // hind_right_shank: mass matrix
-  const Real t183 = t43 - constant<Real>(0.0003909L);
-  const Real t184 = t183 * c_r_7_;
-  const Real t185 = constant<Real>(0.0148652L) - t46;
-  const Real t186 = t185 * s_r_7_;
-  const Real t187 = t184 - t186;
-  const Real t188 = constant<Real>(0.0360627L) - t187;
-  const Real t189 = t188 * s_r_6_;
-  const Real t190 = t39 - t51;
-  const Real t191 = t190 - constant<Real>(0.000339484329164854367305L);
-  const Real t192 = constant<Real>(0.0550470756403275773944L) - t40;
-  const Real t193 = t192 - t49;
-  const Real t194 = t193 - t50;
-  const Real t195 = t194 * s_r_7_;
-  const Real t196 = t191 * t52;
-  const Real t197 = t195 + t196;
-  const Real t198 = t197 * c_r_7_;
-  const Real t199 = t191 - t198;
-  const Real t200 = t47 - constant<Real>(0.2108L);
-  const Real t201 = c_r_7_ * t200;
-  const Real t202 = constant<Real>(0.0051L) - t48;
-  const Real t203 = s_r_7_ * t202;
-  const Real t204 = t201 + t203;
-  const Real t205 = t204 * constant<Real>(0.21L);
-  const Real t206 = t199 + t205;
-  const Real t207 = constant<Real>(0.0002678L) + t206;
-  const Real t208 = c_r_6_ * t207;
-  const Real t209 = t189 + t208;
-  const Real t210 = constant<Real>(0.0550470756403275773944L) - t67;
-  const Real t211 = t210 - t63;
-  const Real t212 = t64 - t211;
-  const Real t213 = t212 * s_r_4_;
-  const Real t214 = t66 + constant<Real>(0.000339484329164854367305L);
-  const Real t215 = t214 - t68;
-  const Real t216 = t215 * t71;
-  const Real t217 = t213 + t216;
-  const Real t218 = t217 * c_r_4_;
-  const Real t219 = t218 - t215;
-  const Real t220 = t56 - constant<Real>(0.2108L);
-  const Real t221 = c_r_4_ * t220;
-  const Real t222 = constant<Real>(0.0051L) - t70;
-  const Real t223 = t222 * s_r_4_;
-  const Real t224 = t221 + t223;
-  const Real t225 = t224 * constant<Real>(0.21L);
-  const Real t226 = t219 - t225;
-  const Real t227 = t226 - constant<Real>(0.0002678L);
-  const Real t228 = c_r_3_ * t227;
-  const Real t229 = constant<Real>(0.0003909L) - t121;
-  const Real t230 = t229 * c_r_4_;
-  const Real t231 = t230 - t115;
-  const Real t232 = t231 - constant<Real>(0.0360627L);
-  const Real t233 = s_r_3_ * t232;
-  const Real t234 = t228 - t233;
-  const Real t235 = t209 + t234;
-  const Real t236 = constant<Real>(0.0148652L) - t90;
-  const Real t237 = s_r_1_ * t236;
-  const Real t238 = t84 - constant<Real>(0.0003909L);
-  const Real t239 = t238 * c_r_1_;
-  const Real t240 = t237 - t239;
-  const Real t241 = t240 - constant<Real>(0.0360627L);
-  const Real t242 = s_r_0_ * t241;
-  const Real t243 = constant<Real>(0.0550470756403275773944L) - t85;
-  const Real t244 = t243 - t80;
-  const Real t245 = t81 - t244;
-  const Real t246 = t245 * s_r_1_;
-  const Real t247 = t79 - t87;
-  const Real t248 = t247 - constant<Real>(0.000339484329164854367305L);
-  const Real t249 = t91 * t248;
-  const Real t250 = t246 - t249;
-  const Real t251 = c_r_1_ * t250;
-  const Real t252 = t251 + t248;
-  const Real t253 = constant<Real>(0.0051L) - t86;
-  const Real t254 = s_r_1_ * t253;
-  const Real t255 = t75 - constant<Real>(0.2108L);
-  const Real t256 = t255 * c_r_1_;
-  const Real t257 = t254 + t256;
-  const Real t258 = constant<Real>(0.21L) * t257;
-  const Real t259 = t252 - t258;
-  const Real t260 = constant<Real>(0.0002678L) - t259;
-  const Real t261 = c_r_0_ * t260;
-  const Real t262 = t242 - t261;
-  const Real t263 = t235 + t262;
-  const Real t264 = t263 - constant<Real>(0.005104L);
-  const Real t265 = constant<Real>(0.0360627L) - t160;
-  const Real t266 = s_r_9_ * t265;
-  const Real t267 = constant<Real>(0.0051L) - t29;
-  const Real t268 = t267 * s_r_10_;
-  const Real t269 = constant<Real>(0.2108L) - t28;
-  const Real t270 = t269 * c_r_10_;
-  const Real t271 = t268 - t270;
-  const Real t272 = t271 * constant<Real>(0.21L);
-  const Real t273 = t20 - t22;
-  const Real t274 = t273 - constant<Real>(0.000339484329164854367305L);
-  const Real t275 = t30 * t274;
-  const Real t276 = t21 + t26;
-  const Real t277 = t276 - constant<Real>(0.0550470756403275773944L);
-  const Real t278 = t277 + t27;
-  const Real t279 = t278 * s_r_10_;
-  const Real t280 = t275 - t279;
-  const Real t281 = c_r_10_ * t280;
-  const Real t282 = t274 - t281;
-  const Real t283 = t272 + t282;
-  const Real t284 = constant<Real>(0.0002678L) + t283;
-  const Real t285 = c_r_9_ * t284;
-  const Real t286 = t266 - t285;
-  const Real t287 = t264 - t286;
-  const Real t288 = c_r_1_ * t84;
-  const Real t289 = t288 + t102;
-  const Real t290 = t100 + t289;
-  const Real t291 = -t290;
-  const Real t292 = t224 * constant<Real>(0.06L);
-  const Real t293 = t222 * c_r_4_;
-  const Real t294 = s_r_4_ * t220;
-  const Real t295 = t293 - t294;
-  const Real t296 = t295 * constant<Real>(0.21L);
-  const Real t297 = t64 + t211;
-  const Real t298 = t296 - t297;
-  const Real t299 = s_r_3_ * t298;
-  const Real t300 = s_r_4_ * t229;
-  const Real t301 = t300 + t116;
-  const Real t302 = c_r_3_ * t301;
-  const Real t303 = t299 - t302;
-  const Real t304 = t292 - t303;
-  const Real t305 = constant<Real>(0.0013L) + t224;
-  const Real t306 = t305 * s_r_3_;
-  const Real t307 = t72 + t306;
-  const Real t308 = -t307;
-  const Real t309 = constant<Real>(0.0013L) + t257;
-  const Real t310 = s_r_0_ * t309;
-  const Real t311 = t310 - t93;
-  const Real t312 = t204 + constant<Real>(0.0013L);
-  const Real t313 = t312 * s_r_6_;
-  const Real t314 = t53 - t313;
-  const Real t315 = t314 - constant<Real>(0.011L);
-  const Real t316 = t271 + constant<Real>(0.0013L);
-  const Real t317 = s_r_9_ * t316;
-  const Real t318 = t34 + t317;
-  const Real t319 = t318 + t307;
-  const Real t320 = t315 - t319;
-  const Real t321 = t311 - t320;
-  const Real t322 = t64 + t50;
-  const Real t323 = t255 * s_r_1_;
-  const Real t324 = c_r_1_ * t253;
-  const Real t325 = t323 - t324;
-  const Real t326 = t267 * c_r_10_;
-  const Real t327 = t269 * s_r_10_;
-  const Real t328 = t326 + t327;
-  const Real t329 = t325 + t328;
-  const Real t330 = c_r_7_ * t202;
-  const Real t331 = s_r_7_ * t200;
-  const Real t332 = t330 - t331;
-  const Real t333 = t295 - t332;
-  const Real t334 = t329 - t333;
-  const Real t335 = t334 * constant<Real>(0.42L);
-  const Real t336 = t81 + t335;
-  const Real t337 = t322 + t336;
-  const Real t338 = t197 * s_r_7_;
-  const Real t339 = t338 + constant<Real>(0.783596868L);
-  const Real t340 = t280 * s_r_10_;
-  const Real t341 = t340 + t27;
-  const Real t342 = t339 + t341;
-  const Real t343 = t337 + t342;
-  const Real t344 = t217 * s_r_4_;
-  const Real t345 = s_r_1_ * t250;
-  const Real t346 = t344 + t345;
-  const Real t347 = t343 - t346;
-  const Real t348 = t311 - t314;
-  const Real t349 = t348 - t319;
-  const Real t350 = t349 * constant<Real>(0.12L);
-  const Real t351 = t244 + t345;
-  const Real t352 = t351 + constant<Real>(0.0008138L);
-  const Real t353 = constant<Real>(0.01168088L) - t352;
-  const Real t354 = s_r_0_ * t353;
-  const Real t355 = t238 * s_r_1_;
-  const Real t356 = c_r_1_ * t236;
-  const Real t357 = t355 + t356;
-  const Real t358 = t357 - constant<Real>(0.0000473L);
-  const Real t359 = t358 * t94;
-  const Real t360 = t354 - t359;
-  const Real t361 = t360 * s_r_0_;
-  const Real t362 = t162 + constant<Real>(0.0000473L);
-  const Real t363 = t362 * t35;
-  const Real t364 = t340 + t277;
-  const Real t365 = constant<Real>(0.0008138L) - t364;
-  const Real t366 = t365 - constant<Real>(0.01168088L);
-  const Real t367 = s_r_9_ * t366;
-  const Real t368 = t363 + t367;
-  const Real t369 = s_r_9_ * t368;
-  const Real t370 = t361 - t369;
-  const Real t371 = t193 - t338;
-  const Real t372 = constant<Real>(0.0008138L) + t371;
-  const Real t373 = t372 - constant<Real>(0.01168088L);
-  const Real t374 = s_r_6_ * t373;
-  const Real t375 = t183 * s_r_7_;
-  const Real t376 = t185 * c_r_7_;
-  const Real t377 = t375 + t376;
-  const Real t378 = t377 - constant<Real>(0.0000473L);
-  const Real t379 = t378 * t55;
-  const Real t380 = t374 + t379;
-  const Real t381 = t380 * s_r_6_;
-  const Real t382 = t301 + constant<Real>(0.0000473L);
-  const Real t383 = t73 * t382;
-  const Real t384 = t344 + t211;
-  const Real t385 = t384 + constant<Real>(0.0008138L);
-  const Real t386 = t385 - constant<Real>(0.01168088L);
-  const Real t387 = s_r_3_ * t386;
-  const Real t388 = t383 + t387;
-  const Real t389 = s_r_3_ * t388;
-  const Real t390 = t381 + t389;
-  const Real t391 = t370 - t390;
-  const Real t392 = t350 + t391;
-  const Real t393 = t392 - constant<Real>(0.02336176L);
-  const Real t394 = t393 - constant<Real>(0.088924252L);
-  const Real t395 = t394 - constant<Real>(0.01168088L);
-  const Real t396 = t395 - constant<Real>(0.01168088L);
-  const Real t397 = t347 - t396;
-  const Real t398 = c_r_0_ * t325;
-  const Real t399 = -t398;
-  const Real t400 = s_r_3_ * t227;
-  const Real t401 = c_r_3_ * t232;
-  const Real t402 = t400 + t401;
+  const Real t280 = t88 - t93;
+  const Real t281 = t280 - t83;
+  const Real t282 = c_r_6_ * t281;
+  const Real t283 = t79 - t80;
+  const Real t284 = t283 - constant<Real>(0.0428421L);
+  const Real t285 = t284 - t243;
+  const Real t286 = t285 * s_r_6_;
+  const Real t287 = t282 - t286;
+  const Real t288 = t94 - t95;
+  const Real t289 = t68 - t288;
+  const Real t290 = t289 * constant<Real>(0.06L);
+  const Real t291 = t287 - t290;
+  const Real t292 = t125 - t134;
+  const Real t293 = t292 - t109;
+  const Real t294 = constant<Real>(0.0013L) - t293;
+  const Real t295 = c_r_3_ * t294;
+  const Real t296 = t138 - t295;
+  const Real t297 = t45 - t55;
+  const Real t298 = t33 + t297;
+  const Real t299 = s_r_9_ * t298;
+  const Real t300 = t262 - t299;
+  const Real t301 = c_r_0_ * t175;
+  const Real t302 = -t301;
+  const Real t303 = constant<Real>(0.0550470756403275773944L) - t35;
+  const Real t304 = t36 + t59;
+  const Real t305 = t303 - t304;
+  const Real t306 = constant<Real>(0.01249468L) + t305;
+  const Real t307 = t54 - t60;
+  const Real t308 = t29 - t307;
+  const Real t309 = t308 + constant<Real>(0.0013L);
+  const Real t310 = s_r_9_ * t309;
+  const Real t311 = t310 + t62;
+  const Real t312 = t311 * constant<Real>(0.06L);
+  const Real t313 = t306 + t312;
+  const Real t314 = t176 + t178;
+  const Real t315 = c_r_0_ * t314;
+  const Real t316 = t164 - t171;
+  const Real t317 = t153 - t316;
+  const Real t318 = t317 * s_r_0_;
+  const Real t319 = t315 + t318;
+  const Real t320 = constant<Real>(0.0360627L) + t241;
+  const Real t321 = t320 * c_r_6_;
+  const Real t322 = constant<Real>(0.21L) * t289;
+  const Real t323 = t72 + t76;
+  const Real t324 = t84 - t92;
+  const Real t325 = c_r_7_ * t324;
+  const Real t326 = t323 + t325;
+  const Real t327 = t322 + t326;
+  const Real t328 = constant<Real>(-0.000062315670835145632695L) + t327;
+  const Real t329 = t328 - t77;
+  const Real t330 = t329 * s_r_6_;
+  const Real t331 = t321 - t330;
+  const Real t332 = s_r_3_ * t294;
+  const Real t333 = t136 + t332;
+  const Real t334 = -t333;
+  const Real t335 = t189 - t188;
+  const Real t336 = constant<Real>(0.0013L) + t289;
+  const Real t337 = t336 * s_r_6_;
+  const Real t338 = t337 - t96;
+  const Real t339 = t335 + t338;
+  const Real t340 = t311 + t333;
+  const Real t341 = t339 - t340;
+  const Real t342 = t341 * constant<Real>(0.12L);
+  const Real t343 = t298 + constant<Real>(0.0000473L);
+  const Real t344 = t343 * t63;
+  const Real t345 = constant<Real>(0.0008138L) + t305;
+  const Real t346 = constant<Real>(0.01168088L) - t345;
+  const Real t347 = s_r_9_ * t346;
+  const Real t348 = t344 - t347;
+  const Real t349 = s_r_9_ * t348;
+  const Real t350 = s_r_7_ * t324;
+  const Real t351 = t67 - t350;
+  const Real t352 = t70 + t351;
+  const Real t353 = t352 - constant<Real>(0.0550470756403275773944L);
+  const Real t354 = t353 - constant<Real>(0.0008138L);
+  const Real t355 = t354 + constant<Real>(0.01168088L);
+  const Real t356 = t355 * s_r_6_;
+  const Real t357 = t281 - constant<Real>(0.0000473L);
+  const Real t358 = t357 * t98;
+  const Real t359 = t356 - t358;
+  const Real t360 = s_r_6_ * t359;
+  const Real t361 = t349 - t360;
+  const Real t362 = t317 + constant<Real>(0.0000473L);
+  const Real t363 = t191 * t362;
+  const Real t364 = t149 + t163;
+  const Real t365 = t364 + t158;
+  const Real t366 = t365 - constant<Real>(0.0550470756403275773944L);
+  const Real t367 = constant<Real>(0.0008138L) - t366;
+  const Real t368 = constant<Real>(0.01168088L) - t367;
+  const Real t369 = s_r_0_ * t368;
+  const Real t370 = t363 + t369;
+  const Real t371 = s_r_0_ * t370;
+  const Real t372 = t133 - constant<Real>(0.0000473L);
+  const Real t373 = t137 * t372;
+  const Real t374 = t120 - t135;
+  const Real t375 = s_r_4_ * t374;
+  const Real t376 = t375 - t103;
+  const Real t377 = t376 + constant<Real>(0.0550470756403275773944L);
+  const Real t378 = t377 - t112;
+  const Real t379 = constant<Real>(0.0008138L) + t378;
+  const Real t380 = t379 - constant<Real>(0.01168088L);
+  const Real t381 = s_r_3_ * t380;
+  const Real t382 = t373 - t381;
+  const Real t383 = s_r_3_ * t382;
+  const Real t384 = t371 + t383;
+  const Real t385 = t361 - t384;
+  const Real t386 = t342 - t385;
+  const Real t387 = t386 - constant<Real>(0.135647772L);
+  const Real t388 = t140 + t40;
+  const Real t389 = t78 + t116;
+  const Real t390 = t388 + t389;
+  const Real t391 = t390 * constant<Real>(2.0L);
+  const Real t392 = t211 - t238;
+  const Real t393 = t175 + t255;
+  const Real t394 = t392 - t393;
+  const Real t395 = constant<Real>(0.42L) * t394;
+  const Real t396 = t391 + t395;
+  const Real t397 = t396 + t376;
+  const Real t398 = t397 - t364;
+  const Real t399 = t398 - t351;
+  const Real t400 = t399 - t304;
+  const Real t401 = t400 - constant<Real>(0.786565445438689690422L);
+  const Real t402 = t387 + t401;
   const Real t403 = -t402;
-  const Real t404 = t365 + t352;
-  const Real t405 = t404 + constant<Real>(0.020621215L);
-  const Real t406 = t405 + t372;
-  const Real t407 = t406 + t385;
-  const Real t408 = t407 + t391;
-  const Real t409 = t408 - t396;
-  const Real t410 = t193 + t50;
-  const Real t411 = t332 * constant<Real>(0.21L);
-  const Real t412 = t410 + t411;
-  const Real t413 = t412 * c_r_6_;
-  const Real t414 = t377 * s_r_6_;
-  const Real t415 = t413 - t414;
-  const Real t416 = t384 + constant<Real>(0.01249468L);
-  const Real t417 = constant<Real>(0.06L) * t307;
-  const Real t418 = t416 + t417;
-  const Real t419 = constant<Real>(0.06L) * t398;
-  const Real t420 = t240 - t419;
-  const Real t421 = c_r_0_ * t241;
-  const Real t422 = s_r_0_ * t260;
-  const Real t423 = t421 + t422;
-  const Real t424 = t423 + constant<Real>(0.000691L);
-  const Real t425 = t188 * c_r_6_;
-  const Real t426 = s_r_6_ * t207;
-  const Real t427 = t425 - t426;
-  const Real t428 = t424 + t427;
-  const Real t429 = t333 + t329;
-  const Real t430 = t429 * constant<Real>(0.06L);
-  const Real t431 = t428 - t430;
-  const Real t432 = s_r_9_ * t284;
-  const Real t433 = c_r_9_ * t265;
-  const Real t434 = t432 + t433;
-  const Real t435 = t431 - t434;
-  const Real t436 = t435 - t402;
-  const Real t437 = t93 - t310;
-  const Real t438 = t325 * constant<Real>(0.21L);
-  const Real t439 = t244 + t81;
-  const Real t440 = t438 + t439;
-  const Real t441 = s_r_0_ * t440;
-  const Real t442 = c_r_0_ * t357;
-  const Real t443 = t441 + t442;
-  const Real t444 = constant<Real>(0.06L) * t257;
-  const Real t445 = t443 - t444;
-  const Real t446 = c_r_3_ * t295;
-  const Real t447 = t446 * constant<Real>(0.06L);
-  const Real t448 = t231 + t447;
-  const Real t449 = -t448;
-  const Real t450 = t84 * s_r_1_;
-  const Real t451 = t95 - t450;
-  const Real t452 = t451 * s_r_0_;
-  const Real t453 = t452 + t113;
-  const Real t454 = t325 * s_r_0_;
-  const Real t455 = t377 * c_r_6_;
-  const Real t456 = t412 * s_r_6_;
-  const Real t457 = t455 + t456;
-  const Real t458 = t204 * constant<Real>(0.06L);
-  const Real t459 = t457 - t458;
-  const Real t460 = -t289;
-  const Real t461 = t15 * c_r_10_;
-  const Real t462 = t178 - t461;
-  const Real t463 = c_r_3_ * t298;
-  const Real t464 = s_r_3_ * t301;
-  const Real t465 = t463 + t464;
-  const Real t466 = -t465;
-  const Real t467 = s_r_3_ * t295;
-  const Real t468 = -t467;
-  const Real t469 = t351 + constant<Real>(0.01249468L);
-  const Real t470 = t311 * constant<Real>(0.06L);
-  const Real t471 = t469 - t470;
-  const Real t472 = t318 * constant<Real>(0.06L);
-  const Real t473 = t364 - constant<Real>(0.01249468L);
-  const Real t474 = t472 - t473;
-  const Real t475 = t15 * s_r_10_;
-  const Real t476 = t475 + t182;
-  const Real t477 = c_r_9_ * t476;
-  const Real t478 = t173 + t477;
-  const Real t479 = t175 - t174;
-  const Real t480 = t479 * constant<Real>(0.06L);
-  const Real t481 = t478 - t480;
-  const Real t482 = t122 - t131;
-  const Real t483 = s_r_3_ * t482;
-  const Real t484 = t139 + t483;
-  const Real t485 = c_r_3_ * t482;
-  const Real t486 = t130 - t485;
-  const Real t487 = t124 - t123;
-  const Real t488 = t487 * constant<Real>(0.06L);
-  const Real t489 = t486 - t488;
-  const Real t490 = c_r_0_ * t309;
-  const Real t491 = t92 + t490;
-  const Real t492 = c_r_9_ * t316;
-  const Real t493 = t33 - t492;
-  const Real t494 = t305 * c_r_3_;
-  const Real t495 = t74 - t494;
-  const Real t496 = t493 + t495;
-  const Real t497 = t496 - constant<Real>(0.1412L);
-  const Real t498 = t312 * c_r_6_;
-  const Real t499 = t54 + t498;
-  const Real t500 = t497 - t499;
-  const Real t501 = t491 - t500;
-  const Real t502 = t328 * constant<Real>(0.21L);
-  const Real t503 = t277 - t27;
-  const Real t504 = t502 - t503;
-  const Real t505 = s_r_9_ * t504;
-  const Real t506 = t164 + t505;
-  const Real t507 = t271 * constant<Real>(0.06L);
-  const Real t508 = t506 + t507;
-  const Real t509 = -t434;
-  const Real t510 = t27 - t277;
-  const Real t511 = t408 + t347;
-  const Real t512 = t43 * c_r_7_;
-  const Real t513 = t140 + t512;
-  const Real t514 = t155 + t513;
+  const Real t404 = t198 + t157;
+  const Real t405 = -t404;
+  const Real t406 = t273 - t58;
+  const Real t407 = s_r_3_ * t133;
+  const Real t408 = t214 + t407;
+  const Real t409 = constant<Real>(0.06L) * t293;
+  const Real t410 = c_r_3_ * t133;
+  const Real t411 = t410 - t221;
+  const Real t412 = t409 + t411;
+  const Real t413 = -t412;
+  const Real t414 = t96 - t337;
+  const Real t415 = t367 + t379;
+  const Real t416 = t415 + t345;
+  const Real t417 = t416 + constant<Real>(0.020621215L);
+  const Real t418 = t417 - t354;
+  const Real t419 = t418 - t385;
+  const Real t420 = t419 - t387;
+  const Real t421 = constant<Real>(0.011L) + t340;
+  const Real t422 = t339 + t421;
+  const Real t423 = -t422;
+  const Real t424 = s_r_0_ * t175;
+  const Real t425 = t150 + t154;
+  const Real t426 = t425 - t159;
+  const Real t427 = t426 - t177;
+  const Real t428 = t427 - t169;
+  const Real t429 = t428 - constant<Real>(0.000597915670835145632695L);
+  const Real t430 = t429 * s_r_0_;
+  const Real t431 = t184 + t430;
+  const Real t432 = -t431;
+  const Real t433 = c_r_9_ * t298;
+  const Real t434 = t433 + t263;
+  const Real t435 = t308 * constant<Real>(0.06L);
+  const Real t436 = t434 + t435;
+  const Real t437 = constant<Real>(0.01249468L) - t366;
+  const Real t438 = t335 * constant<Real>(0.06L);
+  const Real t439 = t437 - t438;
+  const Real t440 = constant<Real>(0.0515L) - t255;
+  const Real t441 = t238 - t440;
+  const Real t442 = t211 + t441;
+  const Real t443 = t442 - t175;
+  const Real t444 = t301 * constant<Real>(0.06L);
+  const Real t445 = t182 + t444;
+  const Real t446 = -t445;
+  const Real t447 = t295 - t138;
+  const Real t448 = c_r_9_ * t309;
+  const Real t449 = t61 - t448;
+  const Real t450 = t447 - t449;
+  const Real t451 = constant<Real>(0.1412L) + t450;
+  const Real t452 = t336 * c_r_6_;
+  const Real t453 = t452 + t97;
+  const Real t454 = t453 + t187;
+  const Real t455 = t451 + t454;
+  const Real t456 = -t455;
+  const Real t457 = constant<Real>(0.0360627L) - t129;
+  const Real t458 = t457 * s_r_3_;
+  const Real t459 = constant<Real>(0.000597915670835145632695L) + t102;
+  const Real t460 = constant<Real>(0.21L) * t293;
+  const Real t461 = t459 - t460;
+  const Real t462 = t461 - t110;
+  const Real t463 = t462 - t105;
+  const Real t464 = t374 * c_r_4_;
+  const Real t465 = t463 - t464;
+  const Real t466 = t465 * c_r_3_;
+  const Real t467 = t458 - t466;
+  const Real t468 = t457 * c_r_3_;
+  const Real t469 = t465 * s_r_3_;
+  const Real t470 = t468 + t469;
+  const Real t471 = t470 + constant<Real>(0.000691L);
+  const Real t472 = t393 + t392;
+  const Real t473 = t472 * constant<Real>(0.06L);
+  const Real t474 = t471 - t473;
+  const Real t475 = t474 - t431;
+  const Real t476 = t58 - t273;
+  const Real t477 = constant<Real>(0.0360627L) + t476;
+  const Real t478 = t477 * c_r_9_;
+  const Real t479 = t308 * constant<Real>(0.21L);
+  const Real t480 = t30 + t479;
+  const Real t481 = t480 + t44;
+  const Real t482 = t481 + constant<Real>(-0.000062315670835145632695L);
+  const Real t483 = t482 - t28;
+  const Real t484 = t483 - t53;
+  const Real t485 = s_r_9_ * t484;
+  const Real t486 = t478 + t485;
+  const Real t487 = t475 - t486;
+  const Real t488 = t330 - t321;
+  const Real t489 = t487 - t488;
+  const Real t490 = c_r_0_ * t429;
+  const Real t491 = t490 - t192;
+  const Real t492 = c_r_9_ * t484;
+  const Real t493 = s_r_9_ * t477;
+  const Real t494 = t492 - t493;
+  const Real t495 = t491 + t494;
+  const Real t496 = t329 * c_r_6_;
+  const Real t497 = t320 * s_r_6_;
+  const Real t498 = t496 + t497;
+  const Real t499 = t495 + t498;
+  const Real t500 = t499 - constant<Real>(0.005104L);
+  const Real t501 = t466 - t458;
+  const Real t502 = t500 - t501;
+  const Real t503 = t237 - t115;
+  const Real t504 = t419 - t401;
+  const Real t505 = c_r_0_ * t317;
+  const Real t506 = t314 * s_r_0_;
+  const Real t507 = t505 - t506;
+  const Real t508 = t195 + t507;
+  const Real t509 = -t508;
+  const Real t510 = -t486;
+  const Real t511 = t248 - t80;
+  const Real t512 = t511 * s_r_6_;
+  const Real t513 = t247 + t512;
+  const Real t514 = t249 + t513;
   const Real t515 = -t514;
-  const Real t516 = c_r_9_ * t328;
-  const Real t517 = constant<Real>(0.06L) * t516;
-  const Real t518 = t160 - t517;
-  const Real t519 = c_r_0_ * t451;
-  const Real t520 = t519 - t111;
-  const Real t521 = t106 + t520;
-  const Real t522 = -t521;
-  const Real t523 = t314 * constant<Real>(0.06L);
-  const Real t524 = t371 + constant<Real>(0.01249468L);
-  const Real t525 = t523 + t524;
-  const Real t526 = -t491;
-  const Real t527 = c_r_9_ * t368;
-  const Real t528 = t527 + constant<Real>(0.000406L);
-  const Real t529 = t380 * c_r_6_;
-  const Real t530 = c_r_3_ * t388;
-  const Real t531 = t529 + t530;
-  const Real t532 = t528 + t531;
-  const Real t533 = t378 + t362;
-  const Real t534 = t491 + t499;
-  const Real t535 = t534 + t496;
-  const Real t536 = t535 * constant<Real>(0.06L);
-  const Real t537 = t536 + t382;
-  const Real t538 = t533 + t537;
-  const Real t539 = t532 - t538;
-  const Real t540 = c_r_0_ * t360;
-  const Real t541 = t540 + t358;
-  const Real t542 = t539 - t541;
-  const Real t543 = t328 - constant<Real>(0.0515L);
-  const Real t544 = t332 + t543;
-  const Real t545 = t544 + t295;
-  const Real t546 = t545 - t325;
-  const Real t547 = t143 - t142;
-  const Real t548 = t547 * constant<Real>(0.06L);
-  const Real t549 = t43 * s_r_7_;
-  const Real t550 = t141 - t549;
-  const Real t551 = t550 * c_r_6_;
-  const Real t552 = t157 - t551;
-  const Real t553 = t548 + t552;
-  const Real t554 = s_r_9_ * t328;
-  const Real t555 = -t554;
-  const Real t556 = t550 * s_r_6_;
-  const Real t557 = t154 + t556;
-  const Real t558 = t461 - t178;
-  const Real t559 = t180 - t558;
-  const Real t560 = t325 - t545;
-  const Real t561 = constant<Real>(0.01249468L) - t364;
-  const Real t562 = -t499;
-  const Real t563 = t320 - t311;
-  const Real t564 = t332 * s_r_6_;
-  const Real t565 = -t564;
-  const Real t566 = t115 - t230;
-  const Real t567 = -t513;
-  const Real t568 = t332 * c_r_6_;
-  const Real t569 = t568 * constant<Real>(0.06L);
-  const Real t570 = t569 - t187;
-  const Real t571 = t500 - t491;
-  const Real t572 = t285 - t266;
-  const Real t573 = -t318;
-  const Real t574 = t186 - t184;
-  const Real t575 = c_r_9_ * t504;
-  const Real t576 = t575 - t163;
-  const Real t577 = s_r_9_ * t476;
-  const Real t578 = t172 - t577;
-  const Real t579 = c_r_0_ * t440;
-  const Real t580 = t357 * s_r_0_;
-  const Real t581 = t579 - t580;
+  const Real t516 = t450 - t454;
+  const Real t517 = t516 * constant<Real>(0.06L);
+  const Real t518 = c_r_3_ * t382;
+  const Real t519 = t517 - t518;
+  const Real t520 = c_r_6_ * t359;
+  const Real t521 = t520 + t357;
+  const Real t522 = t519 - t521;
+  const Real t523 = c_r_9_ * t348;
+  const Real t524 = t523 + t372;
+  const Real t525 = t317 + constant<Real>(0.0004533L);
+  const Real t526 = t524 + t525;
+  const Real t527 = t522 + t526;
+  const Real t528 = c_r_0_ * t370;
+  const Real t529 = t528 + t343;
+  const Real t530 = t527 - t529;
+  const Real t531 = t75 + t254;
+  const Real t532 = -t531;
+  const Real t533 = -t453;
+  const Real t534 = -t311;
+  const Real t535 = s_r_6_ * t281;
+  const Real t536 = t285 * c_r_6_;
+  const Real t537 = t535 + t536;
+  const Real t538 = -t537;
+  const Real t539 = t175 - t442;
+  const Real t540 = t378 + constant<Real>(0.01249468L);
+  const Real t541 = constant<Real>(0.06L) * t333;
+  const Real t542 = t540 + t541;
+  const Real t543 = constant<Real>(0.0428421L) - t283;
+  const Real t544 = t353 - constant<Real>(0.01249468L);
+  const Real t545 = constant<Real>(0.06L) * t338;
+  const Real t546 = t544 + t545;
+  const Real t547 = -t546;
+  const Real t548 = t109 - t292;
+  const Real t549 = constant<Real>(0.01249468L) - t353;
+  const Real t550 = t511 * c_r_6_;
+  const Real t551 = t250 - t550;
+  const Real t552 = t259 + t476;
+  const Real t553 = -t552;
 
   M[0] = constant<Real>(25.59L);
   M[1] = constant<Real>(0.0L);
   M[2] = constant<Real>(0.0L);
   M[3] = constant<Real>(0.0L);
-  M[4] = t501;
-  M[5] = t321;
+  M[4] = t455;
+  M[5] = t422;
   M[6] = constant<Real>(0.0L);
-  M[7] = t257;
-  M[8] = t105;
+  M[7] = t168;
+  M[8] = t141;
   M[9] = constant<Real>(0.0L);
-  M[10] = t224;
-  M[11] = t125;
+  M[10] = t548;
+  M[11] = t109;
   M[12] = constant<Real>(0.0L);
-  M[13] = t204;
-  M[14] = t144;
+  M[13] = t289;
+  M[14] = t68;
   M[15] = constant<Real>(0.0L);
-  M[16] = t271;
-  M[17] = t176;
+  M[16] = t308;
+  M[17] = t29;
   M[18] = constant<Real>(0.0L);
   M[19] = constant<Real>(25.59L);
   M[20] = constant<Real>(0.0L);
-  M[21] = t571;
+  M[21] = t456;
   M[22] = constant<Real>(0.0L);
-  M[23] = t560;
-  M[24] = t526;
-  M[25] = t454;
-  M[26] = t101;
-  M[27] = t495;
-  M[28] = t468;
-  M[29] = t120;
-  M[30] = t562;
-  M[31] = t565;
-  M[32] = t156;
-  M[33] = t493;
-  M[34] = t555;
-  M[35] = t177;
+  M[23] = t539;
+  M[24] = t193;
+  M[25] = t424;
+  M[26] = t196;
+  M[27] = t296;
+  M[28] = t216;
+  M[29] = t231;
+  M[30] = t533;
+  M[31] = t245;
+  M[32] = t246;
+  M[33] = t449;
+  M[34] = t257;
+  M[35] = t264;
   M[36] = constant<Real>(0.0L);
   M[37] = constant<Real>(0.0L);
   M[38] = constant<Real>(25.59L);
-  M[39] = t563;
-  M[40] = t546;
+  M[39] = t423;
+  M[40] = t443;
   M[41] = constant<Real>(0.0L);
-  M[42] = t437;
-  M[43] = t399;
-  M[44] = t112;
-  M[45] = t308;
-  M[46] = t446;
-  M[47] = t133;
-  M[48] = t314;
-  M[49] = t568;
-  M[50] = t149;
-  M[51] = t573;
-  M[52] = t516;
-  M[53] = t181;
+  M[42] = t190;
+  M[43] = t302;
+  M[44] = t199;
+  M[45] = t334;
+  M[46] = t217;
+  M[47] = t233;
+  M[48] = t414;
+  M[49] = t239;
+  M[50] = t253;
+  M[51] = t534;
+  M[52] = t258;
+  M[53] = t266;
   M[54] = constant<Real>(0.0L);
-  M[55] = t571;
-  M[56] = t563;
-  M[57] = t409;
-  M[58] = t436;
-  M[59] = t287;
-  M[60] = t471;
-  M[61] = t420;
-  M[62] = t291;
-  M[63] = t418;
-  M[64] = t449;
-  M[65] = t138;
-  M[66] = t525;
-  M[67] = t570;
-  M[68] = t515;
-  M[69] = t474;
-  M[70] = t518;
-  M[71] = t559;
-  M[72] = t501;
+  M[55] = t456;
+  M[56] = t423;
+  M[57] = t420;
+  M[58] = t489;
+  M[59] = t502;
+  M[60] = t439;
+  M[61] = t446;
+  M[62] = t405;
+  M[63] = t542;
+  M[64] = t220;
+  M[65] = t503;
+  M[66] = t547;
+  M[67] = t242;
+  M[68] = t532;
+  M[69] = t313;
+  M[70] = t553;
+  M[71] = t274;
+  M[72] = t455;
   M[73] = constant<Real>(0.0L);
-  M[74] = t546;
-  M[75] = t436;
-  M[76] = t511;
-  M[77] = t542;
-  M[78] = t423;
-  M[79] = t581;
-  M[80] = t453;
-  M[81] = t403;
-  M[82] = t466;
-  M[83] = t484;
-  M[84] = t427;
-  M[85] = t415;
-  M[86] = t557;
-  M[87] = t509;
-  M[88] = t576;
-  M[89] = t578;
-  M[90] = t321;
-  M[91] = t560;
+  M[74] = t443;
+  M[75] = t489;
+  M[76] = t504;
+  M[77] = t530;
+  M[78] = t432;
+  M[79] = t319;
+  M[80] = t210;
+  M[81] = t470;
+  M[82] = t408;
+  M[83] = t236;
+  M[84] = t331;
+  M[85] = t538;
+  M[86] = t551;
+  M[87] = t510;
+  M[88] = t300;
+  M[89] = t271;
+  M[90] = t422;
+  M[91] = t539;
   M[92] = constant<Real>(0.0L);
-  M[93] = t287;
-  M[94] = t542;
-  M[95] = t397;
-  M[96] = t262;
-  M[97] = t445;
-  M[98] = t522;
-  M[99] = t234;
-  M[100] = t304;
-  M[101] = t489;
-  M[102] = t209;
-  M[103] = t459;
-  M[104] = t553;
-  M[105] = t572;
-  M[106] = t508;
-  M[107] = t481;
+  M[93] = t502;
+  M[94] = t530;
+  M[95] = t403;
+  M[96] = t491;
+  M[97] = t509;
+  M[98] = t207;
+  M[99] = t467;
+  M[100] = t413;
+  M[101] = t230;
+  M[102] = t498;
+  M[103] = t291;
+  M[104] = t515;
+  M[105] = t494;
+  M[106] = t436;
+  M[107] = t279;
   M[108] = constant<Real>(0.0L);
-  M[109] = t526;
-  M[110] = t437;
-  M[111] = t471;
-  M[112] = t423;
-  M[113] = t262;
-  M[114] = t469;
-  M[115] = t240;
-  M[116] = t460;
+  M[109] = t193;
+  M[110] = t190;
+  M[111] = t439;
+  M[112] = t432;
+  M[113] = t491;
+  M[114] = t437;
+  M[115] = t194;
+  M[116] = t200;
   M[117] = constant<Real>(0.0L);
   M[118] = constant<Real>(0.0L);
   M[119] = constant<Real>(0.0L);
@@ -4074,15 +4046,15 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[123] = constant<Real>(0.0L);
   M[124] = constant<Real>(0.0L);
   M[125] = constant<Real>(0.0L);
-  M[126] = t257;
-  M[127] = t454;
-  M[128] = t399;
-  M[129] = t420;
-  M[130] = t581;
-  M[131] = t445;
-  M[132] = t240;
-  M[133] = t439;
-  M[134] = t108;
+  M[126] = t168;
+  M[127] = t424;
+  M[128] = t302;
+  M[129] = t446;
+  M[130] = t319;
+  M[131] = t509;
+  M[132] = t194;
+  M[133] = t178;
+  M[134] = t144;
   M[135] = constant<Real>(0.0L);
   M[136] = constant<Real>(0.0L);
   M[137] = constant<Real>(0.0L);
@@ -4092,14 +4064,14 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[141] = constant<Real>(0.0L);
   M[142] = constant<Real>(0.0L);
   M[143] = constant<Real>(0.0L);
-  M[144] = t105;
-  M[145] = t101;
-  M[146] = t112;
-  M[147] = t291;
-  M[148] = t453;
-  M[149] = t522;
-  M[150] = t460;
-  M[151] = t108;
+  M[144] = t141;
+  M[145] = t196;
+  M[146] = t199;
+  M[147] = t405;
+  M[148] = t210;
+  M[149] = t207;
+  M[150] = t200;
+  M[151] = t144;
   M[152] = constant<Real>(0.01294712L);
   M[153] = constant<Real>(0.0L);
   M[154] = constant<Real>(0.0L);
@@ -4111,52 +4083,52 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[160] = constant<Real>(0.0L);
   M[161] = constant<Real>(0.0L);
   M[162] = constant<Real>(0.0L);
-  M[163] = t495;
-  M[164] = t308;
-  M[165] = t418;
-  M[166] = t403;
-  M[167] = t234;
+  M[163] = t296;
+  M[164] = t334;
+  M[165] = t542;
+  M[166] = t470;
+  M[167] = t467;
   M[168] = constant<Real>(0.0L);
   M[169] = constant<Real>(0.0L);
   M[170] = constant<Real>(0.0L);
-  M[171] = t416;
-  M[172] = t566;
-  M[173] = t136;
+  M[171] = t540;
+  M[172] = t222;
+  M[173] = t223;
   M[174] = constant<Real>(0.0L);
   M[175] = constant<Real>(0.0L);
   M[176] = constant<Real>(0.0L);
   M[177] = constant<Real>(0.0L);
   M[178] = constant<Real>(0.0L);
   M[179] = constant<Real>(0.0L);
-  M[180] = t224;
-  M[181] = t468;
-  M[182] = t446;
-  M[183] = t449;
-  M[184] = t466;
-  M[185] = t304;
+  M[180] = t548;
+  M[181] = t216;
+  M[182] = t217;
+  M[183] = t220;
+  M[184] = t408;
+  M[185] = t413;
   M[186] = constant<Real>(0.0L);
   M[187] = constant<Real>(0.0L);
   M[188] = constant<Real>(0.0L);
-  M[189] = t566;
-  M[190] = t297;
-  M[191] = t127;
+  M[189] = t222;
+  M[190] = t121;
+  M[191] = t118;
   M[192] = constant<Real>(0.0L);
   M[193] = constant<Real>(0.0L);
   M[194] = constant<Real>(0.0L);
   M[195] = constant<Real>(0.0L);
   M[196] = constant<Real>(0.0L);
   M[197] = constant<Real>(0.0L);
-  M[198] = t125;
-  M[199] = t120;
-  M[200] = t133;
-  M[201] = t138;
-  M[202] = t484;
-  M[203] = t489;
+  M[198] = t109;
+  M[199] = t231;
+  M[200] = t233;
+  M[201] = t503;
+  M[202] = t236;
+  M[203] = t230;
   M[204] = constant<Real>(0.0L);
   M[205] = constant<Real>(0.0L);
   M[206] = constant<Real>(0.0L);
-  M[207] = t136;
-  M[208] = t127;
+  M[207] = t223;
+  M[208] = t118;
   M[209] = constant<Real>(0.01294712L);
   M[210] = constant<Real>(0.0L);
   M[211] = constant<Real>(0.0L);
@@ -4165,65 +4137,65 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[214] = constant<Real>(0.0L);
   M[215] = constant<Real>(0.0L);
   M[216] = constant<Real>(0.0L);
-  M[217] = t562;
-  M[218] = t314;
-  M[219] = t525;
-  M[220] = t427;
-  M[221] = t209;
+  M[217] = t533;
+  M[218] = t414;
+  M[219] = t547;
+  M[220] = t331;
+  M[221] = t498;
   M[222] = constant<Real>(0.0L);
   M[223] = constant<Real>(0.0L);
   M[224] = constant<Real>(0.0L);
   M[225] = constant<Real>(0.0L);
   M[226] = constant<Real>(0.0L);
   M[227] = constant<Real>(0.0L);
-  M[228] = t524;
-  M[229] = t574;
-  M[230] = t567;
+  M[228] = t549;
+  M[229] = t241;
+  M[230] = t251;
   M[231] = constant<Real>(0.0L);
   M[232] = constant<Real>(0.0L);
   M[233] = constant<Real>(0.0L);
-  M[234] = t204;
-  M[235] = t565;
-  M[236] = t568;
-  M[237] = t570;
-  M[238] = t415;
-  M[239] = t459;
+  M[234] = t289;
+  M[235] = t245;
+  M[236] = t239;
+  M[237] = t242;
+  M[238] = t538;
+  M[239] = t291;
   M[240] = constant<Real>(0.0L);
   M[241] = constant<Real>(0.0L);
   M[242] = constant<Real>(0.0L);
   M[243] = constant<Real>(0.0L);
   M[244] = constant<Real>(0.0L);
   M[245] = constant<Real>(0.0L);
-  M[246] = t574;
-  M[247] = t410;
-  M[248] = t151;
+  M[246] = t241;
+  M[247] = t543;
+  M[248] = t80;
   M[249] = constant<Real>(0.0L);
   M[250] = constant<Real>(0.0L);
   M[251] = constant<Real>(0.0L);
-  M[252] = t144;
-  M[253] = t156;
-  M[254] = t149;
-  M[255] = t515;
-  M[256] = t557;
-  M[257] = t553;
+  M[252] = t68;
+  M[253] = t246;
+  M[254] = t253;
+  M[255] = t532;
+  M[256] = t551;
+  M[257] = t515;
   M[258] = constant<Real>(0.0L);
   M[259] = constant<Real>(0.0L);
   M[260] = constant<Real>(0.0L);
   M[261] = constant<Real>(0.0L);
   M[262] = constant<Real>(0.0L);
   M[263] = constant<Real>(0.0L);
-  M[264] = t567;
-  M[265] = t151;
+  M[264] = t251;
+  M[265] = t80;
   M[266] = constant<Real>(0.01294712L);
   M[267] = constant<Real>(0.0L);
   M[268] = constant<Real>(0.0L);
   M[269] = constant<Real>(0.0L);
   M[270] = constant<Real>(0.0L);
-  M[271] = t493;
-  M[272] = t573;
-  M[273] = t474;
-  M[274] = t509;
-  M[275] = t572;
+  M[271] = t449;
+  M[272] = t534;
+  M[273] = t313;
+  M[274] = t510;
+  M[275] = t494;
   M[276] = constant<Real>(0.0L);
   M[277] = constant<Real>(0.0L);
   M[278] = constant<Real>(0.0L);
@@ -4233,15 +4205,15 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[282] = constant<Real>(0.0L);
   M[283] = constant<Real>(0.0L);
   M[284] = constant<Real>(0.0L);
-  M[285] = t561;
-  M[286] = t160;
-  M[287] = t462;
-  M[288] = t271;
-  M[289] = t555;
-  M[290] = t516;
-  M[291] = t518;
-  M[292] = t576;
-  M[293] = t508;
+  M[285] = t306;
+  M[286] = t406;
+  M[287] = t273;
+  M[288] = t308;
+  M[289] = t257;
+  M[290] = t258;
+  M[291] = t553;
+  M[292] = t300;
+  M[293] = t436;
   M[294] = constant<Real>(0.0L);
   M[295] = constant<Real>(0.0L);
   M[296] = constant<Real>(0.0L);
@@ -4251,15 +4223,15 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[300] = constant<Real>(0.0L);
   M[301] = constant<Real>(0.0L);
   M[302] = constant<Real>(0.0L);
-  M[303] = t160;
-  M[304] = t510;
-  M[305] = t166;
-  M[306] = t176;
-  M[307] = t177;
-  M[308] = t181;
-  M[309] = t559;
-  M[310] = t578;
-  M[311] = t481;
+  M[303] = t406;
+  M[304] = t49;
+  M[305] = t42;
+  M[306] = t29;
+  M[307] = t264;
+  M[308] = t266;
+  M[309] = t274;
+  M[310] = t271;
+  M[311] = t279;
   M[312] = constant<Real>(0.0L);
   M[313] = constant<Real>(0.0L);
   M[314] = constant<Real>(0.0L);
@@ -4269,14 +4241,14 @@ inline void mass_matrix(const Prepared<Real>&, const Real (&r)[12], Real (&M)[18
   M[318] = constant<Real>(0.0L);
   M[319] = constant<Real>(0.0L);
   M[320] = constant<Real>(0.0L);
-  M[321] = t462;
-  M[322] = t166;
+  M[321] = t273;
+  M[322] = t42;
   M[323] = constant<Real>(0.01294712L);
 }
 
 /// Accelerations under joint forces tau.
 /// route: articulated bodies, frames slid to the tips, tips turned, regrouped
-/// operations: 1246 add, 1348 mul, 14 div, 1 neg, 12 sin, 12 cos
+/// operations: 1242 add, 1340 mul, 14 div, 1 neg, 12 sin, 12 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r
@@ -4329,2875 +4301,4381 @@ inline void forward_dynamics(const Prepared<Real>&,
   const Real t11 = sin(t10);
   const Real t12 = cos(t10);
 
-  // trunk: acceleration
-  const Real t13 = eta[2] * eta[4];
-  const Real t14 = eta[1] * eta[5];
-  const Real t15 = t13 - t14;
-  const Real t16 = R[7] * constant<Real>(9.81L);
-  const Real t17 = eta[0] * eta[5];
-  const Real t18 = eta[2] * eta[3];
-  const Real t19 = t17 - t18;
-  const Real t20 = eta[1] * eta[3];
-  const Real t21 = eta[0] * eta[4];
-  const Real t22 = t20 - t21;
-  const Real t23 = R[6] * constant<Real>(9.81L);
-  const Real t24 = constant<Real>(9.81L) * R[8];
-
-  // joint angles
-  const Real t25 = eta[3] * eta[4];
-  const Real t26 = eta[4] * eta[4];
-  const Real t27 = eta[3] * eta[3];
-  const Real t28 = t26 + t27;
-  const Real t29 = eta[4] * eta[5];
-  const Real t30 = eta[5] * eta[5];
-  const Real t31 = t30 + t26;
-  const Real t32 = eta[3] * eta[5];
-  const Real t33 = t30 + t27;
-
-  // front_left_hip: motion
-  const Real t34 = s_r_0_ * eta[5];
-  const Real t35 = c_r_0_ * eta[4];
-  const Real t36 = t34 + t35;
-  const Real t37 = c_r_0_ * eta[5];
-  const Real t38 = s_r_0_ * eta[4];
-  const Real t39 = t37 - t38;
-  const Real t40 = t36 * t39;
-  const Real t41 = t33 * constant<Real>(0.06L);
-  const Real t42 = r_dot[0] + eta[3];
-  const Real t43 = t42 * t42;
-  const Real t44 = t39 * t39;
-  const Real t45 = t43 + t44;
-  const Real t46 = t36 * t36;
-  const Real t47 = t43 + t46;
-  const Real t48 = t42 * constant<Real>(2.0L);
-  const Real t49 = t36 * t48;
-  const Real t50 = t39 * t48;
-
-  // front_left_thigh: motion
-  const Real t51 = s_r_1_ * t42;
-  const Real t52 = t39 * c_r_1_;
-  const Real t53 = t51 + t52;
-  const Real t54 = c_r_1_ * t42;
-  const Real t55 = t39 * s_r_1_;
-  const Real t56 = t54 - t55;
-  const Real t57 = t53 * t56;
-  const Real t58 = t39 * t42;
-  const Real t59 = r_dot[1] + t36;
-  const Real t60 = t59 * constant<Real>(2.0L);
-  const Real t61 = t60 * t56;
-  const Real t62 = t31 * constant<Real>(0.21L);
-  const Real t63 = t56 * t56;
-  const Real t64 = t59 * t59;
-  const Real t65 = t63 + t64;
-  const Real t66 = t53 * t53;
-  const Real t67 = t66 + t64;
-  const Real t68 = t60 * t53;
-
-  // front_left_shank: motion
-  const Real t69 = constant<Real>(0.24L) * t65;
-  const Real t70 = t53 * t12;
-  const Real t71 = t11 * t56;
-  const Real t72 = t70 + t71;
-  const Real t73 = t59 + r_dot[2];
-  const Real t74 = t73 * constant<Real>(2.0L);
-  const Real t75 = t72 * t74;
-  const Real t76 = t73 * t73;
-  const Real t77 = t12 * t56;
-  const Real t78 = t53 * t11;
-  const Real t79 = t77 - t78;
-  const Real t80 = t79 * t79;
-  const Real t81 = t76 + t80;
-  const Real t82 = t72 * t72;
-  const Real t83 = t74 * t79;
-  const Real t84 = t72 * t79;
-
-  // front_right_hip: motion
-  const Real t85 = s_r_3_ * eta[5];
-  const Real t86 = c_r_3_ * eta[4];
-  const Real t87 = t85 + t86;
-  const Real t88 = eta[3] + r_dot[3];
-  const Real t89 = t88 * constant<Real>(2.0L);
-  const Real t90 = t87 * t89;
-  const Real t91 = c_r_3_ * eta[5];
-  const Real t92 = s_r_3_ * eta[4];
-  const Real t93 = t91 - t92;
-  const Real t94 = t93 * t93;
-  const Real t95 = t88 * t88;
-  const Real t96 = t94 + t95;
-  const Real t97 = t89 * t93;
-  const Real t98 = t87 * t87;
-  const Real t99 = t98 + t95;
-  const Real t100 = t87 * t93;
-
-  // front_right_thigh: motion
-  const Real t101 = t93 * c_r_4_;
-  const Real t102 = t88 * s_r_4_;
-  const Real t103 = t101 + t102;
-  const Real t104 = t103 * t103;
-  const Real t105 = t87 + r_dot[4];
-  const Real t106 = t105 * t105;
-  const Real t107 = t104 + t106;
-  const Real t108 = t105 * constant<Real>(2.0L);
-  const Real t109 = t88 * c_r_4_;
-  const Real t110 = s_r_4_ * t93;
-  const Real t111 = t109 - t110;
-  const Real t112 = t108 * t111;
-  const Real t113 = t108 * t103;
-  const Real t114 = t111 * t111;
-  const Real t115 = t114 + t106;
-  const Real t116 = t111 * t103;
-  const Real t117 = t88 * t93;
-
-  // front_right_shank: motion
-  const Real t118 = r_dot[5] + t105;
-  const Real t119 = constant<Real>(2.0L) * t118;
-  const Real t120 = t111 * t3;
-  const Real t121 = t2 * t103;
-  const Real t122 = t120 - t121;
-  const Real t123 = t119 * t122;
-  const Real t124 = t122 * t122;
-  const Real t125 = t118 * t118;
-  const Real t126 = t124 + t125;
-  const Real t127 = constant<Real>(0.24L) * t115;
-  const Real t128 = t3 * t103;
-  const Real t129 = t2 * t111;
-  const Real t130 = t128 + t129;
-  const Real t131 = t130 * t122;
-  const Real t132 = t130 * t130;
-  const Real t133 = t130 * t119;
-
-  // hind_left_hip: motion
-  const Real t134 = c_r_6_ * eta[5];
-  const Real t135 = eta[4] * s_r_6_;
-  const Real t136 = t134 - t135;
-  const Real t137 = t136 * t136;
-  const Real t138 = r_dot[6] + eta[3];
-  const Real t139 = t138 * t138;
-  const Real t140 = t137 + t139;
-  const Real t141 = t138 * constant<Real>(2.0L);
-  const Real t142 = t136 * t141;
-  const Real t143 = s_r_6_ * eta[5];
-  const Real t144 = eta[4] * c_r_6_;
-  const Real t145 = t143 + t144;
-  const Real t146 = t145 * t145;
-  const Real t147 = t146 + t139;
-  const Real t148 = t145 * t136;
-  const Real t149 = t145 * t141;
-
-  // hind_left_thigh: motion
-  const Real t150 = t145 + r_dot[7];
-  const Real t151 = t150 * t150;
-  const Real t152 = t138 * s_r_7_;
-  const Real t153 = t136 * c_r_7_;
-  const Real t154 = t152 + t153;
-  const Real t155 = t154 * t154;
-  const Real t156 = t151 + t155;
-  const Real t157 = t150 * constant<Real>(2.0L);
-  const Real t158 = t154 * t157;
-  const Real t159 = t138 * c_r_7_;
-  const Real t160 = t136 * s_r_7_;
-  const Real t161 = t159 - t160;
-  const Real t162 = t157 * t161;
-  const Real t163 = t154 * t161;
-  const Real t164 = t138 * t136;
-  const Real t165 = t161 * t161;
-  const Real t166 = t165 + t151;
-
-  // hind_left_shank: motion
-  const Real t167 = r_dot[8] + t150;
-  const Real t168 = t167 * t167;
-  const Real t169 = t6 * t161;
-  const Real t170 = t5 * t154;
-  const Real t171 = t169 - t170;
-  const Real t172 = t171 * t171;
-  const Real t173 = t168 + t172;
-  const Real t174 = constant<Real>(0.24L) * t166;
-  const Real t175 = t6 * t154;
-  const Real t176 = t5 * t161;
-  const Real t177 = t175 + t176;
-  const Real t178 = t167 * constant<Real>(2.0L);
-  const Real t179 = t177 * t178;
-  const Real t180 = t177 * t177;
-  const Real t181 = t178 * t171;
-  const Real t182 = t177 * t171;
-
-  // hind_right_hip: motion
-  const Real t183 = eta[3] + r_dot[9];
-  const Real t184 = t183 * constant<Real>(2.0L);
-  const Real t185 = c_r_9_ * eta[5];
-  const Real t186 = s_r_9_ * eta[4];
-  const Real t187 = t185 - t186;
-  const Real t188 = t184 * t187;
-  const Real t189 = t183 * t183;
-  const Real t190 = t187 * t187;
-  const Real t191 = t189 + t190;
-  const Real t192 = s_r_9_ * eta[5];
-  const Real t193 = c_r_9_ * eta[4];
-  const Real t194 = t192 + t193;
-  const Real t195 = t194 * t194;
-  const Real t196 = t195 + t189;
-  const Real t197 = t184 * t194;
-  const Real t198 = t187 * t194;
-
-  // hind_right_thigh: motion
-  const Real t199 = t187 * c_r_10_;
-  const Real t200 = t183 * s_r_10_;
-  const Real t201 = t199 + t200;
-  const Real t202 = t201 * t201;
-  const Real t203 = r_dot[10] + t194;
-  const Real t204 = t203 * t203;
-  const Real t205 = t202 + t204;
-  const Real t206 = t203 * constant<Real>(2.0L);
-  const Real t207 = t183 * c_r_10_;
-  const Real t208 = t187 * s_r_10_;
-  const Real t209 = t207 - t208;
-  const Real t210 = t206 * t209;
-  const Real t211 = t209 * t201;
-  const Real t212 = t187 * t183;
-  const Real t213 = t209 * t209;
-  const Real t214 = t204 + t213;
-  const Real t215 = t206 * t201;
-
-  // hind_right_shank: motion
-  const Real t216 = t203 + r_dot[11];
-  const Real t217 = t216 * t216;
-  const Real t218 = t209 * t9;
-  const Real t219 = t8 * t201;
-  const Real t220 = t218 - t219;
-  const Real t221 = t220 * t220;
-  const Real t222 = t217 + t221;
-  const Real t223 = t216 * constant<Real>(2.0L);
-  const Real t224 = t223 * t220;
-  const Real t225 = t201 * t9;
-  const Real t226 = t8 * t209;
-  const Real t227 = t225 + t226;
-  const Real t228 = t227 * t223;
-  const Real t229 = constant<Real>(0.24L) * t214;
-  const Real t230 = t227 * t220;
-  const Real t231 = t227 * t227;
-
-  // trunk: wrench
-  const Real t232 = t30 - t26;
-  const Real t233 = t232 * constant<Real>(0.000406L);
-  const Real t234 = t27 - t30;
-  const Real t235 = constant<Real>(0.005104L) * t234;
-  const Real t236 = constant<Real>(0.1412L) * t28;
-  const Real t237 = t31 * constant<Real>(0.0515L);
-  const Real t238 = t26 - t27;
-  const Real t239 = t238 * constant<Real>(0.000691L);
-  const Real t240 = constant<Real>(0.011L) * t33;
-
-  // front_left_hip: wrench
-  const Real t241 = t43 - t44;
-  const Real t242 = t241 * constant<Real>(0.0002678L);
-  const Real t243 = t44 - t46;
-  const Real t244 = t243 * constant<Real>(0.0000473L);
-  const Real t245 = t45 * constant<Real>(0.17239L);
-  const Real t246 = t46 - t43;
-  const Real t247 = constant<Real>(0.0360627L) * t246;
-  const Real t248 = constant<Real>(0.0013L) * t47;
-
-  // front_left_thigh: wrench
-  const Real t249 = t63 - t66;
-  const Real t250 = t249 * constant<Real>(0.0003348L);
-  const Real t251 = t64 - t63;
-  const Real t252 = t251 * constant<Real>(0.0003909L);
-  const Real t253 = t65 * constant<Real>(0.2108L);
-  const Real t254 = constant<Real>(0.0051L) * t67;
-  const Real t255 = t66 - t64;
-  const Real t256 = constant<Real>(0.0148652L) * t255;
-
-  // front_left_shank: wrench
-  const Real t257 = t82 - t76;
-  const Real t258 = constant<Real>(0.00603717424774589637822L) * t257;
-  const Real t259 = t80 - t82;
-  const Real t260 = constant<Real>(4.68432916485436730503e-6L) * t259;
-  const Real t261 = t76 - t80;
-  const Real t262 = constant<Real>(4.58207125849616419464e-7L) * t261;
-  const Real t263 = t81 * constant<Real>(0.0687462028042276673933L);
-
-  // front_right_hip: wrench
-  const Real t264 = constant<Real>(0.0013L) * t99;
-  const Real t265 = t95 - t94;
-  const Real t266 = constant<Real>(0.0002678L) * t265;
-  const Real t267 = t94 - t98;
-  const Real t268 = t267 * constant<Real>(0.0000473L);
-  const Real t269 = t98 - t95;
-  const Real t270 = constant<Real>(0.0360627L) * t269;
-  const Real t271 = t96 * constant<Real>(0.17239L);
-
-  // front_right_thigh: wrench
-  const Real t272 = t107 * constant<Real>(0.0051L);
-  const Real t273 = t114 - t104;
-  const Real t274 = t273 * constant<Real>(0.0003348L);
-  const Real t275 = t104 - t106;
-  const Real t276 = constant<Real>(0.0148652L) * t275;
-  const Real t277 = t115 * constant<Real>(0.2108L);
-  const Real t278 = t106 - t114;
-  const Real t279 = t278 * constant<Real>(0.0003909L);
-
-  // front_right_shank: wrench
-  const Real t280 = t132 - t125;
-  const Real t281 = constant<Real>(0.00603717424774589637822L) * t280;
-  const Real t282 = t125 - t124;
-  const Real t283 = t282 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t284 = t126 * constant<Real>(0.0687462028042276673933L);
-  const Real t285 = t124 - t132;
-  const Real t286 = constant<Real>(4.68432916485436730503e-6L) * t285;
-
-  // hind_left_hip: wrench
-  const Real t287 = t146 - t139;
-  const Real t288 = constant<Real>(0.0360627L) * t287;
-  const Real t289 = constant<Real>(0.0013L) * t147;
-  const Real t290 = t140 * constant<Real>(0.17239L);
-  const Real t291 = t137 - t146;
-  const Real t292 = t291 * constant<Real>(0.0000473L);
-  const Real t293 = t139 - t137;
-  const Real t294 = constant<Real>(0.0002678L) * t293;
-
-  // hind_left_thigh: wrench
-  const Real t295 = t156 * constant<Real>(0.0051L);
-  const Real t296 = t155 - t151;
-  const Real t297 = constant<Real>(0.0148652L) * t296;
-  const Real t298 = t166 * constant<Real>(0.2108L);
-  const Real t299 = t151 - t165;
-  const Real t300 = t299 * constant<Real>(0.0003909L);
-  const Real t301 = t165 - t155;
-  const Real t302 = t301 * constant<Real>(0.0003348L);
-
-  // hind_left_shank: wrench
-  const Real t303 = t180 - t168;
-  const Real t304 = constant<Real>(0.00603717424774589637822L) * t303;
-  const Real t305 = t173 * constant<Real>(0.0687462028042276673933L);
-  const Real t306 = t172 - t180;
-  const Real t307 = t306 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t308 = t168 - t172;
-  const Real t309 = t308 * constant<Real>(4.58207125849616419464e-7L);
-
-  // hind_right_hip: wrench
-  const Real t310 = t189 - t190;
-  const Real t311 = constant<Real>(0.0002678L) * t310;
-  const Real t312 = t190 - t195;
-  const Real t313 = t312 * constant<Real>(0.0000473L);
-  const Real t314 = t191 * constant<Real>(0.17239L);
-  const Real t315 = t196 * constant<Real>(0.0013L);
-  const Real t316 = t195 - t189;
-  const Real t317 = t316 * constant<Real>(0.0360627L);
-
-  // hind_right_thigh: wrench
-  const Real t318 = t202 - t204;
-  const Real t319 = constant<Real>(0.0148652L) * t318;
-  const Real t320 = t205 * constant<Real>(0.0051L);
-  const Real t321 = t204 - t213;
-  const Real t322 = t321 * constant<Real>(0.0003909L);
-  const Real t323 = t214 * constant<Real>(0.2108L);
-  const Real t324 = t213 - t202;
-  const Real t325 = t324 * constant<Real>(0.0003348L);
-
-  // hind_right_shank: wrench
-  const Real t326 = t217 - t221;
-  const Real t327 = constant<Real>(4.58207125849616419464e-7L) * t326;
-  const Real t328 = t221 - t231;
-  const Real t329 = constant<Real>(4.68432916485436730503e-6L) * t328;
-  const Real t330 = t231 - t217;
-  const Real t331 = constant<Real>(0.00603717424774589637822L) * t330;
-  const Real t332 = t222 * constant<Real>(0.0687462028042276673933L);
-
-  // hind_right_shank: joint force
-  const Real t333 = t332 * t9;
-  const Real t334 = t8 * t332;
-
-  // hind_left_shank: joint force
-  const Real t335 = t6 * t305;
-  const Real t336 = t5 * t305;
-
-  // front_right_shank: joint force
-  const Real t337 = t284 * t3;
-  const Real t338 = t2 * t284;
-
-  // front_left_shank: joint force
-  const Real t339 = t11 * t263;
-  const Real t340 = t12 * t263;
-
-  // trunk: acceleration
-  const Real t341 = t16 + t19;
-  const Real t342 = t22 + t24;
-  const Real t343 = t15 + t23;
-
-  // front_left_hip: motion
-  const Real t344 = s_r_0_ * t32;
-  const Real t345 = c_r_0_ * t25;
-  const Real t346 = t344 + t345;
-  const Real t347 = t49 - t346;
-  const Real t348 = c_r_0_ * t32;
-  const Real t349 = t25 * s_r_0_;
-  const Real t350 = t348 - t349;
-  const Real t351 = t50 - t350;
-  const Real t352 = t29 * constant<Real>(0.06L);
-  const Real t353 = t25 * constant<Real>(0.06L);
-
-  // front_left_thigh: motion
-  const Real t354 = t347 * s_r_1_;
-  const Real t355 = t40 * c_r_1_;
-  const Real t356 = t354 + t355;
-  const Real t357 = t68 - t356;
-  const Real t358 = t346 * constant<Real>(0.21L);
-  const Real t359 = t351 - t58;
-  const Real t360 = t57 - t359;
-  const Real t361 = t57 + t359;
-  const Real t362 = t347 * c_r_1_;
-  const Real t363 = t40 * s_r_1_;
-  const Real t364 = t362 - t363;
-  const Real t365 = t61 - t364;
-  const Real t366 = constant<Real>(0.21L) * t350;
-
-  // front_left_shank: motion
-  const Real t367 = t361 * constant<Real>(0.24L);
-  const Real t368 = t359 + t84;
-  const Real t369 = t357 * constant<Real>(0.24L);
-  const Real t370 = t364 * t12;
-  const Real t371 = t11 * t356;
-  const Real t372 = t370 - t371;
-  const Real t373 = t83 - t372;
-  const Real t374 = t84 - t359;
-  const Real t375 = t12 * t356;
-  const Real t376 = t11 * t364;
-  const Real t377 = t375 + t376;
-  const Real t378 = t75 - t377;
-
-  // front_right_hip: motion
-  const Real t379 = s_r_3_ * t32;
-  const Real t380 = t25 * c_r_3_;
-  const Real t381 = t379 + t380;
-  const Real t382 = t90 - t381;
-  const Real t383 = c_r_3_ * t32;
-  const Real t384 = t25 * s_r_3_;
-  const Real t385 = t383 - t384;
-  const Real t386 = t97 - t385;
-
-  // front_right_thigh: motion
-  const Real t387 = t382 * c_r_4_;
-  const Real t388 = s_r_4_ * t100;
-  const Real t389 = t387 - t388;
-  const Real t390 = t112 - t389;
-  const Real t391 = t386 - t117;
-  const Real t392 = t391 + t116;
-  const Real t393 = t385 * constant<Real>(0.21L);
-  const Real t394 = t381 * constant<Real>(0.21L);
-  const Real t395 = t116 - t391;
-  const Real t396 = t382 * s_r_4_;
-  const Real t397 = t100 * c_r_4_;
-  const Real t398 = t396 + t397;
-  const Real t399 = t113 - t398;
-
-  // front_right_shank: motion
-  const Real t400 = t2 * t389;
-  const Real t401 = t398 * t3;
-  const Real t402 = t400 + t401;
-  const Real t403 = t133 - t402;
-  const Real t404 = t389 * t3;
-  const Real t405 = t2 * t398;
-  const Real t406 = t404 - t405;
-  const Real t407 = t123 - t406;
-  const Real t408 = t131 - t391;
-  const Real t409 = constant<Real>(0.24L) * t399;
-  const Real t410 = t392 * constant<Real>(0.24L);
-  const Real t411 = t391 + t131;
-
-  // hind_left_hip: motion
-  const Real t412 = t32 * c_r_6_;
-  const Real t413 = t25 * s_r_6_;
-  const Real t414 = t412 - t413;
-  const Real t415 = t142 - t414;
-  const Real t416 = t32 * s_r_6_;
-  const Real t417 = t25 * c_r_6_;
-  const Real t418 = t416 + t417;
-  const Real t419 = t149 - t418;
-
-  // hind_left_thigh: motion
-  const Real t420 = t415 - t164;
-  const Real t421 = t163 - t420;
-  const Real t422 = t414 * constant<Real>(0.21L);
-  const Real t423 = c_r_7_ * t419;
-  const Real t424 = s_r_7_ * t148;
-  const Real t425 = t423 - t424;
-  const Real t426 = t162 - t425;
-  const Real t427 = t420 + t163;
-  const Real t428 = c_r_7_ * t148;
-  const Real t429 = s_r_7_ * t419;
-  const Real t430 = t428 + t429;
-  const Real t431 = t158 - t430;
-  const Real t432 = t418 * constant<Real>(0.21L);
-
-  // hind_left_shank: motion
-  const Real t433 = t6 * t430;
-  const Real t434 = t5 * t425;
-  const Real t435 = t433 + t434;
-  const Real t436 = t179 - t435;
-  const Real t437 = t182 - t420;
-  const Real t438 = t427 * constant<Real>(0.24L);
-  const Real t439 = t420 + t182;
-  const Real t440 = constant<Real>(0.24L) * t431;
-  const Real t441 = t6 * t425;
-  const Real t442 = t5 * t430;
-  const Real t443 = t441 - t442;
-  const Real t444 = t181 - t443;
-
-  // hind_right_hip: motion
-  const Real t445 = c_r_9_ * t32;
-  const Real t446 = s_r_9_ * t25;
-  const Real t447 = t445 - t446;
-  const Real t448 = t188 - t447;
-  const Real t449 = s_r_9_ * t32;
-  const Real t450 = c_r_9_ * t25;
-  const Real t451 = t449 + t450;
-  const Real t452 = t197 - t451;
-
-  // hind_right_thigh: motion
-  const Real t453 = constant<Real>(0.21L) * t451;
-  const Real t454 = t448 - t212;
-  const Real t455 = t211 + t454;
-  const Real t456 = t452 * c_r_10_;
-  const Real t457 = t198 * s_r_10_;
-  const Real t458 = t456 - t457;
-  const Real t459 = t210 - t458;
-  const Real t460 = t211 - t454;
-  const Real t461 = t447 * constant<Real>(0.21L);
-  const Real t462 = c_r_10_ * t198;
-  const Real t463 = t452 * s_r_10_;
-  const Real t464 = t462 + t463;
-  const Real t465 = t215 - t464;
-
-  // hind_right_shank: motion
-  const Real t466 = t455 * constant<Real>(0.24L);
-  const Real t467 = t458 * t8;
-  const Real t468 = t464 * t9;
-  const Real t469 = t467 + t468;
-  const Real t470 = t228 - t469;
-  const Real t471 = t230 - t454;
-  const Real t472 = t458 * t9;
-  const Real t473 = t464 * t8;
-  const Real t474 = t472 - t473;
-  const Real t475 = t224 - t474;
-  const Real t476 = constant<Real>(0.24L) * t465;
-  const Real t477 = t230 + t454;
-
-  // trunk: wrench
-  const Real t478 = t32 * constant<Real>(0.000406L);
-  const Real t479 = constant<Real>(0.1412L) * t32;
-  const Real t480 = constant<Real>(0.011L) * t29;
-  const Real t481 = constant<Real>(0.000691L) * t32;
-  const Real t482 = constant<Real>(0.005104L) * t29;
-  const Real t483 = constant<Real>(0.000691L) * t29;
-  const Real t484 = constant<Real>(0.762975653L) * t32;
-  const Real t485 = t25 * constant<Real>(0.000406L);
-  const Real t486 = t484 + t485;
-  const Real t487 = t483 - t486;
-  const Real t488 = t235 + t487;
-  const Real t489 = t25 * constant<Real>(0.005104L);
-  const Real t490 = t25 * constant<Real>(0.0515L);
-  const Real t491 = t490 + t240;
-  const Real t492 = constant<Real>(0.1412L) * t29;
-  const Real t493 = t491 + t492;
-  const Real t494 = t25 * constant<Real>(0.694672616L);
-  const Real t495 = t25 * constant<Real>(0.011L);
-  const Real t496 = t32 * constant<Real>(0.0515L);
-  const Real t497 = constant<Real>(0.068303037L) * t29;
-
-  // front_left_hip: wrench
-  const Real t498 = constant<Real>(0.0013L) * t40;
-  const Real t499 = t498 - t245;
-  const Real t500 = constant<Real>(0.0008138L) * t351;
-  const Real t501 = t347 * constant<Real>(0.0000473L);
-  const Real t502 = t500 + t501;
-  const Real t503 = t40 * constant<Real>(0.0360627L);
-  const Real t504 = t502 - t503;
-  const Real t505 = t242 + t504;
-  const Real t506 = t347 * constant<Real>(0.17239L);
-  const Real t507 = constant<Real>(0.0013L) * t351;
-  const Real t508 = t506 + t507;
-  const Real t509 = constant<Real>(0.0002678L) * t40;
-  const Real t510 = t347 * constant<Real>(0.01168088L);
-  const Real t511 = t509 - t510;
-  const Real t512 = t351 * constant<Real>(0.0000473L);
-  const Real t513 = t511 - t512;
-  const Real t514 = t513 + t247;
-  const Real t515 = t40 * constant<Real>(0.17239L);
-  const Real t516 = t515 - t248;
-  const Real t517 = constant<Real>(0.0360627L) * t350;
-  const Real t518 = t40 * constant<Real>(0.01086708L);
-  const Real t519 = t517 + t518;
-  const Real t520 = constant<Real>(0.0002678L) * t346;
-  const Real t521 = t519 - t520;
-  const Real t522 = t244 + t521;
-
-  // front_left_thigh: wrench
-  const Real t523 = constant<Real>(0.0051L) * t365;
-  const Real t524 = t357 * constant<Real>(0.2108L);
-  const Real t525 = t523 + t524;
-  const Real t526 = t365 * constant<Real>(0.0003348L);
-  const Real t527 = t360 * constant<Real>(0.0003909L);
-  const Real t528 = t357 * constant<Real>(0.0421328L);
-  const Real t529 = t527 + t528;
-  const Real t530 = t526 - t529;
-  const Real t531 = t530 - t256;
-  const Real t532 = t361 * constant<Real>(0.0421328L);
-  const Real t533 = t360 * constant<Real>(0.0007093L);
-  const Real t534 = t532 - t533;
-  const Real t535 = constant<Real>(0.0148652L) * t364;
-  const Real t536 = t534 - t535;
-  const Real t537 = constant<Real>(0.0003909L) * t356;
-  const Real t538 = t536 + t537;
-  const Real t539 = t538 - t250;
-  const Real t540 = constant<Real>(0.0051L) * t360;
-  const Real t541 = t253 - t540;
-  const Real t542 = t361 * constant<Real>(0.2108L);
-  const Real t543 = t254 - t542;
-  const Real t544 = t361 * constant<Real>(0.0148652L);
-  const Real t545 = t365 * constant<Real>(0.0007093L);
-  const Real t546 = t357 * constant<Real>(0.0003348L);
-  const Real t547 = t545 - t546;
-  const Real t548 = t544 + t547;
-  const Real t549 = t548 - t252;
-
-  // front_left_shank: wrench
-  const Real t550 = constant<Real>(4.68432916485436730503e-6L) * t378;
-  const Real t551 = constant<Real>(0.0000328443596724226056129L) * t373;
-  const Real t552 = t550 + t551;
-  const Real t553 = constant<Real>(0.00603717424774589637822L) * t368;
-  const Real t554 = t552 - t553;
-  const Real t555 = t554 - t262;
-  const Real t556 = constant<Real>(0.0687462028042276673933L) * t378;
-  const Real t557 = t378 * constant<Real>(0.0129142756403275773944L);
-  const Real t558 = constant<Real>(4.58207125849616419464e-7L) * t374;
-  const Real t559 = t557 + t558;
-  const Real t560 = constant<Real>(4.68432916485436730503e-6L) * t373;
-  const Real t561 = t559 + t560;
-  const Real t562 = t258 - t561;
-  const Real t563 = t368 * constant<Real>(0.0687462028042276673933L);
-  const Real t564 = t377 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t565 = t372 * constant<Real>(0.00603717424774589637822L);
-  const Real t566 = t368 * constant<Real>(0.0129142756403275773944L);
-  const Real t567 = constant<Real>(0.0000328443596724226056129L) * t374;
-  const Real t568 = t566 - t567;
-  const Real t569 = t565 + t568;
-  const Real t570 = t564 + t569;
-  const Real t571 = t570 + t260;
-
-  // front_right_hip: wrench
-  const Real t572 = constant<Real>(0.0013L) * t386;
-  const Real t573 = t382 * constant<Real>(0.17239L);
-  const Real t574 = t572 - t573;
-  const Real t575 = constant<Real>(0.17239L) * t100;
-  const Real t576 = t264 + t575;
-  const Real t577 = constant<Real>(0.0360627L) * t100;
-  const Real t578 = constant<Real>(0.0008138L) * t386;
-  const Real t579 = t382 * constant<Real>(0.0000473L);
-  const Real t580 = t578 - t579;
-  const Real t581 = t577 + t580;
-  const Real t582 = t581 + t266;
-  const Real t583 = constant<Real>(0.0013L) * t100;
-  const Real t584 = t271 + t583;
-  const Real t585 = t100 * constant<Real>(0.01086708L);
-  const Real t586 = t385 * constant<Real>(0.0360627L);
-  const Real t587 = t585 - t586;
-  const Real t588 = constant<Real>(0.0002678L) * t381;
-  const Real t589 = t587 - t588;
-  const Real t590 = t589 - t268;
-  const Real t591 = t386 * constant<Real>(0.0000473L);
-  const Real t592 = constant<Real>(0.0002678L) * t100;
-  const Real t593 = t382 * constant<Real>(0.01168088L);
-  const Real t594 = t592 - t593;
-  const Real t595 = t591 + t594;
-  const Real t596 = t595 - t270;
-
-  // front_right_thigh: wrench
-  const Real t597 = constant<Real>(0.0051L) * t395;
-  const Real t598 = t277 - t597;
-  const Real t599 = t392 * constant<Real>(0.2108L);
-  const Real t600 = t272 - t599;
-  const Real t601 = t390 * constant<Real>(0.0007093L);
-  const Real t602 = t399 * constant<Real>(0.0003348L);
-  const Real t603 = t601 - t602;
-  const Real t604 = constant<Real>(0.0148652L) * t392;
-  const Real t605 = t603 - t604;
-  const Real t606 = t605 + t279;
-  const Real t607 = constant<Real>(0.0051L) * t390;
-  const Real t608 = t399 * constant<Real>(0.2108L);
-  const Real t609 = t607 + t608;
-  const Real t610 = constant<Real>(0.0003909L) * t395;
-  const Real t611 = constant<Real>(0.0421328L) * t399;
-  const Real t612 = t610 - t611;
-  const Real t613 = t390 * constant<Real>(0.0003348L);
-  const Real t614 = t612 + t613;
-  const Real t615 = t614 + t276;
-  const Real t616 = constant<Real>(0.0148652L) * t389;
-  const Real t617 = constant<Real>(0.0421328L) * t392;
-  const Real t618 = constant<Real>(0.0007093L) * t395;
-  const Real t619 = t617 - t618;
-  const Real t620 = t616 + t619;
-  const Real t621 = t398 * constant<Real>(0.0003909L);
-  const Real t622 = t620 - t621;
-  const Real t623 = t622 - t274;
-
-  // front_right_shank: wrench
-  const Real t624 = t403 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t625 = t407 * constant<Real>(0.0000328443596724226056129L);
-  const Real t626 = t624 + t625;
-  const Real t627 = constant<Real>(0.00603717424774589637822L) * t411;
-  const Real t628 = t626 + t627;
-  const Real t629 = t628 + t283;
-  const Real t630 = t403 * constant<Real>(0.0687462028042276673933L);
-  const Real t631 = constant<Real>(4.58207125849616419464e-7L) * t408;
-  const Real t632 = t403 * constant<Real>(0.0129142756403275773944L);
-  const Real t633 = t631 - t632;
-  const Real t634 = constant<Real>(4.68432916485436730503e-6L) * t407;
-  const Real t635 = t633 - t634;
-  const Real t636 = t635 - t281;
-  const Real t637 = t411 * constant<Real>(0.0129142756403275773944L);
-  const Real t638 = t408 * constant<Real>(0.0000328443596724226056129L);
-  const Real t639 = t637 - t638;
-  const Real t640 = constant<Real>(0.00603717424774589637822L) * t406;
-  const Real t641 = t639 - t640;
-  const Real t642 = t402 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t643 = t641 - t642;
-  const Real t644 = t643 + t286;
-  const Real t645 = constant<Real>(0.0687462028042276673933L) * t411;
-
-  // hind_left_hip: wrench
-  const Real t646 = constant<Real>(0.01168088L) * t419;
-  const Real t647 = constant<Real>(0.0002678L) * t148;
-  const Real t648 = t646 + t647;
-  const Real t649 = t415 * constant<Real>(0.0000473L);
-  const Real t650 = t648 + t649;
-  const Real t651 = t650 + t288;
-  const Real t652 = constant<Real>(0.17239L) * t148;
-  const Real t653 = t652 - t289;
-  const Real t654 = constant<Real>(0.0013L) * t148;
-  const Real t655 = t654 - t290;
-  const Real t656 = constant<Real>(0.0008138L) * t415;
-  const Real t657 = t419 * constant<Real>(0.0000473L);
-  const Real t658 = t656 + t657;
-  const Real t659 = constant<Real>(0.0360627L) * t148;
-  const Real t660 = t658 + t659;
-  const Real t661 = t660 - t294;
-  const Real t662 = constant<Real>(0.17239L) * t419;
-  const Real t663 = constant<Real>(0.0013L) * t415;
-  const Real t664 = t662 + t663;
-  const Real t665 = constant<Real>(0.0002678L) * t418;
-  const Real t666 = t148 * constant<Real>(0.01086708L);
-  const Real t667 = t414 * constant<Real>(0.0360627L);
-  const Real t668 = t666 - t667;
-  const Real t669 = t665 + t668;
-  const Real t670 = t669 + t292;
-
-  // hind_left_thigh: wrench
-  const Real t671 = t427 * constant<Real>(0.2108L);
-  const Real t672 = t295 - t671;
-  const Real t673 = constant<Real>(0.0421328L) * t427;
-  const Real t674 = t421 * constant<Real>(0.0007093L);
-  const Real t675 = t673 - t674;
-  const Real t676 = constant<Real>(0.0148652L) * t425;
-  const Real t677 = t675 - t676;
-  const Real t678 = constant<Real>(0.0003909L) * t430;
-  const Real t679 = t677 + t678;
-  const Real t680 = t679 - t302;
-  const Real t681 = t421 * constant<Real>(0.0051L);
-  const Real t682 = t298 - t681;
-  const Real t683 = t431 * constant<Real>(0.2108L);
-  const Real t684 = constant<Real>(0.0051L) * t426;
-  const Real t685 = t683 + t684;
-  const Real t686 = t426 * constant<Real>(0.0007093L);
-  const Real t687 = t431 * constant<Real>(0.0003348L);
-  const Real t688 = t686 - t687;
-  const Real t689 = constant<Real>(0.0148652L) * t427;
-  const Real t690 = t688 + t689;
-  const Real t691 = t690 - t300;
-  const Real t692 = t426 * constant<Real>(0.0003348L);
-  const Real t693 = constant<Real>(0.0421328L) * t431;
-  const Real t694 = t421 * constant<Real>(0.0003909L);
-  const Real t695 = t693 + t694;
-  const Real t696 = t692 - t695;
-  const Real t697 = t696 - t297;
-
-  // hind_left_shank: wrench
-  const Real t698 = t439 * constant<Real>(0.0687462028042276673933L);
-  const Real t699 = t439 * constant<Real>(0.0129142756403275773944L);
-  const Real t700 = t437 * constant<Real>(0.0000328443596724226056129L);
-  const Real t701 = t699 - t700;
-  const Real t702 = constant<Real>(0.00603717424774589637822L) * t443;
-  const Real t703 = t701 + t702;
-  const Real t704 = constant<Real>(4.58207125849616419464e-7L) * t435;
-  const Real t705 = t703 + t704;
-  const Real t706 = t705 + t307;
-  const Real t707 = t444 * constant<Real>(0.0000328443596724226056129L);
-  const Real t708 = t436 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t709 = t707 + t708;
-  const Real t710 = constant<Real>(0.00603717424774589637822L) * t439;
-  const Real t711 = t709 - t710;
-  const Real t712 = t711 - t309;
-  const Real t713 = t437 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t714 = t436 * constant<Real>(0.0129142756403275773944L);
-  const Real t715 = t713 + t714;
-  const Real t716 = constant<Real>(4.68432916485436730503e-6L) * t444;
-  const Real t717 = t715 + t716;
-  const Real t718 = t304 - t717;
-  const Real t719 = t436 * constant<Real>(0.0687462028042276673933L);
-
-  // hind_right_hip: wrench
-  const Real t720 = constant<Real>(0.17239L) * t198;
-  const Real t721 = t720 + t315;
-  const Real t722 = t448 * constant<Real>(0.0000473L);
-  const Real t723 = constant<Real>(0.0002678L) * t198;
-  const Real t724 = t452 * constant<Real>(0.01168088L);
-  const Real t725 = t723 + t724;
-  const Real t726 = t722 - t725;
-  const Real t727 = t726 + t317;
-  const Real t728 = t198 * constant<Real>(0.01086708L);
-  const Real t729 = t447 * constant<Real>(0.0360627L);
-  const Real t730 = t728 + t729;
-  const Real t731 = constant<Real>(0.0002678L) * t451;
-  const Real t732 = t730 + t731;
-  const Real t733 = t732 - t313;
-  const Real t734 = t448 * constant<Real>(0.0013L);
-  const Real t735 = t452 * constant<Real>(0.17239L);
-  const Real t736 = t734 - t735;
-  const Real t737 = t448 * constant<Real>(0.0008138L);
-  const Real t738 = t452 * constant<Real>(0.0000473L);
-  const Real t739 = t737 - t738;
-  const Real t740 = constant<Real>(0.0360627L) * t198;
-  const Real t741 = t739 - t740;
-  const Real t742 = t741 - t311;
-  const Real t743 = constant<Real>(0.0013L) * t198;
-  const Real t744 = t743 + t314;
-
-  // hind_right_thigh: wrench
-  const Real t745 = t459 * constant<Real>(0.0007093L);
-  const Real t746 = t465 * constant<Real>(0.0003348L);
-  const Real t747 = t745 - t746;
-  const Real t748 = t455 * constant<Real>(0.0148652L);
-  const Real t749 = t747 - t748;
-  const Real t750 = t322 + t749;
-  const Real t751 = t465 * constant<Real>(0.2108L);
-  const Real t752 = constant<Real>(0.0051L) * t459;
-  const Real t753 = t751 + t752;
-  const Real t754 = constant<Real>(0.0051L) * t460;
-  const Real t755 = t323 - t754;
-  const Real t756 = constant<Real>(0.0421328L) * t455;
-  const Real t757 = t460 * constant<Real>(0.0007093L);
-  const Real t758 = t756 - t757;
-  const Real t759 = t458 * constant<Real>(0.0148652L);
-  const Real t760 = t758 + t759;
-  const Real t761 = t464 * constant<Real>(0.0003909L);
-  const Real t762 = t760 - t761;
-  const Real t763 = t762 - t325;
-  const Real t764 = t455 * constant<Real>(0.2108L);
-  const Real t765 = t320 - t764;
-  const Real t766 = t459 * constant<Real>(0.0003348L);
-  const Real t767 = constant<Real>(0.0003909L) * t460;
-  const Real t768 = constant<Real>(0.0421328L) * t465;
-  const Real t769 = t767 - t768;
-  const Real t770 = t766 + t769;
-  const Real t771 = t319 + t770;
-
-  // hind_right_shank: wrench
-  const Real t772 = constant<Real>(0.0687462028042276673933L) * t477;
-  const Real t773 = constant<Real>(0.00603717424774589637822L) * t477;
-  const Real t774 = t470 * constant<Real>(4.68432916485436730503e-6L);
-  const Real t775 = t475 * constant<Real>(0.0000328443596724226056129L);
-  const Real t776 = t774 + t775;
-  const Real t777 = t773 + t776;
-  const Real t778 = t777 + t327;
-  const Real t779 = t470 * constant<Real>(0.0687462028042276673933L);
-  const Real t780 = t477 * constant<Real>(0.0129142756403275773944L);
-  const Real t781 = t471 * constant<Real>(0.0000328443596724226056129L);
-  const Real t782 = t780 - t781;
-  const Real t783 = constant<Real>(0.00603717424774589637822L) * t474;
-  const Real t784 = t782 - t783;
-  const Real t785 = constant<Real>(4.58207125849616419464e-7L) * t469;
-  const Real t786 = t784 - t785;
-  const Real t787 = t329 + t786;
-  const Real t788 = t471 * constant<Real>(4.58207125849616419464e-7L);
-  const Real t789 = t470 * constant<Real>(0.0129142756403275773944L);
-  const Real t790 = t788 - t789;
-  const Real t791 = constant<Real>(4.68432916485436730503e-6L) * t475;
-  const Real t792 = t790 - t791;
-  const Real t793 = t792 - t331;
-
-  // hind_right_shank: joint force
-  const Real t794 = t470 * constant<Real>(0.0164990886730146401744L);
-  const Real t795 = t779 - t753;
-
-  // hind_right_thigh: joint force
-  const Real t796 = constant<Real>(0.21L) * t795;
-  const Real t797 = t744 + t795;
-
-  // hind_left_shank: joint force
-  const Real t798 = t436 * constant<Real>(0.0164990886730146401744L);
-  const Real t799 = t719 - t685;
-
-  // hind_left_thigh: joint force
-  const Real t800 = t655 + t799;
-  const Real t801 = constant<Real>(0.21L) * t799;
-
-  // front_right_shank: joint force
-  const Real t802 = t630 - t609;
-  const Real t803 = t403 * constant<Real>(0.0164990886730146401744L);
-
-  // front_right_thigh: joint force
-  const Real t804 = t802 * constant<Real>(0.21L);
-  const Real t805 = t584 + t802;
-
-  // front_left_shank: joint force
-  const Real t806 = constant<Real>(0.0164990886730146401744L) * t378;
-  const Real t807 = t556 - t525;
-
-  // front_left_thigh: joint force
-  const Real t808 = constant<Real>(0.21L) * t807;
-  const Real t809 = t499 + t807;
-
-  // front_left_hip: motion
-  const Real t810 = t353 - t62;
-
-  // front_right_hip: motion
-  const Real t811 = t62 + t353;
-
-  // hind_right_hip: motion
-  const Real t812 = t62 - t353;
-
-  // front_left_hip: joint force
-  const Real t813 = t478 + t482;
-  const Real t814 = t233 + t489;
-
-  // hind_right_shank: composite body
-  const Real t815 = t8 * constant<Real>(0.0687462028042276673933L);
-  const Real t816 = constant<Real>(-0.0051L) + t815;
-  const Real t817 = constant<Real>(0.0164990886730146401744L) * t8;
-  const Real t818 = constant<Real>(0.0687462028042276673933L) * t9;
-
-  // hind_right_thigh: composite body
-  const Real t819 = c_r_10_ * constant<Real>(2.0L);
-  const Real t820 = t816 * s_r_10_;
-  const Real t821 = t816 * c_r_10_;
-
-  // hind_right_hip: composite body
-  const Real t822 = c_r_9_ * constant<Real>(2.0L);
-
-  // hind_left_shank: composite body
-  const Real t823 = t6 * constant<Real>(0.0687462028042276673933L);
-  const Real t824 = t5 * constant<Real>(0.0687462028042276673933L);
-  const Real t825 = constant<Real>(-0.0051L) + t824;
-  const Real t826 = t5 * constant<Real>(0.0164990886730146401744L);
-
-  // hind_left_thigh: composite body
-  const Real t827 = c_r_7_ * t825;
-  const Real t828 = c_r_7_ * constant<Real>(2.0L);
-  const Real t829 = s_r_7_ * t825;
-
-  // hind_left_hip: composite body
-  const Real t830 = c_r_6_ * constant<Real>(2.0L);
-
-  // front_right_shank: composite body
-  const Real t831 = t3 * constant<Real>(0.0687462028042276673933L);
-  const Real t832 = t2 * constant<Real>(0.0687462028042276673933L);
-  const Real t833 = constant<Real>(-0.0051L) + t832;
-  const Real t834 = t2 * constant<Real>(0.0164990886730146401744L);
-
-  // front_right_thigh: composite body
-  const Real t835 = t833 * s_r_4_;
-  const Real t836 = t833 * c_r_4_;
-  const Real t837 = c_r_4_ * constant<Real>(2.0L);
-
-  // front_right_hip: composite body
-  const Real t838 = c_r_3_ * constant<Real>(2.0L);
-
-  // front_left_shank: composite body
-  const Real t839 = t12 * constant<Real>(0.0687462028042276673933L);
-  const Real t840 = t11 * constant<Real>(0.0687462028042276673933L);
-  const Real t841 = constant<Real>(-0.0051L) + t840;
-  const Real t842 = t11 * constant<Real>(0.0164990886730146401744L);
-
-  // front_left_thigh: composite body
-  const Real t843 = c_r_1_ * constant<Real>(2.0L);
-  const Real t844 = s_r_1_ * t841;
-  const Real t845 = c_r_1_ * t841;
-
-  // front_left_hip: composite body
-  const Real t846 = c_r_0_ * constant<Real>(2.0L);
-
-  // front_left_shank: mass matrix
-  const Real t847 = constant<Real>(0.0164990886730146401744L) * t12;
-
-  // front_right_shank: mass matrix
-  const Real t848 = constant<Real>(0.0164990886730146401744L) * t3;
-
-  // hind_left_shank: mass matrix
-  const Real t849 = t6 * constant<Real>(0.0164990886730146401744L);
-
-  // hind_right_shank: mass matrix
-  const Real t850 = constant<Real>(0.0164990886730146401744L) * t9;
-
-  // hind_right_shank: mass matrix
-  const Real t851 = constant<Real>(0.2108L) - t818;
-  const Real t852 = t851 * c_r_10_;
-  const Real t853 = t851 * s_r_10_;
-
-  // front_left_hip: motion
-  const Real t854 = c_r_0_ * t352;
-  const Real t855 = s_r_0_ * t41;
-  const Real t856 = t854 + t855;
-  const Real t857 = s_r_0_ * t352;
-  const Real t858 = c_r_0_ * t41;
-  const Real t859 = t857 - t858;
-
-  // front_left_thigh: motion
-  const Real t860 = t810 * s_r_1_;
-  const Real t861 = t856 + t366;
-  const Real t862 = c_r_1_ * t861;
-  const Real t863 = t860 + t862;
-  const Real t864 = t358 + t859;
-  const Real t865 = c_r_1_ * t810;
-  const Real t866 = s_r_1_ * t861;
-  const Real t867 = t865 - t866;
-
-  // front_left_shank: motion
-  const Real t868 = t864 - t369;
-  const Real t869 = t867 - t367;
-  const Real t870 = t869 * t12;
-  const Real t871 = t863 + t69;
-  const Real t872 = t11 * t871;
-  const Real t873 = t870 - t872;
-
-  // front_right_hip: motion
-  const Real t874 = c_r_3_ * t352;
-  const Real t875 = s_r_3_ * t41;
-  const Real t876 = t874 + t875;
-  const Real t877 = c_r_3_ * t41;
-  const Real t878 = s_r_3_ * t352;
-  const Real t879 = t877 - t878;
-
-  // front_right_thigh: motion
-  const Real t880 = t393 - t876;
-  const Real t881 = t880 * c_r_4_;
-  const Real t882 = t811 * s_r_4_;
-  const Real t883 = t881 - t882;
-  const Real t884 = t879 + t394;
-  const Real t885 = t880 * s_r_4_;
-  const Real t886 = t811 * c_r_4_;
-  const Real t887 = t885 + t886;
-
-  // front_right_shank: motion
-  const Real t888 = t884 - t409;
-  const Real t889 = t887 + t410;
-  const Real t890 = t889 * t3;
-  const Real t891 = t883 + t127;
-  const Real t892 = t2 * t891;
-  const Real t893 = t890 + t892;
-
-  // hind_left_hip: motion
-  const Real t894 = t41 * s_r_6_;
-  const Real t895 = t352 * c_r_6_;
-  const Real t896 = t894 + t895;
-  const Real t897 = t352 * s_r_6_;
-  const Real t898 = t41 * c_r_6_;
-  const Real t899 = t897 - t898;
-
-  // hind_left_thigh: motion
-  const Real t900 = t896 - t422;
-  const Real t901 = t900 * c_r_7_;
-  const Real t902 = t811 * s_r_7_;
-  const Real t903 = t901 + t902;
-  const Real t904 = t899 - t432;
-  const Real t905 = t811 * c_r_7_;
-  const Real t906 = t900 * s_r_7_;
-  const Real t907 = t905 - t906;
-
-  // hind_left_shank: motion
-  const Real t908 = t904 - t440;
-  const Real t909 = t907 - t438;
-  const Real t910 = t6 * t909;
-  const Real t911 = t903 + t174;
-  const Real t912 = t5 * t911;
-  const Real t913 = t910 - t912;
-
-  // hind_right_hip: motion
-  const Real t914 = s_r_9_ * t41;
-  const Real t915 = c_r_9_ * t352;
-  const Real t916 = t914 + t915;
-  const Real t917 = c_r_9_ * t41;
-  const Real t918 = s_r_9_ * t352;
-  const Real t919 = t917 - t918;
-
-  // hind_right_thigh: motion
-  const Real t920 = t916 + t461;
-  const Real t921 = t920 * s_r_10_;
-  const Real t922 = t812 * c_r_10_;
-  const Real t923 = t921 + t922;
-  const Real t924 = t812 * s_r_10_;
-  const Real t925 = t920 * c_r_10_;
-  const Real t926 = t924 - t925;
-  const Real t927 = t919 - t453;
-
-  // hind_right_shank: motion
-  const Real t928 = t927 - t476;
-  const Real t929 = t923 - t466;
-  const Real t930 = t929 * t9;
-  const Real t931 = t229 + t926;
-  const Real t932 = t931 * t8;
-  const Real t933 = t930 - t932;
-
-  // front_left_hip: wrench
-  const Real t934 = t856 * constant<Real>(0.17239L);
-  const Real t935 = constant<Real>(0.0013L) * t859;
-  const Real t936 = t934 - t935;
-  const Real t937 = t936 + t522;
-  const Real t938 = t25 * constant<Real>(0.000078L);
-  const Real t939 = t505 + t938;
-  const Real t940 = constant<Real>(0.0103434L) * t25;
-  const Real t941 = t514 - t940;
-
-  // front_left_thigh: wrench
-  const Real t942 = constant<Real>(0.0051L) * t864;
-  const Real t943 = t549 - t942;
-  const Real t944 = constant<Real>(0.0051L) * t863;
-  const Real t945 = constant<Real>(0.2108L) * t867;
-  const Real t946 = t944 - t945;
-  const Real t947 = t946 + t539;
-  const Real t948 = t864 * constant<Real>(0.2108L);
-  const Real t949 = t948 + t531;
-
-  // front_left_shank: wrench
-  const Real t950 = t868 * constant<Real>(0.0687462028042276673933L);
-  const Real t951 = t562 - t950;
-  const Real t952 = t873 * constant<Real>(0.0687462028042276673933L);
-  const Real t953 = t571 + t952;
-
-  // front_right_hip: wrench
-  const Real t954 = t582 - t938;
-  const Real t955 = t596 - t940;
-  const Real t956 = t876 * constant<Real>(0.17239L);
-  const Real t957 = t879 * constant<Real>(0.0013L);
-  const Real t958 = t956 - t957;
-  const Real t959 = t958 + t590;
-
-  // front_right_thigh: wrench
-  const Real t960 = t887 * constant<Real>(0.2108L);
-  const Real t961 = t883 * constant<Real>(0.0051L);
-  const Real t962 = t960 + t961;
-  const Real t963 = t962 + t623;
-  const Real t964 = t884 * constant<Real>(0.2108L);
-  const Real t965 = t615 + t964;
-  const Real t966 = constant<Real>(0.0051L) * t884;
-  const Real t967 = t606 - t966;
-
-  // front_right_shank: wrench
-  const Real t968 = t893 * constant<Real>(0.0687462028042276673933L);
-  const Real t969 = t644 - t968;
-  const Real t970 = t888 * constant<Real>(0.0687462028042276673933L);
-  const Real t971 = t636 - t970;
-
-  // hind_left_hip: wrench
-  const Real t972 = t896 * constant<Real>(0.17239L);
-  const Real t973 = constant<Real>(0.0013L) * t899;
-  const Real t974 = t972 - t973;
-  const Real t975 = t974 + t670;
-  const Real t976 = t940 + t651;
-  const Real t977 = t938 + t661;
-
-  // hind_left_thigh: wrench
-  const Real t978 = t904 * constant<Real>(0.2108L);
-  const Real t979 = t978 + t697;
-  const Real t980 = t903 * constant<Real>(0.0051L);
-  const Real t981 = t907 * constant<Real>(0.2108L);
-  const Real t982 = t980 - t981;
-  const Real t983 = t680 + t982;
-  const Real t984 = constant<Real>(0.0051L) * t904;
-  const Real t985 = t691 - t984;
-
-  // hind_left_shank: wrench
-  const Real t986 = t908 * constant<Real>(0.0687462028042276673933L);
-  const Real t987 = t718 - t986;
-  const Real t988 = constant<Real>(0.0687462028042276673933L) * t913;
-  const Real t989 = t706 + t988;
-
-  // hind_right_hip: wrench
-  const Real t990 = t742 - t938;
-  const Real t991 = t727 - t940;
-  const Real t992 = t916 * constant<Real>(0.17239L);
-  const Real t993 = constant<Real>(0.0013L) * t919;
-  const Real t994 = t992 - t993;
-  const Real t995 = t733 + t994;
-
-  // hind_right_thigh: wrench
-  const Real t996 = constant<Real>(0.0051L) * t926;
-  const Real t997 = t923 * constant<Real>(0.2108L);
-  const Real t998 = t996 - t997;
-  const Real t999 = t998 + t763;
-  const Real t1000 = t927 * constant<Real>(0.2108L);
-  const Real t1001 = t1000 + t771;
-  const Real t1002 = constant<Real>(0.0051L) * t927;
-  const Real t1003 = t750 - t1002;
-
-  // hind_right_shank: wrench
-  const Real t1004 = constant<Real>(0.0687462028042276673933L) * t933;
-  const Real t1005 = t1004 + t787;
-  const Real t1006 = t928 * constant<Real>(0.0687462028042276673933L);
-  const Real t1007 = t793 - t1006;
-
   // hind_right_shank: articulated body
-  const Real t1008 = constant<Real>(0.365026384246071713246L) * t8;
-  const Real t1009 = t1008 * t8;
-  const Real t1010 = t1009 + constant<Real>(-0.365026384246071713246L);
-  const Real t1011 = constant<Real>(0.0576L) * t1010;
-  const Real t1012 = constant<Real>(0.0428421L) + t1011;
-  const Real t1013 = tau[11] - t1005;
-  const Real t1014 = constant<Real>(0.0000353906603051193176138L) * t1013;
-  const Real t1015 = t1007 - t1014;
-  const Real t1016 = t1015 * t9;
-  const Real t1017 = constant<Real>(0.466294762676633597142L) * t1013;
-  const Real t1018 = t1017 + t778;
-  const Real t1019 = t1018 * t8;
-  const Real t1020 = t1016 + t1019;
-  const Real t1021 = t1020 + t794;
-  const Real t1022 = t1001 + t1021;
-  const Real t1023 = constant<Real>(77.2372543082940453166L) * t1013;
-  const Real t1024 = constant<Real>(5.30976794871968958296L) * t1013;
-  const Real t1025 = t1024 + t772;
-  const Real t1026 = t1025 * t9;
-  const Real t1027 = t1026 - t334;
-  const Real t1028 = constant<Real>(0.24L) * t1027;
-  const Real t1029 = tau[11] - t1028;
-  const Real t1030 = t999 + t1029;
-  const Real t1031 = t8 * constant<Real>(2.43297351071126242747e-6L);
-  const Real t1032 = constant<Real>(0.0320559943215170632542L) * t9;
-  const Real t1033 = t1031 + t1032;
-  const Real t1034 = t1033 * t9;
-  const Real t1035 = constant<Real>(0.24L) * t1034;
-  const Real t1036 = constant<Real>(-0.0148652L) + t1035;
-  const Real t1037 = t1010 * constant<Real>(0.24L);
-  const Real t1038 = constant<Real>(-0.2108L) - t1037;
-  const Real t1039 = t1018 * t9;
-  const Real t1040 = t1015 * t8;
-  const Real t1041 = t1039 - t1040;
-  const Real t1042 = t1041 + t1003;
-  const Real t1043 = constant<Real>(0.0156965339975290587644L) * t8;
-  const Real t1044 = constant<Real>(8.94133916369915606625e-6L) * t9;
-  const Real t1045 = t1043 + t1044;
-  const Real t1046 = t1045 * t8;
-  const Real t1047 = constant<Real>(-0.00207295837341773411037L) + t1046;
-  const Real t1048 = constant<Real>(-0.0320559943215170632542L) + t1034;
-  const Real t1049 = t1027 + t765;
-  const Real t1050 = t1033 * t8;
-  const Real t1051 = constant<Real>(2.43297351071126242747e-6L) - t1050;
-  const Real t1052 = constant<Real>(0.24L) * t1051;
-  const Real t1053 = constant<Real>(-0.0003909L) - t1052;
-  const Real t1054 = t1045 * t9;
-  const Real t1055 = t1025 * t8;
-  const Real t1056 = t333 + t1055;
-  const Real t1057 = t755 - t1056;
-  const Real t1058 = t1008 * t9;
-  const Real t1059 = t1058 * constant<Real>(0.24L);
-  const Real t1060 = constant<Real>(0.0051L) - t1059;
+  const Real t13 = constant<Real>(0.365026384246071713246L) * t8;
+  const Real t14 = t13 * t8;
+  const Real t15 = t14 + constant<Real>(-0.365026384246071713246L);
+  const Real t16 = constant<Real>(0.0576L) * t15;
+  const Real t17 = constant<Real>(0.0428421L) + t16;
 
   // hind_right_thigh: articulated body
-  const Real t1061 = tau[10] - t1030;
-  const Real t1062 = constant<Real>(1.0L) / t1012;
-  const Real t1063 = t1062 * t1036;
-  const Real t1064 = t1061 * t1063;
-  const Real t1065 = t1064 + t1042;
-  const Real t1066 = t1065 * c_r_10_;
-  const Real t1067 = t1062 * t1053;
-  const Real t1068 = t1061 * t1067;
-  const Real t1069 = t1068 + t1022;
-  const Real t1070 = t1069 * s_r_10_;
-  const Real t1071 = t1066 - t1070;
-  const Real t1072 = t1071 - t796;
-  const Real t1073 = t991 + t1072;
-  const Real t1074 = t1062 * t1060;
-  const Real t1075 = t1061 * t1074;
-  const Real t1076 = t1075 + t1057;
-  const Real t1077 = t1076 * s_r_10_;
-  const Real t1078 = t1062 * t1038;
-  const Real t1079 = t1061 * t1078;
-  const Real t1080 = t1079 + t1049;
-  const Real t1081 = t1080 * c_r_10_;
-  const Real t1082 = t1077 + t1081;
-  const Real t1083 = t736 + t1082;
-  const Real t1084 = t820 + t852;
-  const Real t1085 = constant<Real>(0.21L) * t1084;
-  const Real t1086 = t1036 * t1063;
-  const Real t1087 = t1047 - t1086;
-  const Real t1088 = t1061 * t1062;
-  const Real t1089 = t1038 * t1063;
-  const Real t1090 = t1089 + t1034;
-  const Real t1091 = t1060 * t1063;
-  const Real t1092 = t1050 - t1091;
-  const Real t1093 = t1038 * t1067;
-  const Real t1094 = t1051 - t1093;
-  const Real t1095 = t1092 - t1094;
-  const Real t1096 = t1095 * s_r_10_;
-  const Real t1097 = t1067 * t1060;
-  const Real t1098 = t1048 + t1097;
-  const Real t1099 = t1090 + t1098;
-  const Real t1100 = t1099 * c_r_10_;
-  const Real t1101 = t1096 - t1100;
-  const Real t1102 = t1101 * c_r_10_;
-  const Real t1103 = t1090 + t1102;
-  const Real t1104 = t1103 + constant<Real>(-0.17239L);
-  const Real t1105 = t1053 * t1063;
-  const Real t1106 = t1101 * s_r_10_;
-  const Real t1107 = t1106 + t1094;
-  const Real t1108 = t1074 * t1038;
-  const Real t1109 = t1058 - t1108;
-  const Real t1110 = t819 * t1109;
-  const Real t1111 = t1074 * t1060;
-  const Real t1112 = t1009 + t1111;
-  const Real t1113 = t1038 * t1078;
-  const Real t1114 = t1010 - t1113;
-  const Real t1115 = t1112 + t1114;
-  const Real t1116 = t1115 * s_r_10_;
-  const Real t1117 = t1110 - t1116;
-  const Real t1118 = t1117 * s_r_10_;
-  const Real t1119 = t1118 + t1114;
-  const Real t1120 = t1069 * c_r_10_;
-  const Real t1121 = t1065 * s_r_10_;
-  const Real t1122 = t1120 + t1121;
-  const Real t1123 = t1122 + t995;
-  const Real t1124 = t1117 * c_r_10_;
-  const Real t1125 = t1124 - t1109;
-  const Real t1126 = t1125 * constant<Real>(0.21L);
-  const Real t1127 = constant<Real>(0.0013L) + t1126;
-  const Real t1128 = t1092 - t1106;
-  const Real t1129 = constant<Real>(0.21L) * t1128;
-  const Real t1130 = t1129 + constant<Real>(0.0000473L);
-  const Real t1131 = t821 - t853;
-  const Real t1132 = t1131 * constant<Real>(0.21L);
-  const Real t1133 = t1112 + t1118;
-  const Real t1134 = t1133 * constant<Real>(0.21L);
-  const Real t1135 = t1067 * t1053;
-  const Real t1136 = t1102 + t1098;
-  const Real t1137 = t1136 + constant<Real>(0.17239L);
-  const Real t1138 = t1076 * c_r_10_;
-  const Real t1139 = t1080 * s_r_10_;
-  const Real t1140 = t1138 - t1139;
-  const Real t1141 = constant<Real>(0.21L) * t1140;
-  const Real t1142 = t1141 + tau[10];
-  const Real t1143 = t990 + t1142;
-  const Real t1144 = t1103 * constant<Real>(0.21L);
-  const Real t1145 = constant<Real>(-0.0360627L) + t1144;
-  const Real t1146 = t1133 * constant<Real>(0.0441L);
-  const Real t1147 = constant<Real>(0.0008138L) - t1146;
-  const Real t1148 = constant<Real>(-0.0013L) + t1084;
-  const Real t1149 = t1140 - t721;
+  const Real t18 = constant<Real>(1.0L) / t17;
 
-  // hind_right_hip: articulated body
-  const Real t1150 = tau[9] - t1123;
+  // hind_right_shank: articulated body
+  const Real t19 = t8 * constant<Real>(2.43297351071126242747e-6L);
+  const Real t20 = constant<Real>(0.0320559943215170632542L) * t9;
+  const Real t21 = t19 + t20;
+  const Real t22 = t21 * t9;
+  const Real t23 = constant<Real>(0.24L) * t22;
+  const Real t24 = constant<Real>(-0.0148652L) + t23;
 
-  // hind_left_shank: articulated body
-  const Real t1151 = t6 * constant<Real>(0.0320559943215170632542L);
-  const Real t1152 = t5 * constant<Real>(2.43297351071126242747e-6L);
-  const Real t1153 = t1151 + t1152;
-  const Real t1154 = t6 * t1153;
-  const Real t1155 = t1154 - constant<Real>(0.0320559943215170632542L);
-  const Real t1156 = tau[8] - t989;
-  const Real t1157 = constant<Real>(5.30976794871968958296L) * t1156;
-  const Real t1158 = t698 + t1157;
-  const Real t1159 = t6 * t1158;
-  const Real t1160 = t1159 - t336;
-  const Real t1161 = t672 + t1160;
-  const Real t1162 = t5 * constant<Real>(0.365026384246071713246L);
-  const Real t1163 = t5 * t1162;
-  const Real t1164 = t1163 + constant<Real>(-0.365026384246071713246L);
-  const Real t1165 = t1164 * constant<Real>(0.24L);
-  const Real t1166 = constant<Real>(-0.2108L) - t1165;
-  const Real t1167 = constant<Real>(0.24L) * t1160;
-  const Real t1168 = tau[8] - t1167;
-  const Real t1169 = t1168 + t983;
-  const Real t1170 = t5 * t1158;
-  const Real t1171 = t1170 + t335;
-  const Real t1172 = t682 - t1171;
-  const Real t1173 = constant<Real>(0.466294762676633597142L) * t1156;
-  const Real t1174 = t712 - t1173;
-  const Real t1175 = t1174 * t5;
-  const Real t1176 = constant<Real>(0.0000353906603051193176138L) * t1156;
-  const Real t1177 = t987 + t1176;
-  const Real t1178 = t6 * t1177;
-  const Real t1179 = t1175 + t1178;
-  const Real t1180 = t1179 + t798;
-  const Real t1181 = t979 + t1180;
-  const Real t1182 = t1164 * constant<Real>(0.0576L);
-  const Real t1183 = constant<Real>(0.0428421L) + t1182;
-  const Real t1184 = t5 * t1153;
-  const Real t1185 = t1184 + constant<Real>(-2.43297351071126242747e-6L);
-  const Real t1186 = t1185 * constant<Real>(0.24L);
-  const Real t1187 = constant<Real>(0.0003909L) - t1186;
-  const Real t1188 = t6 * t1174;
-  const Real t1189 = t5 * t1177;
-  const Real t1190 = t1188 - t1189;
-  const Real t1191 = t985 + t1190;
-  const Real t1192 = t1156 * constant<Real>(77.2372543082940453166L);
-  const Real t1193 = constant<Real>(0.24L) * t1154;
-  const Real t1194 = constant<Real>(0.0148652L) - t1193;
-  const Real t1195 = t6 * constant<Real>(8.94133916369915606625e-6L);
-  const Real t1196 = t5 * constant<Real>(0.0156965339975290587644L);
-  const Real t1197 = t1195 + t1196;
-  const Real t1198 = t6 * t1197;
-  const Real t1199 = t6 * t1162;
-  const Real t1200 = constant<Real>(0.24L) * t1199;
-  const Real t1201 = constant<Real>(0.0051L) - t1200;
-  const Real t1202 = t5 * t1197;
-  const Real t1203 = t1202 + constant<Real>(-0.00207295837341773411037L);
-  const Real t1204 = constant<Real>(0.2108L) - t823;
+  // hind_right_thigh: articulated body
+  const Real t25 = t18 * t24;
 
-  // hind_left_thigh: articulated body
-  const Real t1205 = constant<Real>(1.0L) / t1183;
-  const Real t1206 = t1205 * t1194;
-  const Real t1207 = t1206 * t1194;
-  const Real t1208 = t1203 - t1207;
-  const Real t1209 = t1205 * t1187;
-  const Real t1210 = t1209 * t1201;
-  const Real t1211 = t1155 - t1210;
-  const Real t1212 = t1206 * t1166;
-  const Real t1213 = t1154 - t1212;
-  const Real t1214 = t1211 + t1213;
-  const Real t1215 = c_r_7_ * t1214;
-  const Real t1216 = t1206 * t1201;
-  const Real t1217 = t1184 + t1216;
-  const Real t1218 = t1166 * t1209;
-  const Real t1219 = t1185 - t1218;
-  const Real t1220 = t1217 + t1219;
-  const Real t1221 = s_r_7_ * t1220;
-  const Real t1222 = t1215 - t1221;
-  const Real t1223 = t1222 * c_r_7_;
-  const Real t1224 = t1223 - t1213;
-  const Real t1225 = constant<Real>(0.17239L) + t1224;
-  const Real t1226 = t1205 * t1201;
-  const Real t1227 = t1166 * t1226;
-  const Real t1228 = t1199 - t1227;
-  const Real t1229 = t828 * t1228;
-  const Real t1230 = t1226 * t1201;
-  const Real t1231 = t1163 + t1230;
-  const Real t1232 = t1205 * t1166;
-  const Real t1233 = t1232 * t1166;
-  const Real t1234 = t1164 - t1233;
-  const Real t1235 = t1231 + t1234;
-  const Real t1236 = s_r_7_ * t1235;
-  const Real t1237 = t1229 - t1236;
-  const Real t1238 = t1237 * s_r_7_;
-  const Real t1239 = t1238 + t1231;
-  const Real t1240 = constant<Real>(0.0441L) * t1239;
-  const Real t1241 = constant<Real>(0.0008138L) - t1240;
-  const Real t1242 = tau[7] - t1169;
-  const Real t1243 = t1205 * t1242;
-  const Real t1244 = t1237 * c_r_7_;
-  const Real t1245 = t1244 - t1228;
-  const Real t1246 = constant<Real>(0.21L) * t1245;
-  const Real t1247 = constant<Real>(0.0013L) + t1246;
-  const Real t1248 = c_r_7_ * t1204;
-  const Real t1249 = t1248 + t829;
-  const Real t1250 = t1249 * constant<Real>(0.21L);
-  const Real t1251 = constant<Real>(0.21L) * t1224;
-  const Real t1252 = constant<Real>(0.0360627L) + t1251;
-  const Real t1253 = t1206 * t1242;
-  const Real t1254 = t1253 + t1191;
-  const Real t1255 = c_r_7_ * t1254;
-  const Real t1256 = t1242 * t1209;
-  const Real t1257 = t1256 + t1181;
-  const Real t1258 = s_r_7_ * t1257;
-  const Real t1259 = t1255 - t1258;
-  const Real t1260 = t1259 - t801;
-  const Real t1261 = t1260 - t976;
-  const Real t1262 = t1242 * t1226;
-  const Real t1263 = t1262 + t1172;
-  const Real t1264 = s_r_7_ * t1263;
-  const Real t1265 = t1232 * t1242;
-  const Real t1266 = t1161 + t1265;
-  const Real t1267 = c_r_7_ * t1266;
-  const Real t1268 = t1264 + t1267;
-  const Real t1269 = t1268 + t664;
-  const Real t1270 = s_r_7_ * t1204;
-  const Real t1271 = t827 - t1270;
-  const Real t1272 = t1271 * constant<Real>(0.21L);
-  const Real t1273 = t1223 - t1211;
-  const Real t1274 = constant<Real>(-0.17239L) + t1273;
-  const Real t1275 = t1222 * s_r_7_;
-  const Real t1276 = t1219 + t1275;
-  const Real t1277 = c_r_7_ * t1263;
-  const Real t1278 = s_r_7_ * t1266;
-  const Real t1279 = t1277 - t1278;
-  const Real t1280 = t1279 * constant<Real>(0.21L);
-  const Real t1281 = t1280 + tau[7];
-  const Real t1282 = t977 + t1281;
-  const Real t1283 = t1279 + t653;
-  const Real t1284 = t1238 + t1234;
-  const Real t1285 = c_r_7_ * t1257;
-  const Real t1286 = s_r_7_ * t1254;
-  const Real t1287 = t1285 + t1286;
-  const Real t1288 = t975 + t1287;
-  const Real t1289 = constant<Real>(0.21L) * t1239;
-  const Real t1290 = t1217 + t1275;
-  const Real t1291 = constant<Real>(0.21L) * t1290;
-  const Real t1292 = constant<Real>(-0.0000473L) - t1291;
-  const Real t1293 = constant<Real>(-0.0013L) + t1249;
-  const Real t1294 = t1187 * t1209;
-  const Real t1295 = t1206 * t1187;
+  // hind_right_shank: articulated body
+  const Real t26 = t21 * t8;
+  const Real t27 = constant<Real>(2.43297351071126242747e-6L) - t26;
+  const Real t28 = constant<Real>(0.24L) * t27;
+  const Real t29 = constant<Real>(-0.0003909L) - t28;
 
-  // hind_left_hip: articulated body
-  const Real t1296 = tau[6] - t1288;
+  // hind_right_thigh: articulated body
+  const Real t30 = t29 * t25;
 
-  // front_right_shank: articulated body
-  const Real t1297 = tau[5] - t969;
-  const Real t1298 = constant<Real>(5.30976794871968958296L) * t1297;
-  const Real t1299 = t645 + t1298;
-  const Real t1300 = t1299 * t3;
-  const Real t1301 = t1300 - t338;
-  const Real t1302 = t1301 * constant<Real>(0.24L);
-  const Real t1303 = tau[5] - t1302;
-  const Real t1304 = t1303 + t963;
-  const Real t1305 = constant<Real>(0.466294762676633597142L) * t1297;
-  const Real t1306 = t1305 + t629;
-  const Real t1307 = t1306 * t3;
-  const Real t1308 = constant<Real>(0.0000353906603051193176138L) * t1297;
-  const Real t1309 = t971 - t1308;
-  const Real t1310 = t2 * t1309;
-  const Real t1311 = t1307 - t1310;
-  const Real t1312 = t1311 + t967;
-  const Real t1313 = t2 * t1306;
-  const Real t1314 = t1309 * t3;
-  const Real t1315 = t1313 + t1314;
-  const Real t1316 = t1315 + t803;
-  const Real t1317 = t965 + t1316;
-  const Real t1318 = t2 * constant<Real>(0.365026384246071713246L);
-  const Real t1319 = t2 * t1318;
-  const Real t1320 = t1319 + constant<Real>(-0.365026384246071713246L);
-  const Real t1321 = constant<Real>(0.0576L) * t1320;
-  const Real t1322 = t1321 + constant<Real>(0.0428421L);
-  const Real t1323 = t1320 * constant<Real>(0.24L);
-  const Real t1324 = constant<Real>(-0.2108L) - t1323;
-  const Real t1325 = constant<Real>(77.2372543082940453166L) * t1297;
-  const Real t1326 = t2 * constant<Real>(2.43297351071126242747e-6L);
-  const Real t1327 = constant<Real>(0.0320559943215170632542L) * t3;
-  const Real t1328 = t1326 + t1327;
-  const Real t1329 = t1328 * t3;
-  const Real t1330 = t1329 * constant<Real>(0.24L);
-  const Real t1331 = t1330 + constant<Real>(-0.0148652L);
-  const Real t1332 = t600 + t1301;
-  const Real t1333 = t2 * constant<Real>(0.0156965339975290587644L);
-  const Real t1334 = constant<Real>(8.94133916369915606625e-6L) * t3;
-  const Real t1335 = t1333 + t1334;
-  const Real t1336 = t1335 * t3;
-  const Real t1337 = constant<Real>(-0.0320559943215170632542L) + t1329;
-  const Real t1338 = constant<Real>(0.2108L) - t831;
-  const Real t1339 = t2 * t1299;
-  const Real t1340 = t337 + t1339;
-  const Real t1341 = t598 - t1340;
-  const Real t1342 = t2 * t1335;
-  const Real t1343 = constant<Real>(-0.00207295837341773411037L) + t1342;
-  const Real t1344 = t2 * t1328;
-  const Real t1345 = constant<Real>(2.43297351071126242747e-6L) - t1344;
-  const Real t1346 = constant<Real>(0.24L) * t1345;
-  const Real t1347 = constant<Real>(-0.0003909L) - t1346;
-  const Real t1348 = t1318 * t3;
-  const Real t1349 = t1348 * constant<Real>(0.24L);
-  const Real t1350 = constant<Real>(0.0051L) - t1349;
-
-  // front_right_thigh: articulated body
-  const Real t1351 = constant<Real>(1.0L) / t1322;
-  const Real t1352 = t1324 * t1351;
-  const Real t1353 = tau[4] - t1304;
-  const Real t1354 = t1352 * t1353;
-  const Real t1355 = t1332 + t1354;
-  const Real t1356 = t1355 * c_r_4_;
-  const Real t1357 = t1351 * t1350;
-  const Real t1358 = t1357 * t1353;
-  const Real t1359 = t1341 + t1358;
-  const Real t1360 = t1359 * s_r_4_;
-  const Real t1361 = t1356 + t1360;
-  const Real t1362 = t1361 + t574;
-  const Real t1363 = t1324 * t1357;
-  const Real t1364 = t1348 - t1363;
-  const Real t1365 = t1364 * t837;
-  const Real t1366 = t1357 * t1350;
-  const Real t1367 = t1319 + t1366;
-  const Real t1368 = t1324 * t1352;
-  const Real t1369 = t1320 - t1368;
-  const Real t1370 = t1367 + t1369;
-  const Real t1371 = s_r_4_ * t1370;
-  const Real t1372 = t1365 - t1371;
-  const Real t1373 = t1372 * s_r_4_;
-  const Real t1374 = t1373 + t1369;
-  const Real t1375 = t1338 * c_r_4_;
-  const Real t1376 = t835 + t1375;
-  const Real t1377 = constant<Real>(-0.0013L) + t1376;
-  const Real t1378 = t1347 * t1351;
-  const Real t1379 = t1378 * t1347;
-  const Real t1380 = t1331 * t1351;
-  const Real t1381 = t1380 * t1324;
-  const Real t1382 = t1329 + t1381;
-  const Real t1383 = t1380 * t1350;
-  const Real t1384 = t1344 - t1383;
-  const Real t1385 = t1324 * t1378;
-  const Real t1386 = t1345 - t1385;
-  const Real t1387 = t1384 - t1386;
-  const Real t1388 = s_r_4_ * t1387;
-  const Real t1389 = t1378 * t1350;
-  const Real t1390 = t1389 + t1337;
-  const Real t1391 = t1382 + t1390;
-  const Real t1392 = t1391 * c_r_4_;
-  const Real t1393 = t1388 - t1392;
-  const Real t1394 = t1393 * c_r_4_;
-  const Real t1395 = t1382 + t1394;
-  const Real t1396 = t1395 * constant<Real>(0.21L);
-  const Real t1397 = constant<Real>(0.0360627L) - t1396;
-  const Real t1398 = t1393 * s_r_4_;
-  const Real t1399 = t1384 - t1398;
-  const Real t1400 = t1399 * constant<Real>(0.21L);
-  const Real t1401 = constant<Real>(0.0000473L) - t1400;
-  const Real t1402 = t1376 * constant<Real>(0.21L);
-  const Real t1403 = constant<Real>(-0.17239L) + t1395;
-  const Real t1404 = t1373 + t1367;
-  const Real t1405 = t1404 * constant<Real>(0.21L);
-  const Real t1406 = t1351 * t1353;
-  const Real t1407 = t1380 * t1347;
-  const Real t1408 = t1398 + t1386;
-  const Real t1409 = t1380 * t1353;
-  const Real t1410 = t1312 + t1409;
-  const Real t1411 = s_r_4_ * t1410;
-  const Real t1412 = t1378 * t1353;
-  const Real t1413 = t1412 + t1317;
-  const Real t1414 = t1413 * c_r_4_;
-  const Real t1415 = t1411 + t1414;
-  const Real t1416 = t959 + t1415;
-  const Real t1417 = t1410 * c_r_4_;
-  const Real t1418 = s_r_4_ * t1413;
-  const Real t1419 = t1417 - t1418;
-  const Real t1420 = t1419 + t804;
-  const Real t1421 = t1420 + t955;
-  const Real t1422 = t1359 * c_r_4_;
-  const Real t1423 = t1355 * s_r_4_;
-  const Real t1424 = t1422 - t1423;
-  const Real t1425 = t1424 * constant<Real>(0.21L);
-  const Real t1426 = tau[4] - t1425;
-  const Real t1427 = t954 + t1426;
-  const Real t1428 = s_r_4_ * t1338;
-  const Real t1429 = t836 - t1428;
-  const Real t1430 = constant<Real>(0.21L) * t1429;
-  const Real t1431 = t1380 * t1331;
-  const Real t1432 = t1343 - t1431;
-  const Real t1433 = t1372 * c_r_4_;
-  const Real t1434 = t1433 - t1364;
-  const Real t1435 = t1434 * constant<Real>(0.21L);
-  const Real t1436 = constant<Real>(0.0013L) - t1435;
-  const Real t1437 = t1404 * constant<Real>(0.0441L);
-  const Real t1438 = constant<Real>(0.0008138L) - t1437;
-  const Real t1439 = t1424 - t576;
-  const Real t1440 = t1390 + t1394;
-  const Real t1441 = t1440 + constant<Real>(0.17239L);
-
-  // front_right_hip: articulated body
-  const Real t1442 = tau[3] - t1416;
-
-  // front_left_shank: articulated body
-  const Real t1443 = t11 * constant<Real>(0.0156965339975290587644L);
-  const Real t1444 = constant<Real>(8.94133916369915606625e-6L) * t12;
-  const Real t1445 = t1443 + t1444;
-  const Real t1446 = t1445 * t12;
-  const Real t1447 = t11 * constant<Real>(2.43297351071126242747e-6L);
-  const Real t1448 = constant<Real>(0.0320559943215170632542L) * t12;
-  const Real t1449 = t1447 + t1448;
-  const Real t1450 = t1449 * t12;
-  const Real t1451 = t1450 - constant<Real>(0.0320559943215170632542L);
-  const Real t1452 = t11 * constant<Real>(0.365026384246071713246L);
-  const Real t1453 = t1452 * t12;
-  const Real t1454 = constant<Real>(0.24L) * t1453;
-  const Real t1455 = constant<Real>(0.0051L) - t1454;
-  const Real t1456 = constant<Real>(0.24L) * t1450;
-  const Real t1457 = constant<Real>(0.0148652L) - t1456;
-  const Real t1458 = tau[2] - t953;
-  const Real t1459 = constant<Real>(5.30976794871968958296L) * t1458;
-  const Real t1460 = t563 + t1459;
-  const Real t1461 = t1460 * t12;
-  const Real t1462 = t1461 - t339;
-  const Real t1463 = constant<Real>(0.24L) * t1462;
-  const Real t1464 = tau[2] - t1463;
-  const Real t1465 = t1464 + t947;
-  const Real t1466 = t11 * t1449;
-  const Real t1467 = constant<Real>(-2.43297351071126242747e-6L) + t1466;
-  const Real t1468 = constant<Real>(0.24L) * t1467;
-  const Real t1469 = constant<Real>(0.0003909L) - t1468;
-  const Real t1470 = constant<Real>(0.2108L) - t839;
-  const Real t1471 = constant<Real>(0.466294762676633597142L) * t1458;
-  const Real t1472 = t555 - t1471;
-  const Real t1473 = t1472 * t12;
-  const Real t1474 = constant<Real>(0.0000353906603051193176138L) * t1458;
-  const Real t1475 = t951 + t1474;
-  const Real t1476 = t1475 * t11;
-  const Real t1477 = t1473 - t1476;
-  const Real t1478 = t943 + t1477;
-  const Real t1479 = t1462 + t543;
-  const Real t1480 = t1460 * t11;
-  const Real t1481 = t340 + t1480;
-  const Real t1482 = t541 - t1481;
-  const Real t1483 = constant<Real>(77.2372543082940453166L) * t1458;
-  const Real t1484 = t1452 * t11;
-  const Real t1485 = constant<Real>(-0.365026384246071713246L) + t1484;
-  const Real t1486 = t1485 * constant<Real>(0.24L);
-  const Real t1487 = constant<Real>(-0.2108L) - t1486;
-  const Real t1488 = t1445 * t11;
-  const Real t1489 = constant<Real>(-0.00207295837341773411037L) + t1488;
-  const Real t1490 = constant<Real>(0.0576L) * t1485;
-  const Real t1491 = constant<Real>(0.0428421L) + t1490;
-  const Real t1492 = t1475 * t12;
-  const Real t1493 = t1472 * t11;
-  const Real t1494 = t1492 + t1493;
-  const Real t1495 = t1494 + t806;
-  const Real t1496 = t1495 + t949;
-
-  // front_left_thigh: articulated body
-  const Real t1497 = t1470 * s_r_1_;
-  const Real t1498 = t845 - t1497;
-  const Real t1499 = t1498 * constant<Real>(0.21L);
-  const Real t1500 = constant<Real>(1.0L) / t1491;
-  const Real t1501 = t1455 * t1500;
-  const Real t1502 = tau[1] - t1465;
-  const Real t1503 = t1501 * t1502;
-  const Real t1504 = t1482 + t1503;
-  const Real t1505 = c_r_1_ * t1504;
-  const Real t1506 = t1500 * t1487;
-  const Real t1507 = t1506 * t1502;
-  const Real t1508 = t1479 + t1507;
-  const Real t1509 = t1508 * s_r_1_;
-  const Real t1510 = t1505 - t1509;
-  const Real t1511 = constant<Real>(0.21L) * t1510;
-  const Real t1512 = tau[1] - t1511;
-  const Real t1513 = t939 + t1512;
-  const Real t1514 = c_r_1_ * t1508;
-  const Real t1515 = s_r_1_ * t1504;
-  const Real t1516 = t1514 + t1515;
-  const Real t1517 = t1516 + t508;
-  const Real t1518 = t1469 * t1500;
-  const Real t1519 = t1455 * t1518;
-  const Real t1520 = t1451 - t1519;
-  const Real t1521 = t1457 * t1500;
-  const Real t1522 = t1487 * t1521;
-  const Real t1523 = t1450 - t1522;
-  const Real t1524 = t1520 + t1523;
-  const Real t1525 = c_r_1_ * t1524;
-  const Real t1526 = t1487 * t1518;
-  const Real t1527 = t1467 - t1526;
-  const Real t1528 = t1455 * t1521;
-  const Real t1529 = t1528 + t1466;
-  const Real t1530 = t1527 + t1529;
-  const Real t1531 = t1530 * s_r_1_;
-  const Real t1532 = t1525 - t1531;
-  const Real t1533 = t1532 * s_r_1_;
-  const Real t1534 = t1533 + t1529;
-  const Real t1535 = constant<Real>(0.21L) * t1534;
-  const Real t1536 = t1535 + constant<Real>(-0.0000473L);
-  const Real t1537 = t1532 * c_r_1_;
-  const Real t1538 = t1537 - t1523;
-  const Real t1539 = t1538 * constant<Real>(0.21L);
-  const Real t1540 = constant<Real>(-0.0360627L) - t1539;
-  const Real t1541 = t1455 * t1501;
-  const Real t1542 = t1541 + t1484;
-  const Real t1543 = t1501 * t1487;
-  const Real t1544 = t1453 - t1543;
-  const Real t1545 = t843 * t1544;
-  const Real t1546 = t1506 * t1487;
-  const Real t1547 = t1485 - t1546;
-  const Real t1548 = t1547 + t1542;
-  const Real t1549 = t1548 * s_r_1_;
-  const Real t1550 = t1545 - t1549;
-  const Real t1551 = t1550 * s_r_1_;
-  const Real t1552 = t1542 + t1551;
-  const Real t1553 = constant<Real>(0.0441L) * t1552;
-  const Real t1554 = constant<Real>(0.0008138L) - t1553;
-  const Real t1555 = c_r_1_ * t1550;
-  const Real t1556 = t1555 - t1544;
-  const Real t1557 = constant<Real>(0.21L) * t1556;
-  const Real t1558 = constant<Real>(0.0013L) - t1557;
-  const Real t1559 = t1537 - t1520;
-  const Real t1560 = constant<Real>(-0.17239L) + t1559;
-  const Real t1561 = t1500 * t1502;
-  const Real t1562 = t1502 * t1521;
-  const Real t1563 = t1478 + t1562;
-  const Real t1564 = c_r_1_ * t1563;
-  const Real t1565 = t1518 * t1502;
-  const Real t1566 = t1565 + t1496;
-  const Real t1567 = s_r_1_ * t1566;
-  const Real t1568 = t1564 - t1567;
-  const Real t1569 = t1568 + t808;
-  const Real t1570 = t1569 + t941;
-  const Real t1571 = t1470 * c_r_1_;
-  const Real t1572 = t844 + t1571;
-  const Real t1573 = constant<Real>(-0.0013L) + t1572;
-  const Real t1574 = t1572 * constant<Real>(0.21L);
-  const Real t1575 = constant<Real>(0.21L) * t1552;
-  const Real t1576 = t1457 * t1521;
-  const Real t1577 = t1489 - t1576;
-  const Real t1578 = t1563 * s_r_1_;
-  const Real t1579 = c_r_1_ * t1566;
-  const Real t1580 = t1578 + t1579;
-  const Real t1581 = t1580 + t937;
-  const Real t1582 = t1547 + t1551;
-  const Real t1583 = t1469 * t1521;
-  const Real t1584 = t1527 + t1533;
-  const Real t1585 = t1538 + constant<Real>(0.17239L);
-  const Real t1586 = t1510 + t516;
-  const Real t1587 = t1469 * t1518;
-
-  // front_left_hip: articulated body
-  const Real t1588 = tau[0] - t1581;
+  // hind_right_shank: articulated body
+  const Real t31 = constant<Real>(0.0156965339975290587644L) * t8;
+  const Real t32 = constant<Real>(8.94133916369915606625e-6L) * t9;
+  const Real t33 = t31 + t32;
+  const Real t34 = t33 * t9;
+  const Real t35 = constant<Real>(0.0164990886730146401744L) * t8;
 
   // factor and solution
-  const Real t1589 = t817 - t1054;
-  const Real t1590 = t1589 - t1105;
-  const Real t1591 = t1590 - constant<Real>(-0.000339270669581849578033L);
-  const Real t1592 = t1591 * t819;
-  const Real t1593 = constant<Real>(0.0550470756241113246541L) - t1046;
-  const Real t1594 = t1593 - t850;
-  const Real t1595 = t1594 - t850;
-  const Real t1596 = t1595 - t1135;
-  const Real t1597 = t1087 - t1596;
-  const Real t1598 = t1597 * s_r_10_;
-  const Real t1599 = t1592 + t1598;
-  const Real t1600 = t1599 * s_r_10_;
-  const Real t1601 = t1600 + t1596;
-  const Real t1602 = t1601 + constant<Real>(0.01249468L);
-  const Real t1603 = constant<Real>(1.0L) / t1602;
-  const Real t1604 = t1599 * c_r_10_;
-  const Real t1605 = t1604 - t1591;
-  const Real t1606 = t1605 - t1085;
-  const Real t1607 = constant<Real>(0.0002678L) + t1606;
-  const Real t1608 = t1603 * t1607;
-  const Real t1609 = t1608 * t1150;
-  const Real t1610 = t1073 + t1609;
-  const Real t1611 = c_r_9_ * t1610;
-  const Real t1612 = t1603 * t1145;
-  const Real t1613 = t1612 * t1150;
-  const Real t1614 = t1613 + t1143;
-  const Real t1615 = s_r_9_ * t1614;
-  const Real t1616 = t1611 + t1615;
-  const Real t1617 = t1616 + t813;
-  const Real t1618 = t826 - t1198;
-  const Real t1619 = t1618 - t1295;
-  const Real t1620 = t1619 - constant<Real>(-0.000339270669581849578033L);
-  const Real t1621 = t828 * t1620;
-  const Real t1622 = constant<Real>(0.0550470756241113246541L) - t1202;
-  const Real t1623 = t1622 - t849;
-  const Real t1624 = t1623 - t849;
-  const Real t1625 = t1624 - t1294;
-  const Real t1626 = t1208 - t1625;
-  const Real t1627 = t1626 * s_r_7_;
-  const Real t1628 = t1621 + t1627;
-  const Real t1629 = t1628 * c_r_7_;
-  const Real t1630 = t1629 - t1620;
-  const Real t1631 = t1630 - t1250;
-  const Real t1632 = constant<Real>(0.0002678L) + t1631;
-  const Real t1633 = t1628 * s_r_7_;
-  const Real t1634 = t1633 + t1625;
-  const Real t1635 = t1634 + constant<Real>(0.01249468L);
-  const Real t1636 = constant<Real>(1.0L) / t1635;
-  const Real t1637 = t1632 * t1636;
-  const Real t1638 = t1296 * t1637;
-  const Real t1639 = t1261 + t1638;
-  const Real t1640 = c_r_6_ * t1639;
-  const Real t1641 = t1252 * t1636;
-  const Real t1642 = t1296 * t1641;
-  const Real t1643 = t1642 + t1282;
-  const Real t1644 = t1643 * s_r_6_;
-  const Real t1645 = t1640 + t1644;
-  const Real t1646 = t842 - t1446;
-  const Real t1647 = t1646 - t1583;
-  const Real t1648 = t1647 - constant<Real>(-0.000339270669581849578033L);
-  const Real t1649 = t843 * t1648;
-  const Real t1650 = constant<Real>(0.0550470756241113246541L) - t1488;
-  const Real t1651 = t1650 - t847;
-  const Real t1652 = t1651 - t847;
-  const Real t1653 = t1652 - t1587;
-  const Real t1654 = t1577 - t1653;
-  const Real t1655 = s_r_1_ * t1654;
-  const Real t1656 = t1649 + t1655;
-  const Real t1657 = t1656 * s_r_1_;
-  const Real t1658 = t1657 + t1653;
-  const Real t1659 = t1658 + constant<Real>(0.01249468L);
-  const Real t1660 = constant<Real>(1.0L) / t1659;
-  const Real t1661 = t1656 * c_r_1_;
-  const Real t1662 = t1661 - t1648;
-  const Real t1663 = t1574 + t1662;
-  const Real t1664 = constant<Real>(-0.0002678L) + t1663;
-  const Real t1665 = t1660 * t1664;
-  const Real t1666 = t1588 * t1665;
-  const Real t1667 = t1570 + t1666;
-  const Real t1668 = c_r_0_ * t1667;
-  const Real t1669 = t1660 * t1540;
-  const Real t1670 = t1588 * t1669;
-  const Real t1671 = t1513 + t1670;
-  const Real t1672 = s_r_0_ * t1671;
-  const Real t1673 = t1668 + t1672;
-  const Real t1674 = t1645 + t1673;
-  const Real t1675 = t1617 + t1674;
-  const Real t1676 = constant<Real>(0.0550470756241113246541L) - t1342;
-  const Real t1677 = t1676 - t848;
-  const Real t1678 = t1677 - t848;
-  const Real t1679 = t1678 - t1379;
-  const Real t1680 = t1432 - t1679;
-  const Real t1681 = t1680 * s_r_4_;
-  const Real t1682 = t834 - t1336;
-  const Real t1683 = t1682 - t1407;
-  const Real t1684 = t1683 - constant<Real>(-0.000339270669581849578033L);
-  const Real t1685 = t1684 * t837;
-  const Real t1686 = t1681 + t1685;
-  const Real t1687 = s_r_4_ * t1686;
-  const Real t1688 = t1679 + t1687;
-  const Real t1689 = t1688 + constant<Real>(0.01249468L);
-  const Real t1690 = constant<Real>(1.0L) / t1689;
-  const Real t1691 = t1686 * c_r_4_;
-  const Real t1692 = t1691 - t1684;
-  const Real t1693 = t1402 + t1692;
-  const Real t1694 = constant<Real>(-0.0002678L) + t1693;
-  const Real t1695 = t1690 * t1694;
-  const Real t1696 = t1695 * t1442;
-  const Real t1697 = t1421 + t1696;
-  const Real t1698 = c_r_3_ * t1697;
-  const Real t1699 = t1698 + t494;
-  const Real t1700 = t1397 * t1690;
-  const Real t1701 = t1700 * t1442;
-  const Real t1702 = t1427 + t1701;
-  const Real t1703 = t1702 * s_r_3_;
-  const Real t1704 = t1603 * t1107;
-  const Real t1705 = t1150 * t1704;
-  const Real t1706 = t1083 + t1705;
-  const Real t1707 = t1690 * t1408;
-  const Real t1708 = t1707 * t1442;
-  const Real t1709 = t1362 + t1708;
-  const Real t1710 = t1706 + t1709;
-  const Real t1711 = t1276 * t1636;
-  const Real t1712 = t1296 * t1711;
-  const Real t1713 = t1712 + t1269;
-  const Real t1714 = t1660 * t1584;
-  const Real t1715 = t1714 * t1588;
-  const Real t1716 = t1517 + t1715;
-  const Real t1717 = t1713 + t1716;
-  const Real t1718 = t1710 - t1717;
-  const Real t1719 = t1718 * constant<Real>(0.06L);
-  const Real t1720 = t1703 + t1719;
-  const Real t1721 = t1699 + t1720;
-  const Real t1722 = t1721 - t239;
-  const Real t1723 = t1675 + t1722;
-  const Real t1724 = t1690 * t1403;
-  const Real t1725 = t1408 * t1724;
-  const Real t1726 = t1434 - t1725;
-  const Real t1727 = c_r_3_ * t1726;
-  const Real t1728 = t1377 * t1690;
-  const Real t1729 = t1408 * t1728;
-  const Real t1730 = s_r_3_ * t1729;
-  const Real t1731 = t1727 - t1730;
-  const Real t1732 = constant<Real>(0.06L) * t1731;
-  const Real t1733 = t1603 * t1104;
-  const Real t1734 = t1107 * t1733;
-  const Real t1735 = t1125 - t1734;
-  const Real t1736 = c_r_9_ * t1735;
-  const Real t1737 = t1603 * t1148;
-  const Real t1738 = t1737 * t1107;
-  const Real t1739 = s_r_9_ * t1738;
-  const Real t1740 = t1736 - t1739;
-  const Real t1741 = t1740 * constant<Real>(0.06L);
-  const Real t1742 = t1732 + t1741;
-  const Real t1743 = t1608 * t1104;
-  const Real t1744 = t1128 - t1743;
-  const Real t1745 = t1695 * t1403;
-  const Real t1746 = t1399 - t1745;
-  const Real t1747 = t1744 + t1746;
-  const Real t1748 = t1403 * t1700;
-  const Real t1749 = t1405 - t1748;
-  const Real t1750 = t1377 * t1695;
-  const Real t1751 = t1429 - t1750;
-  const Real t1752 = t1749 + t1751;
-  const Real t1753 = c_r_3_ * t1752;
-  const Real t1754 = t1377 * t1700;
-  const Real t1755 = t1746 + t1754;
-  const Real t1756 = s_r_3_ * t1755;
-  const Real t1757 = t1753 - t1756;
-  const Real t1758 = t1757 * s_r_3_;
-  const Real t1759 = t1608 * t1148;
-  const Real t1760 = t1131 - t1759;
-  const Real t1761 = t1612 * t1104;
-  const Real t1762 = t1761 + t1134;
-  const Real t1763 = t1760 - t1762;
-  const Real t1764 = t1763 * c_r_9_;
-  const Real t1765 = t1612 * t1148;
-  const Real t1766 = t1744 + t1765;
-  const Real t1767 = s_r_9_ * t1766;
-  const Real t1768 = t1764 - t1767;
-  const Real t1769 = s_r_9_ * t1768;
-  const Real t1770 = t1758 + t1769;
-  const Real t1771 = t1747 + t1770;
-  const Real t1772 = t1742 + t1771;
-  const Real t1773 = t1669 * t1585;
-  const Real t1774 = t1575 - t1773;
-  const Real t1775 = t1573 * t1665;
-  const Real t1776 = t1498 - t1775;
-  const Real t1777 = t1774 + t1776;
-  const Real t1778 = c_r_0_ * t1777;
-  const Real t1779 = t1665 * t1585;
-  const Real t1780 = t1779 + t1534;
-  const Real t1781 = t1669 * t1573;
-  const Real t1782 = t1780 - t1781;
-  const Real t1783 = s_r_0_ * t1782;
-  const Real t1784 = t1778 + t1783;
-  const Real t1785 = t1784 * s_r_0_;
-  const Real t1786 = t1637 * t1293;
-  const Real t1787 = t1271 - t1786;
-  const Real t1788 = t1225 * t1641;
-  const Real t1789 = t1788 + t1289;
-  const Real t1790 = t1787 - t1789;
-  const Real t1791 = t1790 * c_r_6_;
-  const Real t1792 = t1225 * t1637;
-  const Real t1793 = t1792 + t1290;
-  const Real t1794 = t1641 * t1293;
-  const Real t1795 = t1793 - t1794;
-  const Real t1796 = s_r_6_ * t1795;
-  const Real t1797 = t1791 + t1796;
-  const Real t1798 = t1797 * s_r_6_;
-  const Real t1799 = t1785 + t1798;
-  const Real t1800 = t1799 - t1793;
-  const Real t1801 = t1800 - t1780;
-  const Real t1802 = t1225 * t1636;
-  const Real t1803 = t1276 * t1802;
-  const Real t1804 = t1245 - t1803;
-  const Real t1805 = t1804 * c_r_6_;
-  const Real t1806 = t1636 * t1293;
-  const Real t1807 = t1276 * t1806;
-  const Real t1808 = t1807 * s_r_6_;
-  const Real t1809 = t1805 - t1808;
-  const Real t1810 = t1809 * constant<Real>(0.06L);
-  const Real t1811 = t1660 * t1585;
-  const Real t1812 = t1584 * t1811;
-  const Real t1813 = t1556 - t1812;
-  const Real t1814 = c_r_0_ * t1813;
-  const Real t1815 = t1660 * t1573;
-  const Real t1816 = t1815 * t1584;
-  const Real t1817 = s_r_0_ * t1816;
-  const Real t1818 = t1814 - t1817;
-  const Real t1819 = t1818 * constant<Real>(0.06L);
-  const Real t1820 = t1810 + t1819;
-  const Real t1821 = t1801 - t1820;
-  const Real t1822 = t1772 + t1821;
-  const Real t1823 = t1540 * t1665;
-  const Real t1824 = t1536 - t1823;
-  const Real t1825 = t1824 * t846;
-  const Real t1826 = t1540 * t1669;
-  const Real t1827 = t1554 - t1826;
-  const Real t1828 = t1577 - t1657;
-  const Real t1829 = t1499 + t1828;
-  const Real t1830 = t1499 + t1829;
-  const Real t1831 = constant<Real>(0.01168088L) + t1830;
-  const Real t1832 = t1664 * t1665;
-  const Real t1833 = t1831 - t1832;
-  const Real t1834 = t1827 - t1833;
-  const Real t1835 = t1834 * s_r_0_;
-  const Real t1836 = t1825 + t1835;
-  const Real t1837 = s_r_0_ * t1836;
-  const Real t1838 = t1252 * t1641;
-  const Real t1839 = t1241 - t1838;
-  const Real t1840 = t1208 - t1633;
-  const Real t1841 = t1840 - t1272;
-  const Real t1842 = t1841 - t1272;
-  const Real t1843 = constant<Real>(0.01168088L) + t1842;
-  const Real t1844 = t1632 * t1637;
-  const Real t1845 = t1843 - t1844;
-  const Real t1846 = t1839 - t1845;
-  const Real t1847 = t1846 * s_r_6_;
-  const Real t1848 = t1252 * t1637;
-  const Real t1849 = t1292 - t1848;
-  const Real t1850 = t1849 * t830;
-  const Real t1851 = t1847 + t1850;
-  const Real t1852 = t1851 * s_r_6_;
-  const Real t1853 = t1837 + t1852;
-  const Real t1854 = t1608 * t1145;
-  const Real t1855 = t1130 - t1854;
-  const Real t1856 = t1855 * t822;
-  const Real t1857 = t1612 * t1145;
-  const Real t1858 = t1147 - t1857;
-  const Real t1859 = t1087 - t1600;
-  const Real t1860 = t1859 - t1132;
-  const Real t1861 = t1860 - t1132;
-  const Real t1862 = constant<Real>(0.01168088L) + t1861;
-  const Real t1863 = t1608 * t1607;
-  const Real t1864 = t1862 - t1863;
-  const Real t1865 = t1858 - t1864;
-  const Real t1866 = s_r_9_ * t1865;
-  const Real t1867 = t1856 + t1866;
-  const Real t1868 = s_r_9_ * t1867;
-  const Real t1869 = t1695 * t1397;
-  const Real t1870 = t1401 - t1869;
-  const Real t1871 = t1870 * t838;
-  const Real t1872 = t1397 * t1700;
-  const Real t1873 = t1438 - t1872;
-  const Real t1874 = t1432 - t1687;
-  const Real t1875 = t1874 + t1430;
-  const Real t1876 = t1875 + t1430;
-  const Real t1877 = t1876 + constant<Real>(0.01168088L);
-  const Real t1878 = t1695 * t1694;
-  const Real t1879 = t1877 - t1878;
-  const Real t1880 = t1873 - t1879;
-  const Real t1881 = s_r_3_ * t1880;
-  const Real t1882 = t1871 + t1881;
-  const Real t1883 = t1882 * s_r_3_;
-  const Real t1884 = t1868 + t1883;
-  const Real t1885 = t1853 + t1884;
-  const Real t1886 = t1879 + constant<Real>(0.87252112L);
-  const Real t1887 = t1886 + t1845;
-  const Real t1888 = t1887 + t1833;
-  const Real t1889 = t1864 + t1888;
-  const Real t1890 = t1608 * t1107;
-  const Real t1891 = t1137 - t1890;
-  const Real t1892 = c_r_9_ * t1891;
-  const Real t1893 = t1612 * t1107;
-  const Real t1894 = t1127 - t1893;
-  const Real t1895 = s_r_9_ * t1894;
-  const Real t1896 = t1892 + t1895;
-  const Real t1897 = t1695 * t1408;
-  const Real t1898 = t1441 - t1897;
-  const Real t1899 = c_r_3_ * t1898;
-  const Real t1900 = t1408 * t1700;
-  const Real t1901 = t1436 - t1900;
-  const Real t1902 = s_r_3_ * t1901;
-  const Real t1903 = t1899 + t1902;
-  const Real t1904 = t1896 + t1903;
-  const Real t1905 = t1707 * t1408;
-  const Real t1906 = t1374 - t1905;
-  const Real t1907 = t1906 * constant<Real>(0.06L);
-  const Real t1908 = t1107 * t1704;
-  const Real t1909 = t1119 - t1908;
-  const Real t1910 = t1909 * constant<Real>(0.06L);
-  const Real t1911 = t1907 + t1910;
-  const Real t1912 = t1904 + t1911;
-  const Real t1913 = t1904 + t1912;
-  const Real t1914 = t1276 * t1641;
-  const Real t1915 = t1247 - t1914;
-  const Real t1916 = t1915 * s_r_6_;
-  const Real t1917 = t1276 * t1637;
-  const Real t1918 = t1274 - t1917;
-  const Real t1919 = t1918 * c_r_6_;
-  const Real t1920 = t1916 + t1919;
-  const Real t1921 = t1669 * t1584;
-  const Real t1922 = t1558 - t1921;
-  const Real t1923 = s_r_0_ * t1922;
-  const Real t1924 = t1665 * t1584;
-  const Real t1925 = t1560 - t1924;
-  const Real t1926 = c_r_0_ * t1925;
-  const Real t1927 = t1923 + t1926;
-  const Real t1928 = t1920 + t1927;
-  const Real t1929 = t1276 * t1711;
-  const Real t1930 = t1284 - t1929;
-  const Real t1931 = t1930 * constant<Real>(0.06L);
-  const Real t1932 = t1928 - t1931;
-  const Real t1933 = t1714 * t1584;
-  const Real t1934 = t1582 - t1933;
-  const Real t1935 = t1934 * constant<Real>(0.06L);
-  const Real t1936 = t1932 - t1935;
-  const Real t1937 = t1913 - t1936;
-  const Real t1938 = t1937 - t1928;
-  const Real t1939 = t1938 * constant<Real>(0.06L);
-  const Real t1940 = t1889 + t1939;
-  const Real t1941 = t1885 + t1940;
-  const Real t1942 = constant<Real>(1.0L) / t1941;
-  const Real t1943 = t1822 * t1942;
-  const Real t1944 = t1723 * t1943;
-  const Real t1945 = t480 + t1944;
-  const Real t1946 = t1945 + t236;
-  const Real t1947 = t1946 - t496;
-  const Real t1948 = c_r_3_ * t1882;
-  const Real t1949 = c_r_9_ * t1894;
-  const Real t1950 = s_r_9_ * t1891;
-  const Real t1951 = t1949 - t1950;
-  const Real t1952 = c_r_3_ * t1901;
-  const Real t1953 = t1898 * s_r_3_;
-  const Real t1954 = t1952 - t1953;
-  const Real t1955 = t1951 + t1954;
-  const Real t1956 = t1915 * c_r_6_;
-  const Real t1957 = t1918 * s_r_6_;
-  const Real t1958 = t1956 - t1957;
-  const Real t1959 = c_r_0_ * t1922;
-  const Real t1960 = s_r_0_ * t1925;
-  const Real t1961 = t1959 - t1960;
-  const Real t1962 = t1958 + t1961;
-  const Real t1963 = t1955 - t1962;
-  const Real t1964 = t1963 * constant<Real>(0.06L);
-  const Real t1965 = t1948 + t1964;
-  const Real t1966 = t1849 + t1824;
-  const Real t1967 = t1965 - t1966;
-  const Real t1968 = c_r_0_ * t1836;
-  const Real t1969 = t1851 * c_r_6_;
-  const Real t1970 = t1968 + t1969;
-  const Real t1971 = c_r_9_ * t1867;
-  const Real t1972 = t1971 + constant<Real>(0.000406L);
-  const Real t1973 = t1970 + t1972;
-  const Real t1974 = t1967 + t1973;
-  const Real t1975 = t1855 + t1870;
-  const Real t1976 = t1974 - t1975;
-  const Real t1977 = t1976 * t1942;
-  const Real t1978 = t1723 * t1977;
-  const Real t1979 = c_r_0_ * t1671;
-  const Real t1980 = s_r_0_ * t1667;
-  const Real t1981 = t1979 - t1980;
-  const Real t1982 = c_r_9_ * t1614;
-  const Real t1983 = s_r_9_ * t1610;
-  const Real t1984 = t1982 - t1983;
-  const Real t1985 = t488 + t1984;
-  const Real t1986 = t1643 * c_r_6_;
-  const Real t1987 = s_r_6_ * t1639;
-  const Real t1988 = t1986 - t1987;
-  const Real t1989 = t1985 + t1988;
-  const Real t1990 = t1702 * c_r_3_;
-  const Real t1991 = s_r_3_ * t1697;
-  const Real t1992 = t1990 - t1991;
-  const Real t1993 = t1989 + t1992;
-  const Real t1994 = t1981 + t1993;
-  const Real t1995 = t1978 - t1994;
-  const Real t1996 = t1839 + t1873;
-  const Real t1997 = constant<Real>(0.804218083L) + t1996;
-  const Real t1998 = t1997 + t1858;
-  const Real t1999 = t1827 + t1998;
-  const Real t2000 = t1976 * t1977;
-  const Real t2001 = t1999 - t2000;
-  const Real t2002 = t2001 - t1885;
-  const Real t2003 = constant<Real>(1.0L) / t2002;
-  const Real t2004 = c_r_9_ * t1768;
-  const Real t2005 = t1757 * c_r_3_;
-  const Real t2006 = t2004 + t2005;
-  const Real t2007 = t2006 - t1751;
-  const Real t2008 = t2007 - t1760;
-  const Real t2009 = c_r_0_ * t1784;
-  const Real t2010 = t1797 * c_r_6_;
-  const Real t2011 = t2009 + t2010;
-  const Real t2012 = t2011 - t1776;
-  const Real t2013 = t2012 - t1787;
-  const Real t2014 = t2013 + constant<Real>(-0.0515L);
-  const Real t2015 = t2008 + t2014;
-  const Real t2016 = t1977 * t1822;
-  const Real t2017 = t2015 - t2016;
-  const Real t2018 = t2003 * t2017;
-  const Real t2019 = t1995 * t2018;
-  const Real t2020 = t1947 - t2019;
-  const Real t2021 = t1821 - t1772;
-  const Real t2022 = t2021 * constant<Real>(0.06L);
-  const Real t2023 = constant<Real>(-0.005104L) + t2022;
-  const Real t2024 = t2023 * t1942;
-  const Real t2025 = t2024 * t1723;
-  const Real t2026 = t2025 + t481;
-  const Real t2027 = t2026 + t814;
-  const Real t2028 = t1733 * t1150;
-  const Real t2029 = t2028 + t1149;
-  const Real t2030 = c_r_9_ * t2029;
-  const Real t2031 = t1737 * t1150;
-  const Real t2032 = t2031 + t797;
-  const Real t2033 = s_r_9_ * t2032;
-  const Real t2034 = t2030 + t2033;
-  const Real t2035 = t1728 * t1442;
-  const Real t2036 = t2035 + t805;
-  const Real t2037 = t2036 * s_r_3_;
-  const Real t2038 = t1724 * t1442;
-  const Real t2039 = t2038 + t1439;
-  const Real t2040 = c_r_3_ * t2039;
-  const Real t2041 = t2037 + t2040;
-  const Real t2042 = t2034 + t2041;
-  const Real t2043 = t1296 * t1802;
-  const Real t2044 = t2043 + t1283;
-  const Real t2045 = t2044 * c_r_6_;
-  const Real t2046 = t1296 * t1806;
-  const Real t2047 = t800 + t2046;
-  const Real t2048 = t2047 * s_r_6_;
-  const Real t2049 = t2045 + t2048;
-  const Real t2050 = t1815 * t1588;
-  const Real t2051 = t2050 + t809;
-  const Real t2052 = t2051 * s_r_0_;
-  const Real t2053 = t1588 * t1811;
-  const Real t2054 = t2053 + t1586;
-  const Real t2055 = c_r_0_ * t2054;
-  const Real t2056 = t2052 + t2055;
-  const Real t2057 = t2049 + t2056;
-  const Real t2058 = t2042 - t2057;
-  const Real t2059 = t2058 * constant<Real>(0.06L);
-  const Real t2060 = t2059 - tau[0];
-  const Real t2061 = t497 + tau[9];
-  const Real t2062 = t2060 - t2061;
-  const Real t2063 = t2027 + t2062;
-  const Real t2064 = t2013 - t2008;
-  const Real t2065 = t2064 * constant<Real>(0.06L);
-  const Real t2066 = t2065 + constant<Real>(0.000691L);
-  const Real t2067 = t1977 * t2023;
-  const Real t2068 = t2066 - t2067;
-  const Real t2069 = t2003 * t2068;
-  const Real t2070 = t1995 * t2069;
-  const Real t2071 = tau[3] + tau[6];
-  const Real t2072 = t2070 + t2071;
-  const Real t2073 = t2063 - t2072;
-  const Real t2074 = t1225 * t1802;
-  const Real t2075 = t2074 + t1239;
-  const Real t2076 = t1293 * t1806;
-  const Real t2077 = t2075 - t2076;
-  const Real t2078 = t2077 * s_r_6_;
-  const Real t2079 = t1802 * t1293;
-  const Real t2080 = t2079 * t830;
-  const Real t2081 = t2078 - t2080;
-  const Real t2082 = s_r_6_ * t2081;
-  const Real t2083 = t1585 * t1811;
-  const Real t2084 = t2083 + t1552;
-  const Real t2085 = t1815 * t1573;
-  const Real t2086 = t2084 - t2085;
-  const Real t2087 = s_r_0_ * t2086;
-  const Real t2088 = t1573 * t1811;
-  const Real t2089 = t2088 * t846;
-  const Real t2090 = t2087 - t2089;
-  const Real t2091 = t2090 * s_r_0_;
-  const Real t2092 = t2082 + t2091;
-  const Real t2093 = t2092 - t2075;
-  const Real t2094 = t2093 - t2084;
-  const Real t2095 = t1403 * t1724;
-  const Real t2096 = t1404 + t2095;
-  const Real t2097 = t1377 * t1728;
-  const Real t2098 = t2096 - t2097;
-  const Real t2099 = t2098 * s_r_3_;
-  const Real t2100 = t1377 * t1724;
-  const Real t2101 = t2100 * t838;
-  const Real t2102 = t2099 - t2101;
-  const Real t2103 = t2102 * s_r_3_;
-  const Real t2104 = t1104 * t1733;
-  const Real t2105 = t1133 + t2104;
-  const Real t2106 = t1737 * t1148;
-  const Real t2107 = t2105 - t2106;
-  const Real t2108 = s_r_9_ * t2107;
-  const Real t2109 = t1733 * t1148;
-  const Real t2110 = t2109 * t822;
-  const Real t2111 = t2108 - t2110;
-  const Real t2112 = s_r_9_ * t2111;
-  const Real t2113 = t2103 + t2112;
-  const Real t2114 = t2113 - t2096;
-  const Real t2115 = t2114 - t2105;
-  const Real t2116 = t2094 - t2115;
-  const Real t2117 = t2116 * constant<Real>(0.06L);
-  const Real t2118 = t2117 + constant<Real>(-0.011L);
-  const Real t2119 = t2024 * t1822;
-  const Real t2120 = t2069 * t2017;
-  const Real t2121 = t2119 + t2120;
-  const Real t2122 = t2118 - t2121;
-  const Real t2123 = t2115 + t2094;
-  const Real t2124 = t2123 * constant<Real>(0.0036L);
-  const Real t2125 = constant<Real>(0.109545467L) + t2124;
-  const Real t2126 = t2024 * t2023;
-  const Real t2127 = t2069 * t2068;
-  const Real t2128 = t2126 + t2127;
-  const Real t2129 = t2125 - t2128;
-  const Real t2130 = constant<Real>(1.0L) / t2129;
-  const Real t2131 = t2122 * t2130;
-  const Real t2132 = t2073 * t2131;
-  const Real t2133 = t2020 - t2132;
-  const Real t2134 = t2133 - t2042;
-  const Real t2135 = t2134 - t2057;
-  const Real t2136 = t2123 + constant<Real>(25.59L);
-  const Real t2137 = t1943 * t1822;
-  const Real t2138 = t2136 - t2137;
-  const Real t2139 = t2018 * t2017;
-  const Real t2140 = t2138 - t2139;
-  const Real t2141 = t2122 * t2131;
-  const Real t2142 = t2140 - t2141;
-  const Real t2143 = constant<Real>(1.0L) / t2142;
-  const Real t2144 = t2135 * t2143;
-  const Real t2145 = t1936 + constant<Real>(0.011L);
-  const Real t2146 = t2145 + t1912;
-  const Real t2147 = t1942 * t2146;
-  const Real t2148 = t1723 * t2147;
-  const Real t2149 = t2148 + t237;
-  const Real t2150 = t2149 + t495;
-  const Real t2151 = t2150 - t479;
-  const Real t2152 = constant<Real>(0.1412L) + t1955;
-  const Real t2153 = t2152 + t1962;
-  const Real t2154 = t1977 * t2146;
-  const Real t2155 = t2153 - t2154;
-  const Real t2156 = t2003 * t2155;
-  const Real t2157 = t1995 * t2156;
-  const Real t2158 = t2151 - t2157;
-  const Real t2159 = t2024 * t2146;
-  const Real t2160 = t1820 - t2159;
-  const Real t2161 = t2155 * t2069;
-  const Real t2162 = t2160 - t2161;
-  const Real t2163 = t2162 - t1742;
-  const Real t2164 = t2163 * t2130;
-  const Real t2165 = t2073 * t2164;
-  const Real t2166 = t2158 - t2165;
-  const Real t2167 = t1740 + t1809;
-  const Real t2168 = t2167 + t1731;
-  const Real t2169 = t1818 + t2168;
-  const Real t2170 = t1943 * t2146;
-  const Real t2171 = t2169 - t2170;
-  const Real t2172 = t2155 * t2018;
-  const Real t2173 = t2171 - t2172;
-  const Real t2174 = t2163 * t2131;
-  const Real t2175 = t2173 - t2174;
-  const Real t2176 = t2143 * t2175;
-  const Real t2177 = t2176 * t2135;
-  const Real t2178 = t2166 - t2177;
-  const Real t2179 = t1789 + constant<Real>(0.0515L);
-  const Real t2180 = t2179 + t1762;
-  const Real t2181 = s_r_0_ * t1813;
-  const Real t2182 = c_r_0_ * t1816;
-  const Real t2183 = t2181 + t2182;
-  const Real t2184 = t1804 * s_r_6_;
-  const Real t2185 = t1807 * c_r_6_;
-  const Real t2186 = t2184 + t2185;
-  const Real t2187 = t2183 + t2186;
-  const Real t2188 = c_r_3_ * t1729;
-  const Real t2189 = t1726 * s_r_3_;
-  const Real t2190 = t2188 + t2189;
-  const Real t2191 = c_r_9_ * t1738;
-  const Real t2192 = s_r_9_ * t1735;
-  const Real t2193 = t2191 + t2192;
-  const Real t2194 = t2190 + t2193;
-  const Real t2195 = t2187 - t2194;
-  const Real t2196 = t2195 * constant<Real>(0.06L);
-  const Real t2197 = t2180 + t2196;
-  const Real t2198 = t2197 + t2011;
-  const Real t2199 = t2006 + t2198;
-  const Real t2200 = t2199 - t1749;
-  const Real t2201 = t2200 - t1774;
-  const Real t2202 = t1977 * t2201;
-  const Real t2203 = t2202 + t1765;
-  const Real t2204 = t1794 + t2203;
-  const Real t2205 = t2204 + t1754;
-  const Real t2206 = t1781 + t2205;
-  const Real t2207 = t1770 + t2206;
-  const Real t2208 = t1799 + t2207;
-  const Real t2209 = t2003 * t2208;
-  const Real t2210 = t2155 * t2209;
-  const Real t2211 = t1942 * t2201;
-  const Real t2212 = t2211 * t2146;
-  const Real t2213 = t2210 - t2212;
-  const Real t2214 = t2069 * t2208;
-  const Real t2215 = constant<Real>(-0.1412L) + t2214;
-  const Real t2216 = t2081 * c_r_6_;
-  const Real t2217 = t2079 + t2216;
-  const Real t2218 = c_r_0_ * t2090;
-  const Real t2219 = t2088 + t2218;
-  const Real t2220 = t2217 + t2219;
-  const Real t2221 = t2102 * c_r_3_;
-  const Real t2222 = t2100 + t2221;
-  const Real t2223 = c_r_9_ * t2111;
-  const Real t2224 = t2223 + t2109;
-  const Real t2225 = t2222 + t2224;
-  const Real t2226 = t2220 - t2225;
-  const Real t2227 = t2226 * constant<Real>(0.06L);
-  const Real t2228 = t2024 * t2201;
-  const Real t2229 = t2227 - t2228;
-  const Real t2230 = t2215 + t2229;
-  const Real t2231 = t2130 * t2230;
-  const Real t2232 = t2231 * t2163;
-  const Real t2233 = t2213 - t2232;
-  const Real t2234 = t2018 * t2208;
-  const Real t2235 = t2234 + t2225;
-  const Real t2236 = t2220 + t2235;
-  const Real t2237 = t1943 * t2201;
-  const Real t2238 = t2236 - t2237;
-  const Real t2239 = t2230 * t2131;
-  const Real t2240 = t2238 - t2239;
-  const Real t2241 = t2240 * t2143;
-  const Real t2242 = t2175 * t2241;
-  const Real t2243 = t2233 - t2242;
-  const Real t2244 = t2243 - t2194;
-  const Real t2245 = t2244 - t2187;
-  const Real t2246 = constant<Real>(25.59L) - t2106;
-  const Real t2247 = t2246 - t2076;
-  const Real t2248 = t2247 - t2097;
-  const Real t2249 = t2248 - t2085;
-  const Real t2250 = t2211 * t2201;
-  const Real t2251 = t2249 - t2250;
-  const Real t2252 = t2209 * t2208;
-  const Real t2253 = t2251 - t2252;
-  const Real t2254 = t2231 * t2230;
-  const Real t2255 = t2253 - t2254;
-  const Real t2256 = t2240 * t2241;
-  const Real t2257 = t2255 - t2256;
-  const Real t2258 = t2257 - t2092;
-  const Real t2259 = t2258 - t2113;
-  const Real t2260 = constant<Real>(1.0L) / t2259;
-  const Real t2261 = t2245 * t2260;
-  const Real t2262 = t1995 * t2209;
-  const Real t2263 = t2211 * t1723;
-  const Real t2264 = c_r_3_ * t2036;
-  const Real t2265 = s_r_3_ * t2039;
-  const Real t2266 = t2264 - t2265;
-  const Real t2267 = t2047 * c_r_6_;
-  const Real t2268 = t2044 * s_r_6_;
-  const Real t2269 = t2267 - t2268;
-  const Real t2270 = c_r_9_ * t2032;
-  const Real t2271 = s_r_9_ * t2029;
-  const Real t2272 = t2270 - t2271;
-  const Real t2273 = t2272 + t493;
-  const Real t2274 = t2269 + t2273;
-  const Real t2275 = t2266 + t2274;
-  const Real t2276 = c_r_0_ * t2051;
-  const Real t2277 = t2054 * s_r_0_;
-  const Real t2278 = t2276 - t2277;
-  const Real t2279 = t2275 + t2278;
-  const Real t2280 = t2263 - t2279;
-  const Real t2281 = t2262 + t2280;
-  const Real t2282 = t2231 * t2073;
-  const Real t2283 = t2281 - t2282;
-  const Real t2284 = t2135 * t2241;
-  const Real t2285 = t2283 - t2284;
-  const Real t2286 = t2261 * t2285;
-  const Real t2287 = t2178 - t2286;
-  const Real t2288 = t2287 - t1717;
-  const Real t2289 = t2288 - t1710;
-  const Real t2290 = t1909 + constant<Real>(25.59L);
-  const Real t2291 = t1930 + t2290;
-  const Real t2292 = t1906 + t2291;
-  const Real t2293 = t1934 + t2292;
-  const Real t2294 = t2147 * t2146;
-  const Real t2295 = t2293 - t2294;
-  const Real t2296 = t2155 * t2156;
-  const Real t2297 = t2295 - t2296;
-  const Real t2298 = t2163 * t2164;
-  const Real t2299 = t2297 - t2298;
-  const Real t2300 = t2176 * t2175;
-  const Real t2301 = t2299 - t2300;
-  const Real t2302 = t2261 * t2245;
-  const Real t2303 = t2301 - t2302;
-  const Real t2304 = constant<Real>(1.0L) / t2303;
-  const Real t2305 = t2289 * t2304;
-  const Real t2306 = t2305 * t2176;
-  const Real t2307 = t2144 - t2306;
-  const Real t2308 = t2285 * t2260;
-  const Real t2309 = t2305 * t2261;
-  const Real t2310 = t2308 - t2309;
-  const Real t2311 = t2241 * t2310;
-  const Real t2312 = t2307 - t2311;
-  const Real t2313 = t2312 - t342;
-  const Real t2314 = t2305 - t343;
-  const Real t2315 = t2003 * t1995;
-  const Real t2316 = t2305 * t2156;
-  const Real t2317 = t2315 - t2316;
-  const Real t2318 = t2310 * t2209;
-  const Real t2319 = t2317 + t2318;
-  const Real t2320 = t2018 * t2312;
-  const Real t2321 = t2319 - t2320;
-  const Real t2322 = t2130 * t2073;
-  const Real t2323 = t2305 * t2164;
-  const Real t2324 = t2322 - t2323;
-  const Real t2325 = t2231 * t2310;
-  const Real t2326 = t2324 - t2325;
-  const Real t2327 = t2312 * t2131;
-  const Real t2328 = t2326 - t2327;
-  const Real t2329 = t2328 * t2069;
-  const Real t2330 = t2321 - t2329;
-  const Real t2331 = t2330 * t1977;
-  const Real t2332 = t2328 * t2024;
-  const Real t2333 = t2305 * t2147;
-  const Real t2334 = t1723 * t1942;
-  const Real t2335 = t2333 + t2334;
-  const Real t2336 = t2211 * t2310;
-  const Real t2337 = t2335 + t2336;
-  const Real t2338 = t1943 * t2312;
-  const Real t2339 = t2337 + t2338;
-  const Real t2340 = t2332 + t2339;
-  const Real t2341 = t2331 + t2340;
-  const Real t2342 = -t2341;
-  const Real t2343 = c_r_0_ * t2341;
-  const Real t2344 = s_r_0_ * t2330;
-  const Real t2345 = t2343 + t2344;
-  const Real t2346 = t2345 * s_r_1_;
-  const Real t2347 = t1660 * t1588;
-  const Real t2348 = t2341 * constant<Real>(0.06L);
-  const Real t2349 = t2305 + t2348;
-  const Real t2350 = t1714 * t2349;
-  const Real t2351 = t2328 * constant<Real>(0.06L);
-  const Real t2352 = t2351 + t2312;
-  const Real t2353 = t2352 * s_r_0_;
-  const Real t2354 = c_r_0_ * t2310;
-  const Real t2355 = t2353 + t2354;
-  const Real t2356 = t1815 * t2355;
-  const Real t2357 = t2350 + t2356;
-  const Real t2358 = t2352 * c_r_0_;
-  const Real t2359 = s_r_0_ * t2310;
-  const Real t2360 = t2358 - t2359;
-  const Real t2361 = t2360 * t1811;
-  const Real t2362 = t2357 + t2361;
-  const Real t2363 = t2328 + t2362;
-  const Real t2364 = c_r_0_ * t2330;
-  const Real t2365 = s_r_0_ * t2341;
-  const Real t2366 = t2364 - t2365;
-  const Real t2367 = t2366 * t1669;
-  const Real t2368 = t2363 + t2367;
-  const Real t2369 = t2345 * t1665;
-  const Real t2370 = t2368 - t2369;
-  const Real t2371 = t2347 - t2370;
-  const Real t2372 = t2328 + t2371;
-  const Real t2373 = c_r_1_ * t2372;
-  const Real t2374 = t2346 + t2373;
-  const Real t2375 = t2374 * t12;
-  const Real t2376 = s_r_1_ * t2372;
-  const Real t2377 = t2345 * c_r_1_;
-  const Real t2378 = t2376 - t2377;
-  const Real t2379 = t11 * t2378;
-  const Real t2380 = t2375 - t2379;
-  const Real t2381 = constant<Real>(0.0000353906603051193176138L) * t2380;
-  const Real t2382 = c_r_1_ * t2349;
-  const Real t2383 = t2366 * constant<Real>(0.21L);
-  const Real t2384 = t2360 - t2383;
-  const Real t2385 = s_r_1_ * t2384;
-  const Real t2386 = t2382 - t2385;
-  const Real t2387 = t2378 * t1521;
-  const Real t2388 = t2374 * t1518;
-  const Real t2389 = t1506 * t2386;
-  const Real t2390 = c_r_1_ * t2384;
-  const Real t2391 = t2349 * s_r_1_;
-  const Real t2392 = t2390 + t2391;
-  const Real t2393 = t1501 * t2392;
-  const Real t2394 = t2389 + t2393;
-  const Real t2395 = t2388 + t2394;
-  const Real t2396 = t2366 + t2395;
-  const Real t2397 = t2387 + t2396;
-  const Real t2398 = t1561 - t2397;
-  const Real t2399 = t2398 + t2366;
-  const Real t2400 = constant<Real>(0.24L) * t2399;
-  const Real t2401 = t2386 - t2400;
-  const Real t2402 = t2401 * t12;
-  const Real t2403 = t11 * t2392;
-  const Real t2404 = t2402 - t2403;
-  const Real t2405 = constant<Real>(5.30976794871968958296L) * t2404;
-  const Real t2406 = t2381 + t2405;
-  const Real t2407 = t2406 + t2399;
-  const Real t2408 = t12 * t2378;
-  const Real t2409 = t11 * t2374;
-  const Real t2410 = t2408 + t2409;
-  const Real t2411 = t2410 * constant<Real>(0.466294762676633597142L);
-  const Real t2412 = t2407 - t2411;
-  const Real t2413 = t1483 - t2412;
-  const Real t2414 = t2305 - t2348;
-  const Real t2415 = t2414 * c_r_10_;
-  const Real t2416 = c_r_9_ * t2330;
-  const Real t2417 = s_r_9_ * t2341;
-  const Real t2418 = t2416 - t2417;
-  const Real t2419 = t2418 * constant<Real>(0.21L);
-  const Real t2420 = t2312 - t2351;
-  const Real t2421 = c_r_9_ * t2420;
-  const Real t2422 = s_r_9_ * t2310;
-  const Real t2423 = t2421 - t2422;
-  const Real t2424 = t2419 + t2423;
-  const Real t2425 = t2424 * s_r_10_;
-  const Real t2426 = t2415 - t2425;
-  const Real t2427 = t1603 * t1150;
-  const Real t2428 = t2418 * t1612;
-  const Real t2429 = t2423 * t1733;
-  const Real t2430 = t2414 * t1704;
-  const Real t2431 = s_r_9_ * t2420;
-  const Real t2432 = c_r_9_ * t2310;
-  const Real t2433 = t2431 + t2432;
-  const Real t2434 = t1737 * t2433;
-  const Real t2435 = t2430 + t2434;
-  const Real t2436 = t2429 + t2435;
-  const Real t2437 = t2328 + t2436;
-  const Real t2438 = t2428 + t2437;
-  const Real t2439 = c_r_9_ * t2341;
-  const Real t2440 = s_r_9_ * t2330;
-  const Real t2441 = t2439 + t2440;
-  const Real t2442 = t1608 * t2441;
-  const Real t2443 = t2438 - t2442;
-  const Real t2444 = t2427 - t2443;
-  const Real t2445 = t2444 + t2328;
-  const Real t2446 = t2445 * s_r_10_;
-  const Real t2447 = t2441 * c_r_10_;
-  const Real t2448 = t2446 - t2447;
-  const Real t2449 = t2448 * t1063;
-  const Real t2450 = c_r_10_ * t2445;
-  const Real t2451 = t2441 * s_r_10_;
-  const Real t2452 = t2450 + t2451;
-  const Real t2453 = t1067 * t2452;
-  const Real t2454 = t1078 * t2426;
-  const Real t2455 = t2414 * s_r_10_;
-  const Real t2456 = t2424 * c_r_10_;
-  const Real t2457 = t2455 + t2456;
-  const Real t2458 = t1074 * t2457;
-  const Real t2459 = t2454 + t2458;
-  const Real t2460 = t2453 + t2459;
-  const Real t2461 = t2418 + t2460;
-  const Real t2462 = t2449 + t2461;
-  const Real t2463 = t1088 - t2462;
-  const Real t2464 = t2418 + t2463;
-  const Real t2465 = constant<Real>(0.24L) * t2464;
-  const Real t2466 = t2426 - t2465;
-  const Real t2467 = t2466 * t9;
-  const Real t2468 = t8 * t2457;
-  const Real t2469 = t2467 - t2468;
-  const Real t2470 = constant<Real>(5.30976794871968958296L) * t2469;
-  const Real t2471 = t2452 * t9;
-  const Real t2472 = t2448 * t8;
-  const Real t2473 = t2471 - t2472;
-  const Real t2474 = constant<Real>(0.0000353906603051193176138L) * t2473;
-  const Real t2475 = t2470 - t2474;
-  const Real t2476 = t2475 + t2464;
-  const Real t2477 = t2448 * t9;
-  const Real t2478 = t8 * t2452;
-  const Real t2479 = t2477 + t2478;
-  const Real t2480 = constant<Real>(0.466294762676633597142L) * t2479;
-  const Real t2481 = t2476 + t2480;
-  const Real t2482 = t1023 - t2481;
-  const Real t2483 = t1690 * t1442;
-  const Real t2484 = t2420 * c_r_3_;
-  const Real t2485 = s_r_3_ * t2310;
-  const Real t2486 = t2484 - t2485;
-  const Real t2487 = t2486 * t1724;
-  const Real t2488 = c_r_3_ * t2310;
-  const Real t2489 = t2420 * s_r_3_;
-  const Real t2490 = t2488 + t2489;
-  const Real t2491 = t2490 * t1728;
-  const Real t2492 = t1707 * t2414;
-  const Real t2493 = t2491 + t2492;
-  const Real t2494 = t2487 + t2493;
-  const Real t2495 = t2328 + t2494;
-  const Real t2496 = c_r_3_ * t2330;
-  const Real t2497 = s_r_3_ * t2341;
-  const Real t2498 = t2496 - t2497;
-  const Real t2499 = t2498 * t1700;
-  const Real t2500 = t2495 + t2499;
-  const Real t2501 = c_r_3_ * t2341;
-  const Real t2502 = s_r_3_ * t2330;
-  const Real t2503 = t2501 + t2502;
-  const Real t2504 = t1695 * t2503;
-  const Real t2505 = t2500 - t2504;
-  const Real t2506 = t2483 - t2505;
-  const Real t2507 = t2506 + t2328;
-  const Real t2508 = s_r_4_ * t2507;
-  const Real t2509 = t2503 * c_r_4_;
-  const Real t2510 = t2508 - t2509;
-  const Real t2511 = t1380 * t2510;
-  const Real t2512 = t2503 * s_r_4_;
-  const Real t2513 = t2507 * c_r_4_;
-  const Real t2514 = t2512 + t2513;
-  const Real t2515 = t2514 * t1378;
-  const Real t2516 = t2414 * c_r_4_;
-  const Real t2517 = t2498 * constant<Real>(0.21L);
-  const Real t2518 = t2486 - t2517;
-  const Real t2519 = s_r_4_ * t2518;
-  const Real t2520 = t2516 - t2519;
-  const Real t2521 = t2520 * t1352;
-  const Real t2522 = t2518 * c_r_4_;
-  const Real t2523 = t2414 * s_r_4_;
-  const Real t2524 = t2522 + t2523;
-  const Real t2525 = t1357 * t2524;
-  const Real t2526 = t2521 + t2525;
-  const Real t2527 = t2515 + t2526;
-  const Real t2528 = t2527 + t2498;
-  const Real t2529 = t2511 + t2528;
-  const Real t2530 = t1406 - t2529;
-  const Real t2531 = t2530 + t2498;
-  const Real t2532 = t2531 * constant<Real>(0.24L);
-  const Real t2533 = t2520 - t2532;
-  const Real t2534 = t2533 * t3;
-  const Real t2535 = t2 * t2524;
-  const Real t2536 = t2534 - t2535;
-  const Real t2537 = constant<Real>(5.30976794871968958296L) * t2536;
-  const Real t2538 = t2514 * t3;
-  const Real t2539 = t2 * t2510;
-  const Real t2540 = t2538 - t2539;
-  const Real t2541 = constant<Real>(0.0000353906603051193176138L) * t2540;
-  const Real t2542 = t2537 - t2541;
-  const Real t2543 = t2531 + t2542;
-  const Real t2544 = t2510 * t3;
-  const Real t2545 = t2514 * t2;
-  const Real t2546 = t2544 + t2545;
-  const Real t2547 = constant<Real>(0.466294762676633597142L) * t2546;
-  const Real t2548 = t2543 + t2547;
-  const Real t2549 = t1325 - t2548;
-  const Real t2550 = t2330 * c_r_6_;
-  const Real t2551 = t2341 * s_r_6_;
-  const Real t2552 = t2550 - t2551;
-  const Real t2553 = t1296 * t1636;
-  const Real t2554 = t2352 * c_r_6_;
-  const Real t2555 = s_r_6_ * t2310;
-  const Real t2556 = t2554 - t2555;
-  const Real t2557 = t2556 * t1802;
-  const Real t2558 = t2310 * c_r_6_;
-  const Real t2559 = t2352 * s_r_6_;
-  const Real t2560 = t2558 + t2559;
-  const Real t2561 = t2560 * t1806;
-  const Real t2562 = t2349 * t1711;
-  const Real t2563 = t2561 + t2562;
-  const Real t2564 = t2557 + t2563;
-  const Real t2565 = t2328 + t2564;
-  const Real t2566 = t2552 * t1641;
-  const Real t2567 = t2565 + t2566;
-  const Real t2568 = t2330 * s_r_6_;
-  const Real t2569 = t2341 * c_r_6_;
-  const Real t2570 = t2568 + t2569;
-  const Real t2571 = t2570 * t1637;
-  const Real t2572 = t2567 - t2571;
-  const Real t2573 = t2553 - t2572;
-  const Real t2574 = t2328 + t2573;
-  const Real t2575 = t2574 * c_r_7_;
-  const Real t2576 = t2570 * s_r_7_;
-  const Real t2577 = t2575 + t2576;
-  const Real t2578 = t1209 * t2577;
-  const Real t2579 = c_r_7_ * t2349;
-  const Real t2580 = t2552 * constant<Real>(0.21L);
-  const Real t2581 = t2556 + t2580;
-  const Real t2582 = s_r_7_ * t2581;
-  const Real t2583 = t2579 - t2582;
-  const Real t2584 = t1232 * t2583;
-  const Real t2585 = s_r_7_ * t2349;
-  const Real t2586 = c_r_7_ * t2581;
-  const Real t2587 = t2585 + t2586;
-  const Real t2588 = t2587 * t1226;
-  const Real t2589 = t2584 + t2588;
-  const Real t2590 = t2578 + t2589;
-  const Real t2591 = t2552 + t2590;
-  const Real t2592 = t2574 * s_r_7_;
-  const Real t2593 = c_r_7_ * t2570;
-  const Real t2594 = t2592 - t2593;
-  const Real t2595 = t1206 * t2594;
-  const Real t2596 = t2591 + t2595;
-  const Real t2597 = t1243 - t2596;
-  const Real t2598 = t2597 + t2552;
-  const Real t2599 = t6 * t2577;
-  const Real t2600 = t5 * t2594;
-  const Real t2601 = t2599 - t2600;
-  const Real t2602 = constant<Real>(0.0000353906603051193176138L) * t2601;
-  const Real t2603 = constant<Real>(0.24L) * t2598;
-  const Real t2604 = t2583 - t2603;
-  const Real t2605 = t6 * t2604;
-  const Real t2606 = t5 * t2587;
-  const Real t2607 = t2605 - t2606;
-  const Real t2608 = constant<Real>(5.30976794871968958296L) * t2607;
-  const Real t2609 = t2602 + t2608;
-  const Real t2610 = t2598 + t2609;
-  const Real t2611 = t6 * t2594;
-  const Real t2612 = t5 * t2577;
-  const Real t2613 = t2611 + t2612;
-  const Real t2614 = constant<Real>(0.466294762676633597142L) * t2613;
-  const Real t2615 = t2610 - t2614;
-  const Real t2616 = t1192 - t2615;
-  const Real t2617 = t2310 - t341;
+  const Real t36 = t35 - t34;
+  const Real t37 = t36 - t30;
+  const Real t38 = t37 - constant<Real>(-0.000339270669581849578033L);
 
-  eta_dot_out[0] = t2314;
-  eta_dot_out[1] = t2617;
-  eta_dot_out[2] = t2313;
-  eta_dot_out[3] = t2328;
-  eta_dot_out[4] = t2330;
-  eta_dot_out[5] = t2342;
-  r_ddot_out[0] = t2371;
-  r_ddot_out[1] = t2398;
-  r_ddot_out[2] = t2413;
-  r_ddot_out[3] = t2506;
-  r_ddot_out[4] = t2530;
-  r_ddot_out[5] = t2549;
-  r_ddot_out[6] = t2573;
-  r_ddot_out[7] = t2597;
-  r_ddot_out[8] = t2616;
-  r_ddot_out[9] = t2444;
-  r_ddot_out[10] = t2463;
-  r_ddot_out[11] = t2482;
+  // hind_right_thigh: composite body
+  const Real t39 = c_r_10_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t40 = t38 * t39;
+
+  // hind_right_thigh: articulated body
+  const Real t41 = t24 * t25;
+
+  // hind_right_shank: articulated body
+  const Real t42 = t33 * t8;
+  const Real t43 = constant<Real>(-0.00207295837341773411037L) + t42;
+
+  // hind_right_thigh: articulated body
+  const Real t44 = t43 - t41;
+  const Real t45 = t18 * t29;
+  const Real t46 = t45 * t29;
+
+  // factor and solution
+  const Real t47 = constant<Real>(0.0550470756241113246541L) - t42;
+
+  // hind_right_shank: articulated body
+  const Real t48 = constant<Real>(0.0164990886730146401744L) * t9;
+
+  // factor and solution
+  const Real t49 = t47 - t48;
+  const Real t50 = t49 - t48;
+  const Real t51 = t50 - t46;
+  const Real t52 = t44 - t51;
+  const Real t53 = t52 * s_r_10_;
+  const Real t54 = t40 + t53;
+  const Real t55 = t54 * s_r_10_;
+  const Real t56 = t55 + t51;
+  const Real t57 = t56 + constant<Real>(0.01249468L);
+  const Real t58 = constant<Real>(1.0L) / t57;
+  const Real t59 = t54 * c_r_10_;
+  const Real t60 = t59 - t38;
+
+  // hind_right_shank: articulated body
+  const Real t61 = t8 * constant<Real>(0.0687462028042276673933L);
+  const Real t62 = constant<Real>(-0.0051L) + t61;
+
+  // hind_right_thigh: articulated body
+  const Real t63 = t62 * s_r_10_;
+
+  // hind_right_shank: articulated body
+  const Real t64 = constant<Real>(0.0687462028042276673933L) * t9;
+  const Real t65 = constant<Real>(0.2108L) - t64;
+
+  // hind_right_thigh: articulated body
+  const Real t66 = t65 * c_r_10_;
+  const Real t67 = t63 + t66;
+  const Real t68 = constant<Real>(0.21L) * t67;
+
+  // factor and solution
+  const Real t69 = t60 - t68;
+  const Real t70 = constant<Real>(0.0002678L) + t69;
+  const Real t71 = t58 * t70;
+
+  // hind_right_shank: articulated body
+  const Real t72 = t13 * t9;
+  const Real t73 = t72 * constant<Real>(0.24L);
+  const Real t74 = constant<Real>(0.0051L) - t73;
+
+  // hind_right_thigh: articulated body
+  const Real t75 = t74 * t25;
+  const Real t76 = t26 - t75;
+
+  // hind_right_shank: articulated body
+  const Real t77 = t15 * constant<Real>(0.24L);
+  const Real t78 = constant<Real>(-0.2108L) - t77;
+
+  // hind_right_thigh: articulated body
+  const Real t79 = t78 * t45;
+  const Real t80 = t27 - t79;
+  const Real t81 = t76 - t80;
+  const Real t82 = t81 * s_r_10_;
+  const Real t83 = t78 * t25;
+  const Real t84 = t83 + t22;
+  const Real t85 = t45 * t74;
+
+  // hind_right_shank: articulated body
+  const Real t86 = constant<Real>(-0.0320559943215170632542L) + t22;
+
+  // hind_right_thigh: articulated body
+  const Real t87 = t86 + t85;
+  const Real t88 = t84 + t87;
+  const Real t89 = t88 * c_r_10_;
+  const Real t90 = t82 - t89;
+  const Real t91 = t90 * s_r_10_;
+  const Real t92 = t91 + t80;
+
+  // factor and solution
+  const Real t93 = t71 * t92;
+
+  // hind_right_thigh: articulated body
+  const Real t94 = t90 * c_r_10_;
+  const Real t95 = t94 + t87;
+  const Real t96 = t95 + constant<Real>(0.17239L);
+
+  // factor and solution
+  const Real t97 = t96 - t93;
+  const Real t98 = c_r_9_ * t97;
+
+  // hind_right_thigh: articulated body
+  const Real t99 = t84 + t94;
+  const Real t100 = t99 * constant<Real>(0.21L);
+  const Real t101 = constant<Real>(-0.0360627L) + t100;
+
+  // factor and solution
+  const Real t102 = t58 * t101;
+  const Real t103 = t102 * t92;
+
+  // hind_right_thigh: articulated body
+  const Real t104 = t18 * t74;
+  const Real t105 = t104 * t74;
+  const Real t106 = t14 + t105;
+  const Real t107 = t18 * t78;
+  const Real t108 = t78 * t107;
+  const Real t109 = t15 - t108;
+  const Real t110 = t106 + t109;
+  const Real t111 = t110 * s_r_10_;
+  const Real t112 = t104 * t78;
+  const Real t113 = t72 - t112;
+  const Real t114 = t39 * t113;
+  const Real t115 = t114 - t111;
+  const Real t116 = t115 * c_r_10_;
+  const Real t117 = t116 - t113;
+  const Real t118 = t117 * constant<Real>(0.21L);
+  const Real t119 = constant<Real>(0.0013L) + t118;
+
+  // factor and solution
+  const Real t120 = t119 - t103;
+  const Real t121 = s_r_9_ * t120;
+  const Real t122 = t98 + t121;
+
+  // front_right_shank: articulated body
+  const Real t123 = t2 * constant<Real>(0.365026384246071713246L);
+  const Real t124 = t2 * t123;
+  const Real t125 = t124 + constant<Real>(-0.365026384246071713246L);
+  const Real t126 = constant<Real>(0.0576L) * t125;
+  const Real t127 = t126 + constant<Real>(0.0428421L);
+
+  // front_right_thigh: articulated body
+  const Real t128 = constant<Real>(1.0L) / t127;
+
+  // front_right_shank: articulated body
+  const Real t129 = t2 * constant<Real>(2.43297351071126242747e-6L);
+  const Real t130 = constant<Real>(0.0320559943215170632542L) * t3;
+  const Real t131 = t129 + t130;
+  const Real t132 = t131 * t3;
+  const Real t133 = t132 * constant<Real>(0.24L);
+  const Real t134 = t133 + constant<Real>(-0.0148652L);
+
+  // front_right_thigh: articulated body
+  const Real t135 = t134 * t128;
+  const Real t136 = t135 * t134;
+
+  // front_right_shank: articulated body
+  const Real t137 = t2 * constant<Real>(0.0156965339975290587644L);
+  const Real t138 = constant<Real>(8.94133916369915606625e-6L) * t3;
+  const Real t139 = t137 + t138;
+  const Real t140 = t2 * t139;
+  const Real t141 = constant<Real>(-0.00207295837341773411037L) + t140;
+
+  // front_right_thigh: articulated body
+  const Real t142 = t141 - t136;
+
+  // front_right_shank: articulated body
+  const Real t143 = t2 * t131;
+  const Real t144 = constant<Real>(2.43297351071126242747e-6L) - t143;
+  const Real t145 = constant<Real>(0.24L) * t144;
+  const Real t146 = constant<Real>(-0.0003909L) - t145;
+
+  // front_right_thigh: articulated body
+  const Real t147 = t146 * t128;
+  const Real t148 = t147 * t146;
+
+  // factor and solution
+  const Real t149 = constant<Real>(0.0550470756241113246541L) - t140;
+
+  // front_right_shank: articulated body
+  const Real t150 = constant<Real>(0.0164990886730146401744L) * t3;
+
+  // factor and solution
+  const Real t151 = t149 - t150;
+  const Real t152 = t151 - t150;
+  const Real t153 = t152 - t148;
+  const Real t154 = t142 - t153;
+  const Real t155 = t154 * s_r_4_;
+
+  // front_right_thigh: articulated body
+  const Real t156 = t135 * t146;
+
+  // front_right_shank: articulated body
+  const Real t157 = t139 * t3;
+  const Real t158 = t2 * constant<Real>(0.0164990886730146401744L);
+
+  // factor and solution
+  const Real t159 = t158 - t157;
+  const Real t160 = t159 - t156;
+  const Real t161 = t160 - constant<Real>(-0.000339270669581849578033L);
+
+  // front_right_thigh: composite body
+  const Real t162 = c_r_4_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t163 = t161 * t162;
+  const Real t164 = t155 + t163;
+  const Real t165 = s_r_4_ * t164;
+  const Real t166 = t153 + t165;
+  const Real t167 = t166 + constant<Real>(0.01249468L);
+  const Real t168 = constant<Real>(1.0L) / t167;
+  const Real t169 = t164 * c_r_4_;
+  const Real t170 = t169 - t161;
+
+  // front_right_shank: articulated body
+  const Real t171 = t2 * constant<Real>(0.0687462028042276673933L);
+  const Real t172 = constant<Real>(-0.0051L) + t171;
+
+  // front_right_thigh: articulated body
+  const Real t173 = t172 * s_r_4_;
+
+  // front_right_shank: articulated body
+  const Real t174 = t3 * constant<Real>(0.0687462028042276673933L);
+  const Real t175 = constant<Real>(0.2108L) - t174;
+
+  // front_right_thigh: articulated body
+  const Real t176 = t175 * c_r_4_;
+  const Real t177 = t173 + t176;
+  const Real t178 = t177 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t179 = t178 + t170;
+  const Real t180 = constant<Real>(-0.0002678L) + t179;
+  const Real t181 = t168 * t180;
+
+  // front_right_shank: articulated body
+  const Real t182 = t123 * t3;
+  const Real t183 = t182 * constant<Real>(0.24L);
+  const Real t184 = constant<Real>(0.0051L) - t183;
+
+  // front_right_thigh: articulated body
+  const Real t185 = t135 * t184;
+  const Real t186 = t143 - t185;
+
+  // front_right_shank: articulated body
+  const Real t187 = t125 * constant<Real>(0.24L);
+  const Real t188 = constant<Real>(-0.2108L) - t187;
+
+  // front_right_thigh: articulated body
+  const Real t189 = t188 * t147;
+  const Real t190 = t144 - t189;
+  const Real t191 = t186 - t190;
+  const Real t192 = s_r_4_ * t191;
+  const Real t193 = t135 * t188;
+  const Real t194 = t132 + t193;
+  const Real t195 = t147 * t184;
+
+  // front_right_shank: articulated body
+  const Real t196 = constant<Real>(-0.0320559943215170632542L) + t132;
+
+  // front_right_thigh: articulated body
+  const Real t197 = t195 + t196;
+  const Real t198 = t194 + t197;
+  const Real t199 = t198 * c_r_4_;
+  const Real t200 = t192 - t199;
+  const Real t201 = t200 * s_r_4_;
+  const Real t202 = t201 + t190;
+
+  // factor and solution
+  const Real t203 = t181 * t202;
+
+  // front_right_thigh: articulated body
+  const Real t204 = t200 * c_r_4_;
+  const Real t205 = t197 + t204;
+  const Real t206 = t205 + constant<Real>(0.17239L);
+
+  // factor and solution
+  const Real t207 = t206 - t203;
+  const Real t208 = c_r_3_ * t207;
+
+  // front_right_thigh: articulated body
+  const Real t209 = t194 + t204;
+  const Real t210 = t209 * constant<Real>(0.21L);
+  const Real t211 = constant<Real>(0.0360627L) - t210;
+
+  // factor and solution
+  const Real t212 = t211 * t168;
+  const Real t213 = t202 * t212;
+
+  // front_right_thigh: articulated body
+  const Real t214 = t128 * t184;
+  const Real t215 = t214 * t184;
+  const Real t216 = t124 + t215;
+  const Real t217 = t188 * t128;
+  const Real t218 = t188 * t217;
+  const Real t219 = t125 - t218;
+  const Real t220 = t216 + t219;
+  const Real t221 = s_r_4_ * t220;
+  const Real t222 = t188 * t214;
+  const Real t223 = t182 - t222;
+  const Real t224 = t223 * t162;
+  const Real t225 = t224 - t221;
+  const Real t226 = t225 * c_r_4_;
+  const Real t227 = t226 - t223;
+  const Real t228 = t227 * constant<Real>(0.21L);
+  const Real t229 = constant<Real>(0.0013L) - t228;
+
+  // factor and solution
+  const Real t230 = t229 - t213;
+  const Real t231 = s_r_3_ * t230;
+  const Real t232 = t208 + t231;
+  const Real t233 = t122 + t232;
+  const Real t234 = t58 * t92;
+  const Real t235 = t92 * t234;
+
+  // hind_right_thigh: articulated body
+  const Real t236 = t115 * s_r_10_;
+  const Real t237 = t236 + t109;
+
+  // factor and solution
+  const Real t238 = t237 - t235;
+  const Real t239 = t168 * t202;
+  const Real t240 = t239 * t202;
+
+  // front_right_thigh: articulated body
+  const Real t241 = t225 * s_r_4_;
+  const Real t242 = t241 + t219;
+
+  // factor and solution
+  const Real t243 = t242 - t240;
+  const Real t244 = t238 + t243;
+  const Real t245 = t244 * constant<Real>(0.06L);
+  const Real t246 = t233 + t245;
+  const Real t247 = t233 + t246;
+
+  // hind_left_shank: articulated body
+  const Real t248 = t5 * constant<Real>(0.365026384246071713246L);
+  const Real t249 = t5 * t248;
+  const Real t250 = t249 + constant<Real>(-0.365026384246071713246L);
+  const Real t251 = t250 * constant<Real>(0.0576L);
+  const Real t252 = constant<Real>(0.0428421L) + t251;
+
+  // hind_left_thigh: articulated body
+  const Real t253 = constant<Real>(1.0L) / t252;
+
+  // hind_left_shank: articulated body
+  const Real t254 = t6 * constant<Real>(0.0320559943215170632542L);
+  const Real t255 = t5 * constant<Real>(2.43297351071126242747e-6L);
+  const Real t256 = t254 + t255;
+  const Real t257 = t5 * t256;
+  const Real t258 = t257 + constant<Real>(-2.43297351071126242747e-6L);
+  const Real t259 = t258 * constant<Real>(0.24L);
+  const Real t260 = constant<Real>(0.0003909L) - t259;
+
+  // hind_left_thigh: articulated body
+  const Real t261 = t253 * t260;
+
+  // hind_left_shank: articulated body
+  const Real t262 = t6 * t248;
+  const Real t263 = constant<Real>(0.24L) * t262;
+  const Real t264 = constant<Real>(0.0051L) - t263;
+
+  // hind_left_thigh: articulated body
+  const Real t265 = t261 * t264;
+
+  // hind_left_shank: articulated body
+  const Real t266 = t6 * t256;
+  const Real t267 = t266 - constant<Real>(0.0320559943215170632542L);
+
+  // hind_left_thigh: articulated body
+  const Real t268 = t267 - t265;
+
+  // hind_left_shank: articulated body
+  const Real t269 = constant<Real>(0.24L) * t266;
+  const Real t270 = constant<Real>(0.0148652L) - t269;
+
+  // hind_left_thigh: articulated body
+  const Real t271 = t253 * t270;
+
+  // hind_left_shank: articulated body
+  const Real t272 = t250 * constant<Real>(0.24L);
+  const Real t273 = constant<Real>(-0.2108L) - t272;
+
+  // hind_left_thigh: articulated body
+  const Real t274 = t271 * t273;
+  const Real t275 = t266 - t274;
+  const Real t276 = t268 + t275;
+  const Real t277 = c_r_7_ * t276;
+  const Real t278 = t271 * t264;
+  const Real t279 = t257 + t278;
+  const Real t280 = t273 * t261;
+  const Real t281 = t258 - t280;
+  const Real t282 = t279 + t281;
+  const Real t283 = s_r_7_ * t282;
+  const Real t284 = t277 - t283;
+  const Real t285 = t284 * c_r_7_;
+  const Real t286 = t285 - t275;
+  const Real t287 = constant<Real>(0.21L) * t286;
+  const Real t288 = constant<Real>(0.0360627L) + t287;
+  const Real t289 = t271 * t260;
+
+  // hind_left_shank: articulated body
+  const Real t290 = t6 * constant<Real>(8.94133916369915606625e-6L);
+  const Real t291 = t5 * constant<Real>(0.0156965339975290587644L);
+  const Real t292 = t290 + t291;
+  const Real t293 = t6 * t292;
+  const Real t294 = t5 * constant<Real>(0.0164990886730146401744L);
+
+  // factor and solution
+  const Real t295 = t294 - t293;
+  const Real t296 = t295 - t289;
+  const Real t297 = t296 - constant<Real>(-0.000339270669581849578033L);
+
+  // hind_left_thigh: composite body
+  const Real t298 = c_r_7_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t299 = t298 * t297;
+
+  // hind_left_thigh: articulated body
+  const Real t300 = t271 * t270;
+
+  // hind_left_shank: articulated body
+  const Real t301 = t5 * t292;
+  const Real t302 = t301 + constant<Real>(-0.00207295837341773411037L);
+
+  // hind_left_thigh: articulated body
+  const Real t303 = t302 - t300;
+  const Real t304 = t260 * t261;
+
+  // factor and solution
+  const Real t305 = constant<Real>(0.0550470756241113246541L) - t301;
+
+  // hind_left_shank: articulated body
+  const Real t306 = t6 * constant<Real>(0.0164990886730146401744L);
+
+  // factor and solution
+  const Real t307 = t305 - t306;
+  const Real t308 = t307 - t306;
+  const Real t309 = t308 - t304;
+  const Real t310 = t303 - t309;
+  const Real t311 = t310 * s_r_7_;
+  const Real t312 = t299 + t311;
+  const Real t313 = t312 * s_r_7_;
+  const Real t314 = t313 + t309;
+  const Real t315 = t314 + constant<Real>(0.01249468L);
+  const Real t316 = constant<Real>(1.0L) / t315;
+  const Real t317 = t288 * t316;
+
+  // hind_left_thigh: articulated body
+  const Real t318 = t284 * s_r_7_;
+  const Real t319 = t281 + t318;
+
+  // factor and solution
+  const Real t320 = t319 * t317;
+
+  // hind_left_thigh: articulated body
+  const Real t321 = t253 * t264;
+  const Real t322 = t321 * t264;
+  const Real t323 = t249 + t322;
+  const Real t324 = t253 * t273;
+  const Real t325 = t324 * t273;
+  const Real t326 = t250 - t325;
+  const Real t327 = t323 + t326;
+  const Real t328 = s_r_7_ * t327;
+  const Real t329 = t273 * t321;
+  const Real t330 = t262 - t329;
+  const Real t331 = t298 * t330;
+  const Real t332 = t331 - t328;
+  const Real t333 = t332 * c_r_7_;
+  const Real t334 = t333 - t330;
+  const Real t335 = constant<Real>(0.21L) * t334;
+  const Real t336 = constant<Real>(0.0013L) + t335;
+
+  // factor and solution
+  const Real t337 = t336 - t320;
+  const Real t338 = t337 * s_r_6_;
+  const Real t339 = t312 * c_r_7_;
+  const Real t340 = t339 - t297;
+
+  // hind_left_shank: articulated body
+  const Real t341 = t6 * constant<Real>(0.0687462028042276673933L);
+  const Real t342 = constant<Real>(0.2108L) - t341;
+
+  // hind_left_thigh: articulated body
+  const Real t343 = c_r_7_ * t342;
+
+  // hind_left_shank: articulated body
+  const Real t344 = t5 * constant<Real>(0.0687462028042276673933L);
+  const Real t345 = constant<Real>(-0.0051L) + t344;
+
+  // hind_left_thigh: articulated body
+  const Real t346 = s_r_7_ * t345;
+  const Real t347 = t343 + t346;
+  const Real t348 = t347 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t349 = t340 - t348;
+  const Real t350 = constant<Real>(0.0002678L) + t349;
+  const Real t351 = t350 * t316;
+  const Real t352 = t319 * t351;
+
+  // hind_left_thigh: articulated body
+  const Real t353 = t285 - t268;
+  const Real t354 = constant<Real>(-0.17239L) + t353;
+
+  // factor and solution
+  const Real t355 = t354 - t352;
+  const Real t356 = t355 * c_r_6_;
+  const Real t357 = t338 + t356;
+
+  // front_left_shank: articulated body
+  const Real t358 = t11 * constant<Real>(0.365026384246071713246L);
+  const Real t359 = t358 * t11;
+  const Real t360 = constant<Real>(-0.365026384246071713246L) + t359;
+  const Real t361 = constant<Real>(0.0576L) * t360;
+  const Real t362 = constant<Real>(0.0428421L) + t361;
+
+  // front_left_thigh: articulated body
+  const Real t363 = constant<Real>(1.0L) / t362;
+
+  // front_left_shank: articulated body
+  const Real t364 = t11 * constant<Real>(2.43297351071126242747e-6L);
+  const Real t365 = constant<Real>(0.0320559943215170632542L) * t12;
+  const Real t366 = t364 + t365;
+  const Real t367 = t366 * t12;
+  const Real t368 = constant<Real>(0.24L) * t367;
+  const Real t369 = constant<Real>(0.0148652L) - t368;
+
+  // front_left_thigh: articulated body
+  const Real t370 = t369 * t363;
+
+  // front_left_shank: articulated body
+  const Real t371 = t11 * t366;
+  const Real t372 = constant<Real>(-2.43297351071126242747e-6L) + t371;
+  const Real t373 = constant<Real>(0.24L) * t372;
+  const Real t374 = constant<Real>(0.0003909L) - t373;
+
+  // front_left_thigh: articulated body
+  const Real t375 = t374 * t370;
+
+  // front_left_shank: articulated body
+  const Real t376 = t11 * constant<Real>(0.0156965339975290587644L);
+  const Real t377 = constant<Real>(8.94133916369915606625e-6L) * t12;
+  const Real t378 = t376 + t377;
+  const Real t379 = t378 * t12;
+  const Real t380 = t11 * constant<Real>(0.0164990886730146401744L);
+
+  // factor and solution
+  const Real t381 = t380 - t379;
+  const Real t382 = t381 - t375;
+  const Real t383 = t382 - constant<Real>(-0.000339270669581849578033L);
+
+  // front_left_thigh: composite body
+  const Real t384 = c_r_1_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t385 = t384 * t383;
+
+  // front_left_thigh: articulated body
+  const Real t386 = t369 * t370;
+
+  // front_left_shank: articulated body
+  const Real t387 = t378 * t11;
+  const Real t388 = constant<Real>(-0.00207295837341773411037L) + t387;
+
+  // front_left_thigh: articulated body
+  const Real t389 = t388 - t386;
+  const Real t390 = t374 * t363;
+  const Real t391 = t374 * t390;
+
+  // factor and solution
+  const Real t392 = constant<Real>(0.0550470756241113246541L) - t387;
+
+  // front_left_shank: articulated body
+  const Real t393 = constant<Real>(0.0164990886730146401744L) * t12;
+
+  // factor and solution
+  const Real t394 = t392 - t393;
+  const Real t395 = t394 - t393;
+  const Real t396 = t395 - t391;
+  const Real t397 = t389 - t396;
+  const Real t398 = s_r_1_ * t397;
+  const Real t399 = t385 + t398;
+  const Real t400 = t399 * s_r_1_;
+  const Real t401 = t400 + t396;
+  const Real t402 = t401 + constant<Real>(0.01249468L);
+  const Real t403 = constant<Real>(1.0L) / t402;
+
+  // front_left_shank: articulated body
+  const Real t404 = t358 * t12;
+  const Real t405 = constant<Real>(0.24L) * t404;
+  const Real t406 = constant<Real>(0.0051L) - t405;
+
+  // front_left_thigh: articulated body
+  const Real t407 = t406 * t390;
+
+  // front_left_shank: articulated body
+  const Real t408 = t367 - constant<Real>(0.0320559943215170632542L);
+
+  // front_left_thigh: articulated body
+  const Real t409 = t408 - t407;
+
+  // front_left_shank: articulated body
+  const Real t410 = t360 * constant<Real>(0.24L);
+  const Real t411 = constant<Real>(-0.2108L) - t410;
+
+  // front_left_thigh: articulated body
+  const Real t412 = t411 * t370;
+  const Real t413 = t367 - t412;
+  const Real t414 = t409 + t413;
+  const Real t415 = c_r_1_ * t414;
+  const Real t416 = t411 * t390;
+  const Real t417 = t372 - t416;
+  const Real t418 = t406 * t370;
+  const Real t419 = t418 + t371;
+  const Real t420 = t417 + t419;
+  const Real t421 = t420 * s_r_1_;
+  const Real t422 = t415 - t421;
+  const Real t423 = t422 * c_r_1_;
+  const Real t424 = t423 - t413;
+  const Real t425 = t424 * constant<Real>(0.21L);
+  const Real t426 = constant<Real>(-0.0360627L) - t425;
+
+  // factor and solution
+  const Real t427 = t403 * t426;
+
+  // front_left_thigh: articulated body
+  const Real t428 = t422 * s_r_1_;
+  const Real t429 = t417 + t428;
+
+  // factor and solution
+  const Real t430 = t427 * t429;
+
+  // front_left_thigh: articulated body
+  const Real t431 = t363 * t411;
+  const Real t432 = t431 * t411;
+  const Real t433 = t360 - t432;
+  const Real t434 = t406 * t363;
+  const Real t435 = t406 * t434;
+  const Real t436 = t435 + t359;
+  const Real t437 = t433 + t436;
+  const Real t438 = t437 * s_r_1_;
+  const Real t439 = t434 * t411;
+  const Real t440 = t404 - t439;
+  const Real t441 = t384 * t440;
+  const Real t442 = t441 - t438;
+  const Real t443 = c_r_1_ * t442;
+  const Real t444 = t443 - t440;
+  const Real t445 = constant<Real>(0.21L) * t444;
+  const Real t446 = constant<Real>(0.0013L) - t445;
+
+  // factor and solution
+  const Real t447 = t446 - t430;
+  const Real t448 = s_r_0_ * t447;
+  const Real t449 = t399 * c_r_1_;
+  const Real t450 = t449 - t383;
+
+  // front_left_shank: articulated body
+  const Real t451 = t11 * constant<Real>(0.0687462028042276673933L);
+  const Real t452 = constant<Real>(-0.0051L) + t451;
+
+  // front_left_thigh: articulated body
+  const Real t453 = s_r_1_ * t452;
+
+  // front_left_shank: articulated body
+  const Real t454 = t12 * constant<Real>(0.0687462028042276673933L);
+  const Real t455 = constant<Real>(0.2108L) - t454;
+
+  // front_left_thigh: articulated body
+  const Real t456 = t455 * c_r_1_;
+  const Real t457 = t453 + t456;
+  const Real t458 = t457 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t459 = t458 + t450;
+  const Real t460 = constant<Real>(-0.0002678L) + t459;
+  const Real t461 = t403 * t460;
+  const Real t462 = t461 * t429;
+
+  // front_left_thigh: articulated body
+  const Real t463 = t423 - t409;
+  const Real t464 = constant<Real>(-0.17239L) + t463;
+
+  // factor and solution
+  const Real t465 = t464 - t462;
+  const Real t466 = c_r_0_ * t465;
+  const Real t467 = t448 + t466;
+  const Real t468 = t357 + t467;
+  const Real t469 = t403 * t429;
+  const Real t470 = t469 * t429;
+
+  // front_left_thigh: articulated body
+  const Real t471 = t442 * s_r_1_;
+  const Real t472 = t433 + t471;
+
+  // factor and solution
+  const Real t473 = t472 - t470;
+  const Real t474 = t319 * t316;
+  const Real t475 = t319 * t474;
+
+  // hind_left_thigh: articulated body
+  const Real t476 = t332 * s_r_7_;
+  const Real t477 = t476 + t326;
+
+  // factor and solution
+  const Real t478 = t477 - t475;
+  const Real t479 = t473 + t478;
+  const Real t480 = t479 * constant<Real>(0.06L);
+  const Real t481 = t468 - t480;
+  const Real t482 = t247 - t481;
+  const Real t483 = t482 - t468;
+  const Real t484 = constant<Real>(0.06L) * t483;
+  const Real t485 = t181 * t180;
+  const Real t486 = t142 - t165;
+
+  // front_right_thigh: articulated body
+  const Real t487 = t172 * c_r_4_;
+  const Real t488 = s_r_4_ * t175;
+  const Real t489 = t487 - t488;
+  const Real t490 = constant<Real>(0.21L) * t489;
+
+  // factor and solution
+  const Real t491 = t486 + t490;
+  const Real t492 = t491 + t490;
+  const Real t493 = t492 + constant<Real>(0.01168088L);
+  const Real t494 = t493 - t485;
+  const Real t495 = t494 + constant<Real>(0.87252112L);
+  const Real t496 = t350 * t351;
+  const Real t497 = t303 - t313;
+
+  // hind_left_thigh: articulated body
+  const Real t498 = c_r_7_ * t345;
+  const Real t499 = s_r_7_ * t342;
+  const Real t500 = t498 - t499;
+  const Real t501 = t500 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t502 = t497 - t501;
+  const Real t503 = t502 - t501;
+  const Real t504 = constant<Real>(0.01168088L) + t503;
+  const Real t505 = t504 - t496;
+  const Real t506 = t495 + t505;
+  const Real t507 = t460 * t461;
+  const Real t508 = t389 - t400;
+
+  // front_left_thigh: articulated body
+  const Real t509 = c_r_1_ * t452;
+  const Real t510 = t455 * s_r_1_;
+  const Real t511 = t509 - t510;
+  const Real t512 = t511 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t513 = t512 + t508;
+  const Real t514 = t512 + t513;
+  const Real t515 = constant<Real>(0.01168088L) + t514;
+  const Real t516 = t515 - t507;
+  const Real t517 = t506 + t516;
+  const Real t518 = t71 * t70;
+  const Real t519 = t44 - t55;
+
+  // hind_right_thigh: articulated body
+  const Real t520 = t62 * c_r_10_;
+  const Real t521 = t65 * s_r_10_;
+  const Real t522 = t520 - t521;
+  const Real t523 = t522 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t524 = t519 - t523;
+  const Real t525 = t524 - t523;
+  const Real t526 = constant<Real>(0.01168088L) + t525;
+  const Real t527 = t526 - t518;
+  const Real t528 = t527 + t517;
+  const Real t529 = t484 + t528;
+  const Real t530 = t426 * t427;
+
+  // front_left_thigh: articulated body
+  const Real t531 = t436 + t471;
+  const Real t532 = constant<Real>(0.0441L) * t531;
+  const Real t533 = constant<Real>(0.0008138L) - t532;
+
+  // factor and solution
+  const Real t534 = t533 - t530;
+  const Real t535 = t534 - t516;
+  const Real t536 = t535 * s_r_0_;
+  const Real t537 = t426 * t461;
+
+  // front_left_thigh: articulated body
+  const Real t538 = t428 + t419;
+  const Real t539 = constant<Real>(0.21L) * t538;
+  const Real t540 = t539 + constant<Real>(-0.0000473L);
+
+  // factor and solution
+  const Real t541 = t540 - t537;
+
+  // front_left_hip: composite body
+  const Real t542 = c_r_0_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t543 = t541 * t542;
+  const Real t544 = t543 + t536;
+  const Real t545 = s_r_0_ * t544;
+  const Real t546 = t288 * t317;
+
+  // hind_left_thigh: articulated body
+  const Real t547 = t476 + t323;
+  const Real t548 = constant<Real>(0.0441L) * t547;
+  const Real t549 = constant<Real>(0.0008138L) - t548;
+
+  // factor and solution
+  const Real t550 = t549 - t546;
+  const Real t551 = t550 - t505;
+  const Real t552 = t551 * s_r_6_;
+  const Real t553 = t288 * t351;
+
+  // hind_left_thigh: articulated body
+  const Real t554 = t279 + t318;
+  const Real t555 = constant<Real>(0.21L) * t554;
+  const Real t556 = constant<Real>(-0.0000473L) - t555;
+
+  // factor and solution
+  const Real t557 = t556 - t553;
+
+  // hind_left_hip: composite body
+  const Real t558 = c_r_6_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t559 = t557 * t558;
+  const Real t560 = t552 + t559;
+  const Real t561 = t560 * s_r_6_;
+  const Real t562 = t545 + t561;
+  const Real t563 = t102 * t101;
+
+  // hind_right_thigh: articulated body
+  const Real t564 = t106 + t236;
+  const Real t565 = t564 * constant<Real>(0.0441L);
+  const Real t566 = constant<Real>(0.0008138L) - t565;
+
+  // factor and solution
+  const Real t567 = t566 - t563;
+  const Real t568 = t567 - t527;
+  const Real t569 = s_r_9_ * t568;
+  const Real t570 = t71 * t101;
+
+  // hind_right_thigh: articulated body
+  const Real t571 = t76 - t91;
+  const Real t572 = constant<Real>(0.21L) * t571;
+  const Real t573 = t572 + constant<Real>(0.0000473L);
+
+  // factor and solution
+  const Real t574 = t573 - t570;
+
+  // hind_right_hip: composite body
+  const Real t575 = c_r_9_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t576 = t574 * t575;
+  const Real t577 = t576 + t569;
+  const Real t578 = s_r_9_ * t577;
+  const Real t579 = t211 * t212;
+
+  // front_right_thigh: articulated body
+  const Real t580 = t241 + t216;
+  const Real t581 = t580 * constant<Real>(0.0441L);
+  const Real t582 = constant<Real>(0.0008138L) - t581;
+
+  // factor and solution
+  const Real t583 = t582 - t579;
+  const Real t584 = t583 - t494;
+  const Real t585 = s_r_3_ * t584;
+  const Real t586 = t181 * t211;
+
+  // front_right_thigh: articulated body
+  const Real t587 = t186 - t201;
+  const Real t588 = t587 * constant<Real>(0.21L);
+  const Real t589 = constant<Real>(0.0000473L) - t588;
+
+  // factor and solution
+  const Real t590 = t589 - t586;
+
+  // front_right_hip: composite body
+  const Real t591 = c_r_3_ * constant<Real>(2.0L);
+
+  // factor and solution
+  const Real t592 = t590 * t591;
+  const Real t593 = t592 + t585;
+  const Real t594 = t593 * s_r_3_;
+  const Real t595 = t578 + t594;
+  const Real t596 = t562 + t595;
+  const Real t597 = t529 + t596;
+  const Real t598 = constant<Real>(1.0L) / t597;
+  const Real t599 = c_r_9_ * t120;
+  const Real t600 = s_r_9_ * t97;
+  const Real t601 = t599 - t600;
+  const Real t602 = c_r_3_ * t230;
+  const Real t603 = t207 * s_r_3_;
+  const Real t604 = t602 - t603;
+  const Real t605 = t601 + t604;
+  const Real t606 = t337 * c_r_6_;
+  const Real t607 = t355 * s_r_6_;
+  const Real t608 = t606 - t607;
+  const Real t609 = c_r_0_ * t447;
+  const Real t610 = s_r_0_ * t465;
+  const Real t611 = t609 - t610;
+  const Real t612 = t608 + t611;
+  const Real t613 = t605 - t612;
+  const Real t614 = t613 * constant<Real>(0.06L);
+  const Real t615 = c_r_3_ * t593;
+  const Real t616 = t615 + t614;
+  const Real t617 = t557 + t541;
+  const Real t618 = t616 - t617;
+  const Real t619 = c_r_0_ * t544;
+  const Real t620 = t560 * c_r_6_;
+  const Real t621 = t619 + t620;
+  const Real t622 = c_r_9_ * t577;
+  const Real t623 = t622 + constant<Real>(0.000406L);
+  const Real t624 = t621 + t623;
+  const Real t625 = t618 + t624;
+  const Real t626 = t574 + t590;
+  const Real t627 = t625 - t626;
+  const Real t628 = t598 * t627;
+  const Real t629 = t628 * t627;
+  const Real t630 = t550 + t583;
+  const Real t631 = constant<Real>(0.804218083L) + t630;
+  const Real t632 = t631 + t567;
+  const Real t633 = t534 + t632;
+  const Real t634 = t633 - t629;
+  const Real t635 = t634 - t596;
+  const Real t636 = constant<Real>(1.0L) / t635;
+
+  // front_left_thigh: articulated body
+  const Real t637 = t424 + constant<Real>(0.17239L);
+
+  // factor and solution
+  const Real t638 = t427 * t637;
+
+  // front_left_thigh: articulated body
+  const Real t639 = constant<Real>(0.21L) * t531;
+
+  // factor and solution
+  const Real t640 = t639 - t638;
+
+  // front_left_thigh: articulated body
+  const Real t641 = constant<Real>(-0.0013L) + t457;
+
+  // factor and solution
+  const Real t642 = t641 * t461;
+  const Real t643 = t511 - t642;
+  const Real t644 = t640 + t643;
+  const Real t645 = c_r_0_ * t644;
+  const Real t646 = t461 * t637;
+  const Real t647 = t646 + t538;
+  const Real t648 = t427 * t641;
+  const Real t649 = t647 - t648;
+  const Real t650 = s_r_0_ * t649;
+  const Real t651 = t645 + t650;
+  const Real t652 = t651 * s_r_0_;
+
+  // hind_left_thigh: articulated body
+  const Real t653 = constant<Real>(-0.0013L) + t347;
+
+  // factor and solution
+  const Real t654 = t351 * t653;
+  const Real t655 = t500 - t654;
+
+  // hind_left_thigh: articulated body
+  const Real t656 = constant<Real>(0.17239L) + t286;
+
+  // factor and solution
+  const Real t657 = t656 * t317;
+
+  // hind_left_thigh: articulated body
+  const Real t658 = constant<Real>(0.21L) * t547;
+
+  // factor and solution
+  const Real t659 = t657 + t658;
+  const Real t660 = t655 - t659;
+  const Real t661 = t660 * c_r_6_;
+  const Real t662 = t656 * t351;
+  const Real t663 = t662 + t554;
+  const Real t664 = t317 * t653;
+  const Real t665 = t663 - t664;
+  const Real t666 = s_r_6_ * t665;
+  const Real t667 = t661 + t666;
+  const Real t668 = t667 * s_r_6_;
+  const Real t669 = t652 + t668;
+  const Real t670 = t669 - t663;
+  const Real t671 = t670 - t647;
+  const Real t672 = t403 * t637;
+  const Real t673 = t429 * t672;
+  const Real t674 = t444 - t673;
+  const Real t675 = c_r_0_ * t674;
+  const Real t676 = t403 * t641;
+  const Real t677 = t676 * t429;
+  const Real t678 = s_r_0_ * t677;
+  const Real t679 = t675 - t678;
+  const Real t680 = t656 * t316;
+  const Real t681 = t319 * t680;
+  const Real t682 = t334 - t681;
+  const Real t683 = t682 * c_r_6_;
+  const Real t684 = t316 * t653;
+  const Real t685 = t319 * t684;
+  const Real t686 = t685 * s_r_6_;
+  const Real t687 = t683 - t686;
+  const Real t688 = t679 + t687;
+  const Real t689 = constant<Real>(0.06L) * t688;
+  const Real t690 = t671 - t689;
+
+  // front_right_thigh: articulated body
+  const Real t691 = constant<Real>(-0.17239L) + t209;
+
+  // factor and solution
+  const Real t692 = t691 * t212;
+
+  // front_right_thigh: articulated body
+  const Real t693 = t580 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t694 = t693 - t692;
+
+  // front_right_thigh: articulated body
+  const Real t695 = constant<Real>(-0.0013L) + t177;
+
+  // factor and solution
+  const Real t696 = t695 * t181;
+  const Real t697 = t489 - t696;
+  const Real t698 = t694 + t697;
+  const Real t699 = c_r_3_ * t698;
+  const Real t700 = t181 * t691;
+  const Real t701 = t587 - t700;
+  const Real t702 = t695 * t212;
+  const Real t703 = t701 + t702;
+  const Real t704 = s_r_3_ * t703;
+  const Real t705 = t699 - t704;
+  const Real t706 = t705 * s_r_3_;
+
+  // hind_right_thigh: articulated body
+  const Real t707 = constant<Real>(-0.0013L) + t67;
+
+  // factor and solution
+  const Real t708 = t71 * t707;
+  const Real t709 = t522 - t708;
+
+  // hind_right_thigh: articulated body
+  const Real t710 = t99 + constant<Real>(-0.17239L);
+
+  // factor and solution
+  const Real t711 = t102 * t710;
+
+  // hind_right_thigh: articulated body
+  const Real t712 = t564 * constant<Real>(0.21L);
+
+  // factor and solution
+  const Real t713 = t711 + t712;
+  const Real t714 = t709 - t713;
+  const Real t715 = t714 * c_r_9_;
+  const Real t716 = t71 * t710;
+  const Real t717 = t571 - t716;
+  const Real t718 = t102 * t707;
+  const Real t719 = t717 + t718;
+  const Real t720 = s_r_9_ * t719;
+  const Real t721 = t715 - t720;
+  const Real t722 = s_r_9_ * t721;
+  const Real t723 = t706 + t722;
+  const Real t724 = t717 + t701;
+  const Real t725 = t724 + t723;
+  const Real t726 = t58 * t710;
+  const Real t727 = t92 * t726;
+  const Real t728 = t117 - t727;
+  const Real t729 = c_r_9_ * t728;
+  const Real t730 = t58 * t707;
+  const Real t731 = t730 * t92;
+  const Real t732 = s_r_9_ * t731;
+  const Real t733 = t729 - t732;
+  const Real t734 = t168 * t691;
+  const Real t735 = t202 * t734;
+  const Real t736 = t227 - t735;
+  const Real t737 = c_r_3_ * t736;
+  const Real t738 = t695 * t168;
+  const Real t739 = t202 * t738;
+  const Real t740 = s_r_3_ * t739;
+  const Real t741 = t737 - t740;
+  const Real t742 = t733 + t741;
+  const Real t743 = t742 * constant<Real>(0.06L);
+  const Real t744 = t743 + t725;
+  const Real t745 = t690 - t744;
+  const Real t746 = t745 * constant<Real>(0.06L);
+  const Real t747 = constant<Real>(-0.005104L) + t746;
+  const Real t748 = t747 * t628;
+  const Real t749 = c_r_0_ * t651;
+  const Real t750 = t667 * c_r_6_;
+  const Real t751 = t749 + t750;
+  const Real t752 = t751 - t643;
+  const Real t753 = t752 - t655;
+  const Real t754 = c_r_9_ * t721;
+  const Real t755 = t705 * c_r_3_;
+  const Real t756 = t754 + t755;
+  const Real t757 = t756 - t697;
+  const Real t758 = t757 - t709;
+  const Real t759 = t753 - t758;
+  const Real t760 = t759 * constant<Real>(0.06L);
+  const Real t761 = t760 + constant<Real>(0.000691L);
+  const Real t762 = t761 - t748;
+  const Real t763 = t636 * t762;
+  const Real t764 = t763 * t762;
+  const Real t765 = t747 * t598;
+  const Real t766 = t765 * t747;
+  const Real t767 = t764 + t766;
+  const Real t768 = t691 * t734;
+  const Real t769 = t580 + t768;
+  const Real t770 = t695 * t738;
+  const Real t771 = t769 - t770;
+  const Real t772 = t771 * s_r_3_;
+  const Real t773 = t695 * t734;
+  const Real t774 = t773 * t591;
+  const Real t775 = t772 - t774;
+  const Real t776 = t775 * s_r_3_;
+  const Real t777 = t710 * t726;
+  const Real t778 = t564 + t777;
+  const Real t779 = t730 * t707;
+  const Real t780 = t778 - t779;
+  const Real t781 = s_r_9_ * t780;
+  const Real t782 = t726 * t707;
+  const Real t783 = t782 * t575;
+  const Real t784 = t781 - t783;
+  const Real t785 = s_r_9_ * t784;
+  const Real t786 = t776 + t785;
+  const Real t787 = t786 - t769;
+  const Real t788 = t787 - t778;
+  const Real t789 = t656 * t680;
+  const Real t790 = t789 + t547;
+  const Real t791 = t653 * t684;
+  const Real t792 = t790 - t791;
+  const Real t793 = t792 * s_r_6_;
+  const Real t794 = t680 * t653;
+  const Real t795 = t794 * t558;
+  const Real t796 = t793 - t795;
+  const Real t797 = s_r_6_ * t796;
+  const Real t798 = t637 * t672;
+  const Real t799 = t798 + t531;
+  const Real t800 = t676 * t641;
+  const Real t801 = t799 - t800;
+  const Real t802 = s_r_0_ * t801;
+  const Real t803 = t641 * t672;
+  const Real t804 = t803 * t542;
+  const Real t805 = t802 - t804;
+  const Real t806 = t805 * s_r_0_;
+  const Real t807 = t797 + t806;
+  const Real t808 = t807 - t790;
+  const Real t809 = t808 - t799;
+  const Real t810 = t788 + t809;
+  const Real t811 = t810 * constant<Real>(0.0036L);
+  const Real t812 = constant<Real>(0.109545467L) + t811;
+  const Real t813 = t812 - t767;
+  const Real t814 = constant<Real>(1.0L) / t813;
+  const Real t815 = t744 + t690;
+  const Real t816 = t815 * t628;
+  const Real t817 = t753 + constant<Real>(-0.0515L);
+  const Real t818 = t758 + t817;
+  const Real t819 = t818 - t816;
+  const Real t820 = t763 * t819;
+  const Real t821 = t815 * t765;
+  const Real t822 = t821 + t820;
+  const Real t823 = t809 - t788;
+  const Real t824 = t823 * constant<Real>(0.06L);
+  const Real t825 = t824 + constant<Real>(-0.011L);
+  const Real t826 = t825 - t822;
+  const Real t827 = t814 * t826;
+  const Real t828 = t826 * t827;
+  const Real t829 = t636 * t819;
+  const Real t830 = t829 * t819;
+  const Real t831 = t815 * t598;
+  const Real t832 = t815 * t831;
+  const Real t833 = t810 + constant<Real>(25.59L);
+  const Real t834 = t833 - t832;
+  const Real t835 = t834 - t830;
+  const Real t836 = t835 - t828;
+  const Real t837 = constant<Real>(1.0L) / t836;
+  const Real t838 = s_r_0_ * t674;
+  const Real t839 = c_r_0_ * t677;
+  const Real t840 = t838 + t839;
+  const Real t841 = t682 * s_r_6_;
+  const Real t842 = t685 * c_r_6_;
+  const Real t843 = t841 + t842;
+  const Real t844 = t840 + t843;
+  const Real t845 = t736 * s_r_3_;
+  const Real t846 = c_r_3_ * t739;
+  const Real t847 = t846 + t845;
+  const Real t848 = s_r_9_ * t728;
+  const Real t849 = c_r_9_ * t731;
+  const Real t850 = t849 + t848;
+  const Real t851 = t847 + t850;
+  const Real t852 = t844 - t851;
+  const Real t853 = t852 * constant<Real>(0.06L);
+  const Real t854 = t659 + constant<Real>(0.0515L);
+  const Real t855 = t854 + t713;
+  const Real t856 = t855 + t853;
+  const Real t857 = t856 + t751;
+  const Real t858 = t756 + t857;
+  const Real t859 = t858 - t694;
+  const Real t860 = t859 - t640;
+  const Real t861 = t628 * t860;
+  const Real t862 = t861 + t718;
+  const Real t863 = t664 + t862;
+  const Real t864 = t863 + t702;
+  const Real t865 = t864 + t648;
+  const Real t866 = t865 + t723;
+  const Real t867 = t866 + t669;
+  const Real t868 = t829 * t867;
+  const Real t869 = t775 * c_r_3_;
+  const Real t870 = t773 + t869;
+  const Real t871 = c_r_9_ * t784;
+  const Real t872 = t871 + t782;
+  const Real t873 = t870 + t872;
+  const Real t874 = t868 + t873;
+  const Real t875 = t796 * c_r_6_;
+  const Real t876 = t794 + t875;
+  const Real t877 = c_r_0_ * t805;
+  const Real t878 = t803 + t877;
+  const Real t879 = t876 + t878;
+  const Real t880 = t879 + t874;
+  const Real t881 = t831 * t860;
+  const Real t882 = t880 - t881;
+  const Real t883 = t763 * t867;
+  const Real t884 = constant<Real>(-0.1412L) + t883;
+  const Real t885 = t765 * t860;
+  const Real t886 = t879 - t873;
+  const Real t887 = t886 * constant<Real>(0.06L);
+  const Real t888 = t887 - t885;
+  const Real t889 = t888 + t884;
+  const Real t890 = t827 * t889;
+  const Real t891 = t882 - t890;
+  const Real t892 = t891 * t837;
+  const Real t893 = t891 * t892;
+  const Real t894 = t814 * t889;
+  const Real t895 = t894 * t889;
+  const Real t896 = t636 * t867;
+  const Real t897 = t896 * t867;
+  const Real t898 = t598 * t860;
+  const Real t899 = t898 * t860;
+  const Real t900 = constant<Real>(25.59L) - t779;
+  const Real t901 = t900 - t791;
+  const Real t902 = t901 - t770;
+  const Real t903 = t902 - t800;
+  const Real t904 = t903 - t899;
+  const Real t905 = t904 - t897;
+  const Real t906 = t905 - t895;
+  const Real t907 = t906 - t893;
+  const Real t908 = t907 - t807;
+  const Real t909 = t908 - t786;
+  const Real t910 = constant<Real>(1.0L) / t909;
+  const Real t911 = t481 + constant<Real>(0.011L);
+  const Real t912 = t246 + t911;
+  const Real t913 = t628 * t912;
+  const Real t914 = constant<Real>(0.1412L) + t605;
+  const Real t915 = t914 + t612;
+  const Real t916 = t915 - t913;
+  const Real t917 = t763 * t916;
+  const Real t918 = t765 * t912;
+  const Real t919 = t689 - t918;
+  const Real t920 = t919 - t917;
+  const Real t921 = t920 - t743;
+  const Real t922 = t827 * t921;
+  const Real t923 = t829 * t916;
+  const Real t924 = t831 * t912;
+  const Real t925 = t742 + t688;
+  const Real t926 = t925 - t924;
+  const Real t927 = t926 - t923;
+  const Real t928 = t927 - t922;
+  const Real t929 = t928 * t892;
+  const Real t930 = t894 * t921;
+  const Real t931 = t896 * t916;
+  const Real t932 = t898 * t912;
+  const Real t933 = t931 - t932;
+  const Real t934 = t933 - t930;
+  const Real t935 = t934 - t929;
+  const Real t936 = t935 - t851;
+  const Real t937 = t936 - t844;
+  const Real t938 = t937 * t910;
+
+  // front_right_hip: motion
+  const Real t939 = c_r_3_ * eta[5];
+  const Real t940 = s_r_3_ * eta[4];
+  const Real t941 = t939 - t940;
+
+  // front_right_thigh: motion
+  const Real t942 = t941 * c_r_4_;
+
+  // front_right_hip: motion
+  const Real t943 = eta[3] + r_dot[3];
+
+  // front_right_thigh: motion
+  const Real t944 = t943 * s_r_4_;
+  const Real t945 = t942 + t944;
+
+  // front_right_shank: motion
+  const Real t946 = t3 * t945;
+
+  // front_right_thigh: motion
+  const Real t947 = s_r_4_ * t941;
+  const Real t948 = t943 * c_r_4_;
+  const Real t949 = t948 - t947;
+
+  // front_right_shank: motion
+  const Real t950 = t2 * t949;
+  const Real t951 = t946 + t950;
+  const Real t952 = t949 * t3;
+  const Real t953 = t2 * t945;
+  const Real t954 = t952 - t953;
+  const Real t955 = t951 * t954;
+
+  // front_right_hip: motion
+  const Real t956 = t943 * constant<Real>(2.0L);
+  const Real t957 = t956 * t941;
+
+  // joint angles
+  const Real t958 = eta[3] * eta[5];
+
+  // front_right_hip: motion
+  const Real t959 = c_r_3_ * t958;
+
+  // joint angles
+  const Real t960 = eta[3] * eta[4];
+
+  // front_right_hip: motion
+  const Real t961 = t960 * s_r_3_;
+  const Real t962 = t959 - t961;
+  const Real t963 = t957 - t962;
+
+  // front_right_thigh: motion
+  const Real t964 = t943 * t941;
+
+  // front_right_thigh: motion
+  const Real t965 = t963 - t964;
+
+  // front_right_shank: motion
+  const Real t966 = t965 + t955;
+
+  // front_right_shank: wrench
+  const Real t967 = t966 * constant<Real>(0.0129142756403275773944L);
+
+  // front_right_shank: motion
+  const Real t968 = t955 - t965;
+
+  // front_right_shank: wrench
+  const Real t969 = t968 * constant<Real>(0.0000328443596724226056129L);
+  const Real t970 = t967 - t969;
+
+  // front_right_hip: motion
+  const Real t971 = s_r_3_ * eta[5];
+  const Real t972 = c_r_3_ * eta[4];
+  const Real t973 = t971 + t972;
+  const Real t974 = t973 * t956;
+
+  // front_right_hip: motion
+  const Real t975 = s_r_3_ * t958;
+  const Real t976 = t960 * c_r_3_;
+  const Real t977 = t975 + t976;
+  const Real t978 = t974 - t977;
+
+  // front_right_thigh: motion
+  const Real t979 = t978 * c_r_4_;
+
+  // front_right_hip: motion
+  const Real t980 = t973 * t941;
+
+  // front_right_thigh: motion
+  const Real t981 = s_r_4_ * t980;
+  const Real t982 = t979 - t981;
+
+  // front_right_shank: motion
+  const Real t983 = t982 * t3;
+
+  // front_right_thigh: motion
+  const Real t984 = t978 * s_r_4_;
+  const Real t985 = t980 * c_r_4_;
+  const Real t986 = t984 + t985;
+
+  // front_right_shank: motion
+  const Real t987 = t2 * t986;
+  const Real t988 = t983 - t987;
+
+  // front_right_shank: wrench
+  const Real t989 = constant<Real>(0.00603717424774589637822L) * t988;
+  const Real t990 = t970 - t989;
+
+  // front_right_shank: motion
+  const Real t991 = t2 * t982;
+  const Real t992 = t986 * t3;
+  const Real t993 = t991 + t992;
+
+  // front_right_shank: wrench
+  const Real t994 = t993 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t995 = t990 - t994;
+
+  // front_right_shank: motion
+  const Real t996 = t954 * t954;
+  const Real t997 = t951 * t951;
+
+  // front_right_shank: wrench
+  const Real t998 = t996 - t997;
+  const Real t999 = constant<Real>(4.68432916485436730503e-6L) * t998;
+
+  // front_right_shank: wrench
+  const Real t1000 = t995 + t999;
+
+  // joint angles
+  const Real t1001 = eta[5] * eta[5];
+  const Real t1002 = eta[3] * eta[3];
+  const Real t1003 = t1001 + t1002;
+
+  // front_left_hip: motion
+  const Real t1004 = t1003 * constant<Real>(0.06L);
+
+  // front_right_hip: motion
+  const Real t1005 = s_r_3_ * t1004;
+
+  // joint angles
+  const Real t1006 = eta[4] * eta[5];
+
+  // front_left_hip: motion
+  const Real t1007 = t1006 * constant<Real>(0.06L);
+
+  // front_right_hip: motion
+  const Real t1008 = c_r_3_ * t1007;
+  const Real t1009 = t1008 + t1005;
+
+  // front_right_thigh: motion
+  const Real t1010 = t962 * constant<Real>(0.21L);
+
+  // front_right_thigh: motion
+  const Real t1011 = t1010 - t1009;
+  const Real t1012 = t1011 * s_r_4_;
+
+  // joint angles
+  const Real t1013 = eta[4] * eta[4];
+  const Real t1014 = t1001 + t1013;
+
+  // front_left_thigh: motion
+  const Real t1015 = t1014 * constant<Real>(0.21L);
+
+  // front_left_hip: motion
+  const Real t1016 = t960 * constant<Real>(0.06L);
+
+  // front_right_hip: motion
+  const Real t1017 = t1015 + t1016;
+
+  // front_right_thigh: motion
+  const Real t1018 = t1017 * c_r_4_;
+  const Real t1019 = t1012 + t1018;
+
+  // front_right_thigh: motion
+  const Real t1020 = t949 * t945;
+
+  // front_right_thigh: motion
+  const Real t1021 = t965 + t1020;
+
+  // front_right_shank: motion
+  const Real t1022 = t1021 * constant<Real>(0.24L);
+
+  // front_right_shank: motion
+  const Real t1023 = t1019 + t1022;
+  const Real t1024 = t1023 * t3;
+
+  // front_right_thigh: motion
+  const Real t1025 = t1011 * c_r_4_;
+  const Real t1026 = t1017 * s_r_4_;
+  const Real t1027 = t1025 - t1026;
+
+  // front_right_thigh: motion
+  const Real t1028 = t949 * t949;
+  const Real t1029 = t973 + r_dot[4];
+  const Real t1030 = t1029 * t1029;
+  const Real t1031 = t1028 + t1030;
+
+  // front_right_shank: motion
+  const Real t1032 = constant<Real>(0.24L) * t1031;
+
+  // front_right_shank: motion
+  const Real t1033 = t1027 + t1032;
+  const Real t1034 = t2 * t1033;
+  const Real t1035 = t1024 + t1034;
+
+  // front_right_shank: wrench
+  const Real t1036 = t1035 * constant<Real>(0.0687462028042276673933L);
+  const Real t1037 = t1000 - t1036;
+
+  // front_right_shank: articulated body
+  const Real t1038 = tau[5] - t1037;
+  const Real t1039 = constant<Real>(5.30976794871968958296L) * t1038;
+
+  // front_right_shank: wrench
+  const Real t1040 = constant<Real>(0.0687462028042276673933L) * t966;
+
+  // front_right_shank: articulated body
+  const Real t1041 = t1040 + t1039;
+  const Real t1042 = t1041 * t3;
+
+  // front_right_shank: motion
+  const Real t1043 = r_dot[5] + t1029;
+  const Real t1044 = t1043 * t1043;
+  const Real t1045 = t996 + t1044;
+
+  // front_right_shank: wrench
+  const Real t1046 = t1045 * constant<Real>(0.0687462028042276673933L);
+
+  // front_right_shank: joint force
+  const Real t1047 = t2 * t1046;
+
+  // front_right_shank: articulated body
+  const Real t1048 = t1042 - t1047;
+  const Real t1049 = t1048 * constant<Real>(0.24L);
+  const Real t1050 = tau[5] - t1049;
+
+  // front_right_thigh: wrench
+  const Real t1051 = constant<Real>(0.0421328L) * t1021;
+
+  // front_right_thigh: motion
+  const Real t1052 = t1020 - t965;
+
+  // front_right_thigh: wrench
+  const Real t1053 = constant<Real>(0.0007093L) * t1052;
+  const Real t1054 = t1051 - t1053;
+  const Real t1055 = constant<Real>(0.0148652L) * t982;
+  const Real t1056 = t1055 + t1054;
+  const Real t1057 = t986 * constant<Real>(0.0003909L);
+  const Real t1058 = t1056 - t1057;
+
+  // front_right_thigh: motion
+  const Real t1059 = t945 * t945;
+
+  // front_right_thigh: wrench
+  const Real t1060 = t1028 - t1059;
+  const Real t1061 = t1060 * constant<Real>(0.0003348L);
+
+  // front_right_thigh: wrench
+  const Real t1062 = t1058 - t1061;
+
+  // front_right_thigh: wrench
+  const Real t1063 = t1019 * constant<Real>(0.2108L);
+  const Real t1064 = t1027 * constant<Real>(0.0051L);
+  const Real t1065 = t1063 + t1064;
+  const Real t1066 = t1065 + t1062;
+
+  // front_right_shank: articulated body
+  const Real t1067 = t1050 + t1066;
+
+  // front_right_thigh: articulated body
+  const Real t1068 = tau[4] - t1067;
+  const Real t1069 = t135 * t1068;
+
+  // front_right_shank: articulated body
+  const Real t1070 = constant<Real>(0.466294762676633597142L) * t1038;
+
+  // front_right_shank: motion
+  const Real t1071 = constant<Real>(2.0L) * t1043;
+  const Real t1072 = t951 * t1071;
+
+  // front_right_shank: motion
+  const Real t1073 = t1072 - t993;
+
+  // front_right_shank: wrench
+  const Real t1074 = t1073 * constant<Real>(4.68432916485436730503e-6L);
+
+  // front_right_shank: motion
+  const Real t1075 = t1071 * t954;
+
+  // front_right_shank: motion
+  const Real t1076 = t1075 - t988;
+
+  // front_right_shank: wrench
+  const Real t1077 = t1076 * constant<Real>(0.0000328443596724226056129L);
+  const Real t1078 = t1074 + t1077;
+  const Real t1079 = constant<Real>(0.00603717424774589637822L) * t966;
+  const Real t1080 = t1078 + t1079;
+
+  // front_right_shank: wrench
+  const Real t1081 = t1044 - t996;
+  const Real t1082 = t1081 * constant<Real>(4.58207125849616419464e-7L);
+
+  // front_right_shank: wrench
+  const Real t1083 = t1080 + t1082;
+
+  // front_right_shank: articulated body
+  const Real t1084 = t1070 + t1083;
+  const Real t1085 = t1084 * t3;
+  const Real t1086 = constant<Real>(0.0000353906603051193176138L) * t1038;
+
+  // front_right_shank: wrench
+  const Real t1087 = t1073 * constant<Real>(0.0129142756403275773944L);
+  const Real t1088 = constant<Real>(4.58207125849616419464e-7L) * t968;
+  const Real t1089 = t1088 - t1087;
+  const Real t1090 = constant<Real>(4.68432916485436730503e-6L) * t1076;
+  const Real t1091 = t1089 - t1090;
+
+  // front_right_shank: wrench
+  const Real t1092 = t997 - t1044;
+  const Real t1093 = constant<Real>(0.00603717424774589637822L) * t1092;
+
+  // front_right_shank: wrench
+  const Real t1094 = t1091 - t1093;
+
+  // front_right_thigh: motion
+  const Real t1095 = t1029 * constant<Real>(2.0L);
+  const Real t1096 = t1095 * t945;
+
+  // front_right_thigh: motion
+  const Real t1097 = t1096 - t986;
+
+  // front_right_shank: motion
+  const Real t1098 = constant<Real>(0.24L) * t1097;
+
+  // front_right_hip: motion
+  const Real t1099 = c_r_3_ * t1004;
+  const Real t1100 = s_r_3_ * t1007;
+  const Real t1101 = t1099 - t1100;
+
+  // front_right_thigh: motion
+  const Real t1102 = t977 * constant<Real>(0.21L);
+
+  // front_right_thigh: motion
+  const Real t1103 = t1101 + t1102;
+
+  // front_right_shank: motion
+  const Real t1104 = t1103 - t1098;
+
+  // front_right_shank: wrench
+  const Real t1105 = t1104 * constant<Real>(0.0687462028042276673933L);
+  const Real t1106 = t1094 - t1105;
+
+  // front_right_shank: articulated body
+  const Real t1107 = t1106 - t1086;
+  const Real t1108 = t2 * t1107;
+  const Real t1109 = t1085 - t1108;
+
+  // front_right_thigh: motion
+  const Real t1110 = t1095 * t949;
+
+  // front_right_thigh: motion
+  const Real t1111 = t1110 - t982;
+
+  // front_right_thigh: wrench
+  const Real t1112 = t1111 * constant<Real>(0.0007093L);
+  const Real t1113 = t1097 * constant<Real>(0.0003348L);
+  const Real t1114 = t1112 - t1113;
+  const Real t1115 = constant<Real>(0.0148652L) * t1021;
+  const Real t1116 = t1114 - t1115;
+
+  // front_right_thigh: wrench
+  const Real t1117 = t1030 - t1028;
+  const Real t1118 = t1117 * constant<Real>(0.0003909L);
+
+  // front_right_thigh: wrench
+  const Real t1119 = t1116 + t1118;
+
+  // front_right_thigh: wrench
+  const Real t1120 = constant<Real>(0.0051L) * t1103;
+  const Real t1121 = t1119 - t1120;
+
+  // front_right_shank: articulated body
+  const Real t1122 = t1109 + t1121;
+
+  // front_right_thigh: articulated body
+  const Real t1123 = t1122 + t1069;
+  const Real t1124 = s_r_4_ * t1123;
+  const Real t1125 = t147 * t1068;
+
+  // front_right_shank: articulated body
+  const Real t1126 = t2 * t1084;
+  const Real t1127 = t1107 * t3;
+  const Real t1128 = t1126 + t1127;
+
+  // front_right_shank: joint force
+  const Real t1129 = t1073 * constant<Real>(0.0164990886730146401744L);
+
+  // front_right_shank: articulated body
+  const Real t1130 = t1128 + t1129;
+
+  // front_right_thigh: wrench
+  const Real t1131 = constant<Real>(0.0421328L) * t1097;
+  const Real t1132 = constant<Real>(0.0003909L) * t1052;
+  const Real t1133 = t1132 - t1131;
+  const Real t1134 = t1111 * constant<Real>(0.0003348L);
+  const Real t1135 = t1133 + t1134;
+
+  // front_right_thigh: wrench
+  const Real t1136 = t1059 - t1030;
+  const Real t1137 = constant<Real>(0.0148652L) * t1136;
+
+  // front_right_thigh: wrench
+  const Real t1138 = t1135 + t1137;
+
+  // front_right_thigh: wrench
+  const Real t1139 = t1103 * constant<Real>(0.2108L);
+  const Real t1140 = t1138 + t1139;
+
+  // front_right_shank: articulated body
+  const Real t1141 = t1140 + t1130;
+
+  // front_right_thigh: articulated body
+  const Real t1142 = t1125 + t1141;
+  const Real t1143 = t1142 * c_r_4_;
+  const Real t1144 = t1124 + t1143;
+
+  // front_right_hip: wrench
+  const Real t1145 = t1009 * constant<Real>(0.17239L);
+  const Real t1146 = t1101 * constant<Real>(0.0013L);
+  const Real t1147 = t1145 - t1146;
+
+  // front_right_hip: wrench
+  const Real t1148 = t980 * constant<Real>(0.01086708L);
+  const Real t1149 = t962 * constant<Real>(0.0360627L);
+  const Real t1150 = t1148 - t1149;
+  const Real t1151 = constant<Real>(0.0002678L) * t977;
+  const Real t1152 = t1150 - t1151;
+
+  // front_right_hip: motion
+  const Real t1153 = t941 * t941;
+  const Real t1154 = t973 * t973;
+
+  // front_right_hip: wrench
+  const Real t1155 = t1153 - t1154;
+  const Real t1156 = t1155 * constant<Real>(0.0000473L);
+
+  // front_right_hip: wrench
+  const Real t1157 = t1152 - t1156;
+
+  // front_right_hip: wrench
+  const Real t1158 = t1147 + t1157;
+
+  // front_right_thigh: articulated body
+  const Real t1159 = t1158 + t1144;
+
+  // front_right_hip: articulated body
+  const Real t1160 = tau[3] - t1159;
+
+  // factor and solution
+  const Real t1161 = t239 * t1160;
+
+  // front_right_thigh: articulated body
+  const Real t1162 = t214 * t1068;
+
+  // front_right_shank: articulated body
+  const Real t1163 = t2 * t1041;
+
+  // front_right_shank: joint force
+  const Real t1164 = t1046 * t3;
+
+  // front_right_shank: articulated body
+  const Real t1165 = t1164 + t1163;
+
+  // front_right_thigh: wrench
+  const Real t1166 = t1031 * constant<Real>(0.2108L);
+
+  // front_right_thigh: wrench
+  const Real t1167 = constant<Real>(0.0051L) * t1052;
+  const Real t1168 = t1166 - t1167;
+
+  // front_right_shank: articulated body
+  const Real t1169 = t1168 - t1165;
+
+  // front_right_thigh: articulated body
+  const Real t1170 = t1169 + t1162;
+  const Real t1171 = t1170 * s_r_4_;
+
+  // factor and solution
+  const Real t1172 = t1171 + t1161;
+
+  // hind_right_hip: motion
+  const Real t1173 = eta[3] + r_dot[9];
+  const Real t1174 = t1173 * constant<Real>(2.0L);
+  const Real t1175 = c_r_9_ * eta[5];
+  const Real t1176 = s_r_9_ * eta[4];
+  const Real t1177 = t1175 - t1176;
+  const Real t1178 = t1174 * t1177;
+
+  // hind_right_hip: motion
+  const Real t1179 = c_r_9_ * t958;
+  const Real t1180 = s_r_9_ * t960;
+  const Real t1181 = t1179 - t1180;
+  const Real t1182 = t1178 - t1181;
+
+  // front_left_hip: joint force
+  const Real t1183 = t1182 + t963;
+  const Real t1184 = t1183 * constant<Real>(0.0013L);
+
+  // hind_right_hip: motion
+  const Real t1185 = s_r_9_ * eta[5];
+  const Real t1186 = c_r_9_ * eta[4];
+  const Real t1187 = t1185 + t1186;
+  const Real t1188 = t1174 * t1187;
+
+  // hind_right_hip: motion
+  const Real t1189 = s_r_9_ * t958;
+  const Real t1190 = c_r_9_ * t960;
+  const Real t1191 = t1189 + t1190;
+  const Real t1192 = t1188 - t1191;
+
+  // front_left_hip: joint force
+  const Real t1193 = t978 + t1192;
+  const Real t1194 = t1193 * constant<Real>(0.17239L);
+  const Real t1195 = t1184 - t1194;
+
+  // factor and solution
+  const Real t1196 = t1195 + t1172;
+
+  // hind_right_thigh: motion
+  const Real t1197 = t1177 * c_r_10_;
+  const Real t1198 = t1173 * s_r_10_;
+  const Real t1199 = t1197 + t1198;
+
+  // hind_right_shank: motion
+  const Real t1200 = t1199 * t9;
+
+  // hind_right_thigh: motion
+  const Real t1201 = t1177 * s_r_10_;
+  const Real t1202 = t1173 * c_r_10_;
+  const Real t1203 = t1202 - t1201;
+
+  // hind_right_shank: motion
+  const Real t1204 = t8 * t1203;
+  const Real t1205 = t1200 + t1204;
+  const Real t1206 = t1203 * t9;
+  const Real t1207 = t8 * t1199;
+  const Real t1208 = t1206 - t1207;
+  const Real t1209 = t1205 * t1208;
+
+  // hind_right_thigh: motion
+  const Real t1210 = t1177 * t1173;
+
+  // hind_right_thigh: motion
+  const Real t1211 = t1182 - t1210;
+
+  // hind_right_shank: motion
+  const Real t1212 = t1209 + t1211;
+
+  // hind_right_shank: wrench
+  const Real t1213 = t1212 * constant<Real>(0.0129142756403275773944L);
+
+  // hind_right_shank: motion
+  const Real t1214 = t1209 - t1211;
+
+  // hind_right_shank: wrench
+  const Real t1215 = t1214 * constant<Real>(0.0000328443596724226056129L);
+  const Real t1216 = t1213 - t1215;
+
+  // hind_right_thigh: motion
+  const Real t1217 = t1192 * c_r_10_;
+
+  // hind_right_hip: motion
+  const Real t1218 = t1177 * t1187;
+
+  // hind_right_thigh: motion
+  const Real t1219 = t1218 * s_r_10_;
+  const Real t1220 = t1217 - t1219;
+
+  // hind_right_shank: motion
+  const Real t1221 = t1220 * t9;
+
+  // hind_right_thigh: motion
+  const Real t1222 = t1192 * s_r_10_;
+  const Real t1223 = c_r_10_ * t1218;
+  const Real t1224 = t1223 + t1222;
+
+  // hind_right_shank: motion
+  const Real t1225 = t1224 * t8;
+  const Real t1226 = t1221 - t1225;
+
+  // hind_right_shank: wrench
+  const Real t1227 = constant<Real>(0.00603717424774589637822L) * t1226;
+  const Real t1228 = t1216 - t1227;
+
+  // hind_right_shank: motion
+  const Real t1229 = t1220 * t8;
+  const Real t1230 = t1224 * t9;
+  const Real t1231 = t1229 + t1230;
+
+  // hind_right_shank: wrench
+  const Real t1232 = constant<Real>(4.58207125849616419464e-7L) * t1231;
+  const Real t1233 = t1228 - t1232;
+
+  // hind_right_shank: motion
+  const Real t1234 = t1208 * t1208;
+  const Real t1235 = t1205 * t1205;
+
+  // hind_right_shank: wrench
+  const Real t1236 = t1234 - t1235;
+  const Real t1237 = constant<Real>(4.68432916485436730503e-6L) * t1236;
+
+  // hind_right_shank: wrench
+  const Real t1238 = t1237 + t1233;
+
+  // hind_right_hip: motion
+  const Real t1239 = s_r_9_ * t1004;
+  const Real t1240 = c_r_9_ * t1007;
+  const Real t1241 = t1239 + t1240;
+
+  // hind_right_thigh: motion
+  const Real t1242 = t1181 * constant<Real>(0.21L);
+
+  // hind_right_thigh: motion
+  const Real t1243 = t1241 + t1242;
+  const Real t1244 = t1243 * s_r_10_;
+
+  // hind_right_hip: motion
+  const Real t1245 = t1015 - t1016;
+
+  // hind_right_thigh: motion
+  const Real t1246 = t1245 * c_r_10_;
+  const Real t1247 = t1244 + t1246;
+
+  // hind_right_thigh: motion
+  const Real t1248 = t1203 * t1199;
+
+  // hind_right_thigh: motion
+  const Real t1249 = t1248 + t1211;
+
+  // hind_right_shank: motion
+  const Real t1250 = t1249 * constant<Real>(0.24L);
+
+  // hind_right_shank: motion
+  const Real t1251 = t1247 - t1250;
+  const Real t1252 = t1251 * t9;
+
+  // hind_right_thigh: motion
+  const Real t1253 = t1243 * c_r_10_;
+  const Real t1254 = t1245 * s_r_10_;
+  const Real t1255 = t1254 - t1253;
+
+  // hind_right_thigh: motion
+  const Real t1256 = t1203 * t1203;
+  const Real t1257 = r_dot[10] + t1187;
+  const Real t1258 = t1257 * t1257;
+  const Real t1259 = t1258 + t1256;
+
+  // hind_right_shank: motion
+  const Real t1260 = constant<Real>(0.24L) * t1259;
+
+  // hind_right_shank: motion
+  const Real t1261 = t1260 + t1255;
+  const Real t1262 = t1261 * t8;
+  const Real t1263 = t1252 - t1262;
+
+  // hind_right_shank: wrench
+  const Real t1264 = constant<Real>(0.0687462028042276673933L) * t1263;
+  const Real t1265 = t1264 + t1238;
+
+  // hind_right_shank: articulated body
+  const Real t1266 = tau[11] - t1265;
+  const Real t1267 = constant<Real>(5.30976794871968958296L) * t1266;
+
+  // hind_right_shank: wrench
+  const Real t1268 = constant<Real>(0.0687462028042276673933L) * t1212;
+
+  // hind_right_shank: articulated body
+  const Real t1269 = t1267 + t1268;
+  const Real t1270 = t1269 * t9;
+
+  // hind_right_shank: motion
+  const Real t1271 = t1257 + r_dot[11];
+  const Real t1272 = t1271 * t1271;
+  const Real t1273 = t1272 + t1234;
+
+  // hind_right_shank: wrench
+  const Real t1274 = t1273 * constant<Real>(0.0687462028042276673933L);
+
+  // hind_right_shank: joint force
+  const Real t1275 = t8 * t1274;
+
+  // hind_right_shank: articulated body
+  const Real t1276 = t1270 - t1275;
+  const Real t1277 = constant<Real>(0.24L) * t1276;
+  const Real t1278 = tau[11] - t1277;
+
+  // hind_right_thigh: wrench
+  const Real t1279 = constant<Real>(0.0421328L) * t1249;
+
+  // hind_right_thigh: motion
+  const Real t1280 = t1248 - t1211;
+
+  // hind_right_thigh: wrench
+  const Real t1281 = t1280 * constant<Real>(0.0007093L);
+  const Real t1282 = t1279 - t1281;
+  const Real t1283 = t1220 * constant<Real>(0.0148652L);
+  const Real t1284 = t1282 + t1283;
+  const Real t1285 = t1224 * constant<Real>(0.0003909L);
+  const Real t1286 = t1284 - t1285;
+
+  // hind_right_thigh: motion
+  const Real t1287 = t1199 * t1199;
+
+  // hind_right_thigh: wrench
+  const Real t1288 = t1256 - t1287;
+  const Real t1289 = t1288 * constant<Real>(0.0003348L);
+
+  // hind_right_thigh: wrench
+  const Real t1290 = t1286 - t1289;
+
+  // hind_right_thigh: wrench
+  const Real t1291 = constant<Real>(0.0051L) * t1255;
+  const Real t1292 = t1247 * constant<Real>(0.2108L);
+  const Real t1293 = t1291 - t1292;
+  const Real t1294 = t1293 + t1290;
+
+  // hind_right_shank: articulated body
+  const Real t1295 = t1294 + t1278;
+
+  // hind_right_thigh: articulated body
+  const Real t1296 = tau[10] - t1295;
+  const Real t1297 = t1296 * t45;
+
+  // hind_right_shank: articulated body
+  const Real t1298 = constant<Real>(0.0000353906603051193176138L) * t1266;
+
+  // hind_right_shank: motion
+  const Real t1299 = t1271 * constant<Real>(2.0L);
+  const Real t1300 = t1205 * t1299;
+
+  // hind_right_shank: motion
+  const Real t1301 = t1300 - t1231;
+
+  // hind_right_shank: wrench
+  const Real t1302 = t1301 * constant<Real>(0.0129142756403275773944L);
+  const Real t1303 = t1214 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t1304 = t1303 - t1302;
+
+  // hind_right_shank: motion
+  const Real t1305 = t1299 * t1208;
+
+  // hind_right_shank: motion
+  const Real t1306 = t1305 - t1226;
+
+  // hind_right_shank: wrench
+  const Real t1307 = constant<Real>(4.68432916485436730503e-6L) * t1306;
+  const Real t1308 = t1304 - t1307;
+
+  // hind_right_shank: wrench
+  const Real t1309 = t1235 - t1272;
+  const Real t1310 = constant<Real>(0.00603717424774589637822L) * t1309;
+
+  // hind_right_shank: wrench
+  const Real t1311 = t1308 - t1310;
+
+  // hind_right_thigh: motion
+  const Real t1312 = t1257 * constant<Real>(2.0L);
+  const Real t1313 = t1312 * t1199;
+
+  // hind_right_thigh: motion
+  const Real t1314 = t1313 - t1224;
+
+  // hind_right_shank: motion
+  const Real t1315 = constant<Real>(0.24L) * t1314;
+
+  // hind_right_hip: motion
+  const Real t1316 = c_r_9_ * t1004;
+  const Real t1317 = s_r_9_ * t1007;
+  const Real t1318 = t1316 - t1317;
+
+  // hind_right_thigh: motion
+  const Real t1319 = constant<Real>(0.21L) * t1191;
+
+  // hind_right_thigh: motion
+  const Real t1320 = t1318 - t1319;
+
+  // hind_right_shank: motion
+  const Real t1321 = t1320 - t1315;
+
+  // hind_right_shank: wrench
+  const Real t1322 = t1321 * constant<Real>(0.0687462028042276673933L);
+  const Real t1323 = t1311 - t1322;
+
+  // hind_right_shank: articulated body
+  const Real t1324 = t1323 - t1298;
+  const Real t1325 = t1324 * t9;
+  const Real t1326 = constant<Real>(0.466294762676633597142L) * t1266;
+
+  // hind_right_shank: wrench
+  const Real t1327 = t1301 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t1328 = t1306 * constant<Real>(0.0000328443596724226056129L);
+  const Real t1329 = t1327 + t1328;
+  const Real t1330 = constant<Real>(0.00603717424774589637822L) * t1212;
+  const Real t1331 = t1330 + t1329;
+
+  // hind_right_shank: wrench
+  const Real t1332 = t1272 - t1234;
+  const Real t1333 = constant<Real>(4.58207125849616419464e-7L) * t1332;
+
+  // hind_right_shank: wrench
+  const Real t1334 = t1331 + t1333;
+
+  // hind_right_shank: articulated body
+  const Real t1335 = t1326 + t1334;
+  const Real t1336 = t1335 * t8;
+  const Real t1337 = t1325 + t1336;
+
+  // hind_right_shank: joint force
+  const Real t1338 = t1301 * constant<Real>(0.0164990886730146401744L);
+
+  // hind_right_shank: articulated body
+  const Real t1339 = t1337 + t1338;
+
+  // hind_right_thigh: wrench
+  const Real t1340 = constant<Real>(0.0421328L) * t1314;
+  const Real t1341 = constant<Real>(0.0003909L) * t1280;
+  const Real t1342 = t1341 - t1340;
+
+  // hind_right_thigh: motion
+  const Real t1343 = t1312 * t1203;
+
+  // hind_right_thigh: motion
+  const Real t1344 = t1343 - t1220;
+
+  // hind_right_thigh: wrench
+  const Real t1345 = t1344 * constant<Real>(0.0003348L);
+  const Real t1346 = t1345 + t1342;
+
+  // hind_right_thigh: wrench
+  const Real t1347 = t1287 - t1258;
+  const Real t1348 = constant<Real>(0.0148652L) * t1347;
+
+  // hind_right_thigh: wrench
+  const Real t1349 = t1348 + t1346;
+
+  // hind_right_thigh: wrench
+  const Real t1350 = t1320 * constant<Real>(0.2108L);
+  const Real t1351 = t1350 + t1349;
+
+  // hind_right_shank: articulated body
+  const Real t1352 = t1351 + t1339;
+
+  // hind_right_thigh: articulated body
+  const Real t1353 = t1297 + t1352;
+  const Real t1354 = t1353 * c_r_10_;
+  const Real t1355 = t1296 * t25;
+
+  // hind_right_shank: articulated body
+  const Real t1356 = t1335 * t9;
+  const Real t1357 = t1324 * t8;
+  const Real t1358 = t1356 - t1357;
+
+  // hind_right_thigh: wrench
+  const Real t1359 = t1344 * constant<Real>(0.0007093L);
+  const Real t1360 = t1314 * constant<Real>(0.0003348L);
+  const Real t1361 = t1359 - t1360;
+  const Real t1362 = t1249 * constant<Real>(0.0148652L);
+  const Real t1363 = t1361 - t1362;
+
+  // hind_right_thigh: wrench
+  const Real t1364 = t1258 - t1256;
+  const Real t1365 = t1364 * constant<Real>(0.0003909L);
+
+  // hind_right_thigh: wrench
+  const Real t1366 = t1365 + t1363;
+
+  // hind_right_thigh: wrench
+  const Real t1367 = constant<Real>(0.0051L) * t1320;
+  const Real t1368 = t1366 - t1367;
+
+  // hind_right_shank: articulated body
+  const Real t1369 = t1358 + t1368;
+
+  // hind_right_thigh: articulated body
+  const Real t1370 = t1355 + t1369;
+  const Real t1371 = t1370 * s_r_10_;
+  const Real t1372 = t1354 + t1371;
+
+  // hind_right_hip: wrench
+  const Real t1373 = t1218 * constant<Real>(0.01086708L);
+  const Real t1374 = t1181 * constant<Real>(0.0360627L);
+  const Real t1375 = t1373 + t1374;
+  const Real t1376 = constant<Real>(0.0002678L) * t1191;
+  const Real t1377 = t1375 + t1376;
+
+  // hind_right_hip: motion
+  const Real t1378 = t1177 * t1177;
+  const Real t1379 = t1187 * t1187;
+
+  // hind_right_hip: wrench
+  const Real t1380 = t1378 - t1379;
+  const Real t1381 = t1380 * constant<Real>(0.0000473L);
+
+  // hind_right_hip: wrench
+  const Real t1382 = t1377 - t1381;
+
+  // hind_right_hip: wrench
+  const Real t1383 = t1241 * constant<Real>(0.17239L);
+  const Real t1384 = constant<Real>(0.0013L) * t1318;
+  const Real t1385 = t1383 - t1384;
+  const Real t1386 = t1382 + t1385;
+
+  // hind_right_thigh: articulated body
+  const Real t1387 = t1372 + t1386;
+
+  // hind_right_hip: articulated body
+  const Real t1388 = tau[9] - t1387;
+
+  // factor and solution
+  const Real t1389 = t1388 * t234;
+
+  // front_right_thigh: articulated body
+  const Real t1390 = t217 * t1068;
+
+  // front_right_thigh: motion
+  const Real t1391 = t1059 + t1030;
+
+  // front_right_thigh: wrench
+  const Real t1392 = t1391 * constant<Real>(0.0051L);
+
+  // front_right_thigh: wrench
+  const Real t1393 = t1021 * constant<Real>(0.2108L);
+  const Real t1394 = t1392 - t1393;
+
+  // front_right_shank: articulated body
+  const Real t1395 = t1394 + t1048;
+
+  // front_right_thigh: articulated body
+  const Real t1396 = t1395 + t1390;
+  const Real t1397 = t1396 * c_r_4_;
+
+  // factor and solution
+  const Real t1398 = t1397 + t1389;
+
+  // hind_right_thigh: articulated body
+  const Real t1399 = t1296 * t104;
+
+  // hind_right_shank: articulated body
+  const Real t1400 = t1269 * t8;
+
+  // hind_right_shank: joint force
+  const Real t1401 = t1274 * t9;
+
+  // hind_right_shank: articulated body
+  const Real t1402 = t1401 + t1400;
+
+  // hind_right_thigh: wrench
+  const Real t1403 = t1259 * constant<Real>(0.2108L);
+
+  // hind_right_thigh: wrench
+  const Real t1404 = constant<Real>(0.0051L) * t1280;
+  const Real t1405 = t1403 - t1404;
+
+  // hind_right_shank: articulated body
+  const Real t1406 = t1405 - t1402;
+
+  // hind_right_thigh: articulated body
+  const Real t1407 = t1399 + t1406;
+  const Real t1408 = t1407 * s_r_10_;
+  const Real t1409 = t1296 * t107;
+
+  // hind_right_thigh: motion
+  const Real t1410 = t1287 + t1258;
+
+  // hind_right_thigh: wrench
+  const Real t1411 = t1410 * constant<Real>(0.0051L);
+
+  // hind_right_thigh: wrench
+  const Real t1412 = t1249 * constant<Real>(0.2108L);
+  const Real t1413 = t1411 - t1412;
+
+  // hind_right_shank: articulated body
+  const Real t1414 = t1276 + t1413;
+
+  // hind_right_thigh: articulated body
+  const Real t1415 = t1409 + t1414;
+  const Real t1416 = t1415 * c_r_10_;
+  const Real t1417 = t1408 + t1416;
+
+  // factor and solution
+  const Real t1418 = t1398 + t1417;
+  const Real t1419 = t1196 + t1418;
+
+  // hind_left_hip: motion
+  const Real t1420 = c_r_6_ * eta[5];
+  const Real t1421 = eta[4] * s_r_6_;
+  const Real t1422 = t1420 - t1421;
+
+  // hind_left_thigh: motion
+  const Real t1423 = t1422 * c_r_7_;
+
+  // hind_left_hip: motion
+  const Real t1424 = r_dot[6] + eta[3];
+
+  // hind_left_thigh: motion
+  const Real t1425 = t1424 * s_r_7_;
+  const Real t1426 = t1425 + t1423;
+
+  // hind_left_shank: motion
+  const Real t1427 = t6 * t1426;
+
+  // hind_left_thigh: motion
+  const Real t1428 = t1422 * s_r_7_;
+  const Real t1429 = t1424 * c_r_7_;
+  const Real t1430 = t1429 - t1428;
+
+  // hind_left_shank: motion
+  const Real t1431 = t5 * t1430;
+  const Real t1432 = t1427 + t1431;
+  const Real t1433 = t6 * t1430;
+  const Real t1434 = t5 * t1426;
+  const Real t1435 = t1433 - t1434;
+  const Real t1436 = t1432 * t1435;
+
+  // hind_left_hip: motion
+  const Real t1437 = t1424 * constant<Real>(2.0L);
+  const Real t1438 = t1422 * t1437;
+
+  // hind_left_hip: motion
+  const Real t1439 = t958 * c_r_6_;
+  const Real t1440 = t960 * s_r_6_;
+  const Real t1441 = t1439 - t1440;
+  const Real t1442 = t1438 - t1441;
+
+  // hind_left_thigh: motion
+  const Real t1443 = t1424 * t1422;
+
+  // hind_left_thigh: motion
+  const Real t1444 = t1442 - t1443;
+
+  // hind_left_shank: motion
+  const Real t1445 = t1444 + t1436;
+
+  // hind_left_shank: wrench
+  const Real t1446 = t1445 * constant<Real>(0.0129142756403275773944L);
+
+  // hind_left_shank: motion
+  const Real t1447 = t1436 - t1444;
+
+  // hind_left_shank: wrench
+  const Real t1448 = t1447 * constant<Real>(0.0000328443596724226056129L);
+  const Real t1449 = t1446 - t1448;
+
+  // hind_left_hip: motion
+  const Real t1450 = s_r_6_ * eta[5];
+  const Real t1451 = eta[4] * c_r_6_;
+  const Real t1452 = t1450 + t1451;
+  const Real t1453 = t1452 * t1437;
+
+  // hind_left_hip: motion
+  const Real t1454 = t958 * s_r_6_;
+  const Real t1455 = t960 * c_r_6_;
+  const Real t1456 = t1454 + t1455;
+  const Real t1457 = t1453 - t1456;
+
+  // hind_left_thigh: motion
+  const Real t1458 = c_r_7_ * t1457;
+
+  // hind_left_hip: motion
+  const Real t1459 = t1452 * t1422;
+
+  // hind_left_thigh: motion
+  const Real t1460 = s_r_7_ * t1459;
+  const Real t1461 = t1458 - t1460;
+
+  // hind_left_shank: motion
+  const Real t1462 = t6 * t1461;
+
+  // hind_left_thigh: motion
+  const Real t1463 = s_r_7_ * t1457;
+  const Real t1464 = c_r_7_ * t1459;
+  const Real t1465 = t1464 + t1463;
+
+  // hind_left_shank: motion
+  const Real t1466 = t5 * t1465;
+  const Real t1467 = t1462 - t1466;
+
+  // hind_left_shank: wrench
+  const Real t1468 = constant<Real>(0.00603717424774589637822L) * t1467;
+  const Real t1469 = t1449 + t1468;
+
+  // hind_left_shank: motion
+  const Real t1470 = t6 * t1465;
+  const Real t1471 = t5 * t1461;
+  const Real t1472 = t1470 + t1471;
+
+  // hind_left_shank: wrench
+  const Real t1473 = constant<Real>(4.58207125849616419464e-7L) * t1472;
+  const Real t1474 = t1469 + t1473;
+
+  // hind_left_shank: motion
+  const Real t1475 = t1435 * t1435;
+  const Real t1476 = t1432 * t1432;
+
+  // hind_left_shank: wrench
+  const Real t1477 = t1475 - t1476;
+  const Real t1478 = t1477 * constant<Real>(4.68432916485436730503e-6L);
+
+  // hind_left_shank: wrench
+  const Real t1479 = t1474 + t1478;
+
+  // hind_left_hip: motion
+  const Real t1480 = t1004 * s_r_6_;
+  const Real t1481 = t1007 * c_r_6_;
+  const Real t1482 = t1480 + t1481;
+
+  // hind_left_thigh: motion
+  const Real t1483 = t1441 * constant<Real>(0.21L);
+
+  // hind_left_thigh: motion
+  const Real t1484 = t1482 - t1483;
+  const Real t1485 = t1484 * s_r_7_;
+  const Real t1486 = t1017 * c_r_7_;
+  const Real t1487 = t1486 - t1485;
+
+  // hind_left_thigh: motion
+  const Real t1488 = t1426 * t1430;
+
+  // hind_left_thigh: motion
+  const Real t1489 = t1444 + t1488;
+
+  // hind_left_shank: motion
+  const Real t1490 = t1489 * constant<Real>(0.24L);
+
+  // hind_left_shank: motion
+  const Real t1491 = t1487 - t1490;
+  const Real t1492 = t6 * t1491;
+
+  // hind_left_thigh: motion
+  const Real t1493 = t1484 * c_r_7_;
+  const Real t1494 = t1017 * s_r_7_;
+  const Real t1495 = t1493 + t1494;
+
+  // hind_left_thigh: motion
+  const Real t1496 = t1430 * t1430;
+  const Real t1497 = t1452 + r_dot[7];
+  const Real t1498 = t1497 * t1497;
+  const Real t1499 = t1496 + t1498;
+
+  // hind_left_shank: motion
+  const Real t1500 = constant<Real>(0.24L) * t1499;
+
+  // hind_left_shank: motion
+  const Real t1501 = t1495 + t1500;
+  const Real t1502 = t5 * t1501;
+  const Real t1503 = t1492 - t1502;
+
+  // hind_left_shank: wrench
+  const Real t1504 = constant<Real>(0.0687462028042276673933L) * t1503;
+  const Real t1505 = t1479 + t1504;
+
+  // hind_left_shank: articulated body
+  const Real t1506 = tau[8] - t1505;
+  const Real t1507 = constant<Real>(5.30976794871968958296L) * t1506;
+
+  // hind_left_shank: wrench
+  const Real t1508 = t1445 * constant<Real>(0.0687462028042276673933L);
+
+  // hind_left_shank: articulated body
+  const Real t1509 = t1508 + t1507;
+  const Real t1510 = t6 * t1509;
+
+  // hind_left_shank: motion
+  const Real t1511 = r_dot[8] + t1497;
+  const Real t1512 = t1511 * t1511;
+  const Real t1513 = t1512 + t1475;
+
+  // hind_left_shank: wrench
+  const Real t1514 = t1513 * constant<Real>(0.0687462028042276673933L);
+
+  // hind_left_shank: joint force
+  const Real t1515 = t5 * t1514;
+
+  // hind_left_shank: articulated body
+  const Real t1516 = t1510 - t1515;
+  const Real t1517 = constant<Real>(0.24L) * t1516;
+  const Real t1518 = tau[8] - t1517;
+
+  // hind_left_thigh: wrench
+  const Real t1519 = constant<Real>(0.0421328L) * t1489;
+
+  // hind_left_thigh: motion
+  const Real t1520 = t1488 - t1444;
+
+  // hind_left_thigh: wrench
+  const Real t1521 = t1520 * constant<Real>(0.0007093L);
+  const Real t1522 = t1519 - t1521;
+  const Real t1523 = constant<Real>(0.0148652L) * t1461;
+  const Real t1524 = t1522 - t1523;
+  const Real t1525 = constant<Real>(0.0003909L) * t1465;
+  const Real t1526 = t1524 + t1525;
+
+  // hind_left_thigh: motion
+  const Real t1527 = t1426 * t1426;
+
+  // hind_left_thigh: wrench
+  const Real t1528 = t1496 - t1527;
+  const Real t1529 = t1528 * constant<Real>(0.0003348L);
+
+  // hind_left_thigh: wrench
+  const Real t1530 = t1526 - t1529;
+
+  // hind_left_thigh: wrench
+  const Real t1531 = t1495 * constant<Real>(0.0051L);
+  const Real t1532 = t1487 * constant<Real>(0.2108L);
+  const Real t1533 = t1531 - t1532;
+  const Real t1534 = t1530 + t1533;
+
+  // hind_left_shank: articulated body
+  const Real t1535 = t1518 + t1534;
+
+  // hind_left_thigh: articulated body
+  const Real t1536 = tau[7] - t1535;
+  const Real t1537 = t1536 * t261;
+
+  // hind_left_shank: articulated body
+  const Real t1538 = constant<Real>(0.466294762676633597142L) * t1506;
+
+  // hind_left_shank: motion
+  const Real t1539 = t1511 * constant<Real>(2.0L);
+  const Real t1540 = t1539 * t1435;
+
+  // hind_left_shank: motion
+  const Real t1541 = t1540 - t1467;
+
+  // hind_left_shank: wrench
+  const Real t1542 = t1541 * constant<Real>(0.0000328443596724226056129L);
+
+  // hind_left_shank: motion
+  const Real t1543 = t1432 * t1539;
+
+  // hind_left_shank: motion
+  const Real t1544 = t1543 - t1472;
+
+  // hind_left_shank: wrench
+  const Real t1545 = t1544 * constant<Real>(4.68432916485436730503e-6L);
+  const Real t1546 = t1542 + t1545;
+  const Real t1547 = constant<Real>(0.00603717424774589637822L) * t1445;
+  const Real t1548 = t1546 - t1547;
+
+  // hind_left_shank: wrench
+  const Real t1549 = t1512 - t1475;
+  const Real t1550 = t1549 * constant<Real>(4.58207125849616419464e-7L);
+
+  // hind_left_shank: wrench
+  const Real t1551 = t1548 - t1550;
+
+  // hind_left_shank: articulated body
+  const Real t1552 = t1551 - t1538;
+  const Real t1553 = t1552 * t5;
+  const Real t1554 = constant<Real>(0.0000353906603051193176138L) * t1506;
+
+  // hind_left_shank: wrench
+  const Real t1555 = t1544 * constant<Real>(0.0129142756403275773944L);
+  const Real t1556 = t1447 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t1557 = t1556 + t1555;
+  const Real t1558 = constant<Real>(4.68432916485436730503e-6L) * t1541;
+  const Real t1559 = t1557 + t1558;
+
+  // hind_left_shank: wrench
+  const Real t1560 = t1476 - t1512;
+  const Real t1561 = constant<Real>(0.00603717424774589637822L) * t1560;
+
+  // hind_left_shank: wrench
+  const Real t1562 = t1561 - t1559;
+
+  // hind_left_thigh: motion
+  const Real t1563 = t1497 * constant<Real>(2.0L);
+  const Real t1564 = t1426 * t1563;
+
+  // hind_left_thigh: motion
+  const Real t1565 = t1564 - t1465;
+
+  // hind_left_shank: motion
+  const Real t1566 = constant<Real>(0.24L) * t1565;
+
+  // hind_left_hip: motion
+  const Real t1567 = t1004 * c_r_6_;
+  const Real t1568 = t1007 * s_r_6_;
+  const Real t1569 = t1568 - t1567;
+
+  // hind_left_thigh: motion
+  const Real t1570 = t1456 * constant<Real>(0.21L);
+
+  // hind_left_thigh: motion
+  const Real t1571 = t1569 - t1570;
+
+  // hind_left_shank: motion
+  const Real t1572 = t1571 - t1566;
+
+  // hind_left_shank: wrench
+  const Real t1573 = t1572 * constant<Real>(0.0687462028042276673933L);
+  const Real t1574 = t1562 - t1573;
+
+  // hind_left_shank: articulated body
+  const Real t1575 = t1574 + t1554;
+  const Real t1576 = t6 * t1575;
+  const Real t1577 = t1553 + t1576;
+
+  // hind_left_shank: joint force
+  const Real t1578 = t1544 * constant<Real>(0.0164990886730146401744L);
+
+  // hind_left_shank: articulated body
+  const Real t1579 = t1577 + t1578;
+
+  // hind_left_thigh: wrench
+  const Real t1580 = constant<Real>(0.0421328L) * t1565;
+  const Real t1581 = t1520 * constant<Real>(0.0003909L);
+  const Real t1582 = t1580 + t1581;
+
+  // hind_left_thigh: motion
+  const Real t1583 = t1563 * t1430;
+
+  // hind_left_thigh: motion
+  const Real t1584 = t1583 - t1461;
+
+  // hind_left_thigh: wrench
+  const Real t1585 = t1584 * constant<Real>(0.0003348L);
+  const Real t1586 = t1585 - t1582;
+
+  // hind_left_thigh: wrench
+  const Real t1587 = t1527 - t1498;
+  const Real t1588 = constant<Real>(0.0148652L) * t1587;
+
+  // hind_left_thigh: wrench
+  const Real t1589 = t1586 - t1588;
+
+  // hind_left_thigh: wrench
+  const Real t1590 = t1571 * constant<Real>(0.2108L);
+  const Real t1591 = t1590 + t1589;
+
+  // hind_left_shank: articulated body
+  const Real t1592 = t1591 + t1579;
+
+  // hind_left_thigh: articulated body
+  const Real t1593 = t1537 + t1592;
+  const Real t1594 = c_r_7_ * t1593;
+  const Real t1595 = t271 * t1536;
+
+  // hind_left_shank: articulated body
+  const Real t1596 = t6 * t1552;
+  const Real t1597 = t5 * t1575;
+  const Real t1598 = t1596 - t1597;
+
+  // hind_left_thigh: wrench
+  const Real t1599 = t1584 * constant<Real>(0.0007093L);
+  const Real t1600 = t1565 * constant<Real>(0.0003348L);
+  const Real t1601 = t1599 - t1600;
+  const Real t1602 = constant<Real>(0.0148652L) * t1489;
+  const Real t1603 = t1601 + t1602;
+
+  // hind_left_thigh: wrench
+  const Real t1604 = t1498 - t1496;
+  const Real t1605 = t1604 * constant<Real>(0.0003909L);
+
+  // hind_left_thigh: wrench
+  const Real t1606 = t1603 - t1605;
+
+  // hind_left_thigh: wrench
+  const Real t1607 = constant<Real>(0.0051L) * t1571;
+  const Real t1608 = t1606 - t1607;
+
+  // hind_left_shank: articulated body
+  const Real t1609 = t1608 + t1598;
+
+  // hind_left_thigh: articulated body
+  const Real t1610 = t1595 + t1609;
+  const Real t1611 = s_r_7_ * t1610;
+  const Real t1612 = t1594 + t1611;
+
+  // hind_left_hip: wrench
+  const Real t1613 = t1482 * constant<Real>(0.17239L);
+  const Real t1614 = constant<Real>(0.0013L) * t1569;
+  const Real t1615 = t1613 - t1614;
+
+  // hind_left_hip: wrench
+  const Real t1616 = t1459 * constant<Real>(0.01086708L);
+  const Real t1617 = t1441 * constant<Real>(0.0360627L);
+  const Real t1618 = t1616 - t1617;
+  const Real t1619 = constant<Real>(0.0002678L) * t1456;
+  const Real t1620 = t1619 + t1618;
+
+  // hind_left_hip: motion
+  const Real t1621 = t1422 * t1422;
+  const Real t1622 = t1452 * t1452;
+
+  // hind_left_hip: wrench
+  const Real t1623 = t1621 - t1622;
+  const Real t1624 = t1623 * constant<Real>(0.0000473L);
+
+  // hind_left_hip: wrench
+  const Real t1625 = t1620 + t1624;
+
+  // hind_left_hip: wrench
+  const Real t1626 = t1615 + t1625;
+
+  // hind_left_thigh: articulated body
+  const Real t1627 = t1626 + t1612;
+
+  // hind_left_hip: articulated body
+  const Real t1628 = tau[6] - t1627;
+
+  // factor and solution
+  const Real t1629 = t1628 * t474;
+
+  // hind_left_thigh: articulated body
+  const Real t1630 = t1536 * t321;
+
+  // hind_left_shank: articulated body
+  const Real t1631 = t5 * t1509;
+
+  // hind_left_shank: joint force
+  const Real t1632 = t6 * t1514;
+
+  // hind_left_shank: articulated body
+  const Real t1633 = t1631 + t1632;
+
+  // hind_left_thigh: wrench
+  const Real t1634 = t1499 * constant<Real>(0.2108L);
+
+  // hind_left_thigh: wrench
+  const Real t1635 = t1520 * constant<Real>(0.0051L);
+  const Real t1636 = t1634 - t1635;
+
+  // hind_left_shank: articulated body
+  const Real t1637 = t1636 - t1633;
+
+  // hind_left_thigh: articulated body
+  const Real t1638 = t1630 + t1637;
+  const Real t1639 = s_r_7_ * t1638;
+
+  // factor and solution
+  const Real t1640 = t1629 + t1639;
+
+  // front_left_hip: motion
+  const Real t1641 = c_r_0_ * eta[5];
+  const Real t1642 = s_r_0_ * eta[4];
+  const Real t1643 = t1641 - t1642;
+
+  // front_left_thigh: motion
+  const Real t1644 = t1643 * c_r_1_;
+
+  // front_left_hip: motion
+  const Real t1645 = r_dot[0] + eta[3];
+
+  // front_left_thigh: motion
+  const Real t1646 = s_r_1_ * t1645;
+  const Real t1647 = t1646 + t1644;
+
+  // front_left_shank: motion
+  const Real t1648 = t1647 * t12;
+
+  // front_left_thigh: motion
+  const Real t1649 = t1643 * s_r_1_;
+  const Real t1650 = c_r_1_ * t1645;
+  const Real t1651 = t1650 - t1649;
+
+  // front_left_shank: motion
+  const Real t1652 = t11 * t1651;
+  const Real t1653 = t1648 + t1652;
+  const Real t1654 = t12 * t1651;
+  const Real t1655 = t1647 * t11;
+  const Real t1656 = t1654 - t1655;
+  const Real t1657 = t1653 * t1656;
+
+  // front_left_hip: motion
+  const Real t1658 = t1645 * constant<Real>(2.0L);
+  const Real t1659 = t1643 * t1658;
+
+  // front_left_hip: motion
+  const Real t1660 = c_r_0_ * t958;
+  const Real t1661 = t960 * s_r_0_;
+  const Real t1662 = t1660 - t1661;
+  const Real t1663 = t1659 - t1662;
+
+  // front_left_thigh: motion
+  const Real t1664 = t1643 * t1645;
+
+  // front_left_thigh: motion
+  const Real t1665 = t1663 - t1664;
+
+  // front_left_shank: motion
+  const Real t1666 = t1665 + t1657;
+
+  // front_left_shank: wrench
+  const Real t1667 = t1666 * constant<Real>(0.0129142756403275773944L);
+
+  // front_left_shank: motion
+  const Real t1668 = t1657 - t1665;
+
+  // front_left_shank: wrench
+  const Real t1669 = constant<Real>(0.0000328443596724226056129L) * t1668;
+  const Real t1670 = t1667 - t1669;
+
+  // front_left_hip: motion
+  const Real t1671 = s_r_0_ * eta[5];
+  const Real t1672 = c_r_0_ * eta[4];
+  const Real t1673 = t1671 + t1672;
+  const Real t1674 = t1673 * t1658;
+
+  // front_left_hip: motion
+  const Real t1675 = s_r_0_ * t958;
+  const Real t1676 = c_r_0_ * t960;
+  const Real t1677 = t1675 + t1676;
+  const Real t1678 = t1674 - t1677;
+
+  // front_left_thigh: motion
+  const Real t1679 = t1678 * c_r_1_;
+
+  // front_left_hip: motion
+  const Real t1680 = t1673 * t1643;
+
+  // front_left_thigh: motion
+  const Real t1681 = t1680 * s_r_1_;
+  const Real t1682 = t1679 - t1681;
+
+  // front_left_shank: motion
+  const Real t1683 = t1682 * t12;
+
+  // front_left_thigh: motion
+  const Real t1684 = t1678 * s_r_1_;
+  const Real t1685 = t1680 * c_r_1_;
+  const Real t1686 = t1684 + t1685;
+
+  // front_left_shank: motion
+  const Real t1687 = t11 * t1686;
+  const Real t1688 = t1683 - t1687;
+
+  // front_left_shank: wrench
+  const Real t1689 = t1688 * constant<Real>(0.00603717424774589637822L);
+  const Real t1690 = t1689 + t1670;
+
+  // front_left_shank: motion
+  const Real t1691 = t12 * t1686;
+  const Real t1692 = t11 * t1682;
+  const Real t1693 = t1691 + t1692;
+
+  // front_left_shank: wrench
+  const Real t1694 = t1693 * constant<Real>(4.58207125849616419464e-7L);
+  const Real t1695 = t1694 + t1690;
+
+  // front_left_shank: motion
+  const Real t1696 = t1656 * t1656;
+  const Real t1697 = t1653 * t1653;
+
+  // front_left_shank: wrench
+  const Real t1698 = t1696 - t1697;
+  const Real t1699 = constant<Real>(4.68432916485436730503e-6L) * t1698;
+
+  // front_left_shank: wrench
+  const Real t1700 = t1695 + t1699;
+
+  // front_left_hip: motion
+  const Real t1701 = s_r_0_ * t1004;
+  const Real t1702 = c_r_0_ * t1007;
+  const Real t1703 = t1702 + t1701;
+
+  // front_left_thigh: motion
+  const Real t1704 = constant<Real>(0.21L) * t1662;
+
+  // front_left_thigh: motion
+  const Real t1705 = t1703 + t1704;
+  const Real t1706 = s_r_1_ * t1705;
+
+  // front_left_hip: motion
+  const Real t1707 = t1016 - t1015;
+
+  // front_left_thigh: motion
+  const Real t1708 = c_r_1_ * t1707;
+  const Real t1709 = t1708 - t1706;
+
+  // front_left_thigh: motion
+  const Real t1710 = t1647 * t1651;
+
+  // front_left_thigh: motion
+  const Real t1711 = t1710 + t1665;
+
+  // front_left_shank: motion
+  const Real t1712 = t1711 * constant<Real>(0.24L);
+
+  // front_left_shank: motion
+  const Real t1713 = t1709 - t1712;
+  const Real t1714 = t1713 * t12;
+
+  // front_left_thigh: motion
+  const Real t1715 = c_r_1_ * t1705;
+  const Real t1716 = t1707 * s_r_1_;
+  const Real t1717 = t1716 + t1715;
+
+  // front_left_thigh: motion
+  const Real t1718 = t1651 * t1651;
+  const Real t1719 = r_dot[1] + t1673;
+  const Real t1720 = t1719 * t1719;
+  const Real t1721 = t1718 + t1720;
+
+  // front_left_shank: motion
+  const Real t1722 = constant<Real>(0.24L) * t1721;
+
+  // front_left_shank: motion
+  const Real t1723 = t1717 + t1722;
+  const Real t1724 = t11 * t1723;
+  const Real t1725 = t1714 - t1724;
+
+  // front_left_shank: wrench
+  const Real t1726 = t1725 * constant<Real>(0.0687462028042276673933L);
+  const Real t1727 = t1700 + t1726;
+
+  // front_left_shank: articulated body
+  const Real t1728 = tau[2] - t1727;
+  const Real t1729 = constant<Real>(5.30976794871968958296L) * t1728;
+
+  // front_left_shank: wrench
+  const Real t1730 = t1666 * constant<Real>(0.0687462028042276673933L);
+
+  // front_left_shank: articulated body
+  const Real t1731 = t1730 + t1729;
+  const Real t1732 = t1731 * t12;
+
+  // front_left_shank: motion
+  const Real t1733 = t1719 + r_dot[2];
+  const Real t1734 = t1733 * t1733;
+  const Real t1735 = t1734 + t1696;
+
+  // front_left_shank: wrench
+  const Real t1736 = t1735 * constant<Real>(0.0687462028042276673933L);
+
+  // front_left_shank: joint force
+  const Real t1737 = t11 * t1736;
+
+  // front_left_shank: articulated body
+  const Real t1738 = t1732 - t1737;
+  const Real t1739 = constant<Real>(0.24L) * t1738;
+  const Real t1740 = tau[2] - t1739;
+
+  // front_left_thigh: wrench
+  const Real t1741 = t1711 * constant<Real>(0.0421328L);
+
+  // front_left_thigh: motion
+  const Real t1742 = t1710 - t1665;
+
+  // front_left_thigh: wrench
+  const Real t1743 = t1742 * constant<Real>(0.0007093L);
+  const Real t1744 = t1741 - t1743;
+  const Real t1745 = constant<Real>(0.0148652L) * t1682;
+  const Real t1746 = t1744 - t1745;
+  const Real t1747 = constant<Real>(0.0003909L) * t1686;
+  const Real t1748 = t1746 + t1747;
+
+  // front_left_thigh: motion
+  const Real t1749 = t1647 * t1647;
+
+  // front_left_thigh: wrench
+  const Real t1750 = t1718 - t1749;
+  const Real t1751 = t1750 * constant<Real>(0.0003348L);
+
+  // front_left_thigh: wrench
+  const Real t1752 = t1748 - t1751;
+
+  // front_left_thigh: wrench
+  const Real t1753 = constant<Real>(0.0051L) * t1717;
+  const Real t1754 = constant<Real>(0.2108L) * t1709;
+  const Real t1755 = t1753 - t1754;
+  const Real t1756 = t1755 + t1752;
+
+  // front_left_shank: articulated body
+  const Real t1757 = t1740 + t1756;
+
+  // front_left_thigh: articulated body
+  const Real t1758 = tau[1] - t1757;
+  const Real t1759 = t431 * t1758;
+
+  // front_left_thigh: motion
+  const Real t1760 = t1749 + t1720;
+
+  // front_left_thigh: wrench
+  const Real t1761 = constant<Real>(0.0051L) * t1760;
+
+  // front_left_thigh: wrench
+  const Real t1762 = t1711 * constant<Real>(0.2108L);
+  const Real t1763 = t1761 - t1762;
+
+  // front_left_shank: articulated body
+  const Real t1764 = t1738 + t1763;
+
+  // front_left_thigh: articulated body
+  const Real t1765 = t1764 + t1759;
+  const Real t1766 = c_r_1_ * t1765;
+
+  // hind_left_thigh: articulated body
+  const Real t1767 = t324 * t1536;
+
+  // hind_left_thigh: motion
+  const Real t1768 = t1498 + t1527;
+
+  // hind_left_thigh: wrench
+  const Real t1769 = t1768 * constant<Real>(0.0051L);
+
+  // hind_left_thigh: wrench
+  const Real t1770 = t1489 * constant<Real>(0.2108L);
+  const Real t1771 = t1769 - t1770;
+
+  // hind_left_shank: articulated body
+  const Real t1772 = t1771 + t1516;
+
+  // hind_left_thigh: articulated body
+  const Real t1773 = t1772 + t1767;
+  const Real t1774 = c_r_7_ * t1773;
+
+  // factor and solution
+  const Real t1775 = t1766 + t1774;
+  const Real t1776 = t1775 + t1640;
+
+  // front_left_thigh: articulated body
+  const Real t1777 = t1758 * t370;
+
+  // front_left_shank: articulated body
+  const Real t1778 = constant<Real>(0.466294762676633597142L) * t1728;
+
+  // front_left_shank: motion
+  const Real t1779 = t1733 * constant<Real>(2.0L);
+  const Real t1780 = t1653 * t1779;
+
+  // front_left_shank: motion
+  const Real t1781 = t1780 - t1693;
+
+  // front_left_shank: wrench
+  const Real t1782 = constant<Real>(4.68432916485436730503e-6L) * t1781;
+
+  // front_left_shank: motion
+  const Real t1783 = t1779 * t1656;
+
+  // front_left_shank: motion
+  const Real t1784 = t1783 - t1688;
+
+  // front_left_shank: wrench
+  const Real t1785 = constant<Real>(0.0000328443596724226056129L) * t1784;
+  const Real t1786 = t1782 + t1785;
+  const Real t1787 = constant<Real>(0.00603717424774589637822L) * t1666;
+  const Real t1788 = t1786 - t1787;
+
+  // front_left_shank: wrench
+  const Real t1789 = t1734 - t1696;
+  const Real t1790 = constant<Real>(4.58207125849616419464e-7L) * t1789;
+
+  // front_left_shank: wrench
+  const Real t1791 = t1788 - t1790;
+
+  // front_left_shank: articulated body
+  const Real t1792 = t1791 - t1778;
+  const Real t1793 = t1792 * t12;
+  const Real t1794 = constant<Real>(0.0000353906603051193176138L) * t1728;
+
+  // front_left_shank: wrench
+  const Real t1795 = t1781 * constant<Real>(0.0129142756403275773944L);
+  const Real t1796 = constant<Real>(4.58207125849616419464e-7L) * t1668;
+  const Real t1797 = t1795 + t1796;
+  const Real t1798 = constant<Real>(4.68432916485436730503e-6L) * t1784;
+  const Real t1799 = t1797 + t1798;
+
+  // front_left_shank: wrench
+  const Real t1800 = t1697 - t1734;
+  const Real t1801 = constant<Real>(0.00603717424774589637822L) * t1800;
+
+  // front_left_shank: wrench
+  const Real t1802 = t1801 - t1799;
+
+  // front_left_thigh: motion
+  const Real t1803 = t1719 * constant<Real>(2.0L);
+  const Real t1804 = t1803 * t1647;
+
+  // front_left_thigh: motion
+  const Real t1805 = t1804 - t1686;
+
+  // front_left_shank: motion
+  const Real t1806 = t1805 * constant<Real>(0.24L);
+
+  // front_left_hip: motion
+  const Real t1807 = c_r_0_ * t1004;
+  const Real t1808 = s_r_0_ * t1007;
+  const Real t1809 = t1808 - t1807;
+
+  // front_left_thigh: motion
+  const Real t1810 = t1677 * constant<Real>(0.21L);
+
+  // front_left_thigh: motion
+  const Real t1811 = t1810 + t1809;
+
+  // front_left_shank: motion
+  const Real t1812 = t1811 - t1806;
+
+  // front_left_shank: wrench
+  const Real t1813 = t1812 * constant<Real>(0.0687462028042276673933L);
+  const Real t1814 = t1802 - t1813;
+
+  // front_left_shank: articulated body
+  const Real t1815 = t1814 + t1794;
+  const Real t1816 = t1815 * t11;
+  const Real t1817 = t1793 - t1816;
+
+  // front_left_thigh: motion
+  const Real t1818 = t1803 * t1651;
+
+  // front_left_thigh: motion
+  const Real t1819 = t1818 - t1682;
+
+  // front_left_thigh: wrench
+  const Real t1820 = t1819 * constant<Real>(0.0007093L);
+  const Real t1821 = t1805 * constant<Real>(0.0003348L);
+  const Real t1822 = t1820 - t1821;
+  const Real t1823 = t1711 * constant<Real>(0.0148652L);
+  const Real t1824 = t1823 + t1822;
+
+  // front_left_thigh: wrench
+  const Real t1825 = t1720 - t1718;
+  const Real t1826 = t1825 * constant<Real>(0.0003909L);
+
+  // front_left_thigh: wrench
+  const Real t1827 = t1824 - t1826;
+
+  // front_left_thigh: wrench
+  const Real t1828 = constant<Real>(0.0051L) * t1811;
+  const Real t1829 = t1827 - t1828;
+
+  // front_left_shank: articulated body
+  const Real t1830 = t1829 + t1817;
+
+  // front_left_thigh: articulated body
+  const Real t1831 = t1830 + t1777;
+  const Real t1832 = t1831 * s_r_1_;
+  const Real t1833 = t390 * t1758;
+
+  // front_left_shank: articulated body
+  const Real t1834 = t1815 * t12;
+  const Real t1835 = t1792 * t11;
+  const Real t1836 = t1834 + t1835;
+
+  // front_left_shank: joint force
+  const Real t1837 = constant<Real>(0.0164990886730146401744L) * t1781;
+
+  // front_left_shank: articulated body
+  const Real t1838 = t1836 + t1837;
+
+  // front_left_thigh: wrench
+  const Real t1839 = t1805 * constant<Real>(0.0421328L);
+  const Real t1840 = t1742 * constant<Real>(0.0003909L);
+  const Real t1841 = t1840 + t1839;
+  const Real t1842 = t1819 * constant<Real>(0.0003348L);
+  const Real t1843 = t1842 - t1841;
+
+  // front_left_thigh: wrench
+  const Real t1844 = t1749 - t1720;
+  const Real t1845 = constant<Real>(0.0148652L) * t1844;
+
+  // front_left_thigh: wrench
+  const Real t1846 = t1843 - t1845;
+
+  // front_left_thigh: wrench
+  const Real t1847 = t1811 * constant<Real>(0.2108L);
+  const Real t1848 = t1847 + t1846;
+
+  // front_left_shank: articulated body
+  const Real t1849 = t1838 + t1848;
+
+  // front_left_thigh: articulated body
+  const Real t1850 = t1833 + t1849;
+  const Real t1851 = c_r_1_ * t1850;
+  const Real t1852 = t1832 + t1851;
+
+  // front_left_hip: wrench
+  const Real t1853 = t1703 * constant<Real>(0.17239L);
+  const Real t1854 = constant<Real>(0.0013L) * t1809;
+  const Real t1855 = t1853 - t1854;
+
+  // front_left_hip: wrench
+  const Real t1856 = constant<Real>(0.0360627L) * t1662;
+  const Real t1857 = t1680 * constant<Real>(0.01086708L);
+  const Real t1858 = t1856 + t1857;
+  const Real t1859 = constant<Real>(0.0002678L) * t1677;
+  const Real t1860 = t1858 - t1859;
+
+  // front_left_hip: motion
+  const Real t1861 = t1643 * t1643;
+  const Real t1862 = t1673 * t1673;
+
+  // front_left_hip: wrench
+  const Real t1863 = t1861 - t1862;
+  const Real t1864 = t1863 * constant<Real>(0.0000473L);
+
+  // front_left_hip: wrench
+  const Real t1865 = t1864 + t1860;
+
+  // front_left_hip: wrench
+  const Real t1866 = t1855 + t1865;
+
+  // front_left_thigh: articulated body
+  const Real t1867 = t1852 + t1866;
+
+  // front_left_hip: articulated body
+  const Real t1868 = tau[0] - t1867;
+
+  // factor and solution
+  const Real t1869 = t469 * t1868;
+
+  // front_left_thigh: articulated body
+  const Real t1870 = t434 * t1758;
+
+  // front_left_shank: articulated body
+  const Real t1871 = t1731 * t11;
+
+  // front_left_shank: joint force
+  const Real t1872 = t12 * t1736;
+
+  // front_left_shank: articulated body
+  const Real t1873 = t1872 + t1871;
+
+  // front_left_thigh: wrench
+  const Real t1874 = t1721 * constant<Real>(0.2108L);
+
+  // front_left_thigh: wrench
+  const Real t1875 = constant<Real>(0.0051L) * t1742;
+  const Real t1876 = t1874 - t1875;
+
+  // front_left_shank: articulated body
+  const Real t1877 = t1876 - t1873;
+
+  // front_left_thigh: articulated body
+  const Real t1878 = t1877 + t1870;
+  const Real t1879 = s_r_1_ * t1878;
+
+  // factor and solution
+  const Real t1880 = t1869 + t1879;
+
+  // front_left_hip: joint force
+  const Real t1881 = t1442 + t1663;
+  const Real t1882 = constant<Real>(0.0013L) * t1881;
+  const Real t1883 = t1678 + t1457;
+  const Real t1884 = constant<Real>(0.17239L) * t1883;
+  const Real t1885 = t1882 + t1884;
+
+  // factor and solution
+  const Real t1886 = t1885 + t1880;
+  const Real t1887 = t1776 + t1886;
+  const Real t1888 = t1419 - t1887;
+  const Real t1889 = t1888 * constant<Real>(0.06L);
+
+  // front_right_thigh: articulated body
+  const Real t1890 = t1170 * c_r_4_;
+  const Real t1891 = t1396 * s_r_4_;
+  const Real t1892 = t1890 - t1891;
+  const Real t1893 = t1892 * constant<Real>(0.21L);
+  const Real t1894 = tau[4] - t1893;
+
+  // front_right_hip: wrench
+  const Real t1895 = constant<Real>(0.0008138L) * t963;
+  const Real t1896 = t978 * constant<Real>(0.0000473L);
+  const Real t1897 = t1895 - t1896;
+  const Real t1898 = constant<Real>(0.0360627L) * t980;
+  const Real t1899 = t1898 + t1897;
+
+  // front_right_hip: motion
+  const Real t1900 = t943 * t943;
+
+  // front_right_hip: wrench
+  const Real t1901 = t1900 - t1153;
+  const Real t1902 = constant<Real>(0.0002678L) * t1901;
+
+  // front_right_hip: wrench
+  const Real t1903 = t1899 + t1902;
+
+  // front_left_hip: wrench
+  const Real t1904 = t960 * constant<Real>(0.000078L);
+
+  // front_right_hip: wrench
+  const Real t1905 = t1903 - t1904;
+
+  // front_right_thigh: articulated body
+  const Real t1906 = t1905 + t1894;
+
+  // factor and solution
+  const Real t1907 = t212 * t1160;
+  const Real t1908 = t1906 + t1907;
+  const Real t1909 = t1908 * s_r_3_;
+  const Real t1910 = t1909 + t1889;
+  const Real t1911 = t181 * t1160;
+
+  // front_right_thigh: articulated body
+  const Real t1912 = t1123 * c_r_4_;
+  const Real t1913 = s_r_4_ * t1142;
+  const Real t1914 = t1912 - t1913;
+
+  // front_right_shank: wrench
+  const Real t1915 = t1073 * constant<Real>(0.0687462028042276673933L);
+
+  // front_right_thigh: wrench
+  const Real t1916 = constant<Real>(0.0051L) * t1111;
+  const Real t1917 = t1097 * constant<Real>(0.2108L);
+  const Real t1918 = t1916 + t1917;
+
+  // front_right_shank: joint force
+  const Real t1919 = t1915 - t1918;
+
+  // front_right_thigh: joint force
+  const Real t1920 = t1919 * constant<Real>(0.21L);
+
+  // front_right_thigh: articulated body
+  const Real t1921 = t1914 + t1920;
+
+  // front_right_hip: wrench
+  const Real t1922 = t978 * constant<Real>(0.01168088L);
+  const Real t1923 = constant<Real>(0.0002678L) * t980;
+  const Real t1924 = t1923 - t1922;
+  const Real t1925 = t963 * constant<Real>(0.0000473L);
+  const Real t1926 = t1925 + t1924;
+
+  // front_right_hip: wrench
+  const Real t1927 = t1154 - t1900;
+  const Real t1928 = constant<Real>(0.0360627L) * t1927;
+
+  // front_right_hip: wrench
+  const Real t1929 = t1926 - t1928;
+
+  // front_left_hip: wrench
+  const Real t1930 = constant<Real>(0.0103434L) * t960;
+
+  // front_right_hip: wrench
+  const Real t1931 = t1929 - t1930;
+
+  // front_right_thigh: articulated body
+  const Real t1932 = t1921 + t1931;
+
+  // factor and solution
+  const Real t1933 = t1932 + t1911;
+  const Real t1934 = c_r_3_ * t1933;
+
+  // trunk: wrench
+  const Real t1935 = t960 * constant<Real>(0.694672616L);
+
+  // factor and solution
+  const Real t1936 = t1934 + t1935;
+  const Real t1937 = t1910 + t1936;
+
+  // trunk: wrench
+  const Real t1938 = t1013 - t1002;
+  const Real t1939 = t1938 * constant<Real>(0.000691L);
+
+  // factor and solution
+  const Real t1940 = t1937 - t1939;
+  const Real t1941 = t71 * t1388;
+
+  // hind_right_thigh: articulated body
+  const Real t1942 = t1370 * c_r_10_;
+  const Real t1943 = t1353 * s_r_10_;
+  const Real t1944 = t1942 - t1943;
+
+  // hind_right_shank: wrench
+  const Real t1945 = t1301 * constant<Real>(0.0687462028042276673933L);
+
+  // hind_right_thigh: wrench
+  const Real t1946 = t1314 * constant<Real>(0.2108L);
+  const Real t1947 = constant<Real>(0.0051L) * t1344;
+  const Real t1948 = t1946 + t1947;
+
+  // hind_right_shank: joint force
+  const Real t1949 = t1945 - t1948;
+
+  // hind_right_thigh: joint force
+  const Real t1950 = constant<Real>(0.21L) * t1949;
+
+  // hind_right_thigh: articulated body
+  const Real t1951 = t1944 - t1950;
+
+  // hind_right_hip: wrench
+  const Real t1952 = t1192 * constant<Real>(0.01168088L);
+  const Real t1953 = constant<Real>(0.0002678L) * t1218;
+  const Real t1954 = t1953 + t1952;
+  const Real t1955 = t1182 * constant<Real>(0.0000473L);
+  const Real t1956 = t1955 - t1954;
+
+  // hind_right_hip: motion
+  const Real t1957 = t1173 * t1173;
+
+  // hind_right_hip: wrench
+  const Real t1958 = t1379 - t1957;
+  const Real t1959 = t1958 * constant<Real>(0.0360627L);
+
+  // hind_right_hip: wrench
+  const Real t1960 = t1956 + t1959;
+
+  // hind_right_hip: wrench
+  const Real t1961 = t1960 - t1930;
+
+  // hind_right_thigh: articulated body
+  const Real t1962 = t1961 + t1951;
+
+  // factor and solution
+  const Real t1963 = t1962 + t1941;
+  const Real t1964 = c_r_9_ * t1963;
+  const Real t1965 = t102 * t1388;
+
+  // hind_right_thigh: articulated body
+  const Real t1966 = t1407 * c_r_10_;
+  const Real t1967 = t1415 * s_r_10_;
+  const Real t1968 = t1966 - t1967;
+  const Real t1969 = constant<Real>(0.21L) * t1968;
+  const Real t1970 = t1969 + tau[10];
+
+  // hind_right_hip: wrench
+  const Real t1971 = t1182 * constant<Real>(0.0008138L);
+  const Real t1972 = t1192 * constant<Real>(0.0000473L);
+  const Real t1973 = t1971 - t1972;
+  const Real t1974 = constant<Real>(0.0360627L) * t1218;
+  const Real t1975 = t1973 - t1974;
+
+  // hind_right_hip: wrench
+  const Real t1976 = t1957 - t1378;
+  const Real t1977 = constant<Real>(0.0002678L) * t1976;
+
+  // hind_right_hip: wrench
+  const Real t1978 = t1975 - t1977;
+
+  // hind_right_hip: wrench
+  const Real t1979 = t1978 - t1904;
+
+  // hind_right_thigh: articulated body
+  const Real t1980 = t1979 + t1970;
+
+  // factor and solution
+  const Real t1981 = t1965 + t1980;
+  const Real t1982 = s_r_9_ * t1981;
+  const Real t1983 = t1964 + t1982;
+
+  // trunk: wrench
+  const Real t1984 = t958 * constant<Real>(0.000406L);
+  const Real t1985 = constant<Real>(0.005104L) * t1006;
+
+  // front_left_hip: joint force
+  const Real t1986 = t1984 + t1985;
+
+  // factor and solution
+  const Real t1987 = t1983 + t1986;
+  const Real t1988 = t1628 * t351;
+
+  // hind_left_thigh: articulated body
+  const Real t1989 = c_r_7_ * t1610;
+  const Real t1990 = s_r_7_ * t1593;
+  const Real t1991 = t1989 - t1990;
+
+  // hind_left_shank: wrench
+  const Real t1992 = t1544 * constant<Real>(0.0687462028042276673933L);
+
+  // hind_left_thigh: wrench
+  const Real t1993 = t1565 * constant<Real>(0.2108L);
+  const Real t1994 = constant<Real>(0.0051L) * t1584;
+  const Real t1995 = t1993 + t1994;
+
+  // hind_left_shank: joint force
+  const Real t1996 = t1992 - t1995;
+
+  // hind_left_thigh: joint force
+  const Real t1997 = constant<Real>(0.21L) * t1996;
+
+  // hind_left_thigh: articulated body
+  const Real t1998 = t1991 - t1997;
+
+  // hind_left_hip: wrench
+  const Real t1999 = constant<Real>(0.01168088L) * t1457;
+  const Real t2000 = constant<Real>(0.0002678L) * t1459;
+  const Real t2001 = t1999 + t2000;
+  const Real t2002 = t1442 * constant<Real>(0.0000473L);
+  const Real t2003 = t2001 + t2002;
+
+  // hind_left_hip: motion
+  const Real t2004 = t1424 * t1424;
+
+  // hind_left_hip: wrench
+  const Real t2005 = t1622 - t2004;
+  const Real t2006 = constant<Real>(0.0360627L) * t2005;
+
+  // hind_left_hip: wrench
+  const Real t2007 = t2003 + t2006;
+
+  // hind_left_hip: wrench
+  const Real t2008 = t1930 + t2007;
+
+  // hind_left_thigh: articulated body
+  const Real t2009 = t1998 - t2008;
+
+  // factor and solution
+  const Real t2010 = t2009 + t1988;
+  const Real t2011 = c_r_6_ * t2010;
+  const Real t2012 = t1628 * t317;
+
+  // hind_left_thigh: articulated body
+  const Real t2013 = c_r_7_ * t1638;
+  const Real t2014 = s_r_7_ * t1773;
+  const Real t2015 = t2013 - t2014;
+  const Real t2016 = t2015 * constant<Real>(0.21L);
+  const Real t2017 = t2016 + tau[7];
+
+  // hind_left_hip: wrench
+  const Real t2018 = constant<Real>(0.0008138L) * t1442;
+  const Real t2019 = t1457 * constant<Real>(0.0000473L);
+  const Real t2020 = t2018 + t2019;
+  const Real t2021 = constant<Real>(0.0360627L) * t1459;
+  const Real t2022 = t2020 + t2021;
+
+  // hind_left_hip: wrench
+  const Real t2023 = t2004 - t1621;
+  const Real t2024 = constant<Real>(0.0002678L) * t2023;
+
+  // hind_left_hip: wrench
+  const Real t2025 = t2022 - t2024;
+
+  // hind_left_hip: wrench
+  const Real t2026 = t1904 + t2025;
+
+  // hind_left_thigh: articulated body
+  const Real t2027 = t2026 + t2017;
+
+  // factor and solution
+  const Real t2028 = t2012 + t2027;
+  const Real t2029 = t2028 * s_r_6_;
+  const Real t2030 = t2011 + t2029;
+  const Real t2031 = t1868 * t461;
+
+  // front_left_thigh: articulated body
+  const Real t2032 = c_r_1_ * t1831;
+  const Real t2033 = s_r_1_ * t1850;
+  const Real t2034 = t2032 - t2033;
+
+  // front_left_shank: wrench
+  const Real t2035 = constant<Real>(0.0687462028042276673933L) * t1781;
+
+  // front_left_thigh: wrench
+  const Real t2036 = constant<Real>(0.0051L) * t1819;
+  const Real t2037 = t1805 * constant<Real>(0.2108L);
+  const Real t2038 = t2036 + t2037;
+
+  // front_left_shank: joint force
+  const Real t2039 = t2035 - t2038;
+
+  // front_left_thigh: joint force
+  const Real t2040 = constant<Real>(0.21L) * t2039;
+
+  // front_left_thigh: articulated body
+  const Real t2041 = t2034 + t2040;
+
+  // front_left_hip: wrench
+  const Real t2042 = t1678 * constant<Real>(0.01168088L);
+  const Real t2043 = constant<Real>(0.0002678L) * t1680;
+  const Real t2044 = t2043 - t2042;
+  const Real t2045 = t1663 * constant<Real>(0.0000473L);
+  const Real t2046 = t2044 - t2045;
+
+  // front_left_hip: motion
+  const Real t2047 = t1645 * t1645;
+
+  // front_left_hip: wrench
+  const Real t2048 = t1862 - t2047;
+  const Real t2049 = constant<Real>(0.0360627L) * t2048;
+
+  // front_left_hip: wrench
+  const Real t2050 = t2046 + t2049;
+
+  // front_left_hip: wrench
+  const Real t2051 = t2050 - t1930;
+
+  // front_left_thigh: articulated body
+  const Real t2052 = t2041 + t2051;
+
+  // factor and solution
+  const Real t2053 = t2052 + t2031;
+  const Real t2054 = c_r_0_ * t2053;
+
+  // front_left_thigh: articulated body
+  const Real t2055 = c_r_1_ * t1878;
+  const Real t2056 = t1765 * s_r_1_;
+  const Real t2057 = t2055 - t2056;
+  const Real t2058 = constant<Real>(0.21L) * t2057;
+  const Real t2059 = tau[1] - t2058;
+
+  // front_left_hip: wrench
+  const Real t2060 = constant<Real>(0.0008138L) * t1663;
+  const Real t2061 = t1678 * constant<Real>(0.0000473L);
+  const Real t2062 = t2060 + t2061;
+  const Real t2063 = t1680 * constant<Real>(0.0360627L);
+  const Real t2064 = t2062 - t2063;
+
+  // front_left_hip: wrench
+  const Real t2065 = t2047 - t1861;
+  const Real t2066 = t2065 * constant<Real>(0.0002678L);
+
+  // front_left_hip: wrench
+  const Real t2067 = t2066 + t2064;
+
+  // front_left_hip: wrench
+  const Real t2068 = t2067 + t1904;
+
+  // front_left_thigh: articulated body
+  const Real t2069 = t2068 + t2059;
+
+  // factor and solution
+  const Real t2070 = t1868 * t427;
+  const Real t2071 = t2069 + t2070;
+  const Real t2072 = s_r_0_ * t2071;
+  const Real t2073 = t2054 + t2072;
+  const Real t2074 = t2030 + t2073;
+  const Real t2075 = t1987 + t2074;
+  const Real t2076 = t2075 + t1940;
+  const Real t2077 = t765 * t2076;
+
+  // trunk: wrench
+  const Real t2078 = constant<Real>(0.000691L) * t958;
+
+  // factor and solution
+  const Real t2079 = t2078 + t2077;
+
+  // trunk: wrench
+  const Real t2080 = t1001 - t1013;
+  const Real t2081 = t2080 * constant<Real>(0.000406L);
+
+  // trunk: wrench
+  const Real t2082 = t960 * constant<Real>(0.005104L);
+
+  // front_left_hip: joint force
+  const Real t2083 = t2081 + t2082;
+
+  // factor and solution
+  const Real t2084 = t2079 + t2083;
+  const Real t2085 = t726 * t1388;
+
+  // hind_right_hip: motion
+  const Real t2086 = t1379 + t1957;
+
+  // hind_right_hip: wrench
+  const Real t2087 = t2086 * constant<Real>(0.0013L);
+
+  // hind_right_hip: wrench
+  const Real t2088 = constant<Real>(0.17239L) * t1218;
+  const Real t2089 = t2088 + t2087;
+
+  // hind_right_thigh: articulated body
+  const Real t2090 = t1968 - t2089;
+
+  // factor and solution
+  const Real t2091 = t2085 + t2090;
+  const Real t2092 = c_r_9_ * t2091;
+  const Real t2093 = t730 * t1388;
+
+  // hind_right_hip: motion
+  const Real t2094 = t1957 + t1378;
+
+  // hind_right_hip: wrench
+  const Real t2095 = t2094 * constant<Real>(0.17239L);
+
+  // hind_right_hip: wrench
+  const Real t2096 = constant<Real>(0.0013L) * t1218;
+  const Real t2097 = t2096 + t2095;
+
+  // hind_right_thigh: joint force
+  const Real t2098 = t2097 + t1949;
+
+  // factor and solution
+  const Real t2099 = t2093 + t2098;
+  const Real t2100 = s_r_9_ * t2099;
+  const Real t2101 = t2092 + t2100;
+  const Real t2102 = t738 * t1160;
+
+  // front_right_hip: motion
+  const Real t2103 = t1153 + t1900;
+
+  // front_right_hip: wrench
+  const Real t2104 = t2103 * constant<Real>(0.17239L);
+
+  // front_right_hip: wrench
+  const Real t2105 = constant<Real>(0.0013L) * t980;
+  const Real t2106 = t2104 + t2105;
+
+  // front_right_thigh: joint force
+  const Real t2107 = t2106 + t1919;
+
+  // factor and solution
+  const Real t2108 = t2102 + t2107;
+  const Real t2109 = t2108 * s_r_3_;
+  const Real t2110 = t734 * t1160;
+
+  // front_right_hip: motion
+  const Real t2111 = t1154 + t1900;
+
+  // front_right_hip: wrench
+  const Real t2112 = constant<Real>(0.0013L) * t2111;
+
+  // front_right_hip: wrench
+  const Real t2113 = constant<Real>(0.17239L) * t980;
+  const Real t2114 = t2112 + t2113;
+
+  // front_right_thigh: articulated body
+  const Real t2115 = t1892 - t2114;
+
+  // factor and solution
+  const Real t2116 = t2110 + t2115;
+  const Real t2117 = c_r_3_ * t2116;
+  const Real t2118 = t2109 + t2117;
+  const Real t2119 = t2101 + t2118;
+  const Real t2120 = t1628 * t680;
+
+  // hind_left_hip: motion
+  const Real t2121 = t1622 + t2004;
+
+  // hind_left_hip: wrench
+  const Real t2122 = constant<Real>(0.0013L) * t2121;
+
+  // hind_left_hip: wrench
+  const Real t2123 = constant<Real>(0.17239L) * t1459;
+  const Real t2124 = t2123 - t2122;
+
+  // hind_left_thigh: articulated body
+  const Real t2125 = t2015 + t2124;
+
+  // factor and solution
+  const Real t2126 = t2120 + t2125;
+  const Real t2127 = t2126 * c_r_6_;
+  const Real t2128 = t1628 * t684;
+
+  // hind_left_hip: motion
+  const Real t2129 = t1621 + t2004;
+
+  // hind_left_hip: wrench
+  const Real t2130 = t2129 * constant<Real>(0.17239L);
+
+  // hind_left_hip: wrench
+  const Real t2131 = constant<Real>(0.0013L) * t1459;
+  const Real t2132 = t2131 - t2130;
+
+  // hind_left_thigh: joint force
+  const Real t2133 = t2132 + t1996;
+
+  // factor and solution
+  const Real t2134 = t2133 + t2128;
+  const Real t2135 = t2134 * s_r_6_;
+  const Real t2136 = t2127 + t2135;
+  const Real t2137 = t676 * t1868;
+
+  // front_left_hip: motion
+  const Real t2138 = t2047 + t1861;
+
+  // front_left_hip: wrench
+  const Real t2139 = t2138 * constant<Real>(0.17239L);
+
+  // front_left_hip: wrench
+  const Real t2140 = constant<Real>(0.0013L) * t1680;
+  const Real t2141 = t2140 - t2139;
+
+  // front_left_thigh: joint force
+  const Real t2142 = t2141 + t2039;
+
+  // factor and solution
+  const Real t2143 = t2137 + t2142;
+  const Real t2144 = t2143 * s_r_0_;
+  const Real t2145 = t1868 * t672;
+
+  // front_left_hip: motion
+  const Real t2146 = t2047 + t1862;
+
+  // front_left_hip: wrench
+  const Real t2147 = constant<Real>(0.0013L) * t2146;
+
+  // front_left_hip: wrench
+  const Real t2148 = t1680 * constant<Real>(0.17239L);
+  const Real t2149 = t2148 - t2147;
+
+  // front_left_thigh: articulated body
+  const Real t2150 = t2057 + t2149;
+
+  // factor and solution
+  const Real t2151 = t2145 + t2150;
+  const Real t2152 = c_r_0_ * t2151;
+  const Real t2153 = t2144 + t2152;
+  const Real t2154 = t2136 + t2153;
+  const Real t2155 = t2119 - t2154;
+  const Real t2156 = t2155 * constant<Real>(0.06L);
+  const Real t2157 = t2156 - tau[0];
+
+  // trunk: wrench
+  const Real t2158 = constant<Real>(0.068303037L) * t1006;
+
+  // factor and solution
+  const Real t2159 = t2158 + tau[9];
+  const Real t2160 = t2157 - t2159;
+  const Real t2161 = t2160 + t2084;
+  const Real t2162 = t628 * t2076;
+  const Real t2163 = c_r_9_ * t1981;
+  const Real t2164 = s_r_9_ * t1963;
+  const Real t2165 = t2163 - t2164;
+
+  // trunk: wrench
+  const Real t2166 = constant<Real>(0.762975653L) * t958;
+  const Real t2167 = t960 * constant<Real>(0.000406L);
+  const Real t2168 = t2166 + t2167;
+  const Real t2169 = constant<Real>(0.000691L) * t1006;
+  const Real t2170 = t2169 - t2168;
+
+  // trunk: wrench
+  const Real t2171 = t1002 - t1001;
+  const Real t2172 = constant<Real>(0.005104L) * t2171;
+
+  // trunk: wrench
+  const Real t2173 = t2172 + t2170;
+
+  // factor and solution
+  const Real t2174 = t2173 + t2165;
+  const Real t2175 = t2028 * c_r_6_;
+  const Real t2176 = s_r_6_ * t2010;
+  const Real t2177 = t2175 - t2176;
+  const Real t2178 = t2174 + t2177;
+  const Real t2179 = t1908 * c_r_3_;
+  const Real t2180 = s_r_3_ * t1933;
+  const Real t2181 = t2179 - t2180;
+  const Real t2182 = t2178 + t2181;
+  const Real t2183 = c_r_0_ * t2071;
+  const Real t2184 = s_r_0_ * t2053;
+  const Real t2185 = t2183 - t2184;
+  const Real t2186 = t2185 + t2182;
+  const Real t2187 = t2162 - t2186;
+  const Real t2188 = t763 * t2187;
+  const Real t2189 = tau[3] + tau[6];
+  const Real t2190 = t2189 + t2188;
+  const Real t2191 = t2161 - t2190;
+  const Real t2192 = t2191 * t827;
+  const Real t2193 = t831 * t2076;
+
+  // trunk: wrench
+  const Real t2194 = constant<Real>(0.011L) * t1006;
+
+  // factor and solution
+  const Real t2195 = t2193 + t2194;
+
+  // joint angles
+  const Real t2196 = t1013 + t1002;
+
+  // trunk: wrench
+  const Real t2197 = constant<Real>(0.1412L) * t2196;
+
+  // factor and solution
+  const Real t2198 = t2195 + t2197;
+
+  // trunk: wrench
+  const Real t2199 = t958 * constant<Real>(0.0515L);
+
+  // factor and solution
+  const Real t2200 = t2198 - t2199;
+  const Real t2201 = t829 * t2187;
+  const Real t2202 = t2200 - t2201;
+  const Real t2203 = t2202 - t2192;
+  const Real t2204 = t2203 - t2119;
+  const Real t2205 = t2204 - t2154;
+  const Real t2206 = t892 * t2205;
+  const Real t2207 = t2191 * t894;
+  const Real t2208 = t896 * t2187;
+  const Real t2209 = t898 * t2076;
+  const Real t2210 = c_r_9_ * t2099;
+  const Real t2211 = s_r_9_ * t2091;
+  const Real t2212 = t2210 - t2211;
+
+  // trunk: wrench
+  const Real t2213 = constant<Real>(0.011L) * t1003;
+
+  // trunk: wrench
+  const Real t2214 = t960 * constant<Real>(0.0515L);
+  const Real t2215 = t2214 + t2213;
+  const Real t2216 = constant<Real>(0.1412L) * t1006;
+  const Real t2217 = t2215 + t2216;
+
+  // factor and solution
+  const Real t2218 = t2212 + t2217;
+  const Real t2219 = t2134 * c_r_6_;
+  const Real t2220 = t2126 * s_r_6_;
+  const Real t2221 = t2219 - t2220;
+  const Real t2222 = t2221 + t2218;
+  const Real t2223 = c_r_3_ * t2108;
+  const Real t2224 = s_r_3_ * t2116;
+  const Real t2225 = t2223 - t2224;
+  const Real t2226 = t2225 + t2222;
+  const Real t2227 = c_r_0_ * t2143;
+  const Real t2228 = t2151 * s_r_0_;
+  const Real t2229 = t2227 - t2228;
+  const Real t2230 = t2226 + t2229;
+  const Real t2231 = t2209 - t2230;
+  const Real t2232 = t2231 + t2208;
+  const Real t2233 = t2232 - t2207;
+  const Real t2234 = t2233 - t2206;
+  const Real t2235 = t938 * t2234;
+  const Real t2236 = t928 * t837;
+  const Real t2237 = t2236 * t2205;
+  const Real t2238 = t814 * t921;
+  const Real t2239 = t2191 * t2238;
+  const Real t2240 = t598 * t912;
+  const Real t2241 = t2240 * t2076;
+
+  // trunk: wrench
+  const Real t2242 = t1014 * constant<Real>(0.0515L);
+
+  // factor and solution
+  const Real t2243 = t2241 + t2242;
+
+  // trunk: wrench
+  const Real t2244 = t960 * constant<Real>(0.011L);
+
+  // factor and solution
+  const Real t2245 = t2243 + t2244;
+
+  // trunk: wrench
+  const Real t2246 = constant<Real>(0.1412L) * t958;
+
+  // factor and solution
+  const Real t2247 = t2245 - t2246;
+  const Real t2248 = t636 * t916;
+  const Real t2249 = t2187 * t2248;
+  const Real t2250 = t2247 - t2249;
+  const Real t2251 = t2250 - t2239;
+  const Real t2252 = t2251 - t2237;
+  const Real t2253 = t2252 - t2235;
+  const Real t2254 = t2253 - t1887;
+  const Real t2255 = t2254 - t1419;
+  const Real t2256 = t938 * t937;
+  const Real t2257 = t2236 * t928;
+  const Real t2258 = t2238 * t921;
+  const Real t2259 = t2248 * t916;
+  const Real t2260 = t2240 * t912;
+  const Real t2261 = t244 + constant<Real>(25.59L);
+  const Real t2262 = t479 + t2261;
+  const Real t2263 = t2262 - t2260;
+  const Real t2264 = t2263 - t2259;
+  const Real t2265 = t2264 - t2258;
+  const Real t2266 = t2265 - t2257;
+  const Real t2267 = t2266 - t2256;
+  const Real t2268 = constant<Real>(1.0L) / t2267;
+  const Real t2269 = t2255 * t2268;
+  const Real t2270 = t938 * t2269;
+  const Real t2271 = t2234 * t910;
+  const Real t2272 = t2271 - t2270;
+  const Real t2273 = t2272 * t892;
+  const Real t2274 = t2236 * t2269;
+  const Real t2275 = t2205 * t837;
+  const Real t2276 = t2275 - t2274;
+  const Real t2277 = t2276 - t2273;
+  const Real t2278 = t2277 * t827;
+  const Real t2279 = t2272 * t894;
+  const Real t2280 = t2238 * t2269;
+  const Real t2281 = t2191 * t814;
+  const Real t2282 = t2281 - t2280;
+  const Real t2283 = t2282 - t2279;
+  const Real t2284 = t2283 - t2278;
+  const Real t2285 = t763 * t2284;
+  const Real t2286 = t829 * t2277;
+  const Real t2287 = t2272 * t896;
+  const Real t2288 = t2248 * t2269;
+  const Real t2289 = t636 * t2187;
+  const Real t2290 = t2289 - t2288;
+  const Real t2291 = t2290 + t2287;
+  const Real t2292 = t2291 - t2286;
+  const Real t2293 = t2292 - t2285;
+  const Real t2294 = t2293 * t628;
+  const Real t2295 = t765 * t2284;
+  const Real t2296 = t2277 * t831;
+  const Real t2297 = t2272 * t898;
+  const Real t2298 = t2240 * t2269;
+  const Real t2299 = t598 * t2076;
+  const Real t2300 = t2298 + t2299;
+  const Real t2301 = t2297 + t2300;
+  const Real t2302 = t2301 + t2296;
+  const Real t2303 = t2295 + t2302;
+  const Real t2304 = t2303 + t2294;
+  const Real t2305 = constant<Real>(0.06L) * t2304;
+  const Real t2306 = t2269 - t2305;
+  const Real t2307 = t2306 * t234;
+  const Real t2308 = t2284 * constant<Real>(0.06L);
+  const Real t2309 = t2277 - t2308;
+  const Real t2310 = s_r_9_ * t2309;
+  const Real t2311 = c_r_9_ * t2272;
+  const Real t2312 = t2310 + t2311;
+  const Real t2313 = t730 * t2312;
+  const Real t2314 = t2313 + t2307;
+  const Real t2315 = c_r_9_ * t2309;
+  const Real t2316 = s_r_9_ * t2272;
+  const Real t2317 = t2315 - t2316;
+  const Real t2318 = t726 * t2317;
+  const Real t2319 = t2314 + t2318;
+  const Real t2320 = t2284 + t2319;
+  const Real t2321 = s_r_9_ * t2304;
+  const Real t2322 = c_r_9_ * t2293;
+  const Real t2323 = t2322 - t2321;
+  const Real t2324 = t2323 * t102;
+  const Real t2325 = t2320 + t2324;
+  const Real t2326 = c_r_9_ * t2304;
+  const Real t2327 = s_r_9_ * t2293;
+  const Real t2328 = t2326 + t2327;
+  const Real t2329 = t71 * t2328;
+  const Real t2330 = t2325 - t2329;
+  const Real t2331 = t58 * t1388;
+  const Real t2332 = t2331 - t2330;
+  const Real t2333 = t2284 + t2332;
+  const Real t2334 = t2333 * c_r_10_;
+  const Real t2335 = t2328 * s_r_10_;
+  const Real t2336 = t2335 + t2334;
+  const Real t2337 = t45 * t2336;
+  const Real t2338 = t2323 * constant<Real>(0.21L);
+  const Real t2339 = t2338 + t2317;
+  const Real t2340 = t2339 * c_r_10_;
+  const Real t2341 = t2306 * s_r_10_;
+  const Real t2342 = t2340 + t2341;
+  const Real t2343 = t2342 * t104;
+  const Real t2344 = t2339 * s_r_10_;
+  const Real t2345 = t2306 * c_r_10_;
+  const Real t2346 = t2345 - t2344;
+  const Real t2347 = t2346 * t107;
+  const Real t2348 = t2343 + t2347;
+  const Real t2349 = t2348 + t2337;
+  const Real t2350 = t2323 + t2349;
+  const Real t2351 = t2333 * s_r_10_;
+  const Real t2352 = t2328 * c_r_10_;
+  const Real t2353 = t2351 - t2352;
+  const Real t2354 = t2353 * t25;
+  const Real t2355 = t2354 + t2350;
+
+  // hind_right_thigh: articulated body
+  const Real t2356 = t1296 * t18;
+
+  // factor and solution
+  const Real t2357 = t2356 - t2355;
+  const Real t2358 = t2323 + t2357;
+  const Real t2359 = constant<Real>(0.24L) * t2358;
+  const Real t2360 = t2346 - t2359;
+  const Real t2361 = t2360 * t9;
+  const Real t2362 = t2342 * t8;
+  const Real t2363 = t2361 - t2362;
+  const Real t2364 = constant<Real>(5.30976794871968958296L) * t2363;
+  const Real t2365 = t2336 * t9;
+  const Real t2366 = t2353 * t8;
+  const Real t2367 = t2365 - t2366;
+  const Real t2368 = constant<Real>(0.0000353906603051193176138L) * t2367;
+  const Real t2369 = t2364 - t2368;
+  const Real t2370 = t2369 + t2358;
+  const Real t2371 = t8 * t2336;
+  const Real t2372 = t2353 * t9;
+  const Real t2373 = t2371 + t2372;
+  const Real t2374 = constant<Real>(0.466294762676633597142L) * t2373;
+  const Real t2375 = t2370 + t2374;
+
+  // hind_right_shank: articulated body
+  const Real t2376 = constant<Real>(77.2372543082940453166L) * t1266;
+
+  // factor and solution
+  const Real t2377 = t2376 - t2375;
+  const Real t2378 = t2305 + t2269;
+  const Real t2379 = t2378 * t474;
+  const Real t2380 = t2308 + t2277;
+  const Real t2381 = t2380 * s_r_6_;
+  const Real t2382 = t2272 * c_r_6_;
+  const Real t2383 = t2382 + t2381;
+  const Real t2384 = t2383 * t684;
+  const Real t2385 = t2379 + t2384;
+  const Real t2386 = t2380 * c_r_6_;
+  const Real t2387 = t2272 * s_r_6_;
+  const Real t2388 = t2386 - t2387;
+  const Real t2389 = t2388 * t680;
+  const Real t2390 = t2385 + t2389;
+  const Real t2391 = t2284 + t2390;
+  const Real t2392 = s_r_6_ * t2304;
+  const Real t2393 = t2293 * c_r_6_;
+  const Real t2394 = t2393 - t2392;
+  const Real t2395 = t2394 * t317;
+  const Real t2396 = t2395 + t2391;
+  const Real t2397 = c_r_6_ * t2304;
+  const Real t2398 = t2293 * s_r_6_;
+  const Real t2399 = t2398 + t2397;
+  const Real t2400 = t2399 * t351;
+  const Real t2401 = t2396 - t2400;
+  const Real t2402 = t1628 * t316;
+  const Real t2403 = t2402 - t2401;
+  const Real t2404 = t2284 + t2403;
+  const Real t2405 = c_r_7_ * t2404;
+  const Real t2406 = t2399 * s_r_7_;
+  const Real t2407 = t2406 + t2405;
+  const Real t2408 = t2407 * t261;
+  const Real t2409 = t2394 * constant<Real>(0.21L);
+  const Real t2410 = t2409 + t2388;
+  const Real t2411 = s_r_7_ * t2410;
+  const Real t2412 = t2378 * c_r_7_;
+  const Real t2413 = t2412 - t2411;
+  const Real t2414 = t324 * t2413;
+  const Real t2415 = c_r_7_ * t2410;
+  const Real t2416 = t2378 * s_r_7_;
+  const Real t2417 = t2415 + t2416;
+  const Real t2418 = t2417 * t321;
+  const Real t2419 = t2414 + t2418;
+  const Real t2420 = t2419 + t2408;
+  const Real t2421 = t2394 + t2420;
+  const Real t2422 = s_r_7_ * t2404;
+  const Real t2423 = t2399 * c_r_7_;
+  const Real t2424 = t2422 - t2423;
+  const Real t2425 = t271 * t2424;
+  const Real t2426 = t2421 + t2425;
+
+  // hind_left_thigh: articulated body
+  const Real t2427 = t253 * t1536;
+
+  // factor and solution
+  const Real t2428 = t2427 - t2426;
+  const Real t2429 = t2394 + t2428;
+  const Real t2430 = constant<Real>(0.24L) * t2429;
+  const Real t2431 = t2413 - t2430;
+  const Real t2432 = t6 * t2431;
+  const Real t2433 = t2417 * t5;
+  const Real t2434 = t2432 - t2433;
+  const Real t2435 = constant<Real>(5.30976794871968958296L) * t2434;
+  const Real t2436 = t6 * t2407;
+  const Real t2437 = t5 * t2424;
+  const Real t2438 = t2436 - t2437;
+  const Real t2439 = constant<Real>(0.0000353906603051193176138L) * t2438;
+  const Real t2440 = t2435 + t2439;
+  const Real t2441 = t2440 + t2429;
+  const Real t2442 = t2407 * t5;
+  const Real t2443 = t6 * t2424;
+  const Real t2444 = t2442 + t2443;
+  const Real t2445 = constant<Real>(0.466294762676633597142L) * t2444;
+  const Real t2446 = t2441 - t2445;
+
+  // hind_left_shank: articulated body
+  const Real t2447 = t1506 * constant<Real>(77.2372543082940453166L);
+
+  // factor and solution
+  const Real t2448 = t2447 - t2446;
+  const Real t2449 = t239 * t2306;
+  const Real t2450 = t2309 * s_r_3_;
+  const Real t2451 = t2272 * c_r_3_;
+  const Real t2452 = t2450 + t2451;
+  const Real t2453 = t738 * t2452;
+  const Real t2454 = t2453 + t2449;
+  const Real t2455 = c_r_3_ * t2309;
+  const Real t2456 = t2272 * s_r_3_;
+  const Real t2457 = t2455 - t2456;
+  const Real t2458 = t734 * t2457;
+  const Real t2459 = t2454 + t2458;
+  const Real t2460 = t2284 + t2459;
+  const Real t2461 = s_r_3_ * t2304;
+  const Real t2462 = t2293 * c_r_3_;
+  const Real t2463 = t2462 - t2461;
+  const Real t2464 = t212 * t2463;
+  const Real t2465 = t2460 + t2464;
+  const Real t2466 = c_r_3_ * t2304;
+  const Real t2467 = t2293 * s_r_3_;
+  const Real t2468 = t2466 + t2467;
+  const Real t2469 = t181 * t2468;
+  const Real t2470 = t2465 - t2469;
+  const Real t2471 = t168 * t1160;
+  const Real t2472 = t2471 - t2470;
+  const Real t2473 = t2472 + t2284;
+  const Real t2474 = t2473 * c_r_4_;
+  const Real t2475 = t2468 * s_r_4_;
+  const Real t2476 = t2474 + t2475;
+  const Real t2477 = t147 * t2476;
+  const Real t2478 = constant<Real>(0.21L) * t2463;
+  const Real t2479 = t2457 - t2478;
+  const Real t2480 = s_r_4_ * t2479;
+  const Real t2481 = t2306 * c_r_4_;
+  const Real t2482 = t2481 - t2480;
+  const Real t2483 = t217 * t2482;
+  const Real t2484 = t2479 * c_r_4_;
+  const Real t2485 = t2306 * s_r_4_;
+  const Real t2486 = t2484 + t2485;
+  const Real t2487 = t2486 * t214;
+  const Real t2488 = t2483 + t2487;
+  const Real t2489 = t2488 + t2477;
+  const Real t2490 = t2489 + t2463;
+  const Real t2491 = s_r_4_ * t2473;
+  const Real t2492 = t2468 * c_r_4_;
+  const Real t2493 = t2491 - t2492;
+  const Real t2494 = t135 * t2493;
+  const Real t2495 = t2494 + t2490;
+
+  // front_right_thigh: articulated body
+  const Real t2496 = t128 * t1068;
+
+  // factor and solution
+  const Real t2497 = t2496 - t2495;
+  const Real t2498 = t2463 + t2497;
+  const Real t2499 = constant<Real>(0.24L) * t2498;
+  const Real t2500 = t2482 - t2499;
+  const Real t2501 = t3 * t2500;
+  const Real t2502 = t2 * t2486;
+  const Real t2503 = t2501 - t2502;
+  const Real t2504 = constant<Real>(5.30976794871968958296L) * t2503;
+  const Real t2505 = t2476 * t3;
+  const Real t2506 = t2 * t2493;
+  const Real t2507 = t2505 - t2506;
+  const Real t2508 = constant<Real>(0.0000353906603051193176138L) * t2507;
+  const Real t2509 = t2504 - t2508;
+  const Real t2510 = t2498 + t2509;
+  const Real t2511 = t2 * t2476;
+  const Real t2512 = t2493 * t3;
+  const Real t2513 = t2511 + t2512;
+  const Real t2514 = constant<Real>(0.466294762676633597142L) * t2513;
+  const Real t2515 = t2510 + t2514;
+
+  // front_right_shank: articulated body
+  const Real t2516 = constant<Real>(77.2372543082940453166L) * t1038;
+
+  // factor and solution
+  const Real t2517 = t2516 - t2515;
+  const Real t2518 = t469 * t2378;
+  const Real t2519 = s_r_0_ * t2380;
+  const Real t2520 = c_r_0_ * t2272;
+  const Real t2521 = t2520 + t2519;
+  const Real t2522 = t676 * t2521;
+  const Real t2523 = t2522 + t2518;
+  const Real t2524 = c_r_0_ * t2380;
+  const Real t2525 = t2272 * s_r_0_;
+  const Real t2526 = t2524 - t2525;
+  const Real t2527 = t2526 * t672;
+  const Real t2528 = t2523 + t2527;
+  const Real t2529 = t2284 + t2528;
+  const Real t2530 = s_r_0_ * t2304;
+  const Real t2531 = c_r_0_ * t2293;
+  const Real t2532 = t2531 - t2530;
+  const Real t2533 = t2532 * t427;
+  const Real t2534 = t2533 + t2529;
+  const Real t2535 = c_r_0_ * t2304;
+  const Real t2536 = s_r_0_ * t2293;
+  const Real t2537 = t2535 + t2536;
+  const Real t2538 = t2537 * t461;
+  const Real t2539 = t2534 - t2538;
+  const Real t2540 = t403 * t1868;
+  const Real t2541 = t2540 - t2539;
+  const Real t2542 = t2284 + t2541;
+  const Real t2543 = c_r_1_ * t2542;
+  const Real t2544 = t2537 * s_r_1_;
+  const Real t2545 = t2544 + t2543;
+  const Real t2546 = t2545 * t390;
+  const Real t2547 = t2532 * constant<Real>(0.21L);
+  const Real t2548 = t2526 - t2547;
+  const Real t2549 = t2548 * s_r_1_;
+  const Real t2550 = t2378 * c_r_1_;
+  const Real t2551 = t2550 - t2549;
+  const Real t2552 = t431 * t2551;
+  const Real t2553 = c_r_1_ * t2548;
+  const Real t2554 = t2378 * s_r_1_;
+  const Real t2555 = t2553 + t2554;
+  const Real t2556 = t434 * t2555;
+  const Real t2557 = t2552 + t2556;
+  const Real t2558 = t2546 + t2557;
+  const Real t2559 = t2532 + t2558;
+  const Real t2560 = t2542 * s_r_1_;
+  const Real t2561 = t2537 * c_r_1_;
+  const Real t2562 = t2560 - t2561;
+  const Real t2563 = t2562 * t370;
+  const Real t2564 = t2559 + t2563;
+
+  // front_left_thigh: articulated body
+  const Real t2565 = t363 * t1758;
+
+  // factor and solution
+  const Real t2566 = t2565 - t2564;
+  const Real t2567 = t2566 + t2532;
+  const Real t2568 = t2567 * constant<Real>(0.24L);
+  const Real t2569 = t2551 - t2568;
+  const Real t2570 = t12 * t2569;
+  const Real t2571 = t11 * t2555;
+  const Real t2572 = t2570 - t2571;
+  const Real t2573 = constant<Real>(5.30976794871968958296L) * t2572;
+  const Real t2574 = t2545 * t12;
+  const Real t2575 = t11 * t2562;
+  const Real t2576 = t2574 - t2575;
+  const Real t2577 = t2576 * constant<Real>(0.0000353906603051193176138L);
+  const Real t2578 = t2573 + t2577;
+  const Real t2579 = t2567 + t2578;
+  const Real t2580 = t11 * t2545;
+  const Real t2581 = t2562 * t12;
+  const Real t2582 = t2580 + t2581;
+  const Real t2583 = constant<Real>(0.466294762676633597142L) * t2582;
+  const Real t2584 = t2579 - t2583;
+
+  // front_left_shank: articulated body
+  const Real t2585 = constant<Real>(77.2372543082940453166L) * t1728;
+
+  // factor and solution
+  const Real t2586 = t2585 - t2584;
+  const Real t2587 = -t2304;
+
+  // trunk: acceleration
+  const Real t2588 = eta[1] * eta[3];
+  const Real t2589 = eta[0] * eta[4];
+  const Real t2590 = t2588 - t2589;
+  const Real t2591 = constant<Real>(9.81L) * R[8];
+
+  // trunk: acceleration
+  const Real t2592 = t2590 + t2591;
+
+  // factor and solution
+  const Real t2593 = t2277 - t2592;
+
+  // trunk: acceleration
+  const Real t2594 = eta[0] * eta[5];
+  const Real t2595 = eta[2] * eta[3];
+  const Real t2596 = t2594 - t2595;
+  const Real t2597 = R[7] * constant<Real>(9.81L);
+
+  // trunk: acceleration
+  const Real t2598 = t2597 + t2596;
+
+  // factor and solution
+  const Real t2599 = t2272 - t2598;
+
+  // trunk: acceleration
+  const Real t2600 = eta[2] * eta[4];
+  const Real t2601 = eta[1] * eta[5];
+  const Real t2602 = t2600 - t2601;
+  const Real t2603 = R[6] * constant<Real>(9.81L);
+
+  // trunk: acceleration
+  const Real t2604 = t2602 + t2603;
+
+  // factor and solution
+  const Real t2605 = t2269 - t2604;
+
+  eta_dot_out[0] = t2605;
+  eta_dot_out[1] = t2599;
+  eta_dot_out[2] = t2593;
+  eta_dot_out[3] = t2284;
+  eta_dot_out[4] = t2293;
+  eta_dot_out[5] = t2587;
+  r_ddot_out[0] = t2541;
+  r_ddot_out[1] = t2566;
+  r_ddot_out[2] = t2586;
+  r_ddot_out[3] = t2472;
+  r_ddot_out[4] = t2497;
+  r_ddot_out[5] = t2517;
+  r_ddot_out[6] = t2403;
+  r_ddot_out[7] = t2428;
+  r_ddot_out[8] = t2448;
+  r_ddot_out[9] = t2332;
+  r_ddot_out[10] = t2357;
+  r_ddot_out[11] = t2377;
 }
 
 }  // namespace quadruped::standard

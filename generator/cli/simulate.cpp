@@ -154,7 +154,8 @@ int simulate(const SimulateOptions& options) {
   fmt::print("  energy balance        {:.2e} of the largest energy, {:.3g} J\n", result.energy_balance,
              result.largest_energy);
   fmt::print("  constraint residual   {:.2e} relative\n", result.constraint_residual);
-  if (result.position_residual > 0) fmt::print("  position residual     {:.2e} m\n", result.position_residual);
+  if (result.position_residual > 0)
+    fmt::print("  position residual     {:.2e} m\n", result.position_residual);
   fmt::print("  ||R^T R - 1||         {:.2e}\n", result.orthonormality);
   fmt::print("  time                  {:.4f} s integration, {:.2f} s in all\n", result.cpu_seconds,
              watch.seconds());

@@ -131,9 +131,9 @@ std::map<std::string, OperationCount> recount(const std::string& header) {
       ++count.negations;
     else if (value.rfind("sqrt(", 0) == 0)
       ++count.roots;
-    else if (value.rfind("sin(", 0) == 0)
+    else if (value.rfind("sin(", 0) == 0 || value.rfind("sine[", 0) == 0)  // one by one, or out of a batch
       ++count.sines;
-    else if (value.rfind("cos(", 0) == 0)
+    else if (value.rfind("cos(", 0) == 0 || value.rfind("cosine[", 0) == 0)
       ++count.cosines;
     else if (value.find('(') != std::string::npos)
       ++count.other;

@@ -90,7 +90,9 @@ std::vector<NodeId> gather_parameters(Tape& tape, std::vector<NodeId> roots,
   const GatherPass pass(tape, roots, parameters);
   const std::vector<NodeId> next = rebuild(
       tape, roots, [&](NodeId old, const std::vector<NodeId>& image) { return pass(tape, old, image); });
-  const auto cost = [&](const std::vector<NodeId>& r) { return operations_per_call(tape, r, parameters).total(); };
+  const auto cost = [&](const std::vector<NodeId>& r) {
+    return operations_per_call(tape, r, parameters).total();
+  };
   return cost(next) < cost(roots) ? next : roots;
 }
 
