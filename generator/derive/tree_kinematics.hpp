@@ -27,13 +27,12 @@ CentroidalMomentum<S> centroidal_momentum(const Mechanism<S>& mechanism, const S
   RigidTree<S> tree(free);
   tree.position(state.r);
   const MassMoments<S> all = composite_bodies(tree, JointFrames<S>(tree)).whole;
-  const Matrix<S> M = composite_mass_matrix(tree);
+  std::vector<S> velocity;  // M v by one sweep: its first rows are the momentum in the reference body's axes
+  for (int row = 0; row < 6; ++row) velocity.push_back(state.eta[row]);
+  velocity.insert(velocity.end(), state.r_dot.begin(), state.r_dot.end());
+  const std::vector<S> momentum = FreeDynamics<S>(free).mass_times(state, velocity);
   Spatial<S> h;
-  for (int row = 0; row < 6; ++row) {
-    for (int i = 0; i < 6; ++i) h[row] = h[row] + M(row, i) * state.eta[i];
-    for (std::size_t i = 0; i < state.r_dot.size(); ++i)
-      h[row] = h[row] + M(row, 6 + static_cast<int>(i)) * state.r_dot[i];
-  }
+  for (int row = 0; row < 6; ++row) h[row] = momentum[static_cast<std::size_t>(row)];
   const Vec3<S> arm = (S(1) / all.mass) * all.first;
   h.angular -= cross(arm, h.linear);
   return {{state.R * h.linear, state.R * h.angular}, state.p + state.R * arm};
