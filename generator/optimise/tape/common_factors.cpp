@@ -47,7 +47,7 @@ class FactorPass {
       if (members.size() < 2) break;
       factors.push_back(factor);
       groups.push_back(members);
-      std::erase_if(terms, [&](const Term& t) {
+      std::erase_if(terms, [&members = members](const Term& t) {
         return std::ranges::any_of(members, [&](const Term& m) { return m.node == t.node; });
       });
     }
