@@ -281,9 +281,9 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
   }
   if (candidates.empty()) throw UnsupportedError("no kernel basis could be derived");
   const auto regularity = [](const auto& c) { return std::pair(c.first.irregular, c.first.worst_condition); };
-  const auto [irregular, condition] = regularity(*std::ranges::min_element(candidates, {}, regularity));
+  const auto least = regularity(*std::ranges::min_element(candidates, {}, regularity));
   const auto cost = [&](const auto& c) {
-    const bool poor = c.first.irregular > irregular || c.first.worst_condition > worse * condition;
+    const bool poor = c.first.irregular > least.first || c.first.worst_condition > worse * least.second;
     return std::pair(poor, c.second);
   };
   kernel_ = std::ranges::min_element(candidates, {}, cost)->first;
