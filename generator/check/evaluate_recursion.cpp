@@ -6,8 +6,7 @@
 #include <tuple>
 
 #include "anholon/free_dynamics.hpp"
-#include "anholon/reduction.hpp"
-#include "number/exact_eigen.hpp"
+#include "reduce/decompositions.hpp"
 
 namespace anholon {
 
@@ -145,9 +144,10 @@ std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vect
 
 template <class S>
 Matrix<S> range_projector(const Matrix<S>& H) {
-  const DynamicMatrix<S> Q =
-      DynamicMatrix<S>(Eigen::HouseholderQR<DynamicMatrix<S>>(to_eigen(H)).householderQ()).leftCols(H.cols());
-  return from_eigen<S>(DynamicMatrix<S>(Q * Q.transpose()));
+  const DynamicMatrix<S> complement =
+      ConstraintFactors<S>(DynamicMatrix<S>(to_eigen(H).transpose()), S(0)).kernel();
+  return from_eigen<S>(
+      DynamicMatrix<S>(DynamicMatrix<S>::Identity(H.rows(), H.rows()) - complement * complement.transpose()));
 }
 
 template Matrix<double> range_projector(const Matrix<double>&);

@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "anholon/lie/so3.hpp"
 #include "check/evaluate_program.hpp"
+#include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon {
@@ -113,7 +114,7 @@ class Search {
   /// Smallest singular value of (A, B_p) that belongs to its rank, of the largest.
   [[nodiscard]] double rank_quality(const Matrices& m) const {
     if (rank_ == 0) return 1;
-    const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(m.A).singularValues();
+    const Eigen::VectorXd sigma = singular_values(m.A).sigma;
     return sigma(rank_ - 1) / sigma(0);
   }
   /// 1 where H and J are of ordinary size and the columns of H independent; 0 where they are singular.
@@ -129,7 +130,7 @@ class Search {
       quality = std::min({quality, size / column_size_, column_size_ / size});
       h.col(c) /= size;
     }
-    const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(h).singularValues();
+    const Eigen::VectorXd sigma = singular_values(h).sigma;
     return std::min(quality, sigma(sigma.size() - 1) / sigma(0));
   }
 

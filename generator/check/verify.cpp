@@ -10,6 +10,7 @@
 
 #include "anholon/free_dynamics.hpp"
 #include "check/compiled_caller.hpp"
+#include "check/error_measure.hpp"
 #include "check/evaluate_program.hpp"
 #include "check/evaluate_recursion.hpp"
 #include "describe/mechanise.hpp"
@@ -22,26 +23,6 @@ constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr unsigned digits = 60;
 constexpr int formula_samples = 40;  // the exact recursion with its factorisations is slow
 constexpr int condition_trials = 4;
-
-double size_of(const std::vector<Exact>& v) {
-  double largest = 0;
-  for (const Exact& x : v) largest = std::max(largest, std::abs(x.to_double()));
-  return largest;
-}
-
-template <class S>
-double distance(const std::vector<S>& a, const std::vector<Exact>& b) {
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    if constexpr (std::is_same_v<S, double>) {
-      if (!std::isfinite(a[i])) return std::numeric_limits<double>::infinity();
-      largest = std::max(largest, std::abs((Exact::from_double(a[i]) - b[i]).to_double()));
-    } else {
-      largest = std::max(largest, std::abs((a[i] - b[i]).to_double()));
-    }
-  }
-  return largest;
-}
 
 /// Blocks of one kind of quantity: a pose has no scale of its own parts, a twist has two.
 struct Record {

@@ -84,10 +84,7 @@ class InputNames {
 class Page {
  public:
   Page(const Model& model, const Derivation& derivation, const EquationStyle& style)
-      : program_(derivation.program),
-        partition_(derivation.reduction.partition),
-        inputs_(model, derivation),
-        style_(style) {}
+      : program_(derivation.program), inputs_(model, derivation), style_(style) {}
 
   void text(const std::string& line) { text_ += line + "\n\n"; }
   void math(const std::string& formula) { text_ += fmt::format("```math\n{}\n```\n\n", formula); }
@@ -151,7 +148,6 @@ class Page {
   }
 
   const Program& program_;
-  const Partition& partition_;
   InputNames inputs_;
   EquationStyle style_;
   std::string text_;

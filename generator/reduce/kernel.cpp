@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,6 +12,7 @@
 
 #include "algebra/kernel_core.hpp"
 #include "optimise/tape/count.hpp"
+#include "reduce/decompositions.hpp"
 #include "tape/derivative.hpp"
 
 namespace anholon {
@@ -202,7 +203,7 @@ void KinematicReduction::judge(Kernel& kernel) const {
         h.col(c) /= size;
       }
       if (regular) {
-        const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(h).singularValues();
+        const Eigen::VectorXd sigma = singular_values(h).sigma;
         const double condition = sigma(0) / sigma(sigma.size() - 1);
         regular = condition < condition_limit;
         if (regular) kernel.worst_condition = std::max(kernel.worst_condition, condition);
@@ -220,7 +221,7 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
   const auto A = sampled(tape_, A_1_, sampler_);
   const auto smallest = [](const Eigen::MatrixXd& m) {
     if (m.rows() == 0) return 1.0;
-    return Eigen::JacobiSVD<Eigen::MatrixXd>(m).singularValues()(m.rows() - 1);
+    return singular_values(m).sigma(m.rows() - 1);
   };
   std::vector<double> best_possible;
   for (const auto& a : A) best_possible.push_back(a.allFinite() ? smallest(a) : 0);

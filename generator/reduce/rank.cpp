@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "reduce/rank.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <numeric>
 
 #include "anholon/free_dynamics.hpp"
+#include "reduce/decompositions.hpp"
 
 namespace anholon {
 namespace {
@@ -175,16 +176,16 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
       drops.push_back({places_that_matter(samples[s], on, true), rank});
       continue;
     }
-    const Eigen::JacobiSVD<Eigen::MatrixXd> svd(to_double(locked), Eigen::ComputeFullV);
+    const SingularValues svd = singular_values(to_double(locked));
     if (analysis.m_locked == 0) continue;
-    const double condition = svd.singularValues()(0) / svd.singularValues()(analysis.m_locked - 1);
+    const double condition = svd.sigma(0) / svd.sigma(analysis.m_locked - 1);
     if (condition > analysis.worst_condition)
       analysis.worst_condition = condition,
       analysis.worst_at =
           text_of(places_that_matter(samples[s], on, false)) +
           (on.orientation ? (on.coordinates.empty() ? "a random orientation" : ", a random orientation")
                           : "");
-    const auto kernel = svd.matrixV().rightCols(locked.cols() - analysis.m_locked);
+    const auto kernel = svd.V.rightCols(locked.cols() - analysis.m_locked);
     for (int i = 0; i < partition.s_p(); ++i) {
       if (kernel.cols() > 0 && kernel.row(partition.n + i).norm() > 1e-9)
         analysis.kinematic[static_cast<std::size_t>(i)] = false;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "anholon/integrate/result.hpp"
-#include "anholon/reduction.hpp"
 #include "describe/specialise.hpp"
+#include "reduce/decompositions.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/position_keeper.hpp"
 #include "simulate/runner.hpp"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "anholon/free_dynamics.hpp"
-#include "anholon/reduction.hpp"
+#include "reduce/decompositions.hpp"
 #include "reduce/partition.hpp"
 
 namespace anholon {

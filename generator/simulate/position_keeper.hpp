@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-#include "anholon/reduction.hpp"
+#include "reduce/decompositions.hpp"
 #include "simulate/runner.hpp"
 
 namespace anholon {

@@ -109,7 +109,8 @@ class Runner {
   /// The field as a function object, for integration in groups of the same scalar.
   template <class G>
   auto field_of() {
-    return [this](S t, const G& g, const auto& y, auto& eta, auto& y_dot) { field(t, g, y, eta, y_dot); };
+    return
+        [this](S t, const G& g, const auto& y, auto& eta, auto& y_dot) { this->field(t, g, y, eta, y_dot); };
   }
 
   /// Power of imposed and computed torques, after rates().

@@ -4,6 +4,7 @@
 // driven by motion, against the full equations with multipliers.
 #include <gtest/gtest.h>
 
+#include "derive/derive.hpp"
 #include "mechanics/robots.hpp"
 
 namespace anholon {

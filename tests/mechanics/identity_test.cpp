@@ -7,11 +7,11 @@
 #include <Eigen/Dense>
 #include <filesystem>
 
-#include "anholon/reduction.hpp"
 #include "check/evaluate_program.hpp"
 #include "describe/mechanise.hpp"
 #include "describe/read_model.hpp"
 #include "number/exact_eigen.hpp"
+#include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon {

@@ -3,6 +3,8 @@
 // Joints, groups and couplings against the positions of point masses.
 #include <gtest/gtest.h>
 
+#include "anholon/free_dynamics.hpp"
+#include "describe/mechanise.hpp"
 #include "mechanics/witness.hpp"
 
 namespace anholon {

@@ -5,7 +5,7 @@
 // reference vectors.
 #include <gtest/gtest.h>
 
-#include "anholon/reduction.hpp"
+#include "check/evaluate_program.hpp"
 #include "mechanics/robots.hpp"
 
 namespace anholon {

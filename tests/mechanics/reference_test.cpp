@@ -9,11 +9,11 @@
 #include <map>
 #include <memory>
 
-#include "anholon/reduction.hpp"
 #include "check/evaluate.hpp"
 #include "describe/read_model.hpp"
 #include "mechanics/compare_reference.hpp"
 #include "number/exact_eigen.hpp"
+#include "reduce/decompositions.hpp"
 
 namespace anholon {
 namespace {

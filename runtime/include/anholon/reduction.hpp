@@ -38,37 +38,48 @@ template <class S>
 class ConstraintFactors {
  public:
   /// @param threshold  relative size below which a pivot counts as zero
-  ConstraintFactors(const DynamicMatrix<S>& A, const S& threshold) : rows_(A.rows()), cols_(A.cols()) {
-    if (rows_ == 0 || cols_ == 0) return;
-    primal_.setThreshold(threshold);
-    dual_.setThreshold(threshold);
-    primal_.compute(A);
-    dual_.compute(A.transpose());
-    rank_ = dual_.rank();
-  }
+  ConstraintFactors(const DynamicMatrix<S>& A, const S& threshold);
 
   [[nodiscard]] Eigen::Index rank() const { return rank_; }
   /// Orthonormal basis of ker A, cols x (cols - rank).
-  [[nodiscard]] DynamicMatrix<S> kernel() const {
-    if (rank_ == 0) return DynamicMatrix<S>::Identity(cols_, cols_);
-    return DynamicMatrix<S>(dual_.householderQ())
-        .rightCols(cols_ - rank_);  // the first columns span the row space
-  }
+  [[nodiscard]] DynamicMatrix<S> kernel() const;
   /// A^+ b: minimum-norm least-squares solution of A x = b.
-  [[nodiscard]] DynamicVector<S> solve(const DynamicVector<S>& b) const {
-    if (rank_ == 0) return DynamicVector<S>::Zero(cols_);
-    return primal_.solve(b);
-  }
+  [[nodiscard]] DynamicVector<S> solve(const DynamicVector<S>& b) const;
   /// (A^T)^+ c: minimum-norm multipliers with A^T lambda = c.
-  [[nodiscard]] DynamicVector<S> solve_transposed(const DynamicVector<S>& c) const {
-    if (rank_ == 0) return DynamicVector<S>::Zero(rows_);
-    return dual_.solve(c);
-  }
+  [[nodiscard]] DynamicVector<S> solve_transposed(const DynamicVector<S>& c) const;
 
  private:
   Eigen::Index rows_, cols_, rank_ = 0;
   Eigen::CompleteOrthogonalDecomposition<DynamicMatrix<S>> primal_, dual_;
 };
+
+// Not inline: a program may compile them once a scalar and declare them `extern template` elsewhere.
+template <class S>
+ConstraintFactors<S>::ConstraintFactors(const DynamicMatrix<S>& A, const S& threshold)
+    : rows_(A.rows()), cols_(A.cols()) {
+  if (rows_ == 0 || cols_ == 0) return;
+  primal_.setThreshold(threshold);
+  dual_.setThreshold(threshold);
+  primal_.compute(A);
+  dual_.compute(A.transpose());
+  rank_ = dual_.rank();
+}
+template <class S>
+DynamicMatrix<S> ConstraintFactors<S>::kernel() const {
+  if (rank_ == 0) return DynamicMatrix<S>::Identity(cols_, cols_);
+  return DynamicMatrix<S>(dual_.householderQ())
+      .rightCols(cols_ - rank_);  // the first columns span the row space
+}
+template <class S>
+DynamicVector<S> ConstraintFactors<S>::solve(const DynamicVector<S>& b) const {
+  if (rank_ == 0) return DynamicVector<S>::Zero(cols_);
+  return primal_.solve(b);
+}
+template <class S>
+DynamicVector<S> ConstraintFactors<S>::solve_transposed(const DynamicVector<S>& c) const {
+  if (rank_ == 0) return DynamicVector<S>::Zero(rows_);
+  return dual_.solve(c);
+}
 
 /// Accelerations and multipliers of M x_dot = force + A^T lambda under A x_dot = -bias.
 template <class S>

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "reduce/decompositions.hpp"
+
+#include <Eigen/SVD>
+
+namespace anholon {
+
+template class ConstraintFactors<double>;
+template class ConstraintFactors<long double>;
+template ConstrainedSolution<double> solve_constrained(const DynamicMatrix<double>&,
+                                                       const DynamicVector<double>&,
+                                                       const DynamicMatrix<double>&,
+                                                       const DynamicVector<double>&, const double&);
+
+SingularValues singular_values(const Eigen::MatrixXd& m) {
+  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(m, Eigen::ComputeFullV);
+  return {svd.singularValues(), svd.matrixV()};
+}
+
+}  // namespace anholon
