@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # anholon_add_model(<target> MODEL <file> [SCENE <file>] [FUNCTIONS <name>...] [INVERSE <inverse>]
-#                   [STATIC [COMPILE_OPTIONS <option>...]])
+#                   [SINCOS cmath|batch] [STATIC [COMPILE_OPTIONS <option>...]])
 #
 # Generates the C++ of a model at build time and makes it a target. Programs that link the target include
 #
@@ -12,6 +12,7 @@
 #   MODEL, SCENE   description and scene (TOML); relative to the current source folder
 #   FUNCTIONS      functions to generate; default: all that the model or the scene asks for
 #   INVERSE        generalised inverse where rows are redundant: pseudo (default) or leading:ROW[,ROW...]
+#   SINCOS         cmath (default): std::sin and std::cos; batch: those of double by one loop that compilers vectorise
 #   STATIC         a static library with the functions of double compiled in; without it an INTERFACE library, a header
 #   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math
 #
@@ -23,7 +24,7 @@ include_guard(GLOBAL)
 set_property(GLOBAL PROPERTY ANHOLON_INSTANTIATE_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/AnholonInstantiate.cmake")
 
 function(anholon_add_model target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE" "FUNCTIONS;COMPILE_OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE;SINCOS" "FUNCTIONS;COMPILE_OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "anholon_add_model(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -32,6 +33,9 @@ function(anholon_add_model target)
   endif()
   if(NOT arg_MODEL)
     message(FATAL_ERROR "anholon_add_model(${target}): MODEL <file> is missing")
+  endif()
+  if(arg_SINCOS AND NOT arg_SINCOS MATCHES "^(cmath|batch)$")
+    message(FATAL_ERROR "anholon_add_model(${target}): SINCOS is '${arg_SINCOS}'; choose cmath or batch")
   endif()
   if(NOT TARGET anholon::anholon)
     message(FATAL_ERROR "anholon_add_model(${target}): there is no program anholon::anholon; build it "
@@ -63,6 +67,9 @@ function(anholon_add_model target)
   endif()
   if(arg_INVERSE)
     list(APPEND options --inverse "${arg_INVERSE}")
+  endif()
+  if(arg_SINCOS)
+    list(APPEND options --sincos "${arg_SINCOS}")
   endif()
 
   # The folder with what programs include holds nothing else.

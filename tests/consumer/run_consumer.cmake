@@ -72,6 +72,13 @@ if(GENERATOR STREQUAL "Ninja" AND NOT text MATCHES "no work to do")
 endif()
 
 expect_header("m_0 = detail::constant<Real>\\(8")
+foreach(model IN ITEMS bicycle/include bicycle_compiled/generated)  # SINCOS reaches the program
+  file(READ "${build}/anholon_models/${model}/bicycle.hpp" text)
+  string(FIND "${text}" "detail::sines_cosines(" at)
+  if((model MATCHES "compiled" AND at EQUAL -1) OR (NOT model MATCHES "compiled" AND NOT at EQUAL -1))
+    message(FATAL_ERROR "SINCOS has not its effect on ${model}/bicycle.hpp")
+  endif()
+endforeach()
 file(READ "${project}/model/bicycle.toml" text)
 string(REPLACE "m_0   = { value = 8," "m_0   = { value = 9," text "${text}")
 file(WRITE "${project}/model/bicycle.toml" "${text}")
