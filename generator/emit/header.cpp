@@ -231,9 +231,10 @@ class HeaderWriter {
     data["prepare_blocks"] = json::array();
     std::string blocks;
     for (const json& block : body.blocks) {
-      blocks += fmt::format("template <class Real>\ninline void {}({}) noexcept {{\n{}\n}}\n\n",
-                            block["name"].get<std::string>(), block["arguments"].get<std::string>(),
-                            block["body"].get<std::string>());
+      blocks +=
+          fmt::format("template <class Real>\n[[gnu::noinline]] inline void {}({}) noexcept {{\n{}\n}}\n\n",
+                      block["name"].get<std::string>(), block["arguments"].get<std::string>(),
+                      block["body"].get<std::string>());
     }
     if (!blocks.empty())
       data["prepare_blocks"].push_back(
@@ -261,18 +262,14 @@ class HeaderWriter {
       arguments.push_back(fmt::format("const Real (&{}){}", name, extent(block)));
     }
     std::vector<Assignment> results;
-    const std::size_t first_output = arguments.size();
     for (const PlannedOutput& output : function.outputs) {
       names.claim(output.name);
-      for (std::size_t j = 0; j < output.block->nodes.size(); ++j) {
-        results.push_back({fmt::format("{}[{}]", output.name, j), output.block->nodes[j]});
-      }
+      for (std::size_t j = 0; j < output.block->nodes.size(); ++j)
+        results.push_back({output.name, output.block->nodes[j], j, arguments.size()});
       arguments.push_back(fmt::format("Real (&{}){}", output.name, extent(*output.block)));
     }
     const std::string doc = documentation(function);
-    const Body body =
-        body_of(statements(results, given, names), function.name,
-                {arguments.begin(), arguments.begin() + static_cast<std::ptrdiff_t>(first_output)});
+    const Body body = body_of(statements(results, given, names), function.name, arguments);
     if (!body.arguments.contains(0)) arguments[0] = "const Prepared<Real>&";
     json data;
     data["name"] = function.name;
@@ -308,13 +305,16 @@ class HeaderWriter {
         declared.push_back(arguments[a]);
         passed.push_back(argument_name(arguments[a]));
       }
-      declared.push_back(fmt::format("Real (&{})[{}]", statements.carried,
-                                     std::max<std::size_t>(1, statements.carried_size)));
-      passed.push_back(statements.carried);
+      if (block.uses_carried) {
+        declared.push_back(fmt::format("Real (&__restrict {})[{}]", statements.carried,
+                                       std::max<std::size_t>(1, statements.carried_size)));
+        passed.push_back(statements.carried);
+      }
       calls += fmt::format("  detail::{}({});\n", name, joined(passed, ", "));
       body.blocks.push_back(
           {{"name", name},
-           {"arguments", argument_list(declared, std::string("inline void (").size() + name.size())},
+           {"arguments",
+            argument_list(declared, std::string("[[gnu::noinline]] inline void (").size() + name.size())},
            {"body", without_last_newline(block.text)}});
     }
     body.text = without_last_newline(calls + statements.text);

@@ -13,6 +13,8 @@ namespace anholon {
 namespace {
 
 constexpr auto nowhere = static_cast<std::size_t>(-1);
+constexpr std::size_t shortest_run =
+    8;  // equal constants side by side that a split function fills in by a loop
 
 /// Writes one function; knows for each node in which block it is made and where it is kept.
 class Writer {
@@ -38,7 +40,6 @@ class Writer {
     out.carried_size = slot_count_;
     out.carried = carried_;
     name_batch();
-    std::set<std::size_t> arguments;
     for (std::size_t begin = 0; begin < order_.nodes.size(); begin += block_size) {
       const std::size_t end = std::min(begin + block_size, order_.nodes.size());
       start_text();
@@ -47,23 +48,54 @@ class Writer {
         if (!is_written_[i]) write_operation(i);
       }
       if (!split) break;
-      out.blocks.push_back({{arguments_.begin(), arguments_.end()}, finish_text()});
-      arguments.insert(arguments_.begin(), arguments_.end());
+      finish_block(out);
     }
     if (split || order_.nodes.empty()) start_text();
     if (!order_.nodes.empty() && !split && !results_.empty()) lines_ += "\n";
     block_ = nowhere;
-    for (const Assignment& result : results_) {
-      lines_ += fmt::format("  {} = {};\n", result.target, operand(result.node));
-    }
+    write_results(out, split ? block_size : 0);
     out.text = finish_text();
     out.uses_batch = uses_batch_;
-    arguments.insert(arguments_.begin(), arguments_.end());
-    out.arguments.assign(arguments.begin(), arguments.end());
+    all_arguments_.insert(arguments_.begin(), arguments_.end());
+    out.arguments.assign(all_arguments_.begin(), all_arguments_.end());
     return out;
   }
 
  private:
+  /// Writes the results, in blocks of so many lines where that is not zero and they are arguments.
+  void write_results(Statements& out, std::size_t block_size) {
+    const bool in_blocks = block_size > 0 && !results_.empty() && results_[0].argument != Assignment::none;
+    const std::string index = in_blocks ? names_.claim("i") : "";
+    for (std::size_t i = 0, lines = 0; i < results_.size(); ++lines) {
+      i += write_result(i, index);
+      if (!in_blocks || ((lines + 1) % block_size != 0 && i < results_.size())) continue;
+      finish_block(out);
+      start_text();
+    }
+  }
+
+  /// Writes a result, or a run of equal constants where `index`, the variable of a loop, has a name.
+  /// @return how many results that were
+  std::size_t write_result(std::size_t i, const std::string& index) {
+    const Assignment& first = results_[i];
+    const std::string value = operand(first.node);
+    if (first.argument != Assignment::none) arguments_.insert(first.argument);
+    std::size_t run = 1;
+    if (!index.empty() && first.entry != Assignment::none && tape_.node(first.node).op == Op::constant) {
+      while (i + run < results_.size() && results_[i + run].node == first.node &&
+             results_[i + run].target == first.target && results_[i + run].entry == first.entry + run)
+        ++run;
+    }
+    if (run >= shortest_run) {
+      lines_ += fmt::format("  for (int {0} = {1}; {0} < {2}; ++{0}) {3}[{0}] = {4};\n", index, first.entry,
+                            first.entry + run, first.target, value);
+      return run;
+    }
+    const std::string entry = first.entry == Assignment::none ? "" : fmt::format("[{}]", first.entry);
+    lines_ += fmt::format("  {}{} = {};\n", first.target, entry, value);
+    return 1;
+  }
+
   /// sin and cos of an input keep its name; other temporaries are numbered.
   void name_temporaries() {
     temporary_.assign(tape_.size(), {});
@@ -163,10 +195,16 @@ class Writer {
     }
   }
 
+  void finish_block(Statements& out) {
+    out.blocks.push_back({{arguments_.begin(), arguments_.end()}, uses_carried_, finish_text()});
+    all_arguments_.insert(arguments_.begin(), arguments_.end());
+  }
+
   void start_text() {
     lines_.clear();
     functions_.clear();
     arguments_.clear();
+    uses_carried_ = false;
     uses_constant_ = false;
     title_ = nowhere;
   }
@@ -196,8 +234,9 @@ class Writer {
 
   /// Hands a value on to the blocks behind.
   void carry(NodeId id) {
-    if (!slot_.empty() && slot_[id] != nowhere)
-      lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], temporary_[id]);
+    if (slot_.empty() || slot_[id] == nowhere) return;
+    uses_carried_ = true;
+    lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], temporary_[id]);
   }
 
   void write_title(std::size_t section) {
@@ -223,8 +262,9 @@ class Writer {
       throw std::logic_error(fmt::format(
           "an output needs '{}', which is neither a parameter nor in an input block", tape_.inputs()[n.a]));
     }
-    if (!slot_.empty() && block_of_[id] != block_) return fmt::format("{}[{}]", carried_, slot_[id]);
-    return temporary_[id];
+    if (slot_.empty() || block_of_[id] == block_) return temporary_[id];
+    uses_carried_ = true;
+    return fmt::format("{}[{}]", carried_, slot_[id]);
   }
 
   const Tape& tape_;
@@ -245,8 +285,8 @@ class Writer {
 
   std::string lines_;
   std::set<std::string> functions_;
-  std::set<std::size_t> arguments_;
-  bool uses_constant_ = false;
+  std::set<std::size_t> arguments_, all_arguments_;  // of a block, of all blocks so far
+  bool uses_carried_ = false, uses_constant_ = false;
   std::size_t title_ = nowhere;
   std::size_t block_ = 0;
 };

@@ -20,10 +20,13 @@ struct GivenValue {
 };
 using GivenValues = std::unordered_map<NodeId, GivenValue>;
 
-/// target = node, the last lines of a function.
+/// target = node or target[entry] = node, the last lines of a function.
 struct Assignment {
+  static constexpr auto none = static_cast<std::size_t>(-1);
   std::string target;
   NodeId node = 0;
+  std::size_t entry = none;
+  std::size_t argument = none;  // which of the function's arguments the target is; none: a value of its own
 };
 
 /// How sines and cosines are computed.
@@ -34,21 +37,22 @@ enum class SinCos {
 
 struct StatementStyle {
   NodeOrder order = NodeOrder::by_length;
-  std::size_t split_above = 5000;  // statements; compilers are slow on longer functions
-  std::size_t block_size = 1000;
+  std::size_t split_above = 5000;  // operations; compilers are slow on longer functions
+  std::size_t block_size = 300;    // lines of a part
   SinCos sincos = SinCos::cmath;
 };
 
-/// A function of its own that holds a part of a long one.
+/// A function of its own that holds a part of a long one: operations, or results.
 struct StatementBlock {
-  std::vector<std::size_t> arguments;  // of the whole function that it reads, ascending
+  std::vector<std::size_t> arguments;  // of the whole function that it reads or writes, ascending
+  bool uses_carried = false;
   std::string text;
 };
 
 struct Statements {
   std::vector<StatementBlock> blocks;  // empty where the function is not split
-  std::string text;                    // of the function itself; of its last lines where it is split
-  std::vector<std::size_t> arguments;  // that `text` and the blocks read, ascending
+  std::string text;  // of the function itself; results that are no argument where it is split
+  std::vector<std::size_t> arguments;  // that `text` and the blocks use, ascending
   std::string carried;                 // name of the array of values that cross blocks
   std::size_t carried_size = 0;
   bool uses_batch = false;  // of sines and cosines

@@ -5,6 +5,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "tape/node_set.hpp"
+
 namespace anholon {
 namespace {
 
@@ -208,19 +210,15 @@ NodeId Tape::div(NodeId a, NodeId b) {
 }
 
 std::vector<NodeId> Tape::reachable(const std::vector<NodeId>& roots) const {
-  std::vector<char> needed(nodes_.size(), 0);
-  for (const NodeId root : roots) needed[root] = 1;
-  for (std::size_t i = nodes_.size(); i-- > 0;) {  // operands precede their users
-    if (needed[i] == 0) continue;
-    const int arity = info(nodes_[i].op).arity;
-    if (arity >= 1) needed[nodes_[i].a] = 1;
-    if (arity == 2) needed[nodes_[i].b] = 1;
-  }
-  std::vector<NodeId> order;
-  for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    if (needed[i] != 0) order.push_back(static_cast<NodeId>(i));
-  }
-  return order;
+  NodeSet needed(nodes_.size());
+  for (const NodeId root : roots) needed.insert(root);
+  needed.visit_backwards([&](NodeId id) {  // operands precede their users
+    const Node& n = nodes_[id];
+    const int arity = info(n.op).arity;
+    if (arity >= 1) needed.insert(n.a);
+    if (arity == 2) needed.insert(n.b);
+  });
+  return needed.members();
 }
 
 }  // namespace anholon

@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "check/compile_cache.hpp"
@@ -118,6 +119,25 @@ TEST(CompiledProgram, SplitsALongFunctionAndCompilesIt) {
   const Program program = test::long_program(1000);
   const std::string header = emit_header(program);
   EXPECT_NE(header.find("turn_block_6("), std::string::npos);
+  expect_values(program, options_for_test(), -1, 1, 1e-12);  // 1000 turns of two roundings
+}
+
+TEST(CompiledProgram, SplitsTheResultsOfALongFunctionAndFillsInRunsOfConstants) {
+  Program program = test::long_program(1000);
+  const auto lines_of_last_block = [](const std::string& header) {
+    const std::string tail = header.substr(header.find("_block_", header.rfind("noinline")));
+    return std::ranges::count(tail.substr(0, tail.find("\n}")), '\n');
+  };
+  const NodeId zero = program.tape.constant(0);
+  OutputBlock rows{"rows", "", "", 1000, 1, {}};
+  for (int i = 0; i < 1000; ++i)
+    rows.nodes.push_back(i % 20 < 8 ? program.functions[0].outputs[0].nodes[i % 2] : zero);
+  program.functions[0].outputs.push_back(rows);
+  const std::string header = emit_header(program);
+  EXPECT_NE(header.find("  for (int i = 8; i < 20; ++i) rows[i] = constant<Real>(0.0L);\n"),
+            std::string::npos);
+  EXPECT_NE(header.find("rows[980] = "), std::string::npos);
+  EXPECT_LE(lines_of_last_block(header), 300 + 4);           // StatementStyle::block_size and the head
   expect_values(program, options_for_test(), -1, 1, 1e-12);  // 1000 turns of two roundings
 }
 

@@ -114,7 +114,8 @@ TEST_P(EveryProgram, CompilesAloneAndNeedsNothingButTheMathLibrary) {
 
 /// Operations of each emitted function, counted in the text: one a line.
 std::map<std::string, OperationCount> recount(const std::string& header) {
-  static const std::regex head(R"(^inline (?:void|Prepared<Real>) (\w+?)(?:_block_\d+)?\()");
+  static const std::regex head(
+      R"(^(?:\[\[gnu::noinline\]\] )?inline (?:void|Prepared<Real>) (\w+?)(?:_block_\d+)?\()");
   static const std::regex statement(R"(^  const Real \w+ = (.*);$)");
   std::map<std::string, OperationCount> counts;
   std::string current;
