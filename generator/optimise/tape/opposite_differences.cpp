@@ -28,6 +28,11 @@ class SignPass {
 
  private:
   Signed image_of(const Node n, NodeId id, const std::vector<Signed>& image) {
+    const int arity = info(n.op).arity;
+    const auto is_unchanged = [&](NodeId x) { return image[x].node == x && !image[x].negative; };
+    if (arity > 0 && is_unchanged(n.a) && (arity == 1 || is_unchanged(n.b)) && n.op != Op::neg &&
+        !(n.op == Op::sub && tape_.key(n.b) < tape_.key(n.a)))
+      return {id, false};
     switch (n.op) {
       case Op::input:
         return {id, false};

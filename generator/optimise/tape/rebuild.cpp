@@ -9,6 +9,7 @@ NodeId copied(Tape& tape, NodeId old, const std::vector<NodeId>& image) {
   const Node n = tape.node(old);
   const int arity = info(n.op).arity;
   if (arity == 0) return old;
+  if (image[n.a] == n.a && (arity == 1 || image[n.b] == n.b)) return old;  // most nodes: no search for them
   return tape.apply(n.op, image[n.a], arity == 2 ? image[n.b] : 0);
 }
 
