@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+//
+// Shipped models against what textbooks say of them, in exact arithmetic: wheel speeds, turning circle,
+// closure of a linkage. None of it uses the recursion or the kernel.
+#include <gtest/gtest.h>
+
+#include "contact/program_values.hpp"
+
+namespace anholon::test {
+namespace {
+
+constexpr double formula = 1e-30;  // 60 digits are carried; what is left is the rounding of the formulas
+
+Exact number(const char* text) { return Exact::from_decimal(text); }
+
+void expect_equal(const Values& got, const Values& want, const std::string& what,
+                  double tolerance = formula) {
+  ASSERT_EQ(got.size(), want.size()) << what;
+  for (std::size_t i = 0; i < got.size(); ++i)
+    EXPECT_LT(abs(got[i] - want[i]).to_double(), tolerance) << what << ", entry " << i;
+}
+
+TEST(DifferentialDrive, MovesByTheMeanAndTurnsByTheDifferenceOfItsWheels) {
+  const WorkingDigits digits(60);
+  const ProgramValues robot("differential_drive", {}, {"kinematics", "inverse_torques"});
+  EXPECT_EQ(robot.derivation().reduction.ranks.m_locked, 3);
+  const Exact R = number("0.1"), b = number("0.2"), left = number("3.7"), right = number("-1.2");
+  Inputs in = {{"r_a_dot", {left, right}}, {"g", {number("1"), number("2"), number("0.4")}}};
+  expect_equal(robot("kinematics", "eta", in),
+               {R * (left + right) / Exact(2), Exact(0), R * (right - left) / (Exact(2) * b)}, "twist");
+  // Straight on from rest: each motor moves half of the mass and its own wheel.
+  const Exact alpha = number("2.5"), mass = number("12") + Exact(2) * number("0.8");
+  in = {{"r_a_ddot", {alpha, alpha}}};
+  const Exact tau = (mass * R * R / Exact(2) + number("0.004")) * alpha;
+  expect_equal(robot("inverse_torques", "tau_a", in), {tau, tau}, "torques");
+}
+
+TEST(MecanumBase, HasTheWheelSpeedsOfTheTextbook) {
+  const WorkingDigits digits(60);
+  const ProgramValues base("mecanum_base", {}, {"kinematics", "compatibility"});
+  EXPECT_EQ(base.derivation().reduction.ranks.m, 4);
+  EXPECT_EQ(base.derivation().reduction.ranks.m_locked, 3);
+  const Exact R = number("0.08"), k = number("0.25") + number("0.2");
+  const Exact x = number("0.7"), y = number("-0.3"), turn = number("1.1");
+  const Inputs in = {
+      {"r_a_dot",
+       {(x - y - k * turn) / R, (x + y + k * turn) / R, (x + y - k * turn) / R, (x - y + k * turn) / R}}};
+  expect_equal(base("kinematics", "eta", in), {x, y, turn}, "twist");
+  expect_equal(base("compatibility", "velocity_residual", in), {Exact(0)}, "condition on the wheels");
+  Inputs skewed = in;
+  skewed["r_a_dot"][0] = skewed["r_a_dot"][0] + Exact(1);
+  EXPECT_GT(abs(base("compatibility", "velocity_residual", skewed)[0]).to_double(), 1e-3);
+}
+
+// The ends of the cranks are known, the tip is where two circles meet.
+TEST(FiveBar, RodsFollowTheIntersectionOfTwoCircles) {
+  const WorkingDigits digits(60);
+  const ProgramValues linkage("five_bar", {}, {"kinematics", "position_conditions"});
+  EXPECT_EQ(linkage.derivation().reduction.kernel.H.cols(), 0);
+  const Exact b = number("0.15"), l_1 = number("0.25"), l_2 = number("0.4");
+  /// (left_elbow, right_elbow) at angles of the cranks, tip up.
+  const auto elbows = [&](const Exact& left, const Exact& right) -> Values {
+    const Exact px = l_1 * cos(left) - b, py = l_1 * sin(left);
+    const Exact qx = l_1 * cos(right) + b, qy = l_1 * sin(right);
+    const Exact dx = (qx - px) / Exact(2), dy = (qy - py) / Exact(2);
+    const Exact half = sqrt(dx * dx + dy * dy), height = sqrt(l_2 * l_2 - half * half);
+    const Exact tx = px + dx - height * dy / half, ty = py + dy + height * dx / half;
+    return {atan2(ty - py, tx - px) - left, atan2(ty - qy, tx - qx) - right};
+  };
+  const Exact left = number("2.1"), right = number("0.8"), h = number("1e-20");
+  const Exact left_rate = number("1.3"), right_rate = number("-0.7");
+  const Values at = elbows(left, right);
+  const Inputs in = {{"r_a", {left, right}}, {"r_p", at}, {"r_a_dot", {left_rate, right_rate}}};
+  expect_equal(linkage("position_conditions", "Phi", in), {Exact(0), Exact(0)}, "closure");
+  const Values ahead = elbows(left + h * left_rate, right + h * right_rate);
+  const Values behind = elbows(left - h * left_rate, right - h * right_rate);
+  Values rates;
+  for (std::size_t i = 0; i < 2; ++i) rates.push_back((ahead[i] - behind[i]) / (h + h));
+  expect_equal(linkage("kinematics", "r_p_dot", in), rates, "rates of the elbows");  // error of order h^2
+}
+
+}  // namespace
+}  // namespace anholon::test

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+# Every shipped model passes `anholon verify`: one process a model, few states. `--samples 1000` is for releases.
+file(GLOB ANHOLON_MODEL_FOLDERS CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/models ${PROJECT_SOURCE_DIR}/models/*)
+foreach(model IN LISTS ANHOLON_MODEL_FOLDERS)
+  file(GLOB descriptions CONFIGURE_DEPENDS
+    ${PROJECT_SOURCE_DIR}/models/${model}/*.toml ${PROJECT_SOURCE_DIR}/models/${model}/*.urdf)
+  list(FILTER descriptions EXCLUDE REGEX "\\.scene\\.toml$")
+  foreach(description IN LISTS descriptions)
+    get_filename_component(name ${description} NAME_WE)
+    set(options --samples 12)
+    if(description MATCHES "\\.urdf$" AND NOT name STREQUAL "arm7")
+      list(APPEND options --floating)
+    endif()
+    add_test(NAME Verify.${name} COMMAND anholon verify ${description} ${options})
+    set_tests_properties(Verify.${name} PROPERTIES LABELS slow TIMEOUT 900
+      ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+  endforeach()
+endforeach()
