@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -138,6 +139,39 @@ std::string compiler_version(const std::vector<std::string>& compiler, const fs:
   return found->second;
 }
 
+/// Writes header and source to the folder and compiles them to the output file.
+void compile(std::vector<std::string> command, const std::vector<std::string>& flags,
+             const std::string& header, const std::string& source, const fs::path& folder,
+             const fs::path& output) {
+  write_file(folder / "program.hpp", header);
+  write_file(folder / "program.cpp", source);
+  write_file(folder / "anholon" / "abi.hpp", embedded::abi_header);
+  command.insert(command.end(), flags.begin(), flags.end());
+  for (const std::string& word : {std::string("-I"), folder.string(), std::string("-o"), output.string(),
+                                  (folder / "program.cpp").string()}) {
+    command.push_back(word);
+  }
+  const fs::path messages = folder.string() + ".messages";
+  if (const int status = run(command, messages); status != 0) {
+    std::string text = read_file(messages);
+    if (text.size() > longest_message) text = text.substr(0, longest_message) + "\n...";
+    std::string shown;
+    for (const std::string& word : command) shown += (shown.empty() ? "" : " ") + word;
+    throw CompileError(
+        fmt::format("the compiler failed with status {} on generated code:\n{}\n{}", status, shown, text));
+  }
+}
+
+/// Processor time of the processes that ended.
+double seconds_of_children() {
+  rusage used{};
+  ::getrusage(RUSAGE_CHILDREN, &used);
+  const auto of = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  };
+  return of(used.ru_utime) + of(used.ru_stime);
+}
+
 /// Every part with its length, so that no two lists of parts give the same text.
 void append(std::string& text, std::string_view part) { text += fmt::format("{}:{}\n", part.size(), part); }
 
@@ -160,24 +194,7 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
 
   const TemporaryFolder scratch(cache);
   const fs::path work = scratch.path() / "program";
-  write_file(work / "program.hpp", header);
-  write_file(work / "program.cpp", source);
-  write_file(work / "anholon" / "abi.hpp", embedded::abi_header);
-  std::vector<std::string> command = compiler;
-  command.insert(command.end(), options.flags.begin(), options.flags.end());
-  for (const std::string& word : {std::string("-I"), work.string(), std::string("-o"),
-                                  (work / "program.so").string(), (work / "program.cpp").string()}) {
-    command.push_back(word);
-  }
-  const fs::path messages = scratch.path() / "messages";
-  if (const int status = run(command, messages); status != 0) {
-    std::string text = read_file(messages);
-    if (text.size() > longest_message) text = text.substr(0, longest_message) + "\n...";
-    std::string shown;
-    for (const std::string& word : command) shown += (shown.empty() ? "" : " ") + word;
-    throw CompileError(
-        fmt::format("the compiler failed with status {} on generated code:\n{}\n{}", status, shown, text));
-  }
+  compile(compiler, options.flags, header, source, work, work / "program.so");
   std::error_code error;
   fs::rename(work, folder, error);
   if (error && !fs::exists(library)) {  // else another process was faster, with the same bytes
@@ -185,6 +202,19 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
         fmt::format("cannot move compiled code to '{}': {}", folder.string(), error.message()));
   }
   return {library, false};
+}
+
+CompileEffort compile_effort(const Program& program, const CompileOptions& options) {
+  const std::vector<std::string> compiler = compiler_command(options);
+  const TemporaryFolder scratch(cache_folder(options));
+  std::vector<std::string> flags = options.flags;
+  std::erase(flags, "-shared");
+  flags.emplace_back("-c");
+  const fs::path object = scratch.path() / "program.o";
+  const double before = seconds_of_children();
+  compile(compiler, flags, emit_header(program, options.style), emit_c_abi(program, "program.hpp"),
+          scratch.path() / "program", object);
+  return {seconds_of_children() - before, fs::file_size(object)};
 }
 
 void CompiledProgram::CloseLibrary::operator()(void* handle) const { ::dlclose(handle); }

@@ -5,6 +5,7 @@
 // blocks.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -51,6 +52,14 @@ struct CompiledFile {
 /// @throws CompileError
 CompiledFile compile_cached(const std::string& header, const std::string& source,
                             const CompileOptions& options = {});
+
+/// What it takes to compile the functions of double to an object file; never from the cache.
+struct CompileEffort {
+  double seconds = 0;  // of processor time
+  std::uintmax_t object_bytes = 0;
+};
+/// @throws CompileError
+CompileEffort compile_effort(const Program& program, const CompileOptions& options = {});
 
 /// A program that runs. Not copied; a copy of the code stays loaded as long as this lives.
 class CompiledProgram {

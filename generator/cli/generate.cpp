@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "check/compile_cache.hpp"
 #include "cli/common.hpp"
 #include "describe/scene.hpp"
 #include "emit/c_abi.hpp"
@@ -50,7 +51,33 @@ std::string headline(const AnyDerivation& derivation, const Model& model) {
       model.group == GroupKind::fixed ? "fixed" : fmt::format("free in {}", name(model.group)));
 }
 
-/// Every formulation that was tried. Passes over the finished program see only the two cheapest.
+/// Operations after each pass, for the route that was kept; passes that change nothing are left out.
+void print_passes(const TreeDerivation& traced) {
+  fmt::print("\n{:28s} {:28s} {:>10s}\n", "function", "after", "operations");
+  const PassReport* last = nullptr;
+  for (const PassReport& p : traced.trace) {
+    const bool is_first = last == nullptr || last->function != p.function;
+    if (is_first || last->operations != p.operations)
+      fmt::print("{:28s} {:28s} {:>10d}\n", is_first ? p.function : "", p.pass, p.operations);
+    last = &p;
+  }
+}
+
+/// What compiling all functions of double takes.
+void print_effort(const Program& program, const StatementStyle& style, double seconds) {
+  fmt::print("\nderived and emitted in {:.2f} s\n", seconds);
+  CompileOptions options;
+  options.style = style;
+  try {
+    const CompileEffort effort = compile_effort(program, options);
+    fmt::print("compiled with -O2 in {:.2f} s of processor time, object of {} bytes\n", effort.seconds,
+               effort.object_bytes);
+  } catch (const CompileError& error) {
+    fmt::print("not compiled: {}\n", error.what());
+  }
+}
+
+/// Every formulation that was tried. Passes over the finished program see only the cheapest.
 void print_routes(const AnyDerivation& derivation) {
   std::size_t width = 5;
   for (const CandidateReport& c : derivation.candidates()) width = std::max(width, c.route.size());
@@ -75,6 +102,7 @@ int generate(const GenerateOptions& options) {
   if (options.order == "sections") style.order = NodeOrder::depth_first;
   if (options.order == "lifetimes") style.order = NodeOrder::lifetimes;
   const std::string header = emit_header(program, style);
+  const double seconds = watch.seconds();
 
   std::filesystem::path file = options.output;
   if (file.extension() != ".hpp") {
@@ -120,7 +148,15 @@ int generate(const GenerateOptions& options) {
     fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % fewer\n", operations,
                operations_before, 100.0 * (operations_before - operations) / operations_before);
   if (options.passes || derivation.tree) print_routes(derivation);
-  fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), watch.seconds());
+  if (options.passes) {
+    if (derivation.tree) {
+      TreeRequest request = tree_request(options);
+      request.trace = true;
+      print_passes(*derive_tree(model, request));
+    }
+    print_effort(program, style, seconds);
+  }
+  fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), seconds);
   return ok;
 }
 

@@ -63,7 +63,9 @@ int main(int argc, char** argv) {
                    "in long functions")
       ->check(CLI::IsMember({"auto", "sections", "lifetimes"}));
   verb->add_flag("--c-abi", generate.c_abi, "also write a source with a flat C interface, and its JSON");
-  verb->add_flag("--passes", generate.passes, "print the operations of every route that was tried");
+  verb->add_flag(
+      "--passes", generate.passes,
+      "print the operations of every route that was tried, after each pass, and what compiling takes");
   verb->callback([&] { run = [&] { return cli::generate(generate); }; });
 
   cli::ExplainOptions explain;

@@ -72,10 +72,10 @@ std::vector<FrameJacobian<S>> frame_jacobians(const Mechanism<S>& mechanism, con
     }
   }
   recursion.twists(state);
-  recursion.accelerations(state, Spatial<S>{}, recursion.no_acceleration(), false);
+  const std::vector<Spatial<S>> rates = recursion.twist_rates(state);
   for (std::size_t b = 0; b < bodies.size(); ++b) {
-    const BodyMotion<S>& m = recursion.motion(bodies[b]);
-    const Spatial<S> rate = in_frame(bodies[b], m.a - cross(m.w, m.v), m.wd);
+    const Spatial<S>& of_body = rates[static_cast<std::size_t>(bodies[b])];
+    const Spatial<S> rate = in_frame(bodies[b], of_body.linear, of_body.angular);
     for (int i = 0; i < 6; ++i) result[b].bias.push_back(rate[i]);
   }
   return result;

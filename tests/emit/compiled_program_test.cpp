@@ -122,6 +122,13 @@ TEST(CompiledProgram, SplitsALongFunctionAndCompilesIt) {
   expect_values(program, options_for_test(), -1, 1, 1e-12);  // 1000 turns of two roundings
 }
 
+TEST(CompileEffort, GrowsWithTheProgram) {
+  const CompileEffort small = compile_effort(test::long_program(10), options_for_test());
+  const CompileEffort large = compile_effort(test::long_program(1000), options_for_test());
+  EXPECT_GT(small.seconds, 0);
+  EXPECT_GT(large.object_bytes, small.object_bytes + 4 * 6000);  // 6000 operations of 4 bytes or more
+}
+
 TEST(CompiledProgram, SplitsTheResultsOfALongFunctionAndFillsInRunsOfConstants) {
   Program program = test::long_program(1000);
   const auto lines_of_last_block = [](const std::string& header) {

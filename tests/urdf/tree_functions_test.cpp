@@ -206,6 +206,24 @@ void verify_others(const Model& model) {
   EXPECT_EQ(at, jacobians.size());
 }
 
+TEST(TreeFunctions, ALinkFixedToTheReferenceBodyHasAConstantJacobianAndNoBias) {
+  UrdfOptions options;
+  options.floating = true;
+  TreeRequest request;
+  request.functions = {"jacobians"};
+  const auto derivation = derive_tree(read_urdf_text(testing::arm(), "arm.urdf", options), request);
+  int seen = 0;
+  for (const OutputBlock& b : derivation->program.functions.at(0).outputs) {
+    if (b.name != "bias_mount" && b.name != "J_mount") continue;
+    ++seen;
+    for (const NodeId id : b.nodes) {
+      EXPECT_TRUE(derivation->program.tape.is_constant(id)) << b.name;
+      EXPECT_TRUE(b.name == "J_mount" || derivation->program.tape.is_zero(id));
+    }
+  }
+  EXPECT_EQ(seen, 2);
+}
+
 TEST(TreeFunctions, OthersOfTheWalker) {
   UrdfOptions options;
   options.floating = true;

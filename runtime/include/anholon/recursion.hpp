@@ -99,6 +99,31 @@ class Recursion {
     }
   }
 
+  /// Rates of the twists' components while eta and r_dot stay what they are, in the order of the bodies: the
+  /// bias of their Jacobians. Needs twists().
+  ///
+  ///   eta_dot_k = Ad eta_dot_parent + ad(eta_k) S_k r_dot_k,    ad(V, W) (v, w) = (W x v + V x w, W x w)
+  ///
+  /// Other than accelerations less Omega x V, this vanishes term by term where no joint moves.
+  [[nodiscard]] std::vector<Spatial<S>> twist_rates(const State<S>& state) const {
+    std::vector<Spatial<S>> rates(mechanism_.bodies.size());
+    for (std::size_t k = 1; k < rates.size(); ++k) {
+      const Body<S>& body = mechanism_.bodies[k];
+      mechanism_.section(body.name + ": rate of the twist");
+      const Spatial<S>& parent = rates[static_cast<std::size_t>(body.parent)];
+      const BodyMotion<S>& motion = motions_[k];
+      const auto [linear_rate, angular_rate] = along_axis(body, rate(body, std::span<const S>(state.r_dot)));
+      const auto [linear, angular] = along_axis(body, acceleration(body, state, no_acceleration()));
+      const Vec3<S> axis = unit<S>(body.axis);
+      rates[k].linear = to_body(k, parent.linear + cross(parent.angular, joints_[k].offset)) +
+                        cross(motion.w, linear_rate * axis) + cross(motion.v, angular_rate * axis);
+      rates[k].angular = to_body(k, parent.angular) + cross(motion.w, angular_rate * axis);
+      rates[k].linear[body.axis] = rates[k].linear[body.axis] + linear;
+      rates[k].angular[body.axis] = rates[k].angular[body.axis] + angular;
+    }
+    return rates;
+  }
+
   /// Forces that the motion needs beyond those that are applied. Needs accelerations().
   /// @param applied  whether user wrenches, springs, dampers and generalised forces act
   /// Afterwards base_wrench() is f_reac and generalised_forces() is tau of eq. (28), one for every
