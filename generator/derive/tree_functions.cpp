@@ -51,7 +51,8 @@ struct Algorithm {
 /// What became of a function, for the trace.
 struct Kept {
   Algorithm algorithm;
-  std::vector<NodeId> roots;  // before the passes on the program
+  std::vector<NodeId> roots;       // before the passes on the program
+  std::vector<PassReport> passes;  // on the program
 };
 
 /// Passes over a program, in the order in which they run.
@@ -177,7 +178,7 @@ class TreeDeriver {
         if (const std::vector<NodeId> roots = roots_of(r); !roots.empty()) report(stage.name, roots);
       }
       report("best frames", kept.roots);
-      share(kept.roots, report);
+      result_->trace.insert(result_->trace.end(), kept.passes.begin(), kept.passes.end());
     }
   }
 
@@ -236,15 +237,19 @@ class TreeDeriver {
     std::vector<std::size_t> order(routes.size());
     std::iota(order.begin(), order.end(), 0);
     std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cost[i]; });
+    std::vector<std::vector<PassReport>> passes(routes.size());
     for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), finalists); ++i) {
-      const std::vector<NodeId> shared = share(before[order[i]]);
+      const std::vector<NodeId> shared =
+          share(before[order[i]], [&](const std::string& pass, int operations) {
+            passes[order[i]].push_back({name, pass, operations});
+          });
       place(order[i], shared);
       cost[order[i]] = cost_of(shared);
     }
     const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
     for (std::size_t i = 0; i < routes.size(); ++i)
       result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
-    if (request_.trace) kept_.emplace(name, Kept{algorithms[best], before[best]});
+    if (request_.trace) kept_.emplace(name, Kept{algorithms[best], before[best], passes[best]});
     program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
   }
 
@@ -252,9 +257,8 @@ class TreeDeriver {
   static constexpr std::size_t finalists = 4;
   static constexpr std::size_t largest_shared =
       400000;  // nodes of the tape beyond which the passes would dominate the time
-  std::vector<NodeId> share(
-      std::vector<NodeId> roots,
-      const std::function<void(const std::string& pass, const std::vector<NodeId>& roots)>& report = {}) {
+  std::vector<NodeId> share(std::vector<NodeId> roots,
+                            const std::function<void(const std::string& pass, int operations)>& report) {
     if (tape_.size() > largest_shared) return roots;
     int cost = cost_of(roots);
     for (int round = 0; round < 3; ++round) {
@@ -265,7 +269,7 @@ class TreeDeriver {
         if (after > cost) continue;  // a pass counts what prepare() computes, too
         cost = after;
         roots = std::move(next);
-        if (report) report(pass.name, roots);
+        report(pass.name, cost);
       }
       if (cost == before) break;
     }
