@@ -76,6 +76,9 @@ void print(const Model& model, const ReductionReport& reduction, const Regularit
   fmt::print("{}{}\n", model.name, model.title.empty() ? "" : ": " + model.title);
   line("group", fmt::format("{} (n = {})", name(model.group), p.n));
   line("bodies", fmt::format("{}", model.bodies.size()));
+  for (const Count& count : model.counts)
+    line("count", fmt::format("{} = {}, from {} to {}: {}", count.name, count.value, count.least, count.most,
+                              count.meaning));
   line("active coordinates", fmt::format("s_a = {}: {}", p.s_a(), listed(c.active)));
   line("passive coordinates", p.s_p() == 0 ? "s_p = 0: none"
                                            : fmt::format("s_p = {}: kinematic {}; dynamic {}", p.s_p(),

@@ -23,10 +23,11 @@ struct ModelOptions {
   std::string model;  // path of a description or scene
   std::string scene;  // path, empty: standard
   std::vector<std::string> functions;
-  std::string inverse = "pseudo";  // or "leading:ROW[,ROW...]"
-  UrdfOptions urdf;                // of a URDF file
-  std::string gravity;             // of a URDF file, m/s^2 along -z; empty: its default
-  bool search = true;              // of a tree: try every formulation
+  std::string inverse = "pseudo";   // or "leading:ROW[,ROW...]"
+  UrdfOptions urdf;                 // of a URDF file
+  std::string gravity;              // of a URDF file, m/s^2 along -z; empty: its default
+  bool search = true;               // of a tree: try every formulation
+  std::vector<std::string> counts;  // of a model file: "N=12"
 };
 
 struct CheckOptions : ModelOptions {

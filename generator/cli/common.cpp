@@ -36,6 +36,22 @@ UrdfOptions urdf_options(const ModelOptions& options) {
   return urdf;
 }
 
+/// --count N=12 as numbers by name.
+CountValues counts_of(const ModelOptions& options) {
+  CountValues counts;
+  for (const std::string& text : options.counts) {
+    const std::size_t equals = text.find('=');
+    int number = 0;
+    const char* end = text.data() + text.size();
+    const char* begin = equals == std::string::npos ? end : text.data() + equals + 1;
+    const auto [rest, error] = std::from_chars(begin, end, number);
+    if (error != std::errc() || rest != end)
+      throw std::invalid_argument(fmt::format("--count is '{}', not NAME=NUMBER", text));
+    counts[text.substr(0, equals)] = number;
+  }
+  return counts;
+}
+
 }  // namespace
 
 Model load_model(const ModelOptions& options) {
@@ -46,6 +62,9 @@ Model load_model(const ModelOptions& options) {
     throw std::invalid_argument(
         "--floating, --as-written, --symbolic-inertia and --gravity are for a URDF file without a scene; a "
         "model file says these things itself (docs/urdf.md)");
+  if (!options.counts.empty() &&
+      (!options.scene.empty() || is_urdf(options.model) || is_scene(options.model)))
+    throw std::invalid_argument("--count is for a model file; a scene says it itself: counts = { N = 12 }");
   if (!options.scene.empty()) {
     const Scene scene = read_scene(options.scene);
     return specialise(scene.model, scene);
@@ -54,7 +73,7 @@ Model load_model(const ModelOptions& options) {
     const Scene scene = read_scene(options.model);
     return specialise(scene.model, scene);
   }
-  return read_model(options.model);
+  return read_model(options.model, {}, counts_of(options));
 }
 
 bool wants_tree(const ModelOptions& options, const Model& model) {

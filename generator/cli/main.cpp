@@ -31,6 +31,7 @@ int main(int argc, char** argv) {
     verb->add_option(
         "--inverse", o.inverse,
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
+    verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")->delimiter(',');
     if (functions)
       verb->add_option("--functions", o.functions,
                        "functions to generate, separated by commas; default: all, or of a URDF file the five "

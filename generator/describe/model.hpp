@@ -14,6 +14,7 @@
 #include "anholon/lie/group_kind.hpp"
 #include "anholon/mechanism.hpp"
 #include "describe/location.hpp"
+#include "describe/repetition.hpp"
 #include "tape/expr.hpp"
 
 namespace anholon {
@@ -139,6 +140,7 @@ struct Model {
   Expr dissipation = 0;                      // Rayleigh function of the velocities, eq. (21)
   std::vector<std::string> free_velocities;  // user's choice of kernel coordinates; may be empty
   std::vector<std::string> notes;            // what reading assumed, for `check`
+  std::vector<Count> counts;                 // how often parts of the description come
 };
 
 }  // namespace anholon

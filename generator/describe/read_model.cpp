@@ -123,10 +123,21 @@ std::vector<std::string> group_names() {
   return groups;
 }
 
-Model read_model_text(std::string_view text, const std::string& file_name, const ParameterValues& overrides) {
-  const Value document = read_document(text, file_name);
-  if (document.find("urdf") != nullptr) return read_supplemented_urdf(document, text, file_name, overrides);
+Model read_model_text(std::string_view text, const std::string& file_name, const ParameterValues& overrides,
+                      const CountValues& counts) {
+  Value document = read_document(text, file_name);
+  Findings repetitions;
+  const std::vector<Count> own_counts = take_counts(document, counts, repetitions);
+  repetitions.throw_if_any();
+  write_out(document, own_counts, repetitions);
+  repetitions.throw_if_any();
+  if (document.find("urdf") != nullptr) {
+    Model model = read_supplemented_urdf(document, text, file_name, overrides);
+    model.counts = own_counts;
+    return model;
+  }
   Model model;
+  model.counts = own_counts;
   model.file = std::filesystem::path(file_name).filename().string();
   model.sha256 = sha256_of(text);
   Findings findings;
@@ -152,8 +163,9 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
   return model;
 }
 
-Model read_model(const std::filesystem::path& path, const ParameterValues& overrides) {
-  if (!is_urdf(path)) return read_model_text(read_bytes(path), path.string(), overrides);
+Model read_model(const std::filesystem::path& path, const ParameterValues& overrides,
+                 const CountValues& counts) {
+  if (!is_urdf(path)) return read_model_text(read_bytes(path), path.string(), overrides, counts);
   return read_urdf(path);  // its figures are numbers: there is nothing to override
 }
 

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "describe/model.hpp"
+#include "describe/repetition.hpp"
 
 namespace anholon {
 
@@ -17,10 +18,12 @@ using ParameterValues = std::map<std::string, Exact, std::less<>>;
 
 /// Reads a description. @throws ModelError with everything that is wrong with it
 /// @param overrides  values for some of its parameters; names that are not parameters of it are ignored
-Model read_model(const std::filesystem::path& path, const ParameterValues& overrides = {});
+/// @param counts  numbers for some of its counts
+Model read_model(const std::filesystem::path& path, const ParameterValues& overrides = {},
+                 const CountValues& counts = {});
 
 /// Likewise from text. @param file_name  stands in messages; its last component becomes Model::file
 Model read_model_text(std::string_view text, const std::string& file_name,
-                      const ParameterValues& overrides = {});
+                      const ParameterValues& overrides = {}, const CountValues& counts = {});
 
 }  // namespace anholon

@@ -198,6 +198,21 @@ void check_drives(const TableReader& root, const Scene& scene, Findings& finding
   }
 }
 
+/// The scene's description, relative to the scene. @throws ModelError where there is none
+std::string model_name_of(const Value& document, Findings& findings) {
+  TableReader root(document, "the scene", findings);
+  const auto name = root.required_string(
+      "model", "name the description, relative to the scene: model = \"snakeboard.toml\"");
+  findings.throw_if_any();
+  const Location where = root.find_where("model");
+  const std::filesystem::path file = std::filesystem::path(where.file).parent_path() / *name;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw ModelError(where, fmt::format("there is no file '{}'", *name),
+                     "name the description, relative to the scene");
+  return *name;
+}
+
 void read_header(TableReader& root, Scene& scene, Reading& reading) {
   if (root.required("anholon", "write anholon = 1, the version of this format") != nullptr)
     root.optional_integer("anholon", 1, 1);
@@ -230,9 +245,11 @@ void read_header(TableReader& root, Scene& scene, Reading& reading) {
 }  // namespace
 
 Scene read_scene_text(std::string_view text, const std::filesystem::path& path) {
-  const Value document = read_document(text, path.string());
+  Value document = read_document(text, path.string());
   Findings findings;
-  TableReader root(document, "the scene", findings);
+  const CountValues counts = read_count_values(document, findings);
+  findings.throw_if_any();
+  std::erase_if(document.entries, [](const Entry& e) { return e.key == "counts"; });
   Scene scene;
   scene.file = path.filename().string();
   scene.where = scene.initial_where = document.where;
@@ -242,19 +259,15 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& path) 
         document.where, "the file describes a robot, not a scene",
         fmt::format("write a scene beside it that begins with anholon = 1, a name and model = \"{}\"",
                     scene.file));
-  const auto model_name = root.required_string(
-      "model", "name the description, relative to the scene: model = \"snakeboard.toml\"");
-  if (!model_name) findings.throw_if_any();
-  scene.model_file = path.parent_path() / *model_name;
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(scene.model_file, ignored)) {
-    throw ModelError(root.find_where("model"), fmt::format("there is no file '{}'", *model_name),
-                     "name the description, relative to the scene");
-  }
-  scene.model = read_model(scene.model_file);
+  scene.model_file = path.parent_path() / model_name_of(document, findings);
+  scene.model = read_model(scene.model_file, {}, counts);
+  write_out(document, scene.model.counts, findings);
+  findings.throw_if_any();
+  TableReader root(document, "the scene", findings);
+  root.optional("model");
   if (const ParameterValues values = read_parameter_values(root, scene.model, findings); !values.empty()) {
     findings.throw_if_any();
-    scene.model = read_model(scene.model_file, values);
+    scene.model = read_model(scene.model_file, values, counts);
   }
   Reading reading(scene.model, findings);
   name_symbols(reading);
