@@ -12,19 +12,19 @@
 //   kinematics                 3 mul, 2 neg, 1 sin, 1 cos
 //   reduced_velocities         2 add, 5 mul, 1 div, 1 sin, 1 cos
 //   constraints                4 add, 7 mul, 3 neg, 1 sin, 1 cos
-//   free_dynamics              27 add, 67 mul, 5 neg, 1 sin, 1 cos
-//   reduced_dynamics           38 add, 92 mul, 2 neg, 2 sin, 2 cos
-//   split_dynamics             77 add, 128 mul, 1 div, 2 sin, 2 cos
-//   forward_dynamics           82 add, 135 mul, 3 div, 1 neg, 2 sin, 2 cos
-//   inverse_torques            22 add, 39 mul, 2 sin, 2 cos
+//   free_dynamics              27 add, 69 mul, 5 neg, 1 sin, 1 cos
+//   reduced_dynamics           38 add, 94 mul, 2 neg, 2 sin, 2 cos
+//   split_dynamics             77 add, 124 mul, 1 div, 2 sin, 2 cos
+//   forward_dynamics           82 add, 131 mul, 3 div, 1 neg, 2 sin, 2 cos
+//   inverse_torques            22 add, 37 mul, 2 sin, 2 cos
 //   multipliers                41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
 //   torque_driven_kinematics   3 mul, 2 neg, 1 sin, 1 cos
 //   torque_driven_velocities   2 add, 5 mul, 1 div, 1 sin, 1 cos
-//   torque_driven_dynamics     94 add, 153 mul, 4 div, 1 neg, 2 sin, 2 cos
+//   torque_driven_dynamics     94 add, 149 mul, 4 div, 1 neg, 2 sin, 2 cos
 //   torque_driven_multipliers  41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
-//   energies                   27 add, 48 mul, 1 div, 1 sin, 1 cos
+//   energies                   27 add, 47 mul, 1 div, 1 sin, 1 cos
 //   body_poses                 12 add, 10 mul, 3 neg, 3 sin, 3 cos
-//   prepare                    14 add, 27 mul, 3 div, once per set of parameters
+//   prepare                    14 add, 29 mul, 4 div, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -168,96 +168,100 @@ struct Prepared {
   Real c_e;
   Real k1;  // rhoA * L
   Real k2;  // k1 * 0.391496
-  Real k3;  // 0.25 * k1
-  Real k4;  // k1 * L * L * 0.333333
+  Real k3;  // 0.5 * k1 * L
+  Real k4;  // 0.25 * k1
   Real k5;  // L * 0.284413 * k1
-  Real k6;  // k1 * L * 0.5
+  Real k6;  // L * L * k1 * 0.333333
   Real k7;  // l * l - 1
   Real k8;  // J_a * 2
   Real k9;  // L * L * 0.666667
-  Real k10;  // 0.284413 * rhoA * L * L
-  Real k11;  // (m_a * l * l + J_a) * 2 + J_p + J_h
-  Real k12;  // m_p + (k1 + m_a) * 2
-  Real k13;  // EI * 3.09059
-  Real k14;  // L * L * L
-  Real k15;  // k13 / k14
-  Real k16;  // m_p + m_a * 2
-  Real k17;  // 1 / k3
-  Real k18;  // 0.391496 * l
-  Real k19;  // k12 * l * l
-  Real k20;  // m_p * l * l - J_p - k8 - J_h
-  Real k21;  // 0.666667 * (3 * l * l - L * L)
-  Real k22;  // J_h + k8 + J_p
-  Real k23;  // 1 / k8
-  Real k24;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
+  Real k10;  // L * L * L
+  Real k11;  // 1.5453 * (EI / k10)
+  Real k12;  // 0.284413 * rhoA * L * L
+  Real k13;  // (m_a * l * l + J_a) * 2 + J_p + J_h
+  Real k14;  // 1.5453 * EI
+  Real k15;  // k14 / k10
+  Real k16;  // m_p + (k1 + m_a) * 2
+  Real k17;  // m_p + m_a * 2
+  Real k18;  // 1 / k4
+  Real k19;  // 0.391496 * l
+  Real k20;  // k16 * l * l
+  Real k21;  // m_p * l * l - J_p - k8 - J_h
+  Real k22;  // 0.666667 * (3 * l * l - L * L)
+  Real k23;  // J_h + k8 + J_p
+  Real k24;  // 1 / k8
+  Real k25;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 14 add, 27 mul, 3 div
+/// operations: 14 add, 29 mul, 4 div
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using detail::constant;
   const Real t1 = par.rhoA * par.L;
   const Real t2 = t1 * constant<Real>(0.391495878019812868251L);
-  const Real t3 = constant<Real>(0.25L) * t1;
-  const Real t4 = t1 * par.L;
-  const Real t5 = t4 * par.L;
-  const Real t6 = t5 * constant<Real>(0.333333333333333333333L);
-  const Real t7 = constant<Real>(0.284412871854955370905L) * t1;
-  const Real t8 = par.L * t7;
-  const Real t9 = t4 * constant<Real>(0.5L);
+  const Real t3 = constant<Real>(0.5L) * t1;
+  const Real t4 = t3 * par.L;
+  const Real t5 = constant<Real>(0.25L) * t1;
+  const Real t6 = constant<Real>(0.284412871854955370905L) * t1;
+  const Real t7 = par.L * t6;
+  const Real t8 = t1 * constant<Real>(0.333333333333333333333L);
+  const Real t9 = par.L * t8;
+  const Real t10 = par.L * t9;
 
   // kernel
-  const Real t10 = par.l * par.l;
-  const Real t11 = t10 - constant<Real>(1.0L);
+  const Real t11 = par.l * par.l;
+  const Real t12 = t11 - constant<Real>(1.0L);
 
   // rear_axle: joint force
-  const Real t12 = par.J_a * constant<Real>(2.0L);
+  const Real t13 = par.J_a * constant<Real>(2.0L);
 
   // springs, dampers and generalised forces
-  const Real t13 = par.L * par.L;
-  const Real t14 = t13 * constant<Real>(0.666666666666666666667L);
-  const Real t15 = constant<Real>(0.284412871854955370905L) * par.rhoA;
-  const Real t16 = t15 * t13;
-  const Real t17 = par.m_a * t10;
-  const Real t18 = t17 + par.J_a;
-  const Real t19 = t18 * constant<Real>(2.0L);
-  const Real t20 = par.J_p + par.J_h;
-  const Real t21 = t19 + t20;
-  const Real t22 = t1 + par.m_a;
+  const Real t14 = par.L * par.L;
+  const Real t15 = t14 * constant<Real>(0.666666666666666666667L);
+  const Real t16 = par.L * t14;
+  const Real t17 = par.EI / t16;
+  const Real t18 = constant<Real>(1.54529542104077377734L) * t17;
+  const Real t19 = constant<Real>(0.284412871854955370905L) * par.rhoA;
+  const Real t20 = t19 * t14;
+  const Real t21 = par.m_a * t11;
+  const Real t22 = t21 + par.J_a;
   const Real t23 = t22 * constant<Real>(2.0L);
-  const Real t24 = par.m_p + t23;
-  const Real t25 = par.EI * constant<Real>(3.09059084208154755468L);
-  const Real t26 = par.L * t13;
-  const Real t27 = t25 / t26;
-  const Real t28 = par.m_a * constant<Real>(2.0L);
-  const Real t29 = par.m_p + t28;
+  const Real t24 = par.J_p + par.J_h;
+  const Real t25 = t23 + t24;
+  const Real t26 = constant<Real>(1.54529542104077377734L) * par.EI;
+  const Real t27 = t26 / t16;
+  const Real t28 = t1 + par.m_a;
+  const Real t29 = t28 * constant<Real>(2.0L);
+  const Real t30 = par.m_p + t29;
+  const Real t31 = par.m_a * constant<Real>(2.0L);
+  const Real t32 = par.m_p + t31;
 
   // modified blocks
-  const Real t30 = constant<Real>(1.0L) / t3;
+  const Real t33 = constant<Real>(1.0L) / t5;
 
   // modified blocks
-  const Real t31 = constant<Real>(0.391495878019812868251L) * par.l;
-  const Real t32 = t24 * t10;
-  const Real t33 = par.m_p * t10;
-  const Real t34 = t33 - par.J_p;
-  const Real t35 = t34 - t12;
-  const Real t36 = t35 - par.J_h;
-  const Real t37 = constant<Real>(3.0L) * t10;
+  const Real t34 = constant<Real>(0.391495878019812868251L) * par.l;
+  const Real t35 = t30 * t11;
+  const Real t36 = par.m_p * t11;
+  const Real t37 = t36 - par.J_p;
   const Real t38 = t37 - t13;
-  const Real t39 = constant<Real>(0.666666666666666666667L) * t38;
+  const Real t39 = t38 - par.J_h;
+  const Real t40 = constant<Real>(3.0L) * t11;
+  const Real t41 = t40 - t14;
+  const Real t42 = constant<Real>(0.666666666666666666667L) * t41;
 
   // multipliers
-  const Real t40 = t12 + par.J_p;
-  const Real t41 = par.J_h + t40;
+  const Real t43 = t13 + par.J_p;
+  const Real t44 = par.J_h + t43;
 
   // reduced accelerations
-  const Real t42 = constant<Real>(1.0L) / t12;
+  const Real t45 = constant<Real>(1.0L) / t13;
 
   // beam_4: energy
-  const Real t43 = constant<Real>(0.5L) * t20;
-  const Real t44 = t18 + t43;
+  const Real t46 = constant<Real>(0.5L) * t24;
+  const Real t47 = t22 + t46;
 
   result.m_p = par.m_p;
   result.J_p = par.J_p;
@@ -270,28 +274,29 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.c_e = par.c_e;
   result.k1 = t1;
   result.k2 = t2;
-  result.k3 = t3;
-  result.k4 = t6;
-  result.k5 = t8;
-  result.k6 = t9;
-  result.k7 = t11;
-  result.k8 = t12;
-  result.k9 = t14;
+  result.k3 = t4;
+  result.k4 = t5;
+  result.k5 = t7;
+  result.k6 = t10;
+  result.k7 = t12;
+  result.k8 = t13;
+  result.k9 = t15;
   result.k10 = t16;
-  result.k11 = t21;
-  result.k12 = t24;
+  result.k11 = t18;
+  result.k12 = t20;
   result.k13 = t25;
   result.k14 = t26;
   result.k15 = t27;
-  result.k16 = t29;
-  result.k17 = t30;
-  result.k18 = t31;
-  result.k19 = t32;
-  result.k20 = t36;
+  result.k16 = t30;
+  result.k17 = t32;
+  result.k18 = t33;
+  result.k19 = t34;
+  result.k20 = t35;
   result.k21 = t39;
-  result.k22 = t41;
-  result.k23 = t42;
-  result.k24 = t44;
+  result.k22 = t42;
+  result.k23 = t44;
+  result.k24 = t45;
+  result.k25 = t47;
   return result;
 }
 
@@ -470,7 +475,7 @@ inline void constraints(const Prepared<Real>& par,
 
 /// Blocks of eq. (1) with lambda = 0 and tau_a = 0, by sweeps of the recursion (section V.B).
 /// route: closed form
-/// operations: 27 add, 67 mul, 5 neg, 1 sin, 1 cos
+/// operations: 27 add, 69 mul, 5 neg, 1 sin, 1 cos
 /// @param[in]  par        made by prepare()
 /// @param[in]  r_p        (2) rad or m: re3, re4
 /// @param[in]  r_a        (2) rad or m: r1, r3
@@ -508,45 +513,41 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
 
-  // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-
-  // beam_4: inertia in its present shape
-  const Real t2 = r_p[1] * r_p[1];
-
   // hub: twist
-  const Real t3 = s_r_a_1_ * eta[0];
-  const Real t4 = s_r_a_1_ * eta[1];
-  const Real t5 = eta[0] * c_r_a_1_;
-  const Real t6 = t4 + t5;
-  const Real t7 = eta[1] * c_r_a_1_;
-  const Real t8 = r_a_dot[1] + eta[2];
+  const Real t1 = s_r_a_1_ * eta[0];
+  const Real t2 = s_r_a_1_ * eta[1];
+  const Real t3 = eta[0] * c_r_a_1_;
+  const Real t4 = t2 + t3;
+  const Real t5 = eta[1] * c_r_a_1_;
+  const Real t6 = r_a_dot[1] + eta[2];
 
   // beam_4: twist
-  const Real t9 = t3 - t7;
+  const Real t7 = t1 - t5;
 
   // platform: acceleration
-  const Real t10 = eta[0] * eta[2];
-  const Real t11 = eta[1] * eta[2];
+  const Real t8 = eta[0] * eta[2];
+  const Real t9 = eta[1] * eta[2];
 
   // springs, dampers and generalised forces
-  const Real t12 = t1 + t2;
+  const Real t10 = r_p[0] * r_p[0];
+  const Real t11 = r_p[1] * r_p[1];
+  const Real t12 = t10 + t11;
   const Real t13 = constant<Real>(0.25L) * t12;
   const Real t14 = t13 + par.k9;
   const Real t15 = par.rhoA * t14;
   const Real t16 = par.L * t15;
   const Real t17 = par.J_h + t16;
-  const Real t18 = par.k16 * t11;
+  const Real t18 = par.k17 * t9;
   const Real t19 = r_p[0] - r_p[1];
-  const Real t20 = t19 * t8;
+  const Real t20 = t19 * t6;
   const Real t21 = s_r_a_1_ * t20;
   const Real t22 = r_p_dot[0] - r_p_dot[1];
   const Real t23 = t22 * c_r_a_1_;
   const Real t24 = constant<Real>(2.0L) * t23;
   const Real t25 = t21 - t24;
-  const Real t26 = t25 * t8;
+  const Real t26 = t25 * t6;
   const Real t27 = t26 * constant<Real>(0.391495878019812868251L);
-  const Real t28 = constant<Real>(2.0L) * t11;
+  const Real t28 = constant<Real>(2.0L) * t9;
   const Real t29 = t27 - t28;
   const Real t30 = par.rhoA * t29;
   const Real t31 = par.L * t30;
@@ -555,115 +556,117 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t34 = par.rhoA * t33;
   const Real t35 = par.L * t34;
   const Real t36 = -t35;
-  const Real t37 = r_a_dot[1] * r_a_dot[1];
-  const Real t38 = r_p[0] * t37;
-  const Real t39 = constant<Real>(0.25L) * t38;
-  const Real t40 = r_a_dot[1] * constant<Real>(2.0L);
-  const Real t41 = t40 + eta[2];
-  const Real t42 = constant<Real>(0.25L) * t41;
-  const Real t43 = t42 * r_p[0];
-  const Real t44 = t6 * constant<Real>(0.391495878019812868251L);
-  const Real t45 = t43 - t44;
-  const Real t46 = t45 * eta[2];
-  const Real t47 = t39 + t46;
-  const Real t48 = t47 * par.rhoA;
-  const Real t49 = t48 * par.L;
-  const Real t50 = par.c_e * r_p_dot[0];
-  const Real t51 = t49 - t50;
-  const Real t52 = r_p[0] * par.k15;
-  const Real t53 = t51 - t52;
-  const Real t54 = par.k11 + t16;
-  const Real t55 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
-  const Real t56 = par.rhoA * t55;
-  const Real t57 = t56 * par.L;
-  const Real t58 = t57 * t19;
-  const Real t59 = -t58;
-  const Real t60 = r_p[1] * r_p_dot[1];
-  const Real t61 = r_p[0] * r_p_dot[0];
-  const Real t62 = t60 + t61;
-  const Real t63 = t62 * constant<Real>(0.5L);
-  const Real t64 = t9 * t19;
-  const Real t65 = t64 * constant<Real>(0.391495878019812868251L);
-  const Real t66 = t63 - t65;
-  const Real t67 = t66 * eta[2];
-  const Real t68 = t62 * r_a_dot[1];
-  const Real t69 = constant<Real>(0.5L) * t68;
-  const Real t70 = t67 + t69;
-  const Real t71 = par.k1 * t70;
-  const Real t72 = -t71;
-  const Real t73 = t35 * t19;
-  const Real t74 = -t73;
-  const Real t75 = r_p[1] * t37;
-  const Real t76 = constant<Real>(0.25L) * t75;
-  const Real t77 = r_p[1] * t42;
-  const Real t78 = t44 + t77;
-  const Real t79 = t78 * eta[2];
-  const Real t80 = t76 + t79;
-  const Real t81 = par.rhoA * t80;
-  const Real t82 = par.L * t81;
-  const Real t83 = par.c_e * r_p_dot[1];
-  const Real t84 = t82 - t83;
-  const Real t85 = r_p[1] * par.k15;
-  const Real t86 = t84 - t85;
-  const Real t87 = t20 * c_r_a_1_;
-  const Real t88 = t22 * s_r_a_1_;
-  const Real t89 = t88 * constant<Real>(2.0L);
-  const Real t90 = t87 + t89;
-  const Real t91 = t8 * t90;
-  const Real t92 = t91 * constant<Real>(0.391495878019812868251L);
-  const Real t93 = t10 * constant<Real>(2.0L);
-  const Real t94 = t92 - t93;
-  const Real t95 = t94 * par.rhoA;
-  const Real t96 = par.L * t95;
-  const Real t97 = t10 * par.k16;
-  const Real t98 = t96 - t97;
-  const Real t99 = -t57;
+  const Real t37 = par.k13 + t16;
+  const Real t38 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
+  const Real t39 = par.rhoA * t38;
+  const Real t40 = t39 * par.L;
+  const Real t41 = t40 * t19;
+  const Real t42 = -t41;
+  const Real t43 = r_p[1] * r_p_dot[1];
+  const Real t44 = r_p[0] * r_p_dot[0];
+  const Real t45 = t43 + t44;
+  const Real t46 = t45 * constant<Real>(0.5L);
+  const Real t47 = t7 * t19;
+  const Real t48 = t47 * constant<Real>(0.391495878019812868251L);
+  const Real t49 = t46 - t48;
+  const Real t50 = t49 * eta[2];
+  const Real t51 = t45 * r_a_dot[1];
+  const Real t52 = constant<Real>(0.5L) * t51;
+  const Real t53 = t50 + t52;
+  const Real t54 = par.k1 * t53;
+  const Real t55 = -t54;
+  const Real t56 = r_a_dot[1] * r_a_dot[1];
+  const Real t57 = r_p[1] * t56;
+  const Real t58 = constant<Real>(0.25L) * t57;
+  const Real t59 = t4 * constant<Real>(0.391495878019812868251L);
+  const Real t60 = r_a_dot[1] * constant<Real>(2.0L);
+  const Real t61 = t60 + eta[2];
+  const Real t62 = constant<Real>(0.25L) * t61;
+  const Real t63 = r_p[1] * t62;
+  const Real t64 = t59 + t63;
+  const Real t65 = t64 * eta[2];
+  const Real t66 = t58 + t65;
+  const Real t67 = par.rhoA * t66;
+  const Real t68 = par.L * t67;
+  const Real t69 = par.c_e * r_p_dot[1];
+  const Real t70 = t68 - t69;
+  const Real t71 = r_p[1] * constant<Real>(2.0L);
+  const Real t72 = t71 * par.k15;
+  const Real t73 = t70 - t72;
+  const Real t74 = t35 * t19;
+  const Real t75 = -t74;
+  const Real t76 = r_p[0] * t56;
+  const Real t77 = constant<Real>(0.25L) * t76;
+  const Real t78 = t62 * r_p[0];
+  const Real t79 = t78 - t59;
+  const Real t80 = t79 * eta[2];
+  const Real t81 = t77 + t80;
+  const Real t82 = t81 * par.rhoA;
+  const Real t83 = t82 * par.L;
+  const Real t84 = par.c_e * r_p_dot[0];
+  const Real t85 = t83 - t84;
+  const Real t86 = r_p[0] * constant<Real>(2.0L);
+  const Real t87 = t86 * par.k15;
+  const Real t88 = t85 - t87;
+  const Real t89 = t20 * c_r_a_1_;
+  const Real t90 = t22 * s_r_a_1_;
+  const Real t91 = t90 * constant<Real>(2.0L);
+  const Real t92 = t89 + t91;
+  const Real t93 = t6 * t92;
+  const Real t94 = t93 * constant<Real>(0.391495878019812868251L);
+  const Real t95 = t8 * constant<Real>(2.0L);
+  const Real t96 = t94 - t95;
+  const Real t97 = t96 * par.rhoA;
+  const Real t98 = par.L * t97;
+  const Real t99 = t8 * par.k17;
+  const Real t100 = t98 - t99;
+  const Real t101 = -t40;
 
-  M_eta_eta[0] = par.k12;
+  M_eta_eta[0] = par.k16;
   M_eta_eta[1] = constant<Real>(0.0L);
-  M_eta_eta[2] = t59;
+  M_eta_eta[2] = t42;
   M_eta_eta[3] = constant<Real>(0.0L);
-  M_eta_eta[4] = par.k12;
-  M_eta_eta[5] = t74;
-  M_eta_eta[6] = t59;
-  M_eta_eta[7] = t74;
-  M_eta_eta[8] = t54;
+  M_eta_eta[4] = par.k16;
+  M_eta_eta[5] = t75;
+  M_eta_eta[6] = t42;
+  M_eta_eta[7] = t75;
+  M_eta_eta[8] = t37;
   M_p[0] = t36;
-  M_p[1] = t57;
-  M_p[2] = par.k10;
+  M_p[1] = t40;
+  M_p[2] = par.k12;
   M_p[3] = t35;
-  M_p[4] = t99;
-  M_p[5] = par.k10;
+  M_p[4] = t101;
+  M_p[5] = par.k12;
   M_a[0] = constant<Real>(0.0L);
   M_a[1] = constant<Real>(0.0L);
   M_a[2] = constant<Real>(0.0L);
-  M_a[3] = t59;
-  M_a[4] = t74;
+  M_a[3] = t42;
+  M_a[4] = t75;
   M_a[5] = t17;
-  m_pp[0] = par.k3;
+  m_pp[0] = par.k4;
   m_pp[1] = constant<Real>(0.0L);
   m_pp[2] = constant<Real>(0.0L);
-  m_pp[3] = par.k3;
+  m_pp[3] = par.k4;
   m_pa[0] = constant<Real>(0.0L);
-  m_pa[1] = par.k10;
+  m_pa[1] = par.k12;
   m_pa[2] = constant<Real>(0.0L);
-  m_pa[3] = par.k10;
+  m_pa[3] = par.k12;
   m_aa[0] = par.k8;
   m_aa[1] = constant<Real>(0.0L);
   m_aa[2] = constant<Real>(0.0L);
   m_aa[3] = t17;
   f[0] = t32;
-  f[1] = t98;
-  f[2] = t72;
-  Q_p[0] = t53;
-  Q_p[1] = t86;
+  f[1] = t100;
+  f[2] = t55;
+  Q_p[0] = t88;
+  Q_p[1] = t73;
   Q_a[0] = constant<Real>(0.0L);
-  Q_a[1] = t72;
+  Q_a[1] = t55;
 }
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
 /// route: closed form
-/// operations: 38 add, 92 mul, 2 neg, 2 sin, 2 cos
+/// operations: 38 add, 94 mul, 2 neg, 2 sin, 2 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: re3, re4
 /// @param[in]  r_a       (2) rad or m: r1, r3
@@ -691,171 +694,169 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
 
-  // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-
-  // beam_4: inertia in its present shape
-  const Real t2 = r_p[1] * r_p[1];
-
   // rear_axle: twist
-  const Real t3 = par.l * c_r_a_0_;
+  const Real t1 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t4 = s_r_a_0_ * nu[0];
-  const Real t5 = nu[0] * c_r_a_0_;
+  const Real t2 = s_r_a_0_ * nu[0];
+  const Real t3 = nu[0] * c_r_a_0_;
 
   // springs, dampers and generalised forces
-  const Real t6 = r_a_dot[1] * constant<Real>(2.0L);
-  const Real t7 = r_a_dot[1] * r_a_dot[1];
-  const Real t8 = r_p[0] * t7;
-  const Real t9 = constant<Real>(0.25L) * t8;
+  const Real t4 = r_a_dot[1] * constant<Real>(2.0L);
+  const Real t5 = r_a_dot[1] * r_a_dot[1];
+  const Real t6 = r_p[0] * t5;
+  const Real t7 = constant<Real>(0.25L) * t6;
+  const Real t8 = r_p[0] * constant<Real>(2.0L);
+  const Real t9 = t8 * par.k15;
   const Real t10 = r_p[0] - r_p[1];
   const Real t11 = s_r_a_1_ * t10;
-  const Real t12 = r_p[0] * par.k15;
-  const Real t13 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
-  const Real t14 = r_p[1] * t7;
-  const Real t15 = constant<Real>(0.25L) * t14;
-  const Real t16 = r_p[1] * par.k15;
-  const Real t17 = t1 + t2;
-  const Real t18 = constant<Real>(0.25L) * t17;
-  const Real t19 = t18 + par.k9;
+  const Real t12 = r_p[1] * constant<Real>(2.0L);
+  const Real t13 = t12 * par.k15;
+  const Real t14 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
+  const Real t15 = r_p[1] * t5;
+  const Real t16 = constant<Real>(0.25L) * t15;
+  const Real t17 = r_p[0] * r_p[0];
+  const Real t18 = r_p[1] * r_p[1];
+  const Real t19 = t17 + t18;
+  const Real t20 = constant<Real>(0.25L) * t19;
+  const Real t21 = t20 + par.k9;
 
   // drift of the kernel
-  const Real t20 = r_a_dot[0] * c_r_a_0_;
+  const Real t22 = r_a_dot[0] * c_r_a_0_;
 
   // hub: acceleration
-  const Real t21 = s_r_a_1_ * t3;
+  const Real t23 = s_r_a_1_ * t1;
 
   // modified blocks
-  const Real t22 = par.k21 - t18;
-  const Real t23 = t22 * par.rhoA;
-  const Real t24 = t23 * par.L;
-  const Real t25 = t24 + par.k20;
-  const Real t26 = s_r_a_0_ * t25;
-  const Real t27 = t13 * c_r_a_0_;
-  const Real t28 = par.rhoA * t27;
-  const Real t29 = par.L * t28;
-  const Real t30 = t29 * par.l;
-  const Real t31 = t10 * t30;
-  const Real t32 = t31 * constant<Real>(2.0L);
-  const Real t33 = t26 - t32;
-  const Real t34 = s_r_a_0_ * t33;
-  const Real t35 = par.k19 - t34;
-  const Real t36 = constant<Real>(0.284412871854955370905L) * c_r_a_0_;
-  const Real t37 = r_a_dot[0] * t36;
-  const Real t38 = par.L * t37;
-  const Real t39 = t4 - t6;
-  const Real t40 = t39 * r_p[0];
-  const Real t41 = constant<Real>(0.25L) * t40;
-  const Real t42 = c_r_a_1_ * t5;
-  const Real t43 = s_r_a_1_ * r_a_dot[0];
-  const Real t44 = t42 - t43;
-  const Real t45 = t44 * constant<Real>(0.391495878019812868251L);
-  const Real t46 = par.l * t45;
-  const Real t47 = t41 + t46;
-  const Real t48 = t47 * s_r_a_0_;
-  const Real t49 = t38 + t48;
-  const Real t50 = nu[0] * t49;
-  const Real t51 = r_a_ddot[1] * par.L;
-  const Real t52 = constant<Real>(0.284412871854955370905L) * t51;
-  const Real t53 = t9 - t52;
-  const Real t54 = t50 + t53;
-  const Real t55 = par.rhoA * t54;
-  const Real t56 = t55 * par.L;
-  const Real t57 = par.c_e * nu[1];
-  const Real t58 = t56 - t57;
-  const Real t59 = t58 - t12;
-  const Real t60 = t21 * constant<Real>(0.391495878019812868251L);
-  const Real t61 = par.L * s_r_a_0_;
-  const Real t62 = constant<Real>(0.284412871854955370905L) * t61;
-  const Real t63 = t60 - t62;
-  const Real t64 = par.k1 * t63;
-  const Real t65 = r_p[1] * t39;
-  const Real t66 = t65 * constant<Real>(0.25L);
-  const Real t67 = t46 - t66;
-  const Real t68 = t67 * s_r_a_0_;
-  const Real t69 = t68 - t38;
-  const Real t70 = nu[0] * t69;
-  const Real t71 = t52 - t15;
-  const Real t72 = t70 + t71;
-  const Real t73 = t72 * par.rhoA;
-  const Real t74 = par.L * t73;
-  const Real t75 = par.c_e * nu[2];
-  const Real t76 = t74 + t75;
-  const Real t77 = t76 + t16;
-  const Real t78 = -t77;
-  const Real t79 = t60 + t62;
-  const Real t80 = par.k1 * t79;
-  const Real t81 = -t80;
-  const Real t82 = r_a_dot[0] * par.l;
-  const Real t83 = t11 * r_a_dot[1];
-  const Real t84 = nu[1] - nu[2];
-  const Real t85 = t84 * c_r_a_1_;
-  const Real t86 = t83 - t85;
-  const Real t87 = t86 * constant<Real>(0.391495878019812868251L);
-  const Real t88 = t82 + t87;
-  const Real t89 = t88 * constant<Real>(2.0L);
-  const Real t90 = par.l * t89;
-  const Real t91 = r_a_dot[0] * t19;
-  const Real t92 = t90 - t91;
-  const Real t93 = c_r_a_0_ * t92;
-  const Real t94 = r_a_dot[0] * t13;
-  const Real t95 = t94 * t10;
-  const Real t96 = t95 * constant<Real>(4.0L);
-  const Real t97 = par.l * t96;
-  const Real t98 = r_p[1] * nu[2];
-  const Real t99 = r_p[0] * nu[1];
-  const Real t100 = t98 + t99;
-  const Real t101 = t97 - t100;
-  const Real t102 = t101 * s_r_a_0_;
-  const Real t103 = constant<Real>(0.5L) * t102;
-  const Real t104 = t93 + t103;
-  const Real t105 = nu[0] * t104;
-  const Real t106 = t100 * r_a_dot[1];
-  const Real t107 = constant<Real>(0.5L) * t106;
-  const Real t108 = r_a_ddot[1] * t19;
-  const Real t109 = t107 + t108;
-  const Real t110 = t105 + t109;
-  const Real t111 = s_r_a_0_ * t110;
-  const Real t112 = t85 * constant<Real>(2.0L);
-  const Real t113 = t83 - t112;
-  const Real t114 = r_a_dot[1] * t113;
-  const Real t115 = r_a_ddot[1] * c_r_a_1_;
-  const Real t116 = t115 * t10;
-  const Real t117 = t114 - t116;
-  const Real t118 = t117 * c_r_a_0_;
-  const Real t119 = r_a_dot[0] * c_r_a_1_;
-  const Real t120 = t119 * nu[0];
-  const Real t121 = t10 * t120;
-  const Real t122 = t118 + t121;
-  const Real t123 = par.k18 * t122;
-  const Real t124 = t111 - t123;
-  const Real t125 = par.rhoA * t124;
-  const Real t126 = par.L * t125;
-  const Real t127 = r_a_ddot[1] * par.J_h;
-  const Real t128 = t20 * par.k20;
-  const Real t129 = nu[0] * t128;
-  const Real t130 = t127 + t129;
-  const Real t131 = s_r_a_0_ * t130;
-  const Real t132 = t126 + t131;
+  const Real t24 = par.k22 - t20;
+  const Real t25 = t24 * par.rhoA;
+  const Real t26 = t25 * par.L;
+  const Real t27 = t26 + par.k21;
+  const Real t28 = s_r_a_0_ * t27;
+  const Real t29 = t14 * c_r_a_0_;
+  const Real t30 = par.rhoA * t29;
+  const Real t31 = par.L * t30;
+  const Real t32 = t31 * par.l;
+  const Real t33 = t10 * t32;
+  const Real t34 = t33 * constant<Real>(2.0L);
+  const Real t35 = t28 - t34;
+  const Real t36 = s_r_a_0_ * t35;
+  const Real t37 = par.k20 - t36;
+  const Real t38 = c_r_a_1_ * t3;
+  const Real t39 = s_r_a_1_ * r_a_dot[0];
+  const Real t40 = t38 - t39;
+  const Real t41 = t40 * constant<Real>(0.391495878019812868251L);
+  const Real t42 = par.l * t41;
+  const Real t43 = t2 - t4;
+  const Real t44 = r_p[1] * t43;
+  const Real t45 = t44 * constant<Real>(0.25L);
+  const Real t46 = t42 - t45;
+  const Real t47 = t46 * s_r_a_0_;
+  const Real t48 = constant<Real>(0.284412871854955370905L) * c_r_a_0_;
+  const Real t49 = r_a_dot[0] * t48;
+  const Real t50 = par.L * t49;
+  const Real t51 = t47 - t50;
+  const Real t52 = nu[0] * t51;
+  const Real t53 = r_a_ddot[1] * par.L;
+  const Real t54 = constant<Real>(0.284412871854955370905L) * t53;
+  const Real t55 = t54 - t16;
+  const Real t56 = t52 + t55;
+  const Real t57 = t56 * par.rhoA;
+  const Real t58 = par.L * t57;
+  const Real t59 = par.c_e * nu[2];
+  const Real t60 = t58 + t59;
+  const Real t61 = t13 + t60;
+  const Real t62 = -t61;
+  const Real t63 = t23 * constant<Real>(0.391495878019812868251L);
+  const Real t64 = par.L * s_r_a_0_;
+  const Real t65 = constant<Real>(0.284412871854955370905L) * t64;
+  const Real t66 = t63 - t65;
+  const Real t67 = par.k1 * t66;
+  const Real t68 = t63 + t65;
+  const Real t69 = par.k1 * t68;
+  const Real t70 = -t69;
+  const Real t71 = r_a_dot[0] * par.l;
+  const Real t72 = t11 * r_a_dot[1];
+  const Real t73 = nu[1] - nu[2];
+  const Real t74 = t73 * c_r_a_1_;
+  const Real t75 = t72 - t74;
+  const Real t76 = t75 * constant<Real>(0.391495878019812868251L);
+  const Real t77 = t71 + t76;
+  const Real t78 = t77 * constant<Real>(2.0L);
+  const Real t79 = par.l * t78;
+  const Real t80 = r_a_dot[0] * t21;
+  const Real t81 = t79 - t80;
+  const Real t82 = c_r_a_0_ * t81;
+  const Real t83 = r_a_dot[0] * t14;
+  const Real t84 = t83 * t10;
+  const Real t85 = t84 * constant<Real>(4.0L);
+  const Real t86 = par.l * t85;
+  const Real t87 = r_p[1] * nu[2];
+  const Real t88 = r_p[0] * nu[1];
+  const Real t89 = t87 + t88;
+  const Real t90 = t86 - t89;
+  const Real t91 = t90 * s_r_a_0_;
+  const Real t92 = constant<Real>(0.5L) * t91;
+  const Real t93 = t82 + t92;
+  const Real t94 = nu[0] * t93;
+  const Real t95 = t89 * r_a_dot[1];
+  const Real t96 = constant<Real>(0.5L) * t95;
+  const Real t97 = r_a_ddot[1] * t21;
+  const Real t98 = t96 + t97;
+  const Real t99 = t94 + t98;
+  const Real t100 = s_r_a_0_ * t99;
+  const Real t101 = t74 * constant<Real>(2.0L);
+  const Real t102 = t72 - t101;
+  const Real t103 = r_a_dot[1] * t102;
+  const Real t104 = r_a_ddot[1] * c_r_a_1_;
+  const Real t105 = t104 * t10;
+  const Real t106 = t103 - t105;
+  const Real t107 = t106 * c_r_a_0_;
+  const Real t108 = r_a_dot[0] * c_r_a_1_;
+  const Real t109 = t108 * nu[0];
+  const Real t110 = t10 * t109;
+  const Real t111 = t107 + t110;
+  const Real t112 = par.k19 * t111;
+  const Real t113 = t100 - t112;
+  const Real t114 = par.rhoA * t113;
+  const Real t115 = par.L * t114;
+  const Real t116 = r_a_ddot[1] * par.J_h;
+  const Real t117 = t22 * par.k21;
+  const Real t118 = nu[0] * t117;
+  const Real t119 = t116 + t118;
+  const Real t120 = s_r_a_0_ * t119;
+  const Real t121 = t115 + t120;
+  const Real t122 = t43 * r_p[0];
+  const Real t123 = constant<Real>(0.25L) * t122;
+  const Real t124 = t123 + t42;
+  const Real t125 = t124 * s_r_a_0_;
+  const Real t126 = t50 + t125;
+  const Real t127 = nu[0] * t126;
+  const Real t128 = t7 - t54;
+  const Real t129 = t127 + t128;
+  const Real t130 = par.rhoA * t129;
+  const Real t131 = t130 * par.L;
+  const Real t132 = par.c_e * nu[1];
+  const Real t133 = t131 - t132;
+  const Real t134 = t133 - t9;
 
-  M_r[0] = t35;
-  M_r[1] = t81;
-  M_r[2] = t64;
-  M_r[3] = t81;
-  M_r[4] = par.k3;
+  M_r[0] = t37;
+  M_r[1] = t70;
+  M_r[2] = t67;
+  M_r[3] = t70;
+  M_r[4] = par.k4;
   M_r[5] = constant<Real>(0.0L);
-  M_r[6] = t64;
+  M_r[6] = t67;
   M_r[7] = constant<Real>(0.0L);
-  M_r[8] = par.k3;
-  f_r[0] = t132;
-  f_r[1] = t59;
-  f_r[2] = t78;
+  M_r[8] = par.k4;
+  f_r[0] = t121;
+  f_r[1] = t134;
+  f_r[2] = t62;
 }
 
 /// Forward dynamics by blocks, eqs. (4)-(5), of external and internal reduced velocities.
 /// route: all blocks, (66)-(68)
-/// operations: 77 add, 128 mul, 1 div, 2 sin, 2 cos
+/// operations: 77 add, 124 mul, 1 div, 2 sin, 2 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  r_p          (2) rad or m: re3, re4
 /// @param[in]  r_a          (2) rad or m: r1, r3
@@ -888,310 +889,306 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real c_r_a_1_ = cos(r_a[1]);
 
   // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-  const Real t2 = t1 * par.k3;
-  const Real t3 = t2 + par.k4;
-  const Real t4 = r_p[0] * constant<Real>(2.0L);
-  const Real t5 = par.k2 * r_p[0];
-  const Real t6 = par.k3 * r_p[0];
+  const Real t1 = par.k4 * r_p[0];
+  const Real t2 = r_p[0] * t1;
+  const Real t3 = t2 + par.k6;
+  const Real t4 = par.k2 * r_p[0];
 
   // beam_4: inertia in its present shape
-  const Real t7 = r_p[1] * par.k3;
-  const Real t8 = r_p[1] * par.k2;
-  const Real t9 = r_p[1] * constant<Real>(2.0L);
-  const Real t10 = r_p[1] * r_p[1];
-  const Real t11 = t10 * par.k3;
-  const Real t12 = t11 + par.k4;
+  const Real t5 = r_p[1] * par.k2;
+  const Real t6 = r_p[1] * par.k4;
+  const Real t7 = t6 * r_p[1];
+  const Real t8 = t7 + par.k6;
 
   // rear_axle: twist
-  const Real t13 = s_r_a_0_ * par.l;
-  const Real t14 = par.l * c_r_a_0_;
+  const Real t9 = s_r_a_0_ * par.l;
+  const Real t10 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t15 = s_r_a_0_ * nu[0];
-  const Real t16 = nu[0] * t14;
+  const Real t11 = s_r_a_0_ * nu[0];
+  const Real t12 = nu[0] * t10;
 
   // rear_axle: wrench
-  const Real t17 = par.m_a * c_r_a_0_;
-  const Real t18 = s_r_a_0_ * par.m_a;
+  const Real t13 = par.m_a * c_r_a_0_;
+  const Real t14 = s_r_a_0_ * par.m_a;
 
   // beam_3: wrench
-  const Real t19 = s_r_a_1_ * par.k2;
-  const Real t20 = s_r_a_1_ * par.k1;
-  const Real t21 = s_r_a_1_ * par.k6;
-  const Real t22 = t5 * c_r_a_1_;
-  const Real t23 = t21 + t22;
-  const Real t24 = par.k1 * c_r_a_1_;
+  const Real t15 = s_r_a_1_ * par.k2;
+  const Real t16 = s_r_a_1_ * par.k3;
+  const Real t17 = t4 * c_r_a_1_;
+  const Real t18 = t16 + t17;
+  const Real t19 = s_r_a_1_ * par.k1;
+  const Real t20 = par.k1 * c_r_a_1_;
 
   // beam_4: wrench
-  const Real t25 = t8 * c_r_a_1_;
-  const Real t26 = t21 + t25;
+  const Real t21 = t5 * c_r_a_1_;
+  const Real t22 = t16 + t21;
 
   // beam_3: joint force
-  const Real t27 = t26 - t23;
-  const Real t28 = constant<Real>(2.0L) * t24;
-  const Real t29 = t20 * constant<Real>(2.0L);
+  const Real t23 = constant<Real>(2.0L) * t20;
+  const Real t24 = t19 * constant<Real>(2.0L);
+  const Real t25 = t22 - t18;
 
   // hub: joint force
-  const Real t30 = t28 * c_r_a_1_;
-  const Real t31 = s_r_a_1_ * t29;
-  const Real t32 = t30 + t31;
-  const Real t33 = par.m_p + t32;
+  const Real t26 = t23 * c_r_a_1_;
+  const Real t27 = s_r_a_1_ * t24;
+  const Real t28 = t26 + t27;
+  const Real t29 = par.m_p + t28;
 
   // front_axle: joint force
-  const Real t34 = t18 * c_r_a_0_;
-  const Real t35 = t17 * s_r_a_0_;
-  const Real t36 = t34 - t35;
-  const Real t37 = par.l * t36;
-  const Real t38 = t37 + t27;
-  const Real t39 = t18 * s_r_a_0_;
-  const Real t40 = t17 * c_r_a_0_;
-  const Real t41 = t39 + t40;
-  const Real t42 = t33 + t41;
+  const Real t30 = t14 * c_r_a_0_;
+  const Real t31 = t13 * s_r_a_0_;
+  const Real t32 = t30 - t31;
+  const Real t33 = par.l * t32;
+  const Real t34 = t33 + t25;
+  const Real t35 = t14 * s_r_a_0_;
+  const Real t36 = t13 * c_r_a_0_;
+  const Real t37 = t35 + t36;
+  const Real t38 = t29 + t37;
 
   // rear_axle: joint force
-  const Real t43 = t35 - t34;
-  const Real t44 = t43 * par.l;
-  const Real t45 = t38 - t44;
-  const Real t46 = t42 + t41;
+  const Real t39 = t31 - t30;
+  const Real t40 = t39 * par.l;
+  const Real t41 = t34 - t40;
+  const Real t42 = t38 + t37;
 
   // rear_axle: wrench
-  const Real t47 = par.m_a * t14;
-  const Real t48 = t13 * par.m_a;
+  const Real t43 = par.m_a * t10;
+  const Real t44 = t9 * par.m_a;
 
   // beam_4: joint force
-  const Real t49 = par.J_h + t12;
+  const Real t45 = par.J_h + t8;
 
   // beam_3: joint force
-  const Real t50 = t3 + t49;
+  const Real t46 = t3 + t45;
 
   // hub: joint force
-  const Real t51 = t50 + par.J_p;
+  const Real t47 = par.J_p + t46;
 
   // front_axle: joint force
-  const Real t52 = t47 * c_r_a_0_;
-  const Real t53 = s_r_a_0_ * t48;
-  const Real t54 = t52 + t53;
-  const Real t55 = t54 * par.l;
-  const Real t56 = par.J_a + t55;
-  const Real t57 = t56 + t51;
+  const Real t48 = t43 * c_r_a_0_;
+  const Real t49 = s_r_a_0_ * t44;
+  const Real t50 = t48 + t49;
+  const Real t51 = t50 * par.l;
+  const Real t52 = par.J_a + t51;
+  const Real t53 = t52 + t47;
 
   // rear_axle: joint force
-  const Real t58 = t56 + t57;
+  const Real t54 = t52 + t53;
 
   // springs, dampers and generalised forces
-  const Real t59 = t4 * par.k15;
-  const Real t60 = constant<Real>(0.5L) * t59;
-  const Real t61 = t9 * par.k15;
-  const Real t62 = t61 * constant<Real>(0.5L);
+  const Real t55 = r_p[1] * constant<Real>(2.0L);
+  const Real t56 = t55 * par.k11;
+  const Real t57 = r_p[0] * constant<Real>(2.0L);
+  const Real t58 = t57 * par.k11;
 
   // hub: twist
-  const Real t63 = r_a_dot[1] - t15;
+  const Real t59 = r_a_dot[1] - t11;
 
   // platform: acceleration
-  const Real t64 = t15 * t16;
-  const Real t65 = t15 * t15;
+  const Real t60 = t11 * t12;
+  const Real t61 = t11 * t11;
 
   // rear_axle: acceleration
-  const Real t66 = t65 * par.l;
-  const Real t67 = t66 * c_r_a_0_;
-  const Real t68 = t64 * s_r_a_0_;
-  const Real t69 = t67 - t68;
-  const Real t70 = t66 * s_r_a_0_;
-  const Real t71 = t64 * c_r_a_0_;
-  const Real t72 = t70 + t71;
+  const Real t62 = t61 * par.l;
+  const Real t63 = t62 * c_r_a_0_;
+  const Real t64 = t60 * s_r_a_0_;
+  const Real t65 = t63 - t64;
+  const Real t66 = t62 * s_r_a_0_;
+  const Real t67 = t60 * c_r_a_0_;
+  const Real t68 = t66 + t67;
 
   // front_axle: acceleration
-  const Real t73 = t68 - t67;
+  const Real t69 = t64 - t63;
 
   // hub: acceleration
-  const Real t74 = s_r_a_1_ * t64;
-  const Real t75 = t64 * c_r_a_1_;
-  const Real t76 = t63 * t63;
+  const Real t70 = s_r_a_1_ * t60;
+  const Real t71 = t60 * c_r_a_1_;
+  const Real t72 = t59 * t59;
 
   // drift of the kernel
-  const Real t77 = r_a_dot[0] * s_r_a_0_;
-  const Real t78 = t77 * par.l;
-  const Real t79 = t78 * nu[0];
-  const Real t80 = r_a_dot[0] * c_r_a_0_;
-  const Real t81 = t80 * nu[0];
+  const Real t73 = r_a_dot[0] * s_r_a_0_;
+  const Real t74 = t73 * par.l;
+  const Real t75 = t74 * nu[0];
+  const Real t76 = r_a_dot[0] * c_r_a_0_;
+  const Real t77 = t76 * nu[0];
 
   // beam_3: wrench
-  const Real t82 = t5 * t76;
-  const Real t83 = t6 * t76;
-  const Real t84 = par.k2 * nu[1];
-  const Real t85 = t63 * t84;
-  const Real t86 = constant<Real>(2.0L) * t85;
-  const Real t87 = t6 * nu[1];
-  const Real t88 = t63 * t87;
-  const Real t89 = t88 * constant<Real>(2.0L);
-  const Real t90 = par.k6 * t76;
+  const Real t78 = t4 * t72;
+  const Real t79 = t1 * t72;
+  const Real t80 = par.k3 * t72;
+  const Real t81 = par.k2 * nu[1];
+  const Real t82 = t59 * t81;
+  const Real t83 = constant<Real>(2.0L) * t82;
+  const Real t84 = t1 * nu[1];
+  const Real t85 = t59 * t84;
+  const Real t86 = t85 * constant<Real>(2.0L);
 
   // beam_4: wrench
-  const Real t91 = t8 * t76;
-  const Real t92 = t7 * nu[2];
-  const Real t93 = t63 * t92;
-  const Real t94 = t93 * constant<Real>(2.0L);
-  const Real t95 = par.k2 * nu[2];
-  const Real t96 = t63 * t95;
-  const Real t97 = t96 * constant<Real>(2.0L);
-  const Real t98 = t7 * t76;
+  const Real t87 = t5 * t72;
+  const Real t88 = t6 * nu[2];
+  const Real t89 = t59 * t88;
+  const Real t90 = t89 * constant<Real>(2.0L);
+  const Real t91 = par.k2 * nu[2];
+  const Real t92 = t59 * t91;
+  const Real t93 = t92 * constant<Real>(2.0L);
+  const Real t94 = t6 * t72;
 
   // springs, dampers and generalised forces
+  const Real t95 = nu[2] * constant<Real>(2.0L);
+  const Real t96 = par.c_e * t95;
+  const Real t97 = t96 * constant<Real>(0.5L);
+  const Real t98 = t56 + t97;
   const Real t99 = constant<Real>(2.0L) * nu[1];
   const Real t100 = par.c_e * t99;
   const Real t101 = constant<Real>(0.5L) * t100;
-  const Real t102 = t101 + t60;
-  const Real t103 = nu[2] * constant<Real>(2.0L);
-  const Real t104 = par.c_e * t103;
-  const Real t105 = t104 * constant<Real>(0.5L);
-  const Real t106 = t105 + t62;
+  const Real t102 = t101 + t58;
 
   // beam_3: wrench
-  const Real t107 = s_r_a_0_ * par.k5;
+  const Real t103 = s_r_a_0_ * par.k5;
 
   // reduced mass matrix
-  const Real t108 = t19 * t14;
-  const Real t109 = t107 + t108;
+  const Real t104 = t15 * t10;
+  const Real t105 = t103 + t104;
 
   // reduced mass matrix
-  const Real t110 = t108 - t107;
+  const Real t106 = t104 - t103;
 
   // rear_axle: wrench
-  const Real t111 = par.m_a * t72;
-  const Real t112 = t69 * par.m_a;
+  const Real t107 = par.m_a * t68;
+  const Real t108 = t65 * par.m_a;
 
   // front_axle: wrench
-  const Real t113 = t73 * par.m_a;
+  const Real t109 = t69 * par.m_a;
 
   // beam_3: wrench
-  const Real t114 = t74 * par.k1;
-  const Real t115 = t114 + t90;
-  const Real t116 = t86 + t115;
-  const Real t117 = par.k2 * t75;
+  const Real t110 = par.k2 * t71;
+  const Real t111 = t79 + t110;
+  const Real t112 = t70 * t4;
+  const Real t113 = par.k3 * t71;
+  const Real t114 = t112 - t113;
+  const Real t115 = t114 + t86;
+  const Real t116 = t70 * par.k1;
+  const Real t117 = t80 + t116;
   const Real t118 = t83 + t117;
-  const Real t119 = par.k1 * t75;
-  const Real t120 = t82 + t119;
-  const Real t121 = t74 * t5;
-  const Real t122 = t75 * par.k6;
-  const Real t123 = t121 - t122;
-  const Real t124 = t123 + t89;
+  const Real t119 = par.k1 * t71;
+  const Real t120 = t78 + t119;
 
   // beam_4: wrench
-  const Real t125 = t114 - t90;
-  const Real t126 = t74 * t8;
-  const Real t127 = t122 - t126;
-  const Real t128 = t94 + t127;
-  const Real t129 = t117 - t98;
+  const Real t121 = t116 - t80;
+  const Real t122 = t70 * t5;
+  const Real t123 = t113 - t122;
+  const Real t124 = t90 + t123;
+  const Real t125 = t110 - t94;
 
   // beam_4: joint force
-  const Real t130 = t91 - t119;
-  const Real t131 = t97 - t125;
+  const Real t126 = t87 - t119;
+  const Real t127 = t93 - t121;
 
   // beam_3: joint force
-  const Real t132 = t128 + t124;
-  const Real t133 = t131 - t116;
-  const Real t134 = t130 - t120;
+  const Real t128 = t115 + t124;
+  const Real t129 = t127 - t118;
+  const Real t130 = t126 - t120;
 
   // hub: joint force
-  const Real t135 = t133 * c_r_a_1_;
-  const Real t136 = s_r_a_1_ * t134;
-  const Real t137 = t135 - t136;
+  const Real t131 = t129 * c_r_a_1_;
+  const Real t132 = s_r_a_1_ * t130;
+  const Real t133 = t131 - t132;
 
   // front_axle: joint force
-  const Real t138 = t113 * c_r_a_0_;
-  const Real t139 = t111 * s_r_a_0_;
-  const Real t140 = t138 - t139;
-  const Real t141 = t140 + t137;
-  const Real t142 = t111 * c_r_a_0_;
-  const Real t143 = s_r_a_0_ * t113;
-  const Real t144 = t142 + t143;
-  const Real t145 = t144 * par.l;
-  const Real t146 = t132 - t145;
+  const Real t134 = t109 * c_r_a_0_;
+  const Real t135 = t107 * s_r_a_0_;
+  const Real t136 = t134 - t135;
+  const Real t137 = t136 + t133;
+  const Real t138 = t107 * c_r_a_0_;
+  const Real t139 = s_r_a_0_ * t109;
+  const Real t140 = t138 + t139;
+  const Real t141 = t140 * par.l;
+  const Real t142 = t128 - t141;
 
   // rear_axle: joint force
-  const Real t147 = c_r_a_0_ * t112;
-  const Real t148 = t139 + t147;
-  const Real t149 = t141 + t148;
-  const Real t150 = s_r_a_0_ * t112;
-  const Real t151 = t150 - t142;
-  const Real t152 = par.l * t151;
+  const Real t143 = c_r_a_0_ * t108;
+  const Real t144 = t135 + t143;
+  const Real t145 = t144 + t137;
+  const Real t146 = s_r_a_0_ * t108;
+  const Real t147 = t146 - t138;
+  const Real t148 = par.l * t147;
 
   // springs, dampers and generalised forces
-  const Real t153 = t118 - t102;
-  const Real t154 = t152 - t146;
-  const Real t155 = t129 + t106;
+  const Real t149 = t148 - t142;
+  const Real t150 = t98 + t125;
+  const Real t151 = t111 - t102;
 
   // reduced mass matrix
-  const Real t156 = t46 * t14;
-  const Real t157 = t45 * s_r_a_0_;
+  const Real t152 = t42 * t10;
+  const Real t153 = t41 * s_r_a_0_;
+  const Real t154 = t152 - t153;
+  const Real t155 = t154 * t10;
+  const Real t156 = t41 * t10;
+  const Real t157 = t54 * s_r_a_0_;
   const Real t158 = t156 - t157;
-  const Real t159 = t158 * t14;
-  const Real t160 = t45 * t14;
-  const Real t161 = t58 * s_r_a_0_;
-  const Real t162 = t160 - t161;
-  const Real t163 = t162 * s_r_a_0_;
-  const Real t164 = t159 - t163;
+  const Real t159 = t158 * s_r_a_0_;
+  const Real t160 = t155 - t159;
 
   // reduced forces
-  const Real t165 = par.k5 * t81;
-  const Real t166 = t19 * t79;
-  const Real t167 = t165 + t166;
-  const Real t168 = r_a_ddot[1] * par.k5;
-  const Real t169 = t155 + t168;
-  const Real t170 = t167 - t169;
-  const Real t171 = t45 * t81;
-  const Real t172 = t46 * t79;
-  const Real t173 = t171 + t172;
-  const Real t174 = r_a_ddot[1] * t27;
-  const Real t175 = t174 + t149;
-  const Real t176 = t173 - t175;
-  const Real t177 = t176 * t14;
-  const Real t178 = t50 * r_a_ddot[1];
-  const Real t179 = t154 - t178;
-  const Real t180 = t58 * t81;
-  const Real t181 = t45 * t79;
-  const Real t182 = t180 + t181;
-  const Real t183 = t179 + t182;
-  const Real t184 = t183 * s_r_a_0_;
-  const Real t185 = t177 - t184;
-  const Real t186 = t153 - t168;
-  const Real t187 = t166 - t165;
-  const Real t188 = t186 - t187;
+  const Real t161 = t41 * t77;
+  const Real t162 = t42 * t75;
+  const Real t163 = t161 + t162;
+  const Real t164 = r_a_ddot[1] * t25;
+  const Real t165 = t145 + t164;
+  const Real t166 = t163 - t165;
+  const Real t167 = t10 * t166;
+  const Real t168 = t54 * t77;
+  const Real t169 = t41 * t75;
+  const Real t170 = t168 + t169;
+  const Real t171 = r_a_ddot[1] * t46;
+  const Real t172 = t149 - t171;
+  const Real t173 = t170 + t172;
+  const Real t174 = s_r_a_0_ * t173;
+  const Real t175 = t167 - t174;
+  const Real t176 = par.k5 * t77;
+  const Real t177 = t15 * t75;
+  const Real t178 = t176 + t177;
+  const Real t179 = r_a_ddot[1] * par.k5;
+  const Real t180 = t150 + t179;
+  const Real t181 = t178 - t180;
+  const Real t182 = t151 - t179;
+  const Real t183 = t177 - t176;
+  const Real t184 = t182 - t183;
 
   // modified blocks
-  const Real t189 = t170 * par.k17;
-  const Real t190 = t189 * t110;
-  const Real t191 = par.k17 * t188;
-  const Real t192 = t191 * t109;
-  const Real t193 = t190 - t192;
-  const Real t194 = t185 - t193;
-  const Real t195 = t110 * par.k17;
-  const Real t196 = t110 * t195;
-  const Real t197 = par.k17 * t109;
-  const Real t198 = t109 * t197;
-  const Real t199 = t196 + t198;
-  const Real t200 = t164 - t199;
-  const Real t201 = constant<Real>(1.0L) / t200;
-  const Real t202 = t194 * t201;
-  const Real t203 = t110 * t202;
-  const Real t204 = t170 - t203;
-  const Real t205 = t109 * t202;
-  const Real t206 = t205 + t188;
+  const Real t185 = t106 * par.k18;
+  const Real t186 = t106 * t185;
+  const Real t187 = par.k18 * t105;
+  const Real t188 = t105 * t187;
+  const Real t189 = t186 + t188;
+  const Real t190 = t160 - t189;
+  const Real t191 = constant<Real>(1.0L) / t190;
+  const Real t192 = par.k18 * t181;
+  const Real t193 = t106 * t192;
+  const Real t194 = par.k18 * t184;
+  const Real t195 = t105 * t194;
+  const Real t196 = t193 - t195;
+  const Real t197 = t175 - t196;
+  const Real t198 = t191 * t197;
+  const Real t199 = t198 * t105;
+  const Real t200 = t199 + t184;
+  const Real t201 = t198 * t106;
+  const Real t202 = t181 - t201;
 
-  M_tilde_r[0] = t200;
-  F_tilde_r[0] = t194;
-  m_pp_r[0] = par.k3;
+  M_tilde_r[0] = t190;
+  F_tilde_r[0] = t197;
+  m_pp_r[0] = par.k4;
   m_pp_r[1] = constant<Real>(0.0L);
   m_pp_r[2] = constant<Real>(0.0L);
-  m_pp_r[3] = par.k3;
-  Q_tilde_p_r[0] = t206;
-  Q_tilde_p_r[1] = t204;
+  m_pp_r[3] = par.k4;
+  Q_tilde_p_r[0] = t200;
+  Q_tilde_p_r[1] = t202;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
 /// route: all blocks, (66)-(68)
-/// operations: 82 add, 135 mul, 3 div, 1 neg, 2 sin, 2 cos
+/// operations: 82 add, 131 mul, 3 div, 1 neg, 2 sin, 2 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  r_p         (2) rad or m: re3, re4
 /// @param[in]  r_a         (2) rad or m: r1, r3
@@ -1222,327 +1219,323 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real c_r_a_1_ = cos(r_a[1]);
 
   // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-  const Real t2 = t1 * par.k3;
-  const Real t3 = t2 + par.k4;
-  const Real t4 = r_p[0] * constant<Real>(2.0L);
-  const Real t5 = par.k2 * r_p[0];
-  const Real t6 = par.k3 * r_p[0];
+  const Real t1 = par.k4 * r_p[0];
+  const Real t2 = r_p[0] * t1;
+  const Real t3 = t2 + par.k6;
+  const Real t4 = par.k2 * r_p[0];
 
   // beam_4: inertia in its present shape
-  const Real t7 = r_p[1] * par.k3;
-  const Real t8 = r_p[1] * par.k2;
-  const Real t9 = r_p[1] * constant<Real>(2.0L);
-  const Real t10 = r_p[1] * r_p[1];
-  const Real t11 = t10 * par.k3;
-  const Real t12 = t11 + par.k4;
+  const Real t5 = r_p[1] * par.k2;
+  const Real t6 = r_p[1] * par.k4;
+  const Real t7 = t6 * r_p[1];
+  const Real t8 = t7 + par.k6;
 
   // rear_axle: twist
-  const Real t13 = s_r_a_0_ * par.l;
-  const Real t14 = par.l * c_r_a_0_;
+  const Real t9 = s_r_a_0_ * par.l;
+  const Real t10 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t15 = s_r_a_0_ * nu[0];
-  const Real t16 = nu[0] * t14;
+  const Real t11 = s_r_a_0_ * nu[0];
+  const Real t12 = nu[0] * t10;
 
   // rear_axle: wrench
-  const Real t17 = par.m_a * c_r_a_0_;
-  const Real t18 = s_r_a_0_ * par.m_a;
+  const Real t13 = par.m_a * c_r_a_0_;
+  const Real t14 = s_r_a_0_ * par.m_a;
 
   // beam_3: wrench
-  const Real t19 = s_r_a_1_ * par.k2;
-  const Real t20 = s_r_a_1_ * par.k1;
-  const Real t21 = s_r_a_1_ * par.k6;
-  const Real t22 = t5 * c_r_a_1_;
-  const Real t23 = t21 + t22;
-  const Real t24 = par.k1 * c_r_a_1_;
+  const Real t15 = s_r_a_1_ * par.k2;
+  const Real t16 = s_r_a_1_ * par.k3;
+  const Real t17 = t4 * c_r_a_1_;
+  const Real t18 = t16 + t17;
+  const Real t19 = s_r_a_1_ * par.k1;
+  const Real t20 = par.k1 * c_r_a_1_;
 
   // beam_4: wrench
-  const Real t25 = t8 * c_r_a_1_;
-  const Real t26 = t21 + t25;
+  const Real t21 = t5 * c_r_a_1_;
+  const Real t22 = t16 + t21;
 
   // beam_3: joint force
-  const Real t27 = t26 - t23;
-  const Real t28 = constant<Real>(2.0L) * t24;
-  const Real t29 = t20 * constant<Real>(2.0L);
+  const Real t23 = constant<Real>(2.0L) * t20;
+  const Real t24 = t19 * constant<Real>(2.0L);
+  const Real t25 = t22 - t18;
 
   // hub: joint force
-  const Real t30 = t28 * c_r_a_1_;
-  const Real t31 = s_r_a_1_ * t29;
-  const Real t32 = t30 + t31;
-  const Real t33 = par.m_p + t32;
+  const Real t26 = t23 * c_r_a_1_;
+  const Real t27 = s_r_a_1_ * t24;
+  const Real t28 = t26 + t27;
+  const Real t29 = par.m_p + t28;
 
   // front_axle: joint force
-  const Real t34 = t18 * c_r_a_0_;
-  const Real t35 = t17 * s_r_a_0_;
-  const Real t36 = t34 - t35;
-  const Real t37 = par.l * t36;
-  const Real t38 = t37 + t27;
-  const Real t39 = t18 * s_r_a_0_;
-  const Real t40 = t17 * c_r_a_0_;
-  const Real t41 = t39 + t40;
-  const Real t42 = t33 + t41;
+  const Real t30 = t14 * c_r_a_0_;
+  const Real t31 = t13 * s_r_a_0_;
+  const Real t32 = t30 - t31;
+  const Real t33 = par.l * t32;
+  const Real t34 = t33 + t25;
+  const Real t35 = t14 * s_r_a_0_;
+  const Real t36 = t13 * c_r_a_0_;
+  const Real t37 = t35 + t36;
+  const Real t38 = t29 + t37;
 
   // rear_axle: joint force
-  const Real t43 = t35 - t34;
-  const Real t44 = t43 * par.l;
-  const Real t45 = t38 - t44;
-  const Real t46 = t42 + t41;
+  const Real t39 = t31 - t30;
+  const Real t40 = t39 * par.l;
+  const Real t41 = t34 - t40;
+  const Real t42 = t38 + t37;
 
   // rear_axle: wrench
-  const Real t47 = par.m_a * t14;
-  const Real t48 = t13 * par.m_a;
+  const Real t43 = par.m_a * t10;
+  const Real t44 = t9 * par.m_a;
 
   // beam_4: joint force
-  const Real t49 = par.J_h + t12;
+  const Real t45 = par.J_h + t8;
 
   // beam_3: joint force
-  const Real t50 = t3 + t49;
+  const Real t46 = t3 + t45;
 
   // hub: joint force
-  const Real t51 = t50 + par.J_p;
+  const Real t47 = par.J_p + t46;
 
   // front_axle: joint force
-  const Real t52 = t47 * c_r_a_0_;
-  const Real t53 = s_r_a_0_ * t48;
-  const Real t54 = t52 + t53;
-  const Real t55 = t54 * par.l;
-  const Real t56 = par.J_a + t55;
-  const Real t57 = t56 + t51;
+  const Real t48 = t43 * c_r_a_0_;
+  const Real t49 = s_r_a_0_ * t44;
+  const Real t50 = t48 + t49;
+  const Real t51 = t50 * par.l;
+  const Real t52 = par.J_a + t51;
+  const Real t53 = t52 + t47;
 
   // rear_axle: joint force
-  const Real t58 = t56 + t57;
+  const Real t54 = t52 + t53;
 
   // springs, dampers and generalised forces
-  const Real t59 = t4 * par.k15;
-  const Real t60 = constant<Real>(0.5L) * t59;
-  const Real t61 = t9 * par.k15;
-  const Real t62 = t61 * constant<Real>(0.5L);
+  const Real t55 = r_p[1] * constant<Real>(2.0L);
+  const Real t56 = t55 * par.k11;
+  const Real t57 = r_p[0] * constant<Real>(2.0L);
+  const Real t58 = t57 * par.k11;
 
   // hub: twist
-  const Real t63 = r_a_dot[1] - t15;
+  const Real t59 = r_a_dot[1] - t11;
 
   // platform: acceleration
-  const Real t64 = t15 * t16;
-  const Real t65 = t15 * t15;
+  const Real t60 = t11 * t12;
+  const Real t61 = t11 * t11;
 
   // rear_axle: acceleration
-  const Real t66 = t65 * par.l;
-  const Real t67 = t66 * c_r_a_0_;
-  const Real t68 = t64 * s_r_a_0_;
-  const Real t69 = t67 - t68;
-  const Real t70 = t66 * s_r_a_0_;
-  const Real t71 = t64 * c_r_a_0_;
-  const Real t72 = t70 + t71;
+  const Real t62 = t61 * par.l;
+  const Real t63 = t62 * c_r_a_0_;
+  const Real t64 = t60 * s_r_a_0_;
+  const Real t65 = t63 - t64;
+  const Real t66 = t62 * s_r_a_0_;
+  const Real t67 = t60 * c_r_a_0_;
+  const Real t68 = t66 + t67;
 
   // front_axle: acceleration
-  const Real t73 = t68 - t67;
+  const Real t69 = t64 - t63;
 
   // hub: acceleration
-  const Real t74 = s_r_a_1_ * t64;
-  const Real t75 = t64 * c_r_a_1_;
-  const Real t76 = t63 * t63;
+  const Real t70 = s_r_a_1_ * t60;
+  const Real t71 = t60 * c_r_a_1_;
+  const Real t72 = t59 * t59;
 
   // drift of the kernel
-  const Real t77 = r_a_dot[0] * s_r_a_0_;
-  const Real t78 = t77 * par.l;
-  const Real t79 = t78 * nu[0];
-  const Real t80 = r_a_dot[0] * c_r_a_0_;
-  const Real t81 = t80 * nu[0];
+  const Real t73 = r_a_dot[0] * s_r_a_0_;
+  const Real t74 = t73 * par.l;
+  const Real t75 = t74 * nu[0];
+  const Real t76 = r_a_dot[0] * c_r_a_0_;
+  const Real t77 = t76 * nu[0];
 
   // beam_3: wrench
-  const Real t82 = t5 * t76;
-  const Real t83 = t6 * t76;
-  const Real t84 = par.k2 * nu[1];
-  const Real t85 = t63 * t84;
-  const Real t86 = constant<Real>(2.0L) * t85;
-  const Real t87 = t6 * nu[1];
-  const Real t88 = t63 * t87;
-  const Real t89 = t88 * constant<Real>(2.0L);
-  const Real t90 = par.k6 * t76;
+  const Real t78 = t4 * t72;
+  const Real t79 = t1 * t72;
+  const Real t80 = par.k3 * t72;
+  const Real t81 = par.k2 * nu[1];
+  const Real t82 = t59 * t81;
+  const Real t83 = constant<Real>(2.0L) * t82;
+  const Real t84 = t1 * nu[1];
+  const Real t85 = t59 * t84;
+  const Real t86 = t85 * constant<Real>(2.0L);
 
   // beam_4: wrench
-  const Real t91 = t8 * t76;
-  const Real t92 = t7 * nu[2];
-  const Real t93 = t63 * t92;
-  const Real t94 = t93 * constant<Real>(2.0L);
-  const Real t95 = par.k2 * nu[2];
-  const Real t96 = t63 * t95;
-  const Real t97 = t96 * constant<Real>(2.0L);
-  const Real t98 = t7 * t76;
+  const Real t87 = t5 * t72;
+  const Real t88 = t6 * nu[2];
+  const Real t89 = t59 * t88;
+  const Real t90 = t89 * constant<Real>(2.0L);
+  const Real t91 = par.k2 * nu[2];
+  const Real t92 = t59 * t91;
+  const Real t93 = t92 * constant<Real>(2.0L);
+  const Real t94 = t6 * t72;
 
   // springs, dampers and generalised forces
+  const Real t95 = nu[2] * constant<Real>(2.0L);
+  const Real t96 = par.c_e * t95;
+  const Real t97 = t96 * constant<Real>(0.5L);
+  const Real t98 = t56 + t97;
   const Real t99 = constant<Real>(2.0L) * nu[1];
   const Real t100 = par.c_e * t99;
   const Real t101 = constant<Real>(0.5L) * t100;
-  const Real t102 = t101 + t60;
-  const Real t103 = nu[2] * constant<Real>(2.0L);
-  const Real t104 = par.c_e * t103;
-  const Real t105 = t104 * constant<Real>(0.5L);
-  const Real t106 = t105 + t62;
+  const Real t102 = t101 + t58;
 
   // beam_3: wrench
-  const Real t107 = s_r_a_0_ * par.k5;
+  const Real t103 = s_r_a_0_ * par.k5;
 
   // reduced mass matrix
-  const Real t108 = t19 * t14;
-  const Real t109 = t107 + t108;
+  const Real t104 = t15 * t10;
+  const Real t105 = t103 + t104;
 
   // reduced mass matrix
-  const Real t110 = t108 - t107;
+  const Real t106 = t104 - t103;
 
   // rear_axle: wrench
-  const Real t111 = par.m_a * t72;
-  const Real t112 = t69 * par.m_a;
+  const Real t107 = par.m_a * t68;
+  const Real t108 = t65 * par.m_a;
 
   // front_axle: wrench
-  const Real t113 = t73 * par.m_a;
+  const Real t109 = t69 * par.m_a;
 
   // beam_3: wrench
-  const Real t114 = t74 * par.k1;
-  const Real t115 = t114 + t90;
-  const Real t116 = t86 + t115;
-  const Real t117 = par.k2 * t75;
+  const Real t110 = par.k2 * t71;
+  const Real t111 = t79 + t110;
+  const Real t112 = t70 * t4;
+  const Real t113 = par.k3 * t71;
+  const Real t114 = t112 - t113;
+  const Real t115 = t114 + t86;
+  const Real t116 = t70 * par.k1;
+  const Real t117 = t80 + t116;
   const Real t118 = t83 + t117;
-  const Real t119 = par.k1 * t75;
-  const Real t120 = t82 + t119;
-  const Real t121 = t74 * t5;
-  const Real t122 = t75 * par.k6;
-  const Real t123 = t121 - t122;
-  const Real t124 = t123 + t89;
+  const Real t119 = par.k1 * t71;
+  const Real t120 = t78 + t119;
 
   // beam_4: wrench
-  const Real t125 = t114 - t90;
-  const Real t126 = t74 * t8;
-  const Real t127 = t122 - t126;
-  const Real t128 = t94 + t127;
-  const Real t129 = t117 - t98;
+  const Real t121 = t116 - t80;
+  const Real t122 = t70 * t5;
+  const Real t123 = t113 - t122;
+  const Real t124 = t90 + t123;
+  const Real t125 = t110 - t94;
 
   // beam_4: joint force
-  const Real t130 = t91 - t119;
-  const Real t131 = t97 - t125;
+  const Real t126 = t87 - t119;
+  const Real t127 = t93 - t121;
 
   // beam_3: joint force
-  const Real t132 = t128 + t124;
-  const Real t133 = t131 - t116;
-  const Real t134 = t130 - t120;
+  const Real t128 = t115 + t124;
+  const Real t129 = t127 - t118;
+  const Real t130 = t126 - t120;
 
   // hub: joint force
-  const Real t135 = t133 * c_r_a_1_;
-  const Real t136 = s_r_a_1_ * t134;
-  const Real t137 = t135 - t136;
+  const Real t131 = t129 * c_r_a_1_;
+  const Real t132 = s_r_a_1_ * t130;
+  const Real t133 = t131 - t132;
 
   // front_axle: joint force
-  const Real t138 = t113 * c_r_a_0_;
-  const Real t139 = t111 * s_r_a_0_;
-  const Real t140 = t138 - t139;
-  const Real t141 = t140 + t137;
-  const Real t142 = t111 * c_r_a_0_;
-  const Real t143 = s_r_a_0_ * t113;
-  const Real t144 = t142 + t143;
-  const Real t145 = t144 * par.l;
-  const Real t146 = t132 - t145;
+  const Real t134 = t109 * c_r_a_0_;
+  const Real t135 = t107 * s_r_a_0_;
+  const Real t136 = t134 - t135;
+  const Real t137 = t136 + t133;
+  const Real t138 = t107 * c_r_a_0_;
+  const Real t139 = s_r_a_0_ * t109;
+  const Real t140 = t138 + t139;
+  const Real t141 = t140 * par.l;
+  const Real t142 = t128 - t141;
 
   // rear_axle: joint force
-  const Real t147 = c_r_a_0_ * t112;
-  const Real t148 = t139 + t147;
-  const Real t149 = t141 + t148;
-  const Real t150 = s_r_a_0_ * t112;
-  const Real t151 = t150 - t142;
-  const Real t152 = par.l * t151;
+  const Real t143 = c_r_a_0_ * t108;
+  const Real t144 = t135 + t143;
+  const Real t145 = t144 + t137;
+  const Real t146 = s_r_a_0_ * t108;
+  const Real t147 = t146 - t138;
+  const Real t148 = par.l * t147;
 
   // springs, dampers and generalised forces
-  const Real t153 = t118 - t102;
-  const Real t154 = t152 - t146;
-  const Real t155 = t129 + t106;
+  const Real t149 = t148 - t142;
+  const Real t150 = t98 + t125;
+  const Real t151 = t111 - t102;
 
   // reduced mass matrix
-  const Real t156 = t46 * t14;
-  const Real t157 = t45 * s_r_a_0_;
+  const Real t152 = t42 * t10;
+  const Real t153 = t41 * s_r_a_0_;
+  const Real t154 = t152 - t153;
+  const Real t155 = t154 * t10;
+  const Real t156 = t41 * t10;
+  const Real t157 = t54 * s_r_a_0_;
   const Real t158 = t156 - t157;
-  const Real t159 = t158 * t14;
-  const Real t160 = t45 * t14;
-  const Real t161 = t58 * s_r_a_0_;
-  const Real t162 = t160 - t161;
-  const Real t163 = t162 * s_r_a_0_;
-  const Real t164 = t159 - t163;
+  const Real t159 = t158 * s_r_a_0_;
+  const Real t160 = t155 - t159;
 
   // reduced forces
-  const Real t165 = par.k5 * t81;
-  const Real t166 = t19 * t79;
-  const Real t167 = t165 + t166;
-  const Real t168 = r_a_ddot[1] * par.k5;
-  const Real t169 = t155 + t168;
-  const Real t170 = t167 - t169;
-  const Real t171 = t45 * t81;
-  const Real t172 = t46 * t79;
-  const Real t173 = t171 + t172;
-  const Real t174 = r_a_ddot[1] * t27;
-  const Real t175 = t174 + t149;
-  const Real t176 = t173 - t175;
-  const Real t177 = t176 * t14;
-  const Real t178 = t50 * r_a_ddot[1];
-  const Real t179 = t154 - t178;
-  const Real t180 = t58 * t81;
-  const Real t181 = t45 * t79;
-  const Real t182 = t180 + t181;
-  const Real t183 = t179 + t182;
-  const Real t184 = t183 * s_r_a_0_;
-  const Real t185 = t177 - t184;
-  const Real t186 = t153 - t168;
-  const Real t187 = t166 - t165;
-  const Real t188 = t186 - t187;
+  const Real t161 = t41 * t77;
+  const Real t162 = t42 * t75;
+  const Real t163 = t161 + t162;
+  const Real t164 = r_a_ddot[1] * t25;
+  const Real t165 = t145 + t164;
+  const Real t166 = t163 - t165;
+  const Real t167 = t10 * t166;
+  const Real t168 = t54 * t77;
+  const Real t169 = t41 * t75;
+  const Real t170 = t168 + t169;
+  const Real t171 = r_a_ddot[1] * t46;
+  const Real t172 = t149 - t171;
+  const Real t173 = t170 + t172;
+  const Real t174 = s_r_a_0_ * t173;
+  const Real t175 = t167 - t174;
+  const Real t176 = par.k5 * t77;
+  const Real t177 = t15 * t75;
+  const Real t178 = t176 + t177;
+  const Real t179 = r_a_ddot[1] * par.k5;
+  const Real t180 = t150 + t179;
+  const Real t181 = t178 - t180;
+  const Real t182 = t151 - t179;
+  const Real t183 = t177 - t176;
+  const Real t184 = t182 - t183;
 
   // reduced accelerations
-  const Real t189 = constant<Real>(1.0L) / t164;
-  const Real t190 = t189 * t185;
-  const Real t191 = t109 * t189;
-  const Real t192 = t191 * t185;
-  const Real t193 = t192 + t188;
-  const Real t194 = t109 * t191;
-  const Real t195 = par.k3 - t194;
-  const Real t196 = constant<Real>(1.0L) / t195;
-  const Real t197 = t193 * t196;
-  const Real t198 = t110 * t191;
-  const Real t199 = t196 * t198;
-  const Real t200 = t110 * t189;
-  const Real t201 = t110 * t200;
-  const Real t202 = par.k3 - t201;
-  const Real t203 = t199 * t198;
+  const Real t185 = constant<Real>(1.0L) / t160;
+  const Real t186 = t175 * t185;
+  const Real t187 = t185 * t105;
+  const Real t188 = t187 * t105;
+  const Real t189 = par.k4 - t188;
+  const Real t190 = constant<Real>(1.0L) / t189;
+  const Real t191 = t187 * t175;
+  const Real t192 = t191 + t184;
+  const Real t193 = t190 * t192;
+  const Real t194 = t187 * t106;
+  const Real t195 = t194 * t190;
+  const Real t196 = t106 * t185;
+  const Real t197 = t196 * t175;
+  const Real t198 = t181 - t197;
+  const Real t199 = t195 * t192;
+  const Real t200 = t198 - t199;
+  const Real t201 = t106 * t196;
+  const Real t202 = par.k4 - t201;
+  const Real t203 = t194 * t195;
   const Real t204 = t202 - t203;
   const Real t205 = constant<Real>(1.0L) / t204;
-  const Real t206 = t200 * t185;
-  const Real t207 = t170 - t206;
-  const Real t208 = t193 * t199;
-  const Real t209 = t207 - t208;
-  const Real t210 = t205 * t209;
-  const Real t211 = t199 * t210;
-  const Real t212 = t197 - t211;
-  const Real t213 = t212 * t191;
-  const Real t214 = t190 + t213;
-  const Real t215 = t200 * t210;
-  const Real t216 = t214 - t215;
+  const Real t206 = t200 * t205;
+  const Real t207 = t195 * t206;
+  const Real t208 = t193 - t207;
+  const Real t209 = t187 * t208;
+  const Real t210 = t186 + t209;
+  const Real t211 = t196 * t206;
+  const Real t212 = t210 - t211;
 
   // passive accelerations
-  const Real t217 = s_r_a_0_ * t216;
-  const Real t218 = t81 + t217;
-  const Real t219 = -t218;
-  const Real t220 = t14 * t216;
-  const Real t221 = t220 - t79;
+  const Real t213 = t212 * s_r_a_0_;
+  const Real t214 = t77 + t213;
+  const Real t215 = -t214;
+  const Real t216 = t212 * t10;
+  const Real t217 = t216 - t75;
 
-  nu_dot_out[0] = t216;
-  nu_dot_out[1] = t212;
-  nu_dot_out[2] = t210;
-  eta_dot[0] = t221;
+  nu_dot_out[0] = t212;
+  nu_dot_out[1] = t208;
+  nu_dot_out[2] = t206;
+  eta_dot[0] = t217;
   eta_dot[1] = constant<Real>(0.0L);
-  eta_dot[2] = t219;
-  r_p_ddot[0] = t212;
-  r_p_ddot[1] = t210;
+  eta_dot[2] = t215;
+  r_p_ddot[0] = t208;
+  r_p_ddot[1] = t206;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
 /// route: projected recursion
-/// operations: 22 add, 39 mul, 2 sin, 2 cos
+/// operations: 22 add, 37 mul, 2 sin, 2 cos
 /// @param[in]  par        made by prepare()
 /// @param[in]  r_p        (2) rad or m: re3, re4
 /// @param[in]  r_a        (2) rad or m: r1, r3
@@ -1571,114 +1564,112 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real c_r_a_1_ = cos(r_a[1]);
 
   // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-  const Real t2 = t1 * par.k3;
-  const Real t3 = t2 + par.k4;
+  const Real t1 = par.k4 * r_p[0];
+  const Real t2 = r_p[0] * t1;
+  const Real t3 = t2 + par.k6;
   const Real t4 = par.k2 * r_p[0];
-  const Real t5 = par.k3 * r_p[0];
 
   // beam_4: inertia in its present shape
-  const Real t6 = r_p[1] * par.k3;
-  const Real t7 = r_p[1] * par.k2;
-  const Real t8 = r_p[1] * r_p[1];
-  const Real t9 = t8 * par.k3;
-  const Real t10 = t9 + par.k4;
+  const Real t5 = r_p[1] * par.k2;
+  const Real t6 = r_p[1] * par.k4;
+  const Real t7 = t6 * r_p[1];
+  const Real t8 = t7 + par.k6;
 
   // rear_axle: twist
-  const Real t11 = par.l * c_r_a_0_;
+  const Real t9 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t12 = s_r_a_0_ * nu[0];
-  const Real t13 = nu[0] * t11;
+  const Real t10 = s_r_a_0_ * nu[0];
+  const Real t11 = nu[0] * t9;
 
   // hub: twist
-  const Real t14 = r_a_dot[1] - t12;
+  const Real t12 = r_a_dot[1] - t10;
 
   // platform: acceleration
-  const Real t15 = t12 * t13;
+  const Real t13 = t10 * t11;
 
   // hub: acceleration
-  const Real t16 = s_r_a_1_ * t15;
-  const Real t17 = t15 * c_r_a_1_;
+  const Real t14 = s_r_a_1_ * t13;
+  const Real t15 = t13 * c_r_a_1_;
 
   // drift of the kernel
-  const Real t18 = r_a_dot[0] * s_r_a_0_;
-  const Real t19 = t18 * par.l;
+  const Real t16 = r_a_dot[0] * s_r_a_0_;
+  const Real t17 = t16 * par.l;
+  const Real t18 = t17 * nu[0];
+  const Real t19 = r_a_dot[0] * c_r_a_0_;
   const Real t20 = t19 * nu[0];
-  const Real t21 = r_a_dot[0] * c_r_a_0_;
-  const Real t22 = t21 * nu[0];
 
   // beam_3: wrench
-  const Real t23 = t5 * nu[1];
-  const Real t24 = t14 * t23;
-  const Real t25 = t24 * constant<Real>(2.0L);
+  const Real t21 = t1 * nu[1];
+  const Real t22 = t12 * t21;
+  const Real t23 = t22 * constant<Real>(2.0L);
 
   // beam_4: wrench
-  const Real t26 = t6 * nu[2];
-  const Real t27 = t14 * t26;
-  const Real t28 = t27 * constant<Real>(2.0L);
+  const Real t24 = t6 * nu[2];
+  const Real t25 = t12 * t24;
+  const Real t26 = t25 * constant<Real>(2.0L);
 
   // passive accelerations
-  const Real t29 = nu_dot[0] * t11;
-  const Real t30 = t29 - t20;
-  const Real t31 = s_r_a_0_ * nu_dot[0];
-  const Real t32 = t22 + t31;
+  const Real t27 = nu_dot[0] * t9;
+  const Real t28 = t27 - t18;
+  const Real t29 = s_r_a_0_ * nu_dot[0];
+  const Real t30 = t20 + t29;
 
   // rear_axle: acceleration
-  const Real t33 = r_a_ddot[0] - t32;
+  const Real t31 = r_a_ddot[0] - t30;
 
   // front_axle: acceleration
-  const Real t34 = t32 + r_a_ddot[0];
+  const Real t32 = t30 + r_a_ddot[0];
 
   // hub: acceleration
-  const Real t35 = r_a_ddot[1] - t32;
-  const Real t36 = t30 * s_r_a_1_;
-  const Real t37 = t17 + t36;
-  const Real t38 = t30 * c_r_a_1_;
-  const Real t39 = t38 - t16;
+  const Real t33 = r_a_ddot[1] - t30;
+  const Real t34 = t28 * s_r_a_1_;
+  const Real t35 = t15 + t34;
+  const Real t36 = t28 * c_r_a_1_;
+  const Real t37 = t36 - t14;
 
   // beam_4: acceleration
-  const Real t40 = t16 - t38;
+  const Real t38 = t14 - t36;
 
   // rear_axle: wrench
-  const Real t41 = t33 * par.J_a;
+  const Real t39 = t31 * par.J_a;
 
   // front_axle: wrench
-  const Real t42 = t34 * par.J_a;
+  const Real t40 = t32 * par.J_a;
 
   // hub: wrench
-  const Real t43 = t35 * par.J_h;
+  const Real t41 = t33 * par.J_h;
 
   // beam_3: wrench
-  const Real t44 = nu_dot[1] * par.k5;
-  const Real t45 = t3 * t35;
-  const Real t46 = t4 * t39;
-  const Real t47 = t37 * par.k6;
+  const Real t42 = t3 * t33;
+  const Real t43 = t4 * t37;
+  const Real t44 = par.k3 * t35;
+  const Real t45 = t43 + t44;
+  const Real t46 = t42 - t45;
+  const Real t47 = nu_dot[1] * par.k5;
   const Real t48 = t46 + t47;
-  const Real t49 = t45 - t48;
-  const Real t50 = t44 + t49;
-  const Real t51 = t25 + t50;
+  const Real t49 = t48 + t23;
 
   // beam_4: wrench
-  const Real t52 = t7 * t40;
-  const Real t53 = t47 - t52;
-  const Real t54 = t35 * t10;
+  const Real t50 = t5 * t38;
+  const Real t51 = t44 - t50;
+  const Real t52 = t33 * t8;
+  const Real t53 = t51 + t52;
+  const Real t54 = par.k5 * nu_dot[2];
   const Real t55 = t53 + t54;
-  const Real t56 = par.k5 * nu_dot[2];
-  const Real t57 = t55 + t56;
-  const Real t58 = t57 + t28;
+  const Real t56 = t55 + t26;
 
   // beam_4: joint force
-  const Real t59 = t58 + t43;
+  const Real t57 = t56 + t41;
 
   // beam_3: joint force
-  const Real t60 = t59 + t51;
+  const Real t58 = t49 + t57;
 
   // rear_axle: joint force
-  const Real t61 = t42 + t41;
+  const Real t59 = t40 + t39;
 
-  tau_a_out[0] = t61;
-  tau_a_out[1] = t60;
+  tau_a_out[0] = t59;
+  tau_a_out[1] = t58;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
@@ -1711,32 +1702,28 @@ inline void multipliers(const Prepared<Real>& par,
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
 
-  // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-
-  // beam_4: inertia in its present shape
-  const Real t2 = r_p[1] * r_p[1];
-
   // rear_axle: twist
-  const Real t3 = par.l * c_r_a_0_;
+  const Real t1 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t4 = constant<Real>(1.0L) / t3;
-  const Real t5 = s_r_a_0_ * nu[0];
+  const Real t2 = constant<Real>(1.0L) / t1;
+  const Real t3 = s_r_a_0_ * nu[0];
 
   // springs, dampers and generalised forces
-  const Real t6 = r_a_dot[1] * constant<Real>(2.0L);
-  const Real t7 = r_p[0] - r_p[1];
-  const Real t8 = s_r_a_1_ * t7;
-  const Real t9 = t1 + t2;
-  const Real t10 = t7 * c_r_a_1_;
+  const Real t4 = r_a_dot[1] * constant<Real>(2.0L);
+  const Real t5 = r_p[0] - r_p[1];
+  const Real t6 = s_r_a_1_ * t5;
+  const Real t7 = r_p[0] * r_p[0];
+  const Real t8 = r_p[1] * r_p[1];
+  const Real t9 = t7 + t8;
+  const Real t10 = t5 * c_r_a_1_;
   const Real t11 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
 
   // rear_axle: twist
-  const Real t12 = t5 * par.l;
+  const Real t12 = t3 * par.l;
 
   // front_axle: twist
-  const Real t13 = r_a_dot[0] + t5;
+  const Real t13 = r_a_dot[0] + t3;
 
   // drift of the kernel
   const Real t14 = r_a_dot[0] * c_r_a_0_;
@@ -1759,25 +1746,25 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t25 = nu_dot[1] + nu_dot[2];
 
   // multipliers
-  const Real t26 = s_r_a_0_ * par.k11;
+  const Real t26 = s_r_a_0_ * par.k13;
   const Real t27 = t26 * nu_dot[0];
-  const Real t28 = par.k22 * t14;
+  const Real t28 = par.k23 * t14;
   const Real t29 = t28 * nu[0];
   const Real t30 = t29 - t18;
   const Real t31 = t27 + t30;
   const Real t32 = constant<Real>(0.5L) * t31;
-  const Real t33 = t13 - t6;
-  const Real t34 = t7 * t33;
+  const Real t33 = t13 - t4;
+  const Real t34 = t5 * t33;
   const Real t35 = t34 * c_r_a_1_;
   const Real t36 = s_r_a_1_ * t19;
   const Real t37 = t36 * constant<Real>(2.0L);
   const Real t38 = t35 - t37;
   const Real t39 = t38 * nu[0];
   const Real t40 = s_r_a_1_ * nu_dot[0];
-  const Real t41 = t7 * t40;
+  const Real t41 = t5 * t40;
   const Real t42 = t39 - t41;
   const Real t43 = s_r_a_0_ * t42;
-  const Real t44 = t8 * r_a_ddot[1];
+  const Real t44 = t6 * r_a_ddot[1];
   const Real t45 = nu_dot[1] - nu_dot[2];
   const Real t46 = t45 * c_r_a_1_;
   const Real t47 = t44 - t46;
@@ -1790,7 +1777,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t54 = par.l * t53;
   const Real t55 = t24 * t9;
   const Real t56 = t55 * constant<Real>(0.125L);
-  const Real t57 = t5 - r_a_dot[1];
+  const Real t57 = t3 - r_a_dot[1];
   const Real t58 = t17 * t57;
   const Real t59 = constant<Real>(0.25L) * t58;
   const Real t60 = t24 * constant<Real>(0.333333333333333333333L);
@@ -1804,10 +1791,10 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t68 = par.rhoA * t67;
   const Real t69 = t68 * par.L;
   const Real t70 = t32 - t69;
-  const Real t71 = t70 * t4;
-  const Real t72 = t5 - r_a_dot[0];
+  const Real t71 = t70 * t2;
+  const Real t72 = t3 - r_a_dot[0];
   const Real t73 = constant<Real>(0.391495878019812868251L) * t72;
-  const Real t74 = t73 * t7;
+  const Real t74 = t73 * t5;
   const Real t75 = s_r_a_1_ * t74;
   const Real t76 = t12 * constant<Real>(2.0L);
   const Real t77 = t75 + t76;
@@ -1815,7 +1802,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t79 = par.L * t78;
   const Real t80 = t72 * constant<Real>(2.0L);
   const Real t81 = par.m_a * t80;
-  const Real t82 = par.m_p * t5;
+  const Real t82 = par.m_p * t3;
   const Real t83 = t81 + t82;
   const Real t84 = t83 * par.l;
   const Real t85 = t79 + t84;
@@ -1823,12 +1810,12 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t87 = nu_dot[0] * t11;
   const Real t88 = par.rhoA * t87;
   const Real t89 = par.L * t88;
-  const Real t90 = t7 * t89;
+  const Real t90 = t5 * t89;
   const Real t91 = t86 - t90;
   const Real t92 = t91 * constant<Real>(0.5L);
   const Real t93 = t71 - t92;
-  const Real t94 = t72 - t6;
-  const Real t95 = t94 * t7;
+  const Real t94 = t72 - t4;
+  const Real t95 = t94 * t5;
   const Real t96 = t95 * c_r_a_1_;
   const Real t97 = t96 - t37;
   const Real t98 = t97 * nu[0];
@@ -1841,13 +1828,13 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t105 = t104 * par.rhoA;
   const Real t106 = par.L * t105;
   const Real t107 = t32 + t106;
-  const Real t108 = t107 * t4;
+  const Real t108 = t107 * t2;
   const Real t109 = t13 * constant<Real>(2.0L);
   const Real t110 = par.m_a * t109;
   const Real t111 = t110 + t82;
   const Real t112 = par.l * t111;
   const Real t113 = t13 * constant<Real>(0.391495878019812868251L);
-  const Real t114 = t113 * t7;
+  const Real t114 = t113 * t5;
   const Real t115 = s_r_a_1_ * t114;
   const Real t116 = t76 - t115;
   const Real t117 = t116 * par.rhoA;
@@ -1985,7 +1972,7 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
 /// route: all blocks, (66)-(68)
-/// operations: 94 add, 153 mul, 4 div, 1 neg, 2 sin, 2 cos
+/// operations: 94 add, 149 mul, 4 div, 1 neg, 2 sin, 2 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (2) rad or m: re3, re4
 /// @param[in]  r_a           (2) rad or m: r1, r3
@@ -2017,365 +2004,361 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real c_r_a_1_ = cos(r_a[1]);
 
   // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-  const Real t2 = t1 * par.k3;
-  const Real t3 = t2 + par.k4;
-  const Real t4 = r_p[0] * constant<Real>(2.0L);
-  const Real t5 = par.k2 * r_p[0];
-  const Real t6 = par.k3 * r_p[0];
+  const Real t1 = par.k4 * r_p[0];
+  const Real t2 = r_p[0] * t1;
+  const Real t3 = t2 + par.k6;
+  const Real t4 = par.k2 * r_p[0];
 
   // beam_4: inertia in its present shape
-  const Real t7 = r_p[1] * par.k3;
-  const Real t8 = r_p[1] * par.k2;
-  const Real t9 = r_p[1] * constant<Real>(2.0L);
-  const Real t10 = r_p[1] * r_p[1];
-  const Real t11 = t10 * par.k3;
-  const Real t12 = t11 + par.k4;
+  const Real t5 = r_p[1] * par.k2;
+  const Real t6 = r_p[1] * par.k4;
+  const Real t7 = t6 * r_p[1];
+  const Real t8 = t7 + par.k6;
 
   // rear_axle: twist
-  const Real t13 = s_r_a_0_ * par.l;
-  const Real t14 = par.l * c_r_a_0_;
+  const Real t9 = s_r_a_0_ * par.l;
+  const Real t10 = par.l * c_r_a_0_;
 
   // rear_axle: wrench
-  const Real t15 = par.m_a * c_r_a_0_;
-  const Real t16 = s_r_a_0_ * par.m_a;
+  const Real t11 = par.m_a * c_r_a_0_;
+  const Real t12 = s_r_a_0_ * par.m_a;
 
   // beam_3: wrench
-  const Real t17 = s_r_a_1_ * par.k2;
-  const Real t18 = s_r_a_1_ * par.k1;
-  const Real t19 = s_r_a_1_ * par.k6;
-  const Real t20 = t5 * c_r_a_1_;
-  const Real t21 = t19 + t20;
-  const Real t22 = par.k1 * c_r_a_1_;
+  const Real t13 = s_r_a_1_ * par.k2;
+  const Real t14 = s_r_a_1_ * par.k3;
+  const Real t15 = t4 * c_r_a_1_;
+  const Real t16 = t14 + t15;
+  const Real t17 = s_r_a_1_ * par.k1;
+  const Real t18 = par.k1 * c_r_a_1_;
 
   // beam_4: wrench
-  const Real t23 = t8 * c_r_a_1_;
-  const Real t24 = t19 + t23;
+  const Real t19 = t5 * c_r_a_1_;
+  const Real t20 = t14 + t19;
 
   // beam_3: joint force
-  const Real t25 = t24 - t21;
-  const Real t26 = constant<Real>(2.0L) * t22;
-  const Real t27 = t18 * constant<Real>(2.0L);
+  const Real t21 = constant<Real>(2.0L) * t18;
+  const Real t22 = t17 * constant<Real>(2.0L);
+  const Real t23 = t20 - t16;
 
   // hub: joint force
-  const Real t28 = t26 * c_r_a_1_;
-  const Real t29 = s_r_a_1_ * t27;
-  const Real t30 = t28 + t29;
-  const Real t31 = par.m_p + t30;
+  const Real t24 = t21 * c_r_a_1_;
+  const Real t25 = s_r_a_1_ * t22;
+  const Real t26 = t24 + t25;
+  const Real t27 = par.m_p + t26;
 
   // front_axle: joint force
-  const Real t32 = t16 * c_r_a_0_;
-  const Real t33 = t15 * s_r_a_0_;
-  const Real t34 = t32 - t33;
-  const Real t35 = par.l * t34;
-  const Real t36 = t35 + t25;
-  const Real t37 = t16 * s_r_a_0_;
-  const Real t38 = t15 * c_r_a_0_;
-  const Real t39 = t37 + t38;
-  const Real t40 = t31 + t39;
+  const Real t28 = t12 * c_r_a_0_;
+  const Real t29 = t11 * s_r_a_0_;
+  const Real t30 = t28 - t29;
+  const Real t31 = par.l * t30;
+  const Real t32 = t31 + t23;
+  const Real t33 = t12 * s_r_a_0_;
+  const Real t34 = t11 * c_r_a_0_;
+  const Real t35 = t33 + t34;
+  const Real t36 = t27 + t35;
 
   // rear_axle: joint force
-  const Real t41 = t33 - t32;
-  const Real t42 = t41 * par.l;
-  const Real t43 = t36 - t42;
-  const Real t44 = t40 + t39;
+  const Real t37 = t29 - t28;
+  const Real t38 = t37 * par.l;
+  const Real t39 = t32 - t38;
+  const Real t40 = t36 + t35;
 
   // rear_axle: wrench
-  const Real t45 = par.m_a * t14;
-  const Real t46 = t13 * par.m_a;
+  const Real t41 = par.m_a * t10;
+  const Real t42 = t9 * par.m_a;
 
   // beam_4: joint force
-  const Real t47 = par.J_h + t12;
+  const Real t43 = par.J_h + t8;
 
   // beam_3: joint force
-  const Real t48 = t3 + t47;
+  const Real t44 = t3 + t43;
 
   // hub: joint force
-  const Real t49 = t48 + par.J_p;
+  const Real t45 = par.J_p + t44;
 
   // front_axle: joint force
-  const Real t50 = t45 * c_r_a_0_;
-  const Real t51 = s_r_a_0_ * t46;
-  const Real t52 = t50 + t51;
-  const Real t53 = t52 * par.l;
-  const Real t54 = par.J_a + t53;
-  const Real t55 = t54 + t49;
+  const Real t46 = t41 * c_r_a_0_;
+  const Real t47 = s_r_a_0_ * t42;
+  const Real t48 = t46 + t47;
+  const Real t49 = t48 * par.l;
+  const Real t50 = par.J_a + t49;
+  const Real t51 = t50 + t45;
 
   // rear_axle: joint force
-  const Real t56 = t54 + t55;
+  const Real t52 = t50 + t51;
 
   // springs, dampers and generalised forces
-  const Real t57 = t4 * par.k15;
-  const Real t58 = constant<Real>(0.5L) * t57;
-  const Real t59 = t9 * par.k15;
-  const Real t60 = t59 * constant<Real>(0.5L);
+  const Real t53 = r_p[1] * constant<Real>(2.0L);
+  const Real t54 = t53 * par.k11;
+  const Real t55 = r_p[0] * constant<Real>(2.0L);
+  const Real t56 = t55 * par.k11;
 
   // beam_3: wrench
-  const Real t61 = s_r_a_0_ * par.k5;
+  const Real t57 = s_r_a_0_ * par.k5;
 
   // reduced mass matrix
-  const Real t62 = t17 * t14;
-  const Real t63 = t61 + t62;
+  const Real t58 = t13 * t10;
+  const Real t59 = t57 + t58;
 
   // reduced mass matrix
-  const Real t64 = t62 - t61;
+  const Real t60 = t58 - t57;
 
   // reduced mass matrix
-  const Real t65 = t44 * t14;
-  const Real t66 = t43 * s_r_a_0_;
+  const Real t61 = t40 * t10;
+  const Real t62 = t39 * s_r_a_0_;
+  const Real t63 = t61 - t62;
+  const Real t64 = t63 * t10;
+  const Real t65 = t39 * t10;
+  const Real t66 = t52 * s_r_a_0_;
   const Real t67 = t65 - t66;
-  const Real t68 = t67 * t14;
-  const Real t69 = t43 * t14;
-  const Real t70 = t56 * s_r_a_0_;
-  const Real t71 = t69 - t70;
-  const Real t72 = t71 * s_r_a_0_;
-  const Real t73 = t68 - t72;
+  const Real t68 = t67 * s_r_a_0_;
+  const Real t69 = t64 - t68;
 
   // reduced accelerations
-  const Real t74 = constant<Real>(1.0L) / t73;
-  const Real t75 = t64 * t74;
-  const Real t76 = t64 * t75;
-  const Real t77 = par.k3 - t76;
-  const Real t78 = t63 * t74;
-  const Real t79 = t63 * t78;
-  const Real t80 = par.k3 - t79;
-  const Real t81 = constant<Real>(1.0L) / t80;
-  const Real t82 = t64 * t78;
-  const Real t83 = t81 * t82;
-  const Real t84 = t83 * t82;
-  const Real t85 = t77 - t84;
-  const Real t86 = constant<Real>(1.0L) / t85;
+  const Real t70 = constant<Real>(1.0L) / t69;
+  const Real t71 = t60 * t70;
+  const Real t72 = t60 * t71;
+  const Real t73 = par.k4 - t72;
+  const Real t74 = t70 * t59;
+  const Real t75 = t74 * t60;
+  const Real t76 = t74 * t59;
+  const Real t77 = par.k4 - t76;
+  const Real t78 = constant<Real>(1.0L) / t77;
+  const Real t79 = t75 * t78;
+  const Real t80 = t75 * t79;
+  const Real t81 = t73 - t80;
+  const Real t82 = constant<Real>(1.0L) / t81;
 
   // kernel
-  const Real t87 = t14 * w[0];
-  const Real t88 = s_r_a_0_ * w[0];
+  const Real t83 = t10 * w[0];
+  const Real t84 = s_r_a_0_ * w[0];
 
   // hub: twist
-  const Real t89 = w[4] - t88;
+  const Real t85 = w[4] - t84;
 
   // platform: acceleration
-  const Real t90 = t88 * t88;
-  const Real t91 = t87 * t88;
+  const Real t86 = t84 * t84;
+  const Real t87 = t83 * t84;
 
   // rear_axle: acceleration
-  const Real t92 = t90 * par.l;
-  const Real t93 = c_r_a_0_ * t92;
-  const Real t94 = s_r_a_0_ * t91;
-  const Real t95 = t93 - t94;
-  const Real t96 = t91 * c_r_a_0_;
-  const Real t97 = s_r_a_0_ * t92;
-  const Real t98 = t96 + t97;
+  const Real t88 = t86 * par.l;
+  const Real t89 = c_r_a_0_ * t88;
+  const Real t90 = s_r_a_0_ * t87;
+  const Real t91 = t89 - t90;
+  const Real t92 = t87 * c_r_a_0_;
+  const Real t93 = s_r_a_0_ * t88;
+  const Real t94 = t92 + t93;
 
   // front_axle: acceleration
-  const Real t99 = t94 - t93;
+  const Real t95 = t90 - t89;
 
   // hub: acceleration
-  const Real t100 = t89 * t89;
-  const Real t101 = t91 * c_r_a_1_;
-  const Real t102 = s_r_a_1_ * t91;
+  const Real t96 = t85 * t85;
+  const Real t97 = t87 * c_r_a_1_;
+  const Real t98 = s_r_a_1_ * t87;
 
   // drift of the kernel
-  const Real t103 = w[3] * c_r_a_0_;
-  const Real t104 = t103 * w[0];
-  const Real t105 = w[3] * s_r_a_0_;
-  const Real t106 = t105 * par.l;
-  const Real t107 = w[0] * t106;
+  const Real t99 = w[3] * c_r_a_0_;
+  const Real t100 = t99 * w[0];
+  const Real t101 = w[3] * s_r_a_0_;
+  const Real t102 = t101 * par.l;
+  const Real t103 = w[0] * t102;
 
   // beam_3: wrench
-  const Real t108 = w[1] * t6;
-  const Real t109 = t108 * t89;
-  const Real t110 = t109 * constant<Real>(2.0L);
-  const Real t111 = t100 * par.k6;
-  const Real t112 = t104 * par.k5;
-  const Real t113 = t100 * t6;
-  const Real t114 = t100 * t5;
-  const Real t115 = par.k2 * w[1];
-  const Real t116 = t115 * t89;
-  const Real t117 = constant<Real>(2.0L) * t116;
+  const Real t104 = w[1] * t1;
+  const Real t105 = t104 * t85;
+  const Real t106 = t105 * constant<Real>(2.0L);
+  const Real t107 = par.k3 * t96;
+  const Real t108 = t100 * par.k5;
+  const Real t109 = t96 * t1;
+  const Real t110 = t96 * t4;
+  const Real t111 = par.k2 * w[1];
+  const Real t112 = t111 * t85;
+  const Real t113 = constant<Real>(2.0L) * t112;
 
   // beam_4: wrench
-  const Real t118 = t7 * t100;
-  const Real t119 = t8 * t100;
-  const Real t120 = t7 * w[2];
-  const Real t121 = t120 * t89;
-  const Real t122 = t121 * constant<Real>(2.0L);
-  const Real t123 = w[2] * par.k2;
-  const Real t124 = t123 * t89;
-  const Real t125 = t124 * constant<Real>(2.0L);
+  const Real t114 = t6 * t96;
+  const Real t115 = t5 * t96;
+  const Real t116 = t6 * w[2];
+  const Real t117 = t116 * t85;
+  const Real t118 = t117 * constant<Real>(2.0L);
+  const Real t119 = w[2] * par.k2;
+  const Real t120 = t119 * t85;
+  const Real t121 = t120 * constant<Real>(2.0L);
 
   // springs, dampers and generalised forces
+  const Real t122 = constant<Real>(2.0L) * w[1];
+  const Real t123 = par.c_e * t122;
+  const Real t124 = t123 * constant<Real>(0.5L);
+  const Real t125 = t56 + t124;
   const Real t126 = w[2] * constant<Real>(2.0L);
   const Real t127 = par.c_e * t126;
   const Real t128 = constant<Real>(0.5L) * t127;
-  const Real t129 = t128 + t60;
-  const Real t130 = constant<Real>(2.0L) * w[1];
-  const Real t131 = par.c_e * t130;
-  const Real t132 = t131 * constant<Real>(0.5L);
-  const Real t133 = t58 + t132;
+  const Real t129 = t54 + t128;
 
   // reduced mass matrix
-  const Real t134 = t48 * s_r_a_0_;
+  const Real t130 = s_r_a_0_ * t44;
 
   // reduced accelerations
-  const Real t135 = tau_a[0] * par.k23;
+  const Real t131 = tau_a[0] * par.k24;
 
   // rear_axle: wrench
-  const Real t136 = t95 * par.m_a;
-  const Real t137 = t98 * par.m_a;
+  const Real t132 = t91 * par.m_a;
+  const Real t133 = t94 * par.m_a;
 
   // front_axle: wrench
-  const Real t138 = par.m_a * t99;
+  const Real t134 = par.m_a * t95;
 
   // beam_3: wrench
-  const Real t139 = par.k1 * t102;
-  const Real t140 = t111 + t139;
-  const Real t141 = t140 + t117;
-  const Real t142 = par.k2 * t101;
-  const Real t143 = t113 + t142;
-  const Real t144 = t102 * t5;
-  const Real t145 = t101 * par.k6;
-  const Real t146 = t144 - t145;
-  const Real t147 = t110 + t146;
-  const Real t148 = par.k1 * t101;
-  const Real t149 = t114 + t148;
+  const Real t135 = par.k2 * t97;
+  const Real t136 = t109 + t135;
+  const Real t137 = t98 * t4;
+  const Real t138 = par.k3 * t97;
+  const Real t139 = t137 - t138;
+  const Real t140 = t139 + t106;
+  const Real t141 = par.k1 * t97;
+  const Real t142 = t110 + t141;
+  const Real t143 = par.k1 * t98;
+  const Real t144 = t107 + t143;
+  const Real t145 = t144 + t113;
 
   // beam_4: wrench
-  const Real t150 = t142 - t118;
-  const Real t151 = t8 * t102;
-  const Real t152 = t145 - t151;
-  const Real t153 = t152 + t122;
-  const Real t154 = t139 - t111;
+  const Real t146 = t135 - t114;
+  const Real t147 = t143 - t107;
+  const Real t148 = t5 * t98;
+  const Real t149 = t138 - t148;
+  const Real t150 = t118 + t149;
 
   // beam_4: joint force
-  const Real t155 = t125 - t154;
-  const Real t156 = t119 - t148;
+  const Real t151 = t121 - t147;
+  const Real t152 = t115 - t141;
 
   // beam_3: joint force
-  const Real t157 = t156 - t149;
-  const Real t158 = t153 + t147;
-  const Real t159 = t155 - t141;
+  const Real t153 = t150 + t140;
+  const Real t154 = t152 - t142;
+  const Real t155 = t151 - t145;
 
   // hub: joint force
-  const Real t160 = t159 * c_r_a_1_;
-  const Real t161 = s_r_a_1_ * t157;
-  const Real t162 = t160 - t161;
+  const Real t156 = t155 * c_r_a_1_;
+  const Real t157 = s_r_a_1_ * t154;
+  const Real t158 = t156 - t157;
 
   // front_axle: joint force
-  const Real t163 = s_r_a_0_ * t138;
-  const Real t164 = c_r_a_0_ * t137;
+  const Real t159 = c_r_a_0_ * t134;
+  const Real t160 = s_r_a_0_ * t133;
+  const Real t161 = t159 - t160;
+  const Real t162 = t161 + t158;
+  const Real t163 = s_r_a_0_ * t134;
+  const Real t164 = c_r_a_0_ * t133;
   const Real t165 = t163 + t164;
   const Real t166 = t165 * par.l;
-  const Real t167 = t158 - t166;
-  const Real t168 = c_r_a_0_ * t138;
-  const Real t169 = s_r_a_0_ * t137;
-  const Real t170 = t168 - t169;
-  const Real t171 = t162 + t170;
+  const Real t167 = t153 - t166;
 
   // rear_axle: joint force
-  const Real t172 = s_r_a_0_ * t136;
-  const Real t173 = t172 - t164;
-  const Real t174 = t173 * par.l;
-  const Real t175 = t136 * c_r_a_0_;
-  const Real t176 = t175 + t169;
-  const Real t177 = t176 + t171;
+  const Real t168 = s_r_a_0_ * t132;
+  const Real t169 = t168 - t164;
+  const Real t170 = t169 * par.l;
+  const Real t171 = t132 * c_r_a_0_;
+  const Real t172 = t171 + t160;
+  const Real t173 = t172 + t162;
 
   // springs, dampers and generalised forces
-  const Real t178 = t143 - t133;
-  const Real t179 = t174 - t167;
-  const Real t180 = t150 + t129;
+  const Real t174 = t136 - t125;
+  const Real t175 = t170 - t167;
+  const Real t176 = t146 + t129;
 
   // reduced mass matrix
-  const Real t181 = t14 * t25;
-  const Real t182 = t181 - t134;
+  const Real t177 = t10 * t23;
+  const Real t178 = t177 - t130;
 
   // reduced forces
-  const Real t183 = t104 * t48;
-  const Real t184 = t107 * t25;
-  const Real t185 = t183 + t184;
-  const Real t186 = t185 - t158;
-  const Real t187 = t186 + tau_a[1];
-  const Real t188 = t104 * t43;
-  const Real t189 = t44 * t107;
-  const Real t190 = t188 + t189;
-  const Real t191 = t190 - t177;
-  const Real t192 = t191 * t14;
-  const Real t193 = t56 * t104;
-  const Real t194 = t43 * t107;
-  const Real t195 = t193 + t194;
-  const Real t196 = t195 + t179;
-  const Real t197 = s_r_a_0_ * t196;
-  const Real t198 = t192 - t197;
-  const Real t199 = t17 * t107;
-  const Real t200 = t199 - t112;
-  const Real t201 = t178 - t200;
-  const Real t202 = t112 + t199;
-  const Real t203 = t202 - t180;
+  const Real t179 = t13 * t103;
+  const Real t180 = t179 - t108;
+  const Real t181 = t174 - t180;
+  const Real t182 = t108 + t179;
+  const Real t183 = t182 - t176;
+  const Real t184 = t100 * t44;
+  const Real t185 = t103 * t23;
+  const Real t186 = t184 + t185;
+  const Real t187 = t186 - t153;
+  const Real t188 = tau_a[1] + t187;
+  const Real t189 = t39 * t100;
+  const Real t190 = t40 * t103;
+  const Real t191 = t189 + t190;
+  const Real t192 = t191 - t173;
+  const Real t193 = t192 * t10;
+  const Real t194 = t52 * t100;
+  const Real t195 = t39 * t103;
+  const Real t196 = t194 + t195;
+  const Real t197 = t175 + t196;
+  const Real t198 = t197 * s_r_a_0_;
+  const Real t199 = t193 - t198;
 
   // reduced accelerations
-  const Real t204 = t198 * t74;
-  const Real t205 = t198 * t78;
-  const Real t206 = t205 + t201;
-  const Real t207 = t206 * t81;
-  const Real t208 = t198 * t75;
-  const Real t209 = t203 - t208;
-  const Real t210 = t206 * t83;
-  const Real t211 = t209 - t210;
-  const Real t212 = t211 * t86;
-  const Real t213 = t182 * t74;
-  const Real t214 = t213 * t198;
-  const Real t215 = t187 - t214;
-  const Real t216 = t182 * t78;
-  const Real t217 = t216 + par.k5;
-  const Real t218 = t217 * t81;
-  const Real t219 = t206 * t218;
-  const Real t220 = t215 - t219;
-  const Real t221 = t182 * t75;
-  const Real t222 = par.k5 - t221;
-  const Real t223 = t83 * t217;
-  const Real t224 = t222 - t223;
-  const Real t225 = t224 * t86;
-  const Real t226 = t211 * t225;
-  const Real t227 = t220 - t226;
-  const Real t228 = t213 * t182;
-  const Real t229 = t48 - t228;
-  const Real t230 = t217 * t218;
-  const Real t231 = t229 - t230;
-  const Real t232 = t224 * t225;
-  const Real t233 = t231 - t232;
-  const Real t234 = constant<Real>(1.0L) / t233;
-  const Real t235 = t227 * t234;
-  const Real t236 = t235 * t225;
-  const Real t237 = t212 - t236;
-  const Real t238 = t83 * t237;
-  const Real t239 = t207 - t238;
-  const Real t240 = t235 * t218;
+  const Real t200 = t74 * t199;
+  const Real t201 = t181 + t200;
+  const Real t202 = t78 * t201;
+  const Real t203 = t71 * t199;
+  const Real t204 = t183 - t203;
+  const Real t205 = t79 * t201;
+  const Real t206 = t204 - t205;
+  const Real t207 = t82 * t206;
+  const Real t208 = t70 * t178;
+  const Real t209 = t208 * t178;
+  const Real t210 = t44 - t209;
+  const Real t211 = t74 * t178;
+  const Real t212 = t211 + par.k5;
+  const Real t213 = t78 * t212;
+  const Real t214 = t212 * t213;
+  const Real t215 = t210 - t214;
+  const Real t216 = t71 * t178;
+  const Real t217 = par.k5 - t216;
+  const Real t218 = t79 * t212;
+  const Real t219 = t217 - t218;
+  const Real t220 = t82 * t219;
+  const Real t221 = t220 * t219;
+  const Real t222 = t215 - t221;
+  const Real t223 = constant<Real>(1.0L) / t222;
+  const Real t224 = t199 * t208;
+  const Real t225 = t188 - t224;
+  const Real t226 = t201 * t213;
+  const Real t227 = t225 - t226;
+  const Real t228 = t206 * t220;
+  const Real t229 = t227 - t228;
+  const Real t230 = t223 * t229;
+  const Real t231 = t230 * t220;
+  const Real t232 = t207 - t231;
+  const Real t233 = t232 * t79;
+  const Real t234 = t202 - t233;
+  const Real t235 = t230 * t213;
+  const Real t236 = t234 - t235;
+  const Real t237 = t74 * t236;
+  const Real t238 = t199 * t70;
+  const Real t239 = t237 + t238;
+  const Real t240 = t71 * t232;
   const Real t241 = t239 - t240;
-  const Real t242 = t241 * t78;
-  const Real t243 = t204 + t242;
-  const Real t244 = t75 * t237;
-  const Real t245 = t243 - t244;
-  const Real t246 = t213 * t235;
-  const Real t247 = t245 - t246;
+  const Real t242 = t208 * t230;
+  const Real t243 = t241 - t242;
 
   // accelerations
-  const Real t248 = t247 * t14;
-  const Real t249 = t248 - t107;
-  const Real t250 = t247 * s_r_a_0_;
-  const Real t251 = t104 + t250;
-  const Real t252 = -t251;
+  const Real t244 = s_r_a_0_ * t243;
+  const Real t245 = t244 + t100;
+  const Real t246 = -t245;
+  const Real t247 = t243 * t10;
+  const Real t248 = t247 - t103;
 
-  w_dot_out[0] = t247;
-  w_dot_out[1] = t241;
-  w_dot_out[2] = t237;
-  w_dot_out[3] = t135;
-  w_dot_out[4] = t235;
-  eta_dot[0] = t249;
+  w_dot_out[0] = t243;
+  w_dot_out[1] = t236;
+  w_dot_out[2] = t232;
+  w_dot_out[3] = t131;
+  w_dot_out[4] = t230;
+  eta_dot[0] = t248;
   eta_dot[1] = constant<Real>(0.0L);
-  eta_dot[2] = t252;
-  r_p_ddot[0] = t241;
-  r_p_ddot[1] = t237;
-  r_a_ddot_out[0] = t135;
-  r_a_ddot_out[1] = t235;
+  eta_dot[2] = t246;
+  r_p_ddot[0] = t236;
+  r_p_ddot[1] = t232;
+  r_a_ddot_out[0] = t131;
+  r_a_ddot_out[1] = t230;
 }
 
 /// Constraint forces with the torques given, least norm.
@@ -2404,27 +2387,23 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
 
-  // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-
-  // beam_4: inertia in its present shape
-  const Real t2 = r_p[1] * r_p[1];
-
   // rear_axle: twist
-  const Real t3 = par.l * c_r_a_0_;
+  const Real t1 = par.l * c_r_a_0_;
 
   // kernel
-  const Real t4 = constant<Real>(1.0L) / t3;
+  const Real t2 = constant<Real>(1.0L) / t1;
 
   // springs, dampers and generalised forces
-  const Real t5 = r_p[0] - r_p[1];
-  const Real t6 = s_r_a_1_ * t5;
-  const Real t7 = t1 + t2;
-  const Real t8 = t5 * c_r_a_1_;
+  const Real t3 = r_p[0] - r_p[1];
+  const Real t4 = s_r_a_1_ * t3;
+  const Real t5 = r_p[0] * r_p[0];
+  const Real t6 = r_p[1] * r_p[1];
+  const Real t7 = t5 + t6;
+  const Real t8 = t3 * c_r_a_1_;
   const Real t9 = constant<Real>(0.391495878019812868251L) * c_r_a_1_;
 
   // multipliers
-  const Real t10 = s_r_a_0_ * par.k11;
+  const Real t10 = s_r_a_0_ * par.k13;
 
   // kernel
   const Real t11 = s_r_a_0_ * w[0];
@@ -2444,7 +2423,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   // multipliers
   const Real t16 = t12 * constant<Real>(2.0L);
   const Real t17 = constant<Real>(0.391495878019812868251L) * t13;
-  const Real t18 = t17 * t5;
+  const Real t18 = t17 * t3;
   const Real t19 = s_r_a_1_ * t18;
   const Real t20 = t16 - t19;
   const Real t21 = par.rhoA * t20;
@@ -2459,11 +2438,11 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t30 = w_dot[0] * t9;
   const Real t31 = par.rhoA * t30;
   const Real t32 = par.L * t31;
-  const Real t33 = t5 * t32;
+  const Real t33 = t3 * t32;
   const Real t34 = t29 + t33;
   const Real t35 = constant<Real>(0.5L) * t34;
   const Real t36 = t10 * w_dot[0];
-  const Real t37 = par.k22 * t14;
+  const Real t37 = par.k23 * t14;
   const Real t38 = t37 * w[0];
   const Real t39 = par.J_h * w_dot[4];
   const Real t40 = t38 - t39;
@@ -2472,7 +2451,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t43 = t11 - w[3];
   const Real t44 = w[4] * constant<Real>(2.0L);
   const Real t45 = t43 - t44;
-  const Real t46 = t45 * t5;
+  const Real t46 = t45 * t3;
   const Real t47 = t46 * c_r_a_1_;
   const Real t48 = w[1] - w[2];
   const Real t49 = t48 * s_r_a_1_;
@@ -2480,13 +2459,13 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t51 = t47 - t50;
   const Real t52 = t51 * w[0];
   const Real t53 = s_r_a_1_ * w_dot[0];
-  const Real t54 = t5 * t53;
+  const Real t54 = t3 * t53;
   const Real t55 = t52 - t54;
   const Real t56 = s_r_a_0_ * t55;
   const Real t57 = w[4] * t8;
   const Real t58 = t50 + t57;
   const Real t59 = w[4] * t58;
-  const Real t60 = t6 * w_dot[4];
+  const Real t60 = t4 * w_dot[4];
   const Real t61 = w_dot[1] - w_dot[2];
   const Real t62 = t61 * c_r_a_1_;
   const Real t63 = t60 - t62;
@@ -2518,11 +2497,11 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t89 = par.rhoA * t88;
   const Real t90 = par.L * t89;
   const Real t91 = t42 + t90;
-  const Real t92 = t4 * t91;
+  const Real t92 = t2 * t91;
   const Real t93 = t35 + t92;
   const Real t94 = -t93;
   const Real t95 = t13 - t44;
-  const Real t96 = t95 * t5;
+  const Real t96 = t95 * t3;
   const Real t97 = t96 * c_r_a_1_;
   const Real t98 = t97 - t50;
   const Real t99 = t98 * w[0];
@@ -2535,9 +2514,9 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t106 = t105 * par.rhoA;
   const Real t107 = par.L * t106;
   const Real t108 = t42 - t107;
-  const Real t109 = t108 * t4;
+  const Real t109 = t108 * t2;
   const Real t110 = constant<Real>(0.391495878019812868251L) * t43;
-  const Real t111 = t5 * t110;
+  const Real t111 = t3 * t110;
   const Real t112 = s_r_a_1_ * t111;
   const Real t113 = t16 + t112;
   const Real t114 = par.rhoA * t113;
@@ -2559,7 +2538,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;
 /// power lost and power of applied forces.
 /// route: closed form
-/// operations: 27 add, 48 mul, 1 div, 1 sin, 1 cos
+/// operations: 27 add, 47 mul, 1 div, 1 sin, 1 cos
 /// @param[in]  par               made by prepare()
 /// @param[in]  r_p               (2) rad or m: re3, re4
 /// @param[in]  r_a               (2) rad or m: r1, r3
@@ -2590,104 +2569,101 @@ inline void energies(const Prepared<Real>& par,
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
 
-  // beam_3: inertia in its present shape
-  const Real t1 = r_p[0] * r_p[0];
-
-  // beam_4: inertia in its present shape
-  const Real t2 = r_p[1] * r_p[1];
-
   // hub: twist
-  const Real t3 = s_r_a_1_ * eta[0];
-  const Real t4 = s_r_a_1_ * eta[1];
-  const Real t5 = eta[0] * c_r_a_1_;
-  const Real t6 = t4 + t5;
-  const Real t7 = eta[1] * c_r_a_1_;
+  const Real t1 = s_r_a_1_ * eta[0];
+  const Real t2 = s_r_a_1_ * eta[1];
+  const Real t3 = eta[0] * c_r_a_1_;
+  const Real t4 = t2 + t3;
+  const Real t5 = eta[1] * c_r_a_1_;
 
   // beam_4: twist
-  const Real t8 = t3 - t7;
+  const Real t6 = t1 - t5;
 
   // front_axle: acceleration
-  const Real t9 = r_a_dot[0] * r_a_dot[0];
+  const Real t7 = r_a_dot[0] * r_a_dot[0];
+
+  // beam_3: wrench
+  const Real t8 = r_p_dot[0] * r_p_dot[0];
+
+  // beam_4: wrench
+  const Real t9 = r_p_dot[1] * r_p_dot[1];
 
   // springs, dampers and generalised forces
   const Real t10 = r_p_dot[0] - r_p_dot[1];
-  const Real t11 = t6 * constant<Real>(0.391495878019812868251L);
+  const Real t11 = t4 * constant<Real>(0.391495878019812868251L);
   const Real t12 = r_p[0] - r_p[1];
-  const Real t13 = t1 + t2;
-  const Real t14 = eta[2] * constant<Real>(2.0L);
-  const Real t15 = r_a_dot[1] + t14;
-  const Real t16 = r_a_dot[1] * r_a_dot[1];
+  const Real t13 = r_p[0] * r_p[0];
+  const Real t14 = r_p[1] * r_p[1];
+  const Real t15 = t13 + t14;
+  const Real t16 = eta[2] * constant<Real>(2.0L);
+  const Real t17 = r_a_dot[1] + t16;
+  const Real t18 = r_a_dot[1] * r_a_dot[1];
 
   // platform: energy
-  const Real t17 = eta[1] * eta[1];
-  const Real t18 = eta[0] * eta[0];
-  const Real t19 = t17 + t18;
-  const Real t20 = par.m_p * t19;
-
-  // beam_3: energy
-  const Real t21 = r_p_dot[0] * r_p_dot[0];
+  const Real t19 = eta[1] * eta[1];
+  const Real t20 = eta[0] * eta[0];
+  const Real t21 = t19 + t20;
+  const Real t22 = par.m_p * t21;
 
   // beam_4: energy
-  const Real t22 = r_p_dot[1] * r_p_dot[1];
-  const Real t23 = t22 + t21;
-  const Real t24 = par.c_e * t23;
-  const Real t25 = r_p_dot[0] + r_p_dot[1];
-  const Real t26 = t25 * constant<Real>(0.284412871854955370905L);
-  const Real t27 = t15 * constant<Real>(0.333333333333333333333L);
-  const Real t28 = par.L * t27;
-  const Real t29 = t26 + t28;
+  const Real t23 = t15 * par.k14;
+  const Real t24 = t23 / par.k10;
+  const Real t25 = t9 + t8;
+  const Real t26 = par.c_e * t25;
+  const Real t27 = r_p_dot[0] + r_p_dot[1];
+  const Real t28 = t27 * constant<Real>(0.284412871854955370905L);
+  const Real t29 = t17 * constant<Real>(0.333333333333333333333L);
   const Real t30 = par.L * t29;
-  const Real t31 = constant<Real>(0.125L) * t15;
-  const Real t32 = r_p[1] * t31;
-  const Real t33 = t11 + t32;
+  const Real t31 = t28 + t30;
+  const Real t32 = par.L * t31;
+  const Real t33 = constant<Real>(0.125L) * t17;
   const Real t34 = r_p[1] * t33;
-  const Real t35 = t31 * r_p[0];
-  const Real t36 = t35 - t11;
-  const Real t37 = t36 * r_p[0];
-  const Real t38 = t34 + t37;
-  const Real t39 = t30 + t38;
-  const Real t40 = t39 * r_a_dot[1];
-  const Real t41 = t13 * eta[2];
-  const Real t42 = constant<Real>(0.125L) * t41;
-  const Real t43 = par.L * eta[2];
-  const Real t44 = t43 * constant<Real>(0.333333333333333333333L);
-  const Real t45 = t44 + t26;
-  const Real t46 = par.L * t45;
-  const Real t47 = t42 + t46;
-  const Real t48 = t12 * t6;
-  const Real t49 = t48 * constant<Real>(0.391495878019812868251L);
-  const Real t50 = t47 - t49;
-  const Real t51 = eta[2] * t50;
-  const Real t52 = t23 * constant<Real>(0.125L);
-  const Real t53 = t52 + t19;
-  const Real t54 = t10 * t8;
-  const Real t55 = constant<Real>(0.391495878019812868251L) * t54;
-  const Real t56 = t53 - t55;
-  const Real t57 = t51 + t56;
-  const Real t58 = t40 + t57;
-  const Real t59 = par.rhoA * t58;
-  const Real t60 = par.L * t59;
-  const Real t61 = t9 * par.J_a;
-  const Real t62 = par.m_a * t19;
-  const Real t63 = t61 + t62;
-  const Real t64 = par.J_h * t16;
-  const Real t65 = t64 + t20;
-  const Real t66 = constant<Real>(0.5L) * t65;
-  const Real t67 = t63 + t66;
-  const Real t68 = eta[2] * par.k24;
-  const Real t69 = r_a_dot[1] * par.J_h;
-  const Real t70 = t68 + t69;
-  const Real t71 = t70 * eta[2];
-  const Real t72 = t67 + t71;
-  const Real t73 = t60 + t72;
-  const Real t74 = par.k13 * t13;
-  const Real t75 = constant<Real>(0.5L) * t74;
-  const Real t76 = t75 / par.k14;
+  const Real t35 = t11 + t34;
+  const Real t36 = r_p[1] * t35;
+  const Real t37 = t33 * r_p[0];
+  const Real t38 = t37 - t11;
+  const Real t39 = t38 * r_p[0];
+  const Real t40 = t36 + t39;
+  const Real t41 = t32 + t40;
+  const Real t42 = t41 * r_a_dot[1];
+  const Real t43 = t15 * eta[2];
+  const Real t44 = constant<Real>(0.125L) * t43;
+  const Real t45 = par.L * eta[2];
+  const Real t46 = t45 * constant<Real>(0.333333333333333333333L);
+  const Real t47 = t46 + t28;
+  const Real t48 = par.L * t47;
+  const Real t49 = t44 + t48;
+  const Real t50 = t12 * t4;
+  const Real t51 = t50 * constant<Real>(0.391495878019812868251L);
+  const Real t52 = t49 - t51;
+  const Real t53 = eta[2] * t52;
+  const Real t54 = t25 * constant<Real>(0.125L);
+  const Real t55 = t54 + t21;
+  const Real t56 = t10 * t6;
+  const Real t57 = constant<Real>(0.391495878019812868251L) * t56;
+  const Real t58 = t55 - t57;
+  const Real t59 = t53 + t58;
+  const Real t60 = t42 + t59;
+  const Real t61 = par.rhoA * t60;
+  const Real t62 = par.L * t61;
+  const Real t63 = t7 * par.J_a;
+  const Real t64 = par.m_a * t21;
+  const Real t65 = t63 + t64;
+  const Real t66 = par.J_h * t18;
+  const Real t67 = t66 + t22;
+  const Real t68 = constant<Real>(0.5L) * t67;
+  const Real t69 = t65 + t68;
+  const Real t70 = eta[2] * par.k25;
+  const Real t71 = r_a_dot[1] * par.J_h;
+  const Real t72 = t70 + t71;
+  const Real t73 = t72 * eta[2];
+  const Real t74 = t69 + t73;
+  const Real t75 = t62 + t74;
 
-  kinetic[0] = t73;
+  kinetic[0] = t75;
   gravity[0] = constant<Real>(0.0L);
-  elastic[0] = t76;
-  dissipated_power[0] = t24;
+  elastic[0] = t24;
+  dissipated_power[0] = t26;
   applied_power[0] = constant<Real>(0.0L);
 }
 

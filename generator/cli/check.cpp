@@ -6,6 +6,7 @@
 
 #include "check/regularity.hpp"
 #include "cli/common.hpp"
+#include "describe/deformation.hpp"
 
 namespace anholon::cli {
 namespace {
@@ -55,6 +56,7 @@ std::string json_text(const Model& model, const ReductionReport& reduction, cons
     j["rank_drops"].push_back({{"where", drop.where}, {"rank", drop.rank}});
   if (ranks.drops.empty() && regularity.rank_drop)
     j["rank_drops"].push_back({{"where", *regularity.rank_drop}, {"rank", nullptr}});
+  j["deformation"] = kept_terms(model);
   j["notes"] = model.notes;
   return j.dump(1) + "\n";
 }
@@ -112,6 +114,7 @@ void print(const Model& model, const ReductionReport& reduction, const Regularit
     line("rank drop", fmt::format("(A, B_p) has rank {} at {}", drop.rank, drop.where));
   if (ranks.drops.empty() && regularity.rank_drop)
     line("rank drop", fmt::format("(A, B_p) loses rank at {}", *regularity.rank_drop));
+  for (const std::string& terms : kept_terms(model)) line("deformation", terms);
   for (const std::string& note : model.notes) line("note", note);
 }
 

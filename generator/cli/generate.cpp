@@ -9,6 +9,7 @@
 
 #include "check/compile_cache.hpp"
 #include "cli/common.hpp"
+#include "describe/deformation.hpp"
 #include "describe/scene.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
@@ -117,6 +118,7 @@ int generate(const GenerateOptions& options) {
   }
 
   fmt::print("{} ({}), {}\n", program.model, program.scene, headline(derivation, model));
+  for (const std::string& line : kept_terms(model)) fmt::print("{}\n", line);
   const std::map<std::string, int> without_scene = operations_without_scene(options, program);
   const auto compared = [&](const std::string& text) {
     return without_scene.empty() ? "" : fmt::format("{:>13s}", text);

@@ -91,7 +91,8 @@ ContactGeometry::Touch ContactGeometry::touch(const Wheel& wheel) const {
   };
   // The frame that carries the axle does not spin with the wheel: nothing then depends on the angle of the
   // spin.
-  const bool carried = body.parent >= 0 && body.joint.kind == JointKind::revolute && parallel();
+  const bool carried =
+      body.parent >= 0 && body.joint.kind == JointKind::revolute && parallel() && body.station.modes.empty();
   const Frame& frame = world_[static_cast<std::size_t>(carried ? body.parent : wheel.body)];
   const Mat3<Expr> R = carried ? Mat3<Expr>{body.R} : Mat3<Expr>::identity();
   const Vec3<Expr> centre = carried ? vector(body.p) : Vec3<Expr>{};

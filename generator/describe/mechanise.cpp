@@ -119,14 +119,9 @@ class Describer {
     for (int row = 1; row < 3; ++row) {  // symmetric in form as well as in value
       for (int col = 0; col < row; ++col) body.inertia(row, col) = body.inertia(col, row);
     }
-    for (const ModeDescription& m : b.modes) {
-      Mode<Expr> mode;
-      mode.coordinate = m.coordinate;
-      mode.S_j = to_body * vector(m.S);
-      mode.X_phi = to_body * matrix(m.X_phi) * alignment.A;
-      for (const auto& other : m.phi_phi) mode.phi_phi.push_back(to_body * matrix(other) * alignment.A);
-      body.modes.push_back(std::move(mode));
-    }
+    for (std::size_t j = 0; j < b.modes.size(); ++j) body.modes.push_back(mode(b, j, alignment.A));
+    body.station = station(b, parent_axes);
+    if (body.station.modes.empty()) body.p += parent_axes * vector(b.station.at);
     if (body.kind != JointKind::fixed) {
       if (constant) {
         lock(body, b.joint.displacement);
@@ -136,6 +131,58 @@ class Describer {
     }
     alignments_.push_back(alignment);
     result_.bodies.push_back(std::move(body));
+  }
+
+  /// Mode j in the axes that A turns into the described ones. How far T follows the deformation is decided
+  /// here.
+  static Mode<Expr> mode(const BodyDescription& b, std::size_t j, const Mat3<Expr>& A) {
+    const ModeDescription& m = b.modes[j];
+    const auto turned = [&](const Mat3<Expr>& tensor) { return A.transposed() * tensor * A; };
+    Mode<Expr> mode;
+    mode.coordinate = m.coordinate;
+    mode.S_j = A.transposed() * vector(m.S);
+    mode.N_j = turned(matrix(m.X_phi));
+    for (std::size_t l = 0; l < b.modes.size(); ++l) {
+      const std::array<Expr, 9>& overlap = m.phi_phi[l];
+      mode.m_jl.push_back(overlap[0] + overlap[4] + overlap[8]);
+      const Mat3<Expr> phi_l_phi_j = matrix(overlap).transposed();
+      Mat3<Expr> N = phi_l_phi_j;
+      Vec3<Expr> S;
+      if (b.deformation == Deformation::linear)  // C_j = int p x phi_j dm stays as it is, dI/dr_j does not
+        N = (Expr(1) / Expr(2)) * (phi_l_phi_j + Expr(-1) * phi_l_phi_j.transposed());
+      if (b.deformation == Deformation::stiffened && !m.psi.empty()) {
+        S = vector(m.psi[l]);
+        N = N + matrix(m.X_psi[l]);
+      }
+      mode.S_jl.push_back(A.transposed() * S);
+      mode.N_jl.push_back(turned(N));
+    }
+    return mode;
+  }
+
+  /// @param axes  turns components in the parent's described frame into its own
+  Station<Expr> station(const BodyDescription& b, const Mat3<Expr>& axes) const {
+    Station<Expr> station;
+    if (b.parent < 0) return station;
+    const bool foreshortens =
+        model_.bodies[static_cast<std::size_t>(b.parent)].deformation == Deformation::stiffened;
+    station.at = axes * vector(b.station.at);
+    std::array<bool, 3> turns = {false, false, false};
+    for (const StationDescription::Mode& m : b.station.modes) {
+      StationMode<Expr> mode;
+      mode.coordinate = m.coordinate;
+      mode.phi = axes * vector(m.phi);
+      mode.turn = axes * vector(m.turn);
+      if (foreshortens) {
+        for (const auto& psi : m.psi) mode.psi.push_back(axes * vector(psi));
+      }
+      for (int i = 0; i < 3; ++i)
+        turns[static_cast<std::size_t>(i)] = turns[static_cast<std::size_t>(i)] || !mode.turn[i].is_zero();
+      station.modes.push_back(std::move(mode));
+    }
+    if (std::ranges::count(turns, true) <= 1)
+      station.axis = static_cast<int>(std::ranges::find(turns, true) - turns.begin()) % 3;
+    return station;
   }
 
   [[nodiscard]] bool depends_on_state(const Expr& e) const {

@@ -112,8 +112,15 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
       scalar(b.pitch), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass), vector(b.first_moment),
           matrix(b.inertia);
       for (const Mode<Expr>& mode : b.modes) {
-        vector(mode.S_j), matrix(mode.X_phi);
-        for (const Mat3<Expr>& m : mode.phi_phi) matrix(m);
+        vector(mode.S_j), matrix(mode.N_j);
+        for (const Expr& m : mode.m_jl) scalar(m);
+        for (const Vec3<Expr>& v : mode.S_jl) vector(v);
+        for (const Mat3<Expr>& m : mode.N_jl) matrix(m);
+      }
+      vector(b.station.at);
+      for (const StationMode<Expr>& mode : b.station.modes) {
+        vector(mode.phi), vector(mode.turn);
+        for (const Vec3<Expr>& v : mode.psi) vector(v);
       }
     }
     for (const auto& row : d.rows) {
@@ -153,9 +160,20 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     for (const Mode<Expr>& m : b.modes) {
       Mode<S> mode;
       mode.coordinate = m.coordinate;
-      mode.S_j = vector(), mode.X_phi = matrix();
-      for (std::size_t l = 0; l < m.phi_phi.size(); ++l) mode.phi_phi.push_back(matrix());
+      mode.S_j = vector(), mode.N_j = matrix();
+      for (std::size_t l = 0; l < m.m_jl.size(); ++l) mode.m_jl.push_back(scalar());
+      for (std::size_t l = 0; l < m.S_jl.size(); ++l) mode.S_jl.push_back(vector());
+      for (std::size_t l = 0; l < m.N_jl.size(); ++l) mode.N_jl.push_back(matrix());
       body.modes.push_back(std::move(mode));
+    }
+    body.station.axis = b.station.axis;
+    body.station.at = vector();
+    for (const StationMode<Expr>& m : b.station.modes) {
+      StationMode<S> mode;
+      mode.coordinate = m.coordinate;
+      mode.phi = vector(), mode.turn = vector();
+      for (std::size_t l = 0; l < m.psi.size(); ++l) mode.psi.push_back(vector());
+      body.station.modes.push_back(std::move(mode));
     }
     mechanism.bodies.push_back(std::move(body));
   }

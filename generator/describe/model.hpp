@@ -48,25 +48,49 @@ struct JointDescription {
   std::string coordinate;  // name as written; empty for a fixed joint
 };
 
-/// Mode j of a compliant body: p = X + sum_j phi_j(X) r_ej (design of the deformation field), all in the
-/// body's frame.
+/// How far the kinetic energy T of a compliant body follows its deformation.
+enum class Deformation {
+  linear,     // no terms of second order in the modal coordinates
+  quadratic,  // all terms of the displacement field that is linear in them
+  stiffened   // also those of the foreshortening, up to the second order
+};
+
+/// Mode j of a compliant body: p = X + sum_j phi_j r_ej + 1/2 sum_jl psi_jl r_ej r_el, all in the body's
+/// frame. psi is the foreshortening; empty where it is not known.
 struct ModeDescription {
   int coordinate = 0;                        // index of r_ej in Model::coordinates
+  int family = 0;                            // modes of a kind: a plane of bending, torsion, axial
   std::array<Expr, 3> S;                     // integral of phi_j dm
   std::array<Expr, 9> X_phi;                 // integral of X phi_j^T dm, row-major
   std::vector<std::array<Expr, 9>> phi_phi;  // integral of phi_j phi_l^T dm for each mode l of this body
+  std::vector<std::array<Expr, 3>> psi;      // integral of psi_jl dm
+  std::vector<std::array<Expr, 9>> X_psi;    // integral of X psi_jl^T dm
+};
+
+/// A place on a compliant body, in its frame, with what each of its modes does there.
+struct StationDescription {
+  struct Mode {
+    int coordinate = 0;
+    std::array<Expr, 3> phi = {0, 0, 0};
+    std::array<Expr, 3> turn = {0, 0, 0};  // rotation vector per r_ej
+    std::vector<std::array<Expr, 3>> psi;  // empty where the foreshortening is not known
+  };
+  std::array<Expr, 3> at = {0, 0, 0};
+  std::vector<Mode> modes;
 };
 
 struct BodyDescription {
   std::string name;
   int parent = -1;                                      // -1: the reference body
-  std::array<Expr, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // pose in the parent's frame at zero displacement
+  StationDescription station;                           // where the parent is compliant
+  std::array<Expr, 9> R = {1, 0, 0, 0, 1, 0, 0, 0, 1};  // pose in the frame of parent or station
   std::array<Expr, 3> p = {0, 0, 0};
   JointDescription joint;
   Expr mass = 0;
   std::array<Expr, 3> first_moment = {0, 0, 0};      // about the body's origin
   std::array<Expr, 6> inertia = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz about the origin, matrix entries
   std::vector<ModeDescription> modes;                // empty: rigid
+  Deformation deformation = Deformation::stiffened;
   Location where;
 };
 

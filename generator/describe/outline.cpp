@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 
 #include "describe/names.hpp"
 #include "describe/read_parts.hpp"
@@ -111,41 +112,91 @@ std::vector<int> planes_of(TableReader& beam) {
   return planes;
 }
 
-void read_beam_outline(BodyOutline& body, const BodyDescription& described, Reading& reading,
-                       std::vector<std::string>& taken) {
-  const Value* table = body.table.optional("beam", Value::Kind::table);
-  if (table == nullptr) return;
-  BeamOutline& beam = body.beam.emplace(BeamOutline{
-      TableReader(*table, fmt::format("the beam of {}", body.table.what()), reading.findings), 1, {}, 0});
-  beam.modes = beam.table.optional_integer("modes", 1, most_modes).value_or(1);
-  beam.planes = planes_of(beam.table);
-  beam.first_coordinate = static_cast<int>(reading.model.coordinates.size());
-  const std::size_t count = static_cast<std::size_t>(beam.modes) * beam.planes.size();
-  const Value* names = beam.table.optional("coordinates", Value::Kind::array);
+/// The coordinates of a compliant body's modes: named by the key `coordinates`, or after the body.
+/// @param is_angle  whether mode i is measured in rad
+void add_modal_coordinates(TableReader& table, const BodyDescription& described, std::size_t count,
+                           const std::function<bool(std::size_t)>& is_angle, const char* mend,
+                           Reading& reading, std::vector<std::string>& taken) {
+  const Value* names = table.optional("coordinates", Value::Kind::array);
   if (names != nullptr && names->items.size() != count) {
-    reading.findings.error(names->where,
-                           fmt::format("{} has {} modes but names {} coordinates", beam.table.what(), count,
-                                       names->items.size()),
-                           "name one for each mode, plane after plane");
+    reading.findings.error(
+        names->where,
+        fmt::format("{} has {} modes but names {} coordinates", table.what(), count, names->items.size()),
+        mend);
     names = nullptr;
   }
   for (std::size_t i = 0; i < count; ++i) {
     Value name;
     name.kind = Value::Kind::string;
-    name.where = table->where;
+    name.where = table.table().where;
     name.text = fmt::format("{}_e{}", described.name, i + 1);
     if (names != nullptr) name = names->items[i];
     if (name.kind != Value::Kind::string) {
       reading.findings.error(name.where,
-                             fmt::format("a coordinate of {} is {}", beam.table.what(), name.kind_name()),
+                             fmt::format("a coordinate of {} is {}", table.what(), name.kind_name()),
                              "write its name in quotes");
       name.text.clear();
     }
     Coordinate coordinate;
     coordinate.where = name.where;
+    coordinate.is_angle = is_angle(i);
     if (!name.text.empty()) coordinate.name = coordinate_name(name, "a modal coordinate", reading, taken);
     reading.model.coordinates.push_back(coordinate);
   }
+}
+
+/// modal = { table = "panel.modes.toml" }: the path is relative to the description.
+void read_modal_outline(BodyOutline& body, const BodyDescription& described, Reading& reading,
+                        std::vector<std::string>& taken) {
+  const Value* table = body.table.optional("modal", Value::Kind::table);
+  if (table == nullptr) return;
+  ModalOutline& modal = body.modal.emplace(ModalOutline{
+      TableReader(*table, fmt::format("the modes of {}", body.table.what()), reading.findings), {}, 0});
+  modal.first_coordinate = static_cast<int>(reading.model.coordinates.size());
+  if (body.beam) {
+    reading.findings.error(
+        table->where, fmt::format("{} is a beam and has a table of modes", body.table.what()), "keep one");
+    return;
+  }
+  if (const Value* file =
+          modal.table.required("table", Value::Kind::string, "name the file: table = \"panel.modes.toml\"")) {
+    const std::size_t before = reading.findings.size();
+    const std::filesystem::path folder = std::filesystem::path(file->where.file).parent_path();
+    modal.data = read_modal_table(folder / file->text, file->where, reading.findings);
+    if (reading.findings.size() > before) modal.data = {};
+  }
+  add_modal_coordinates(
+      modal.table, described, modal.data.modes(), [](std::size_t) { return false; }, "name one for each mode",
+      reading, taken);
+}
+
+void read_beam_outline(BodyOutline& body, const BodyDescription& described, Reading& reading,
+                       std::vector<std::string>& taken) {
+  const Value* table = body.table.optional("beam", Value::Kind::table);
+  if (table == nullptr) return;
+  BeamOutline& beam = body.beam.emplace(
+      BeamOutline{TableReader(*table, fmt::format("the beam of {}", body.table.what()), reading.findings),
+                  1,
+                  {},
+                  0,
+                  0,
+                  0});
+  if (const Value* shapes =
+          beam.table.optional("shapes", Value::Kind::array)) {  // the user's own: their number
+    beam.modes = static_cast<int>(std::min<std::size_t>(shapes->items.size(), most_modes));
+  } else {
+    beam.modes = beam.table.optional_integer("modes", 0, most_modes).value_or(1);
+  }
+  beam.planes = planes_of(beam.table);
+  beam.torsion_modes = beam.table.optional_integer("torsion_modes", 0, most_modes).value_or(0);
+  beam.axial_modes = beam.table.optional_integer("axial_modes", 0, most_modes).value_or(0);
+  beam.first_coordinate = static_cast<int>(reading.model.coordinates.size());
+  const std::size_t bending = static_cast<std::size_t>(beam.modes) * beam.planes.size();
+  const std::size_t twisting = bending + static_cast<std::size_t>(beam.torsion_modes);
+  const std::size_t count = twisting + static_cast<std::size_t>(beam.axial_modes);
+  add_modal_coordinates(
+      beam.table, described, count, [=](std::size_t i) { return i >= bending && i < twisting; },
+      "name one for each mode: plane after plane, then torsion, then axial", reading, taken);
 }
 
 void read_couplings_outline(TableReader& root, Outline& outline, const std::vector<Coordinate>& joints,
@@ -227,8 +278,8 @@ Outline read_outline(TableReader& root, Reading& reading) {
     }
   }
   for (const Value* table : tables) {
-    BodyOutline& body =
-        outline.bodies.emplace_back(BodyOutline{TableReader(*table, "a body", reading.findings), {}, {}, -1});
+    BodyOutline& body = outline.bodies.emplace_back(
+        BodyOutline{TableReader(*table, "a body", reading.findings), {}, {}, {}, {}, -1});
     BodyDescription described;
     described.where = table->where;
     if (const Value* name = body.table.required("name", Value::Kind::string, "name it: name = \"wheel\"")) {
@@ -240,7 +291,7 @@ Outline read_outline(TableReader& root, Reading& reading) {
       body.table.optional("name");
     }
     if (model.bodies.empty()) {
-      for (const std::string_view key : {"parent", "joint", "pose"}) {
+      for (const std::string_view key : {"parent", "joint", "pose", "station"}) {
         if (table->find(key) != nullptr)
           reading.findings.error(body.table.optional(key)->where,
                                  fmt::format("the reference body has a '{}'", key),
@@ -257,6 +308,7 @@ Outline read_outline(TableReader& root, Reading& reading) {
       }
     }
     read_beam_outline(body, described, reading, taken);
+    read_modal_outline(body, described, reading, taken);
     model.bodies.push_back(std::move(described));
   }
   read_couplings_outline(root, outline, joints, reading);

@@ -5,28 +5,46 @@
 // coordinates and thereby the inputs of the model's tape, which every expression needs.
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "describe/modal_table.hpp"
 #include "describe/reading.hpp"
 #include "describe/table_reader.hpp"
 
 namespace anholon {
 
-/// Modes of a beam: for each plane, in order, the first `modes` ones.
+/// Modes of a beam: for each plane, in order, the first `modes` ones; then those of torsion and axial ones.
 struct BeamOutline {
   TableReader table;
   int modes = 1;
-  std::vector<int> planes;   // axis of deflection, 1 (y) or 2 (z)
+  std::vector<int> planes;  // axis of deflection, 1 (y) or 2 (z)
+  int torsion_modes = 0;
+  int axial_modes = 0;
   int first_coordinate = 0;  // the beam's coordinates follow each other in Model::coordinates
 };
+
+/// A compliant body that a table describes.
+struct ModalOutline {
+  TableReader table;
+  ModalTable data;
+  int first_coordinate = 0;
+};
+
+/// Where a body hangs on a compliant one, as its key `station` says, or at the tip.
+/// @param station  null where there is no such key
+using StationReader =
+    std::function<StationDescription(const Value* station, const BodyDescription& hanging, Reading& reading)>;
 
 struct BodyOutline {
   TableReader table;
   std::optional<TableReader> joint;
   std::optional<BeamOutline> beam;
-  int coordinate = -1;  // of the joint in Model::coordinates; -1 where it is coupled or fixed
+  std::optional<ModalOutline> modal;
+  StationReader station_on;  // what hangs on this body, once it has been read as compliant
+  int coordinate = -1;       // of the joint in Model::coordinates; -1 where it is coupled or fixed
 };
 
 struct CouplingOutline {

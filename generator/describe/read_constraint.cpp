@@ -112,6 +112,12 @@ RowDescription read_rolling(TableReader& table, Reading& reading) {
                            "a wheel turns about the axis of a revolute joint");
     return row;
   }
+  if (!wheel.station.modes.empty()) {
+    reading.findings.error(table.find_where("wheel"),
+                           fmt::format("'{}' hangs on a compliant body", wheel.name),
+                           "put a body without mass between them, which carries the wheel");
+    return row;
+  }
   const Expr h = reading.number(*radius, fmt::format("the radius of {}", table.what()), units::m);
   const std::array<Expr, 3> axle = times(wheel.R, wheel.joint.axis);  // in the parent's frame
   if (!direction) {

@@ -26,17 +26,6 @@ void read_header(TableReader& root, Reading& reading) {
     model.group = static_cast<GroupKind>(*group);
 }
 
-/// Compliant bodies end the tree: nothing hangs on them.
-void check_terminal(const Outline& outline, Reading& reading) {
-  for (const BodyDescription& body : reading.model.bodies) {
-    if (body.parent < 0 || !outline.bodies[static_cast<std::size_t>(body.parent)].beam) continue;
-    reading.findings.error(body.where,
-                           fmt::format("body '{}' hangs on the beam '{}'", body.name,
-                                       reading.model.bodies[static_cast<std::size_t>(body.parent)].name),
-                           "version 1 has beams at the ends of the tree only; hang it on the beam's parent");
-  }
-}
-
 void fill(TableReader& root, const ParameterValues& overrides, Reading& reading) {
   read_header(root, reading);
   read_parameters(root, reading);
@@ -51,13 +40,16 @@ void fill(TableReader& root, const ParameterValues& overrides, Reading& reading)
   for (std::size_t i = 0; i < outline.bodies.size(); ++i) {
     BodyOutline& body = outline.bodies[i];
     BodyDescription& described = reading.model.bodies[i];
+    read_station(body, described,
+                 described.parent < 0 ? nullptr : &outline.bodies[static_cast<std::size_t>(described.parent)],
+                 reading);
     read_pose(body, described, reading);
     read_joint(body, described, reading);
     read_inertia(body, described, reading);
     read_beam(body, described, reading);
+    read_modal_body(body, described, reading);
     body.table.report_unknown_keys();
   }
-  check_terminal(outline, reading);
   read_energies(root, reading);
   read_constraints(root, reading);
   read_forces(root, reading);

@@ -30,7 +30,14 @@ void read_joint_supplement(TableReader& joint, const BodyDescription& described,
 /// Mass, first moment and inertia, brought to the body's origin.
 void read_inertia(BodyOutline& body, BodyDescription& described, Reading& reading);
 
-/// A uniform beam with cantilever modes.
+/// Station of a body on a compliant parent.
+/// @param parent  null for a rigid parent
+void read_station(BodyOutline& body, BodyDescription& described, const BodyOutline* parent, Reading& reading);
+
+/// Modes by a table of invariants.
+void read_modal_body(BodyOutline& body, BodyDescription& described, Reading& reading);
+
+/// A beam and its modes.
 void read_beam(BodyOutline& body, BodyDescription& described, Reading& reading);
 
 /// A body named by a value, or by the value of a key; empty after an error.

@@ -89,6 +89,7 @@ class SupplementReader {
     for (BodyOutline& body : outline_.bodies) {
       if (body.coordinate >= 0) body.coordinate -= gone;
       if (body.beam) body.beam->first_coordinate -= gone;
+      if (body.modal) body.modal->first_coordinate -= gone;
     }
     added_bodies_.assign(first.bodies.begin() + static_cast<std::ptrdiff_t>(urdf_bodies_),
                          first.bodies.end());
@@ -117,14 +118,14 @@ class SupplementReader {
     for (std::size_t i = 0; i < outline_.bodies.size(); ++i) {
       BodyOutline& body = outline_.bodies[i];
       BodyDescription& described = model.bodies[urdf_bodies_ + i];
-      if (described.parent >= static_cast<int>(urdf_bodies_) &&
-          outline_.bodies[static_cast<std::size_t>(described.parent) - urdf_bodies_].beam)
-        findings_.error(described.where, fmt::format("body '{}' hangs on a beam", described.name),
-                        "version 1 has beams at the ends of the tree only; hang it on the beam's parent");
+      const int parent = described.parent - static_cast<int>(urdf_bodies_);
+      read_station(body, described, parent < 0 ? nullptr : &outline_.bodies[static_cast<std::size_t>(parent)],
+                   reading);
       read_pose(body, described, reading);
       read_joint(body, described, reading);
       read_inertia(body, described, reading);
       read_beam(body, described, reading);
+      read_modal_body(body, described, reading);
       body.table.report_unknown_keys();
     }
     read_joints(model, reading);

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "describe/deformation.hpp"
 #include "describe/function_names.hpp"
 #include "describe/names.hpp"
 #include "describe/outline.hpp"
@@ -80,8 +81,10 @@ void read_locked(TableReader& root, Scene& scene, Reading& reading) {
   }
 }
 
-/// modes = { beam = 1 }: modes kept in each plane.
+/// modes = { beam = 1 }: modes kept in each family; deformation = "linear" in place of the model's.
 void read_modes(TableReader& root, Scene& scene, Findings& findings) {
+  if (const auto deformation = root.optional_choice("deformation", deformation_names()))
+    scene.deformation = static_cast<Deformation>(*deformation);
   const Value* table = root.optional("modes", Value::Kind::table);
   if (table == nullptr) return;
   TableReader modes(*table, "the modes", findings);

@@ -69,7 +69,8 @@ struct Scene {
   std::vector<std::string> functions;  // wanted; empty: every one that the model has
   std::vector<std::string> frozen;     // parameters that become numbers
   std::vector<LockedCoordinate> locked;
-  std::vector<std::pair<int, int>> modes;  // (body, modes kept in each plane)
+  std::vector<std::pair<int, int>> modes;  // (body, modes kept in each family)
+  std::optional<Deformation> deformation;  // of all compliant bodies; empty: as the model says
   bool gravity = true;
   std::vector<std::string> torque_driven;  // active coordinates whose torque is imposed
   std::vector<ImposedMotion> motion;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <map>
 
 #include "tape/interpret.hpp"
 
@@ -33,6 +34,14 @@ void for_each_expression(Model& model, const Visitor& visit) {
       visit_all(mode.S, visit);
       visit_all(mode.X_phi, visit);
       for (auto& overlap : mode.phi_phi) visit_all(overlap, visit);
+      for (auto& psi : mode.psi) visit_all(psi, visit);
+      for (auto& X_psi : mode.X_psi) visit_all(X_psi, visit);
+    }
+    visit_all(body.station.at, visit);
+    for (StationDescription::Mode& mode : body.station.modes) {
+      visit_all(mode.phi, visit);
+      visit_all(mode.turn, visit);
+      for (auto& psi : mode.psi) visit_all(psi, visit);
     }
   }
   for (RowDescription& row : model.rows) {
@@ -55,19 +64,17 @@ void for_each_expression(Model& model, const Visitor& visit) {
   visit(model.dissipation);
 }
 
-/// Indices in a body of the modes that stay when `most` are kept in each plane of deflection.
+/// Indices in a body of the modes that stay when `most` are kept in each family.
 std::vector<std::size_t> kept_modes(const BodyDescription& body, int most) {
   std::vector<std::size_t> kept;
-  std::array<int, 3> count = {0, 0, 0};
+  std::map<int, int> count;
   for (std::size_t i = 0; i < body.modes.size(); ++i) {
-    std::size_t plane = 0;
-    while (plane < 2 && body.modes[i].S[plane].is_zero()) ++plane;
-    if (count[plane]++ < most) kept.push_back(i);
+    if (count[body.modes[i].family]++ < most) kept.push_back(i);
   }
   return kept;
 }
 
-/// Modes kept in each plane of a body.
+/// Modes kept in each family of a body.
 int modes_of(const Scene& scene, std::size_t body) {
   for (const auto& [index, kept] : scene.modes) {
     if (index == static_cast<int>(body)) return kept;
@@ -75,23 +82,39 @@ int modes_of(const Scene& scene, std::size_t body) {
   return 1 << 20;
 }
 
+/// The entries of a list, one for each mode of a body, that belong to modes that stay.
+template <class T>
+std::vector<T> picked(const std::vector<T>& list, const std::vector<std::size_t>& stay) {
+  std::vector<T> result;
+  for (const std::size_t i : stay) {
+    if (!list.empty()) result.push_back(list[i]);
+  }
+  return result;
+}
+
 void drop_modes(Model& model, const Scene& scene, const std::vector<int>& new_index) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     BodyDescription& body = model.bodies[b];
-    const std::vector<std::size_t> kept = kept_modes(body, modes_of(scene, b));
-    std::vector<ModeDescription> modes;
-    for (const std::size_t i : kept) {
-      if (new_index[static_cast<std::size_t>(body.modes[i].coordinate)] < 0) continue;  // locked at zero
-      ModeDescription mode = body.modes[i];
-      mode.coordinate = new_index[static_cast<std::size_t>(mode.coordinate)];
-      mode.phi_phi.clear();
-      for (const std::size_t j : kept) {
-        if (new_index[static_cast<std::size_t>(body.modes[j].coordinate)] >= 0)
-          mode.phi_phi.push_back(body.modes[i].phi_phi[j]);
-      }
-      modes.push_back(std::move(mode));
+    std::vector<std::size_t> stay;
+    for (const std::size_t i : kept_modes(body, modes_of(scene, b))) {
+      if (new_index[static_cast<std::size_t>(body.modes[i].coordinate)] >= 0)  // else locked at zero
+        stay.push_back(i);
     }
-    body.modes = std::move(modes);
+    body.modes = picked(body.modes, stay);
+    for (ModeDescription& mode : body.modes) {
+      mode.coordinate = new_index[static_cast<std::size_t>(mode.coordinate)];
+      mode.phi_phi = picked(mode.phi_phi, stay);
+      mode.psi = picked(mode.psi, stay);
+      mode.X_psi = picked(mode.X_psi, stay);
+    }
+    for (BodyDescription& child : model.bodies) {
+      if (child.parent != static_cast<int>(b)) continue;
+      child.station.modes = picked(child.station.modes, stay);
+      for (StationDescription::Mode& mode : child.station.modes) {
+        mode.coordinate = new_index[static_cast<std::size_t>(mode.coordinate)];
+        mode.psi = picked(mode.psi, stay);
+      }
+    }
   }
 }
 
@@ -180,6 +203,7 @@ Model specialise(const Model& old, const Scene& scene) {
   Model model = old;
   model.tape = std::make_shared<Tape>();
   drop_modes(model, scene, new_index);
+  for (BodyDescription& body : model.bodies) body.deformation = scene.deformation.value_or(body.deformation);
   if (!scene.gravity) model.gravity = {0, 0, 0};
   std::erase_if(model.forces, [&](GeneralisedForceDescription& force) {
     if (force.index < 6) return false;

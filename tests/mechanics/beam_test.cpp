@@ -4,56 +4,13 @@
 // (x, sum phi_j(x) r_j, sum phi_j(x) r_j) in the beam's frame, with no rotary inertia.
 #include <gtest/gtest.h>
 
+#include "mechanics/beam_shapes.hpp"
 #include "mechanics/witness.hpp"
 
 namespace anholon {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
-
-/// Nodes and weights of Gauss-Legendre quadrature on [0, 1], by Newton on the Legendre polynomial.
-std::vector<std::pair<Real, Real>> gauss_legendre(int n) {
-  std::vector<std::pair<Real, Real>> rule;
-  for (int i = 0; i < n; ++i) {
-    Real x = std::cos(M_PIl * (i + 0.75L) / (n + 0.5L)), slope = 1;
-    for (int step = 0; step < 60; ++step) {
-      Real p = 1, before = 0;
-      for (int k = 0; k < n; ++k) {
-        const Real next = ((2 * k + 1) * x * p - k * before) / (k + 1);
-        before = p, p = next;
-      }
-      slope = n * (x * p - before) / (x * x - 1);
-      x -= p / slope;
-    }
-    rule.emplace_back((1 + x) / 2, 1 / ((1 - x * x) * slope * slope));
-  }
-  return rule;
-}
-
-/// Cantilever mode j = 1, 2, ... with phi(1) = 1: cosh bs - cos bs - sigma (sinh bs - sin bs) over its value
-/// at 1. The hyperbolic functions are taken apart, because sigma is close to 1: 1 - sigma = (sin b - cos b -
-/// e^-b) / (sinh b + sin b).
-struct Mode {
-  Real b, sigma, difference, tip;
-  explicit Mode(int j) {
-    Real low = (j - 1) * M_PIl + 1e-3L, high = j * M_PIl;  // cos b cosh b = -1, one root in each interval
-    const auto f = [](Real x) { return std::cos(x) + 1 / std::cosh(x); };
-    for (int i = 0; i < 200; ++i) {
-      const Real middle = (low + high) / 2;
-      ((f(middle) > 0) == (f(low) > 0) ? low : high) = middle;
-    }
-    b = low;
-    difference = (std::sin(b) - std::cos(b) - std::exp(-b)) / (std::sinh(b) + std::sin(b));
-    sigma = 1 - difference;
-    tip = part(1, -1);
-  }
-  [[nodiscard]] Real part(Real s, Real sign) const {
-    const Real hyperbolic = (difference * std::exp(b * s) + (1 + sigma) * std::exp(-b * s)) / 2;
-    return hyperbolic + sign * (std::cos(b * s) - sigma * std::sin(b * s));
-  }
-  [[nodiscard]] Real at(Real s) const { return part(s, -1) / tip; }
-  [[nodiscard]] Real curvature(Real s) const { return b * b * part(s, 1) / tip; }
-};
 
 struct Beam {
   const char* name;
@@ -76,7 +33,7 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
   for (const char plane : planes)
     plane_list += fmt::format("{}\"{}\"", plane_list.empty() ? "" : ", ", plane);
   const Real L = 0.8L, rhoA = 0.9L, EI = 1.4L;
-  std::vector<Mode> shapes;
+  std::vector<Cantilever> shapes;
   for (int j = 1; j <= beam.modes; ++j) shapes.emplace_back(j);
   const auto rule = gauss_legendre(40);  // exact for the products of these modes to 1e-19
 
@@ -105,7 +62,7 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
       Vector at(L * s, 0, 0);
       std::size_t coordinate = 1;
       for (const char plane : planes) {
-        for (const Mode& shape : shapes) at[plane == 'y' ? 1 : 2] += Jet(shape.at(s)) * r[coordinate++];
+        for (const Cantilever& shape : shapes) at[plane == 'y' ? 1 : 2] += Jet(shape.at(s)) * r[coordinate++];
       }
       points.push_back({rhoA * L * weight, blade * at});
     }
@@ -118,7 +75,7 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
       std::size_t coordinate = 1;
       for (std::size_t plane = 0; plane < planes.size(); ++plane) {
         Jet curvature = 0;
-        for (const Mode& shape : shapes) curvature += Jet(shape.curvature(s)) * r[coordinate++];
+        for (const Cantilever& shape : shapes) curvature += Jet(shape.curvature(s)) * r[coordinate++];
         energy += Jet(EI * weight / (2 * L * L * L)) * curvature * curvature;
       }
     }
@@ -128,7 +85,7 @@ TEST_P(CompliantBeam, MovesAsItsLineOfMass) {
   const auto forces = [=](const Sample& sample) {
     std::vector<Real> Q(n + sample.state.r.size(), 0);
     for (std::size_t i = 1; i < sample.state.r.size(); ++i) {
-      const Mode& shape = shapes[(i - 1) % shapes.size()];
+      const Cantilever& shape = shapes[(i - 1) % shapes.size()];
       const Real k = EI * std::pow(shape.b, 4) / (4 * L * L * L);
       Q[n + i] = -(beam.modal + beam.material * k) * sample.state.r_dot[i];
     }

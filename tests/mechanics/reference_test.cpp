@@ -9,7 +9,9 @@
 #include <map>
 #include <memory>
 
+#include "anholon/free_dynamics.hpp"
 #include "check/evaluate.hpp"
+#include "describe/mechanise.hpp"
 #include "describe/read_model.hpp"
 #include "mechanics/compare_reference.hpp"
 #include "number/exact_eigen.hpp"
@@ -86,6 +88,48 @@ TEST_P(Reference, IsMetByTheDerivedProgramRunExactly) {
         {{"label", entry.label}, {"outputs", answer(model, states, e, entry.input, 50)}});
   }
   expect_agreement(result, "1e-25");
+}
+
+/// The reference's variant "without terms quadratic in r_e in T" is `deformation = "linear"`: its energy
+/// loses the terms of second order, the forces follow.
+TEST(LinearDeformation, IsTheVariantOfTheReference) {
+  Model model = read_model(ANHOLON_SOURCE_DIR "/models/soft_snakeboard/soft_snakeboard.toml");
+  for (BodyDescription& body : model.bodies) body.deformation = Deformation::linear;
+  const MechanismDescription description = describe_mechanism(model);
+  const WorkingDigits digits(50);
+  std::vector<Exact> parameters;
+  for (const Parameter& p : model.parameters) parameters.push_back(p.value);
+  const Mechanism<Exact> mechanism = mechanise<Exact>(description, parameters);
+  FreeDynamics<Exact> dynamics(mechanism);
+  const Json reference = test::read_reference("C_soft_snakeboard");
+  for (const Json& entry : reference.at("states")) {
+    SCOPED_TRACE(entry.at("label").get<std::string>());
+    const Json& in = entry.at("inputs");
+    const Json& out = entry.at("outputs");
+    const Json& variant = out.at("variant_without_terms_quadratic_in_r_e_in_T");
+    std::map<std::string, std::pair<Exact, Exact>> by_name = {
+        {"r1", {test::number(in.at("r_a")[0]), test::number(in.at("rdot_a")[0])}},
+        {"r3", {test::number(in.at("r_a")[1]), test::number(in.at("rdot_a")[1])}},
+        {"re3", {test::number(in.at("r_p")[0]), test::number(in.at("rdot_p")[0])}},
+        {"re4", {test::number(in.at("r_p")[1]), test::number(in.at("rdot_p")[1])}}};
+    State<Exact> state;
+    for (int i = 0; i < 3; ++i)
+      state.eta[i < 2 ? i : 5] = test::number(in.at("eta")[static_cast<std::size_t>(i)]);
+    for (const Coordinate& c : model.coordinates) {
+      state.r.push_back(by_name.at(c.name).first);
+      state.r_dot.push_back(by_name.at(c.name).second);
+    }
+    const std::vector<Exact> force = dynamics.forces(state);
+    const auto expect_near = [](const Exact& have, const Json& want, const std::string& what) {
+      EXPECT_LT(abs(have - test::number(want)), Exact::from_decimal("1e-28"))
+          << what;  // 30 digits are printed
+    };
+    for (std::size_t i = 0; i < 3; ++i) expect_near(force[i], variant.at("f")[i], "f");
+    for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+      if (model.coordinates[i].name == "re3") expect_near(force[3 + i], variant.at("Q_p")[0], "Q_re3");
+      if (model.coordinates[i].name == "re4") expect_near(force[3 + i], variant.at("Q_p")[1], "Q_re4");
+    }
+  }
 }
 
 TEST_P(Reference, HasTheRanksAndTheClassOfTableI) {

@@ -2,8 +2,13 @@
 #pragma once
 
 // What the motion of one body needs: its wrench about its origin and its modal forces. Rigid bodies take the
-// form of Khalil and Kleinfinger 1987 with U = [wd] + [w][w]; compliant bodies add the rows of eq. (69),
-// exact for the linear displacement field p = X + sum_j phi_j r_ej (terms of second order in r_e kept).
+// form of Khalil and Kleinfinger 1987 with U = [wd] + [w][w]; compliant bodies add the rows of eq. (69).
+// These are the equations of Lagrange for
+//
+//   T = m v^2/2 + v . (w x m s) + w . I w/2 + sum_j r_dot_j (v . S_j + w . C_j) + sum_jl m_jl r_dot_j
+//   r_dot_l/2
+//
+// with m s, I, S_j and C_j as polynomials of the shape: whatever these keep, the energy balance holds.
 
 #include <span>
 #include <vector>
@@ -43,37 +48,45 @@ void complete(BodyMotion<S>& k) {
 template <class S>
 struct BodyInertia {
   S mass = S(0);
-  Vec3<S> first_moment;                // m s
-  Mat3<S> inertia;                     // I, about the origin
-  std::vector<Mat3<S>> position_mode;  // integral of p phi_j^T dm
+  Vec3<S> first_moment;      // m s
+  Mat3<S> inertia;           // I, about the origin
+  std::vector<Vec3<S>> S_j;  // derivative of m s by r_j
+  std::vector<Mat3<S>>
+      N_j;  // integral of p (dp/dr_j)^T dm; C_j is its axial vector, dI/dr_j its symmetric part
 };
 
-/// m s = m s_0 + sum S_j r_ej; I and C_j follow from the integrals of p p^T and p phi_j^T.
+/// S_j and N_j are linear in the shape; m s and the integral of p p^T are quadratic and follow from the means
+/// of S_j and N_j between no deformation and the present one.
 template <class S>
 BodyInertia<S> inertia_in_shape(const Body<S>& body, std::span<const S> r) {
-  BodyInertia<S> k{body.mass, body.first_moment, body.inertia, {}};
+  BodyInertia<S> k{body.mass, body.first_moment, body.inertia, {}, {}};
   const auto shape = [&](std::size_t j) { return r[static_cast<std::size_t>(body.modes[j].coordinate)]; };
-  const auto add_second_moment = [&](const S& factor,
-                                     const Mat3<S>& p) {  // I += factor (tr(p + p^T) 1 - (p + p^T)) / 2
-    const S trace = p(0, 0) + p(1, 1) + p(2, 2);
-    for (int i = 0; i < 3; ++i) {
-      for (int j = 0; j < 3; ++j) {
-        const S symmetric = (p(i, j) + p(j, i)) / S(2);
-        k.inertia(i, j) = k.inertia(i, j) + factor * (i == j ? trace - symmetric : -symmetric);
+  for (std::size_t j = 0; j < body.modes.size(); ++j) {
+    const Mode<S>& mode = body.modes[j];
+    Vec3<S> S_change;
+    Mat3<S> N_change;
+    for (std::size_t l = 0; l < body.modes.size(); ++l) {
+      S_change += shape(l) * mode.S_jl[l];
+      N_change = N_change + shape(l) * mode.N_jl[l];
+    }
+    const Vec3<S> half_change = (S(1) / S(2)) * S_change;
+    k.first_moment += shape(j) * (mode.S_j + half_change);
+    Mat3<S> P;  // symmetric part of 2 N_j + N_change
+    for (int row = 0; row < 3; ++row) {
+      for (int col = 0; col < 3; ++col) {
+        const S change = row == col ? N_change(row, row) : (N_change(row, col) + N_change(col, row)) / S(2);
+        P(row, col) = mode.N_j(row, col) + mode.N_j(col, row) + change;
       }
     }
-  };
-  for (std::size_t j = 0; j < body.modes.size(); ++j) {
-    k.first_moment += shape(j) * body.modes[j].S_j;
-    add_second_moment(S(2) * shape(j), body.modes[j].X_phi);
-    Mat3<S> p_phi = body.modes[j].X_phi;
-    for (std::size_t l = 0; l < body.modes.size(); ++l) {
-      const Mat3<S>& phi_phi = body.modes[l].phi_phi[j];  // integral of phi_l phi_j^T
-      p_phi = p_phi + shape(l) * phi_phi;
-      if (l == j) add_second_moment(shape(j) * shape(j), phi_phi);
-      if (l < j) add_second_moment(S(2) * shape(l) * shape(j), phi_phi);
+    const S trace = P(0, 0) + P(1, 1) + P(2, 2);
+    for (int row = 0; row < 3; ++row) {  // I = tr 1 - P of P, the integral of p p^T
+      for (int col = 0; col < 3; ++col) {
+        const S entry = row == col ? trace - P(row, row) : -P(row, col);
+        k.inertia(row, col) = k.inertia(row, col) + shape(j) * entry;
+      }
     }
-    k.position_mode.push_back(p_phi);
+    k.S_j.push_back(mode.S_j + S_change);
+    k.N_j.push_back(mode.N_j + N_change);
   }
   return k;
 }
@@ -103,31 +116,41 @@ Spatial<S> body_wrench(const Body<S>& body, const BodyInertia<S>& shape, const B
   modal_force.assign(body.modes.size(), S(0));
   if (body.modes.empty()) return f;
 
-  Vec3<S> S_rate, S_acceleration;
-  Mat3<S> position_rate;  // integral of p d_dot^T
+  Vec3<S> S_rate, S_acceleration, convected;
+  Mat3<S> position_rate;  // integral of p p_dot^T
+  const auto rate = [&](std::size_t j) { return r_dot[static_cast<std::size_t>(body.modes[j].coordinate)]; };
+  const auto acceleration = [&](std::size_t j) {
+    return r_ddot[static_cast<std::size_t>(body.modes[j].coordinate)];
+  };
   for (std::size_t j = 0; j < body.modes.size(); ++j) {
     const Mode<S>& mode = body.modes[j];
-    const S rate = r_dot[static_cast<std::size_t>(mode.coordinate)];
-    const S acceleration = r_ddot[static_cast<std::size_t>(mode.coordinate)];
-    S_rate += rate * mode.S_j;
-    S_acceleration += acceleration * mode.S_j;
-    position_rate = position_rate + rate * shape.position_mode[j];
-    f.angular += acceleration * axial(shape.position_mode[j]);
+    S_rate += rate(j) * shape.S_j[j];
+    S_acceleration += acceleration(j) * shape.S_j[j];
+    position_rate = position_rate + rate(j) * shape.N_j[j];
+    f.angular += acceleration(j) * axial(shape.N_j[j]);
+    for (std::size_t l = 0; l <= j; ++l) {  // second derivatives of the points along the rates
+      const S product = rate(j) * rate(l);
+      const Vec3<S> moment = axial(mode.N_jl[l]);
+      convected += (l == j ? product : S(2) * product) * mode.S_jl[l];
+      f.angular += product * (l == j ? moment : moment + axial(body.modes[l].N_jl[j]));
+    }
   }
-  f.linear += S(2) * cross(k.w, S_rate) + S_acceleration;
+  f.linear += S(2) * cross(k.w, S_rate) + S_acceleration + convected;
   const S trace = position_rate(0, 0) + position_rate(1, 1) + position_rate(2, 2);
-  f.angular += S(2) * (trace * k.w - transposed_times(position_rate, k.w));  // 2 int p x (w x d_dot)
+  f.angular += S(2) * (trace * k.w - transposed_times(position_rate, k.w));  // 2 int p x (w x p_dot)
 
   for (std::size_t j = 0; j < body.modes.size(); ++j) {
-    S force = dot(body.modes[j].S_j, k.a);
+    const Mode<S>& mode = body.modes[j];
+    S force = dot(shape.S_j[j], k.a);
     for (int row = 0; row < 3; ++row) {
-      for (int col = 0; col < 3; ++col) force = force + k.U(row, col) * shape.position_mode[j](col, row);
+      for (int col = 0; col < 3; ++col) force = force + k.U(row, col) * shape.N_j[j](col, row);
     }
     for (std::size_t l = 0; l < body.modes.size(); ++l) {
-      const auto other = static_cast<std::size_t>(body.modes[l].coordinate);
-      const Mat3<S>& phi_phi = body.modes[l].phi_phi[j];
-      force = force + S(2) * (r_dot[other] * dot(k.w, axial(phi_phi)));  // 2 w . int d_dot x phi_j
-      force = force + (phi_phi(0, 0) + phi_phi(1, 1) + phi_phi(2, 2)) * r_ddot[other];
+      if (l != j) {  // 2 w . int dp/dr_l x dp/dr_j
+        const Vec3<S> gyroscopic = axial(mode.N_jl[l]) - axial(body.modes[l].N_jl[j]);
+        force = force + rate(l) * dot(k.w, gyroscopic);
+      }
+      force = force + mode.m_jl[l] * acceleration(l);
     }
     modal_force[j] = force;
   }
@@ -141,13 +164,11 @@ S kinetic_energy(const Body<S>& body, const BodyInertia<S>& shape, const BodyMot
   S twice = shape.mass * dot(k.v, k.v) + S(2) * dot(k.v, cross(k.w, shape.first_moment)) +
             dot(k.w, shape.inertia * k.w);
   for (std::size_t j = 0; j < body.modes.size(); ++j) {
-    const S rate = r_dot[static_cast<std::size_t>(body.modes[j].coordinate)];
-    twice = twice + S(2) * rate * (dot(k.v, body.modes[j].S_j) + dot(k.w, axial(shape.position_mode[j])));
-    for (std::size_t l = 0; l < body.modes.size(); ++l) {
-      const Mat3<S>& phi_phi = body.modes[l].phi_phi[j];
-      twice = twice + rate * r_dot[static_cast<std::size_t>(body.modes[l].coordinate)] *
-                          (phi_phi(0, 0) + phi_phi(1, 1) + phi_phi(2, 2));
-    }
+    const Mode<S>& mode = body.modes[j];
+    const S rate = r_dot[static_cast<std::size_t>(mode.coordinate)];
+    twice = twice + S(2) * rate * (dot(k.v, shape.S_j[j]) + dot(k.w, axial(shape.N_j[j])));
+    for (std::size_t l = 0; l < body.modes.size(); ++l)
+      twice = twice + rate * r_dot[static_cast<std::size_t>(body.modes[l].coordinate)] * mode.m_jl[l];
   }
   return twice / S(2);
 }

@@ -28,13 +28,35 @@ struct State {
   S t = S(0);      // s
 };
 
-/// Mode j of a compliant body; integrals over the body in its own axes.
+/// Mode j of a compliant body, whose points p are polynomials of second order in the modal coordinates at
+/// most; integrals over the body in its own axes. How far the kinetic energy follows the deformation is a
+/// matter of the last two entries alone.
 template <class S>
 struct Mode {
   int coordinate = 0;
-  Vec3<S> S_j;                   // integral of phi_j dm
-  Mat3<S> X_phi;                 // integral of X phi_j^T dm
-  std::vector<Mat3<S>> phi_phi;  // integral of phi_j phi_l^T dm, for every mode l of the body
+  Vec3<S> S_j;                // integral of dp/dr_j dm, undeformed
+  Mat3<S> N_j;                // integral of p (dp/dr_j)^T dm, undeformed
+  std::vector<S> m_jl;        // integral of dp/dr_j . dp/dr_l dm, undeformed, for every mode l of the body
+  std::vector<Vec3<S>> S_jl;  // derivative of S_j by r_l, symmetric in j and l
+  std::vector<Mat3<S>> N_jl;  // derivative of N_j by r_l
+};
+
+/// What mode j of a compliant body does at a place where another body hangs on it.
+template <class S>
+struct StationMode {
+  int coordinate = 0;
+  Vec3<S> phi;               // displacement per r_j
+  Vec3<S> turn;              // rotation vector per r_j
+  std::vector<Vec3<S>> psi;  // second derivative of the place by r_j and r_l, for every mode l
+};
+
+/// A place on a compliant body: there the frame is at + sum phi_j r_j + 1/2 sum psi_jl r_j r_l, turned by exp
+/// of the rotation vector sum turn_j r_j; all in the axes of the compliant body.
+template <class S>
+struct Station {
+  int axis = -1;  // of all turns, where they share a coordinate axis; else -1
+  Vec3<S> at;
+  std::vector<StationMode<S>> modes;  // empty: the body hangs on a rigid one
 };
 
 template <class S>
@@ -46,7 +68,7 @@ struct Body {
   S pitch = S(0);                   // helical: translation per angle, m/rad
   int coordinate = -1;              // independent coordinate that moves the joint alone, or -1
   int coupling = -1;                // index into Mechanism::couplings, or -1
-  Mat3<S> R = Mat3<S>::identity();  // pose in the parent's frame at zero displacement
+  Mat3<S> R = Mat3<S>::identity();  // pose in the frame of parent or station, at zero displacement
   Vec3<S> p;
   Mat3<S> R_frame =
       Mat3<S>::identity();  // the described frame, in the body's: same origin, constant rotation
@@ -54,6 +76,7 @@ struct Body {
   Vec3<S> first_moment;        // integral of X dm about the origin
   Mat3<S> inertia;             // about the origin
   std::vector<Mode<S>> modes;  // empty: rigid
+  Station<S> station;          // on the parent; the pose is in its frame
 };
 
 /// Displacement of a coupled joint, with its derivatives by the independent coordinates that it depends on.

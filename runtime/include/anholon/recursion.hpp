@@ -10,6 +10,7 @@
 
 #include "anholon/body_wrench.hpp"
 #include "anholon/mechanism.hpp"
+#include "anholon/station.hpp"
 
 namespace anholon {
 
@@ -20,6 +21,7 @@ class Recursion {
       : mechanism_(mechanism),
         joints_(mechanism.bodies.size()),
         motions_(mechanism.bodies.size()),
+        carriers_(mechanism.bodies.size()),
         wrenches_(mechanism.bodies.size()) {
     for (const Coupling<S>& c : mechanism.couplings)
       coupling_values_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
@@ -49,6 +51,9 @@ class Recursion {
       if (body.kind == JointKind::helical) joint.offset += body.R * (body.pitch * q * unit<S>(body.axis));
       if (!body.modes.empty()) mechanism_.section(body.name + ": inertia in its present shape");
       joint.inertia = inertia_in_shape(body, std::span<const S>(state.r));
+      if (body.station.modes.empty()) continue;
+      mechanism_.section(body.name + ": station");
+      joint.station.place(body.station, std::span<const S>(state.r));
     }
   }
 
@@ -59,7 +64,8 @@ class Recursion {
     for (std::size_t k = 1; k < mechanism_.bodies.size(); ++k) {
       const Body<S>& body = mechanism_.bodies[k];
       mechanism_.section(body.name + ": twist");
-      const BodyMotion<S>& parent = motions_[static_cast<std::size_t>(body.parent)];
+      if (!body.station.modes.empty()) move_station(k, state);
+      const BodyMotion<S>& parent = carrier(k);
       BodyMotion<S>& motion = motions_[k];
       motion.v = to_body(k, parent.v + cross(parent.w, joints_[k].offset));
       motion.w = to_body(k, parent.w);
@@ -84,7 +90,8 @@ class Recursion {
     for (std::size_t k = 1; k < mechanism_.bodies.size(); ++k) {
       const Body<S>& body = mechanism_.bodies[k];
       mechanism_.section(body.name + ": acceleration");
-      const BodyMotion<S>& parent = motions_[static_cast<std::size_t>(body.parent)];
+      if (!body.station.modes.empty()) accelerate_station(k, state, r_ddot);
+      const BodyMotion<S>& parent = carrier(k);
       BodyMotion<S>& motion = motions_[k];
       const auto [linear_rate, angular_rate] = along_axis(body, rate(body, std::span<const S>(state.r_dot)));
       const auto [linear, angular] = along_axis(body, acceleration(body, state, r_ddot));
@@ -148,9 +155,18 @@ class Recursion {
       mechanism_.section(body.name + ": joint force");
       project(body, wrenches_[k]);
       const Vec3<S> force = to_parent(k, wrenches_[k].linear);
+      const Vec3<S> moment = to_parent(k, wrenches_[k].angular) + cross(joints_[k].offset, force);
       Spatial<S>& parent = wrenches_[static_cast<std::size_t>(body.parent)];
-      parent.linear += force;
-      parent.angular += to_parent(k, wrenches_[k].angular) + cross(joints_[k].offset, force);
+      if (body.station.modes.empty()) {
+        parent.linear += force;
+        parent.angular += moment;
+        continue;
+      }
+      const StationFrame<S>& station = joints_[k].station;
+      const Spatial<S> pull = {station.from(force), station.from(moment)};
+      station.modal_forces(pull, [this](int coordinate, const S& x) { add_force(coordinate, x); });
+      parent.linear += pull.linear;
+      parent.angular += pull.angular + cross(station.offset(), pull.linear);
     }
     base_wrench_ = wrenches_[0];
     if (applied && mechanism_.generalised_forces) {
@@ -187,17 +203,47 @@ class Recursion {
     for (std::size_t k = 1; k < mechanism_.bodies.size(); ++k) {
       const auto parent = static_cast<std::size_t>(mechanism_.bodies[k].parent);
       mechanism_.section(mechanism_.bodies[k].name + ": pose");
-      R[k] = R[parent] * mechanism_.bodies[k].R * joints_[k].rotation.matrix();
-      p[k] = p[parent] + R[parent] * joints_[k].offset;
+      R[k] = R[parent];
+      p[k] = p[parent];
+      if (!mechanism_.bodies[k].station.modes.empty()) {
+        p[k] += R[k] * joints_[k].station.offset();
+        R[k] = R[k] * joints_[k].station.rotation();
+      }
+      p[k] += R[k] * joints_[k].offset;
+      R[k] = R[k] * mechanism_.bodies[k].R * joints_[k].rotation.matrix();
     }
   }
 
  private:
   struct Joint {
     AxisRotation<S> rotation;
-    Vec3<S> offset;  // of the body's origin in the parent's frame
+    Vec3<S> offset;  // of the body's origin in the frame of parent or station
     BodyInertia<S> inertia;
+    StationFrame<S> station;
   };
+
+  /// Motion of the frame that body k's pose is given in: its parent's, or that of its station.
+  [[nodiscard]] const BodyMotion<S>& carrier(std::size_t k) const {
+    const Body<S>& body = mechanism_.bodies[k];
+    return body.station.modes.empty() ? motions_[static_cast<std::size_t>(body.parent)] : carriers_[k];
+  }
+  void move_station(std::size_t k, const State<S>& state) {
+    const BodyMotion<S>& parent = motions_[static_cast<std::size_t>(mechanism_.bodies[k].parent)];
+    const StationFrame<S>& station = joints_[k].station;
+    const Spatial<S> own = station.velocity(std::span<const S>(state.r_dot));
+    carriers_[k].v = station.to(parent.v + cross(parent.w, station.offset()) + own.linear);
+    carriers_[k].w = station.to(parent.w + own.angular);
+  }
+  void accelerate_station(std::size_t k, const State<S>& state, std::span<const S> r_ddot) {
+    const BodyMotion<S>& parent = motions_[static_cast<std::size_t>(mechanism_.bodies[k].parent)];
+    const StationFrame<S>& station = joints_[k].station;
+    const Spatial<S> velocity = station.velocity(std::span<const S>(state.r_dot));
+    const Spatial<S> own = station.acceleration(std::span<const S>(state.r_dot), r_ddot);
+    carriers_[k].a = station.to(parent.a + parent.U * station.offset() +
+                                S(2) * cross(parent.w, velocity.linear) + own.linear);
+    carriers_[k].wd = station.to(parent.wd + cross(parent.w, velocity.angular) + own.angular);
+    complete(carriers_[k]);
+  }
 
   [[nodiscard]] Vec3<S> to_body(std::size_t k, const Vec3<S>& v) const {
     return joints_[k].rotation.apply_inverse(transposed_times(mechanism_.bodies[k].R, v));
@@ -282,7 +328,7 @@ class Recursion {
 
   const Mechanism<S>& mechanism_;
   std::vector<Joint> joints_;
-  std::vector<BodyMotion<S>> motions_;
+  std::vector<BodyMotion<S>> motions_, carriers_;  // of bodies; of the stations that they hang on
   std::vector<Spatial<S>> wrenches_;
   std::vector<std::vector<S>> coupling_values_;
   std::vector<S> applied_, force_, generalised_, zeros_, modal_;
