@@ -89,6 +89,17 @@ Scene with_masses_by(double factor) {
       testing::root + "/models/soft_snakeboard/light.scene.toml");
 }
 
+// Foreshortening, stations and damping on 10 s of a free hub with flexible arrays, and on an arm whose
+// flexible link carries another: every force comes from one kinetic energy.
+TEST(FlexibleRobots, BalanceTheirEnergyToANinthDigit) {
+  for (const char* name :
+       {"flexible_spacecraft/slew", "two_link_flexible_arm/reach", "rotating_beam/spin_up"}) {
+    const SimulationResult result = simulate_scene(scene_of(name));
+    ASSERT_TRUE(result.finished) << name;
+    EXPECT_LT(result.energy_balance, 1e-9) << name;
+  }
+}
+
 TEST(Tolerance, MeansTheSameForARobotAMillionTimesLighter) {
   const SimulationResult heavy = simulate_scene(with_masses_by(1)),
                          light = simulate_scene(with_masses_by(1e-6));
