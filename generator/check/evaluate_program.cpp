@@ -25,7 +25,10 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     in["r_a_ddot"].push_back(input.has_acceleration ? input.r_ddot[a] : S(0));
     in["tau_a"].push_back(input.has_torque ? input.tau[a] : S(0));
   }
+  const std::size_t chart = chart_finder<S>(derivation)(in);
   const auto run = [&](const std::string& name) {
+    const std::string of_chart = chart_prefix(chart) + name;
+    if (find_function(program, of_chart) != nullptr) return call(of_chart, in);
     return find_function(program, name) != nullptr ? call(name, in) : NamedValues<S>{};
   };
   const auto matrix = [](const NamedValues<S>& out, const std::string& name, int rows, int cols) {
@@ -84,7 +87,7 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
   const NamedValues<S> kinematics = run("kinematics");
   e.H = matrix(kinematics, "H", passive, k);
   e.J = matrix(kinematics, "J", passive, partition.s_a());
-  e.basis = derivation.reduction.kernel.description;
+  e.basis = derivation.reduction.charts[chart].description;
   if (k > 0) {
     e.projector = range_projector(e.H);
   } else {

@@ -6,9 +6,12 @@
 
 #include <functional>
 #include <map>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
+#include "anholon/charts.hpp"
 #include "check/evaluated.hpp"
 #include "derive/derive.hpp"
 #include "tape/interpret.hpp"
@@ -90,7 +93,35 @@ NamedValues<S> position_inputs(const Model& model, const Partition& partition, c
   return in;
 }
 
-/// Every function that the program has.
+/// Which chart of the kernel is best at a position; 0 where there is one. By double arithmetic, in which a
+/// chart that divides by zero is no fault, and at the default parameters.
+template <class S>
+using ChartFinder = std::function<std::size_t(const NamedValues<S>& position)>;
+template <class S>
+ChartFinder<S> chart_finder(const Derivation& derivation) {
+  if (derivation.reduction.charts.size() < 2) return [](const NamedValues<S>&) { return std::size_t{0}; };
+  std::vector<double> parameters;
+  for (const ParameterInfo& p : derivation.program.parameters) parameters.push_back(p.value.to_double());
+  return
+      [call = interpreting_caller<double>(derivation.program, parameters)](const NamedValues<S>& position) {
+        NamedValues<double> rounded;
+        for (const char* name : {"t", "g", "R", "p", "r_p", "r_a"}) {
+          const auto block = position.find(name);
+          if (block == position.end()) continue;
+          for (const S& x : block->second) {
+            if constexpr (std::is_same_v<S, double>) {
+              rounded[name].push_back(x);
+            } else {
+              rounded[name].push_back(x.to_double());
+            }
+          }
+        }
+        const std::vector<double> quality = call("chart_quality", rounded).at("quality");
+        return best_chart(std::span<const double>(quality));
+      };
+}
+
+/// Every function that the program has, those of the best chart where there are several.
 template <class S>
 Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, const ProgramCaller<S>& call,
                               const EvaluationInput<S>& input);

@@ -6,23 +6,17 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
-#include "anholon/lie/so3.hpp"
+#include "anholon/charts.hpp"
 #include "check/evaluate_program.hpp"
+#include "reduce/configuration_search.hpp"
 #include "reduce/decompositions.hpp"
-#include "reduce/samples.hpp"
 
 namespace anholon {
 namespace {
 
-constexpr int random_states = 200;
-constexpr int descents = 8;         // from the worst of them
-constexpr int steps_each = 250;     // for each coordinate that matters
 constexpr double found = 1e-8;      // of the median: a descent that gets here would get to zero
 constexpr double kept_rank = 1e-3;  // of the median: below, (A, B_p) itself is close to losing rank
-
-using Quality = std::function<double(const State<double>&)>;
 
 class Search {
  public:
@@ -33,25 +27,34 @@ class Search {
         k_(derivation.reduction.kernel.H.cols()),
         rank_(derivation.reduction.ranks.m_locked),
         rows_(derivation.reduction.ranks.rows),
-        call_(interpreting_caller<double>(derivation.program, defaults(model))) {
-    for (int i = 0; i < random_states; ++i) states_.push_back(rounded(random_state(model, source_)));
-    find_dependence();
-    std::vector<Eigen::MatrixXd> H, J;
+        leading_rows_(derivation.reduction.ranks.leading_rows),
+        charts_(derivation.reduction.charts.size()),
+        call_(interpreting_caller<double>(derivation.program, defaults(model))),
+        search_(model, [this](const State<double>& s) { return at(s).entries(); }) {
     std::vector<double> columns, entries, independence;
-    for (const State<double>& s : states_) {
+    for (const State<double>& s : search_.states()) {
       const Matrices m = at(s);
       for (Eigen::Index c = 0; c < m.H.cols(); ++c) columns.push_back(m.H.col(c).norm());
       if (m.J.size() > 0) entries.push_back(m.J.cwiseAbs().maxCoeff());
       independence.push_back(rank_quality(m));
     }
-    column_size_ = median(columns), J_size_ = median(entries), independence_ = median(independence);
+    column_size_ = search_.median(columns), J_size_ = search_.median(entries),
+    independence_ = search_.median(independence);
   }
 
   Regularity run() {
     Regularity result;
-    if (coordinates_.empty() && !orientation_) return result;  // the same everywhere
-    result.rank_drop = lowest([this](const State<double>& s) { return rank_quality(at(s)) / independence_; });
-    result.singular_basis = lowest([this](const State<double>& s) {
+    if (search_.is_constant()) return result;
+    const auto dropped =
+        search_.lowest([this](const State<double>& s) { return rank_quality(at(s)) / independence_; }, found);
+    if (dropped) {
+      result.rank_drop = search_.text_of(*dropped);
+      const Eigen::MatrixXd A = at(*dropped).A;
+      std::vector<std::vector<double>> rows;
+      for (Eigen::Index i = 0; i < A.rows(); ++i) rows.emplace_back(A.row(i).begin(), A.row(i).end());
+      result.dropped_rows = dependent_rows(rows, leading_rows_);
+    }
+    result.singular_basis = text_of_lowest([this](const State<double>& s) {
       const Matrices m = at(s);
       return rank_quality(m) > kept_rank * independence_ ? basis_quality(m) : 1.0;
     });
@@ -61,6 +64,11 @@ class Search {
  private:
   struct Matrices {
     Eigen::MatrixXd A, H, J;  // (A, B_p): rows x passive; passive x k; passive x active
+    [[nodiscard]] std::vector<double> entries() const {
+      std::vector<double> all;
+      for (const auto* m : {&A, &H, &J}) all.insert(all.end(), m->data(), m->data() + m->size());
+      return all;
+    }
   };
 
   static std::vector<double> defaults(const Model& model) {
@@ -68,19 +76,10 @@ class Search {
     for (const Parameter& p : model.parameters) values.push_back(p.value.to_double());
     return values;
   }
-  static State<double> rounded(const State<Exact>& from) {
-    State<double> s;
-    for (std::size_t i = 0; i < 9; ++i) s.R.m[i] = from.R.m[i].to_double();
-    for (int i = 0; i < 3; ++i) s.p[i] = from.p[i].to_double();
-    for (const Exact& x : from.r) s.r.push_back(x.to_double());
-    s.r_dot.assign(s.r.size(), 0.0);
-    return s;
-  }
-  static double median(std::vector<double> values) {
-    std::erase_if(values, [](double x) { return !std::isfinite(x); });
-    if (values.empty()) return 1;
-    std::ranges::nth_element(values, values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2));
-    return std::max(values[values.size() / 2], 1e-300);
+
+  std::optional<std::string> text_of_lowest(const ConfigurationSearch::Quality& quality) {
+    const auto lowest = search_.lowest(quality, found);
+    return lowest ? std::optional(search_.text_of(*lowest)) : std::nullopt;
   }
 
   [[nodiscard]] Matrices at(const State<double>& s) const {
@@ -95,7 +94,12 @@ class Search {
       return m;
     };
     const int passive = static_cast<int>(partition_.passive.size());
-    const NamedValues<double> kinematics = call_("kinematics", in), rows = call_("constraints", in);
+    std::string chart;
+    if (charts_ > 1) {
+      const std::vector<double> quality = call_("chart_quality", in).at("quality");
+      chart = chart_prefix(best_chart(std::span<const double>(quality)));
+    }
+    const NamedValues<double> kinematics = call_(chart + "kinematics", in), rows = call_("constraints", in);
     Matrices m{Eigen::MatrixXd::Zero(rows_, passive), read(kinematics, "H", passive, k_),
                read(kinematics, "J", passive, partition_.s_a())};
     const Eigen::MatrixXd A = read(rows, "A", rows_, positions_.n),
@@ -134,89 +138,14 @@ class Search {
     return std::min(quality, sigma(sigma.size() - 1) / sigma(0));
   }
 
-  /// Moves one coordinate, or the orientation, of one random state to those of another.
-  void find_dependence() {
-    const auto differs = [this, base = at(states_[0])](const State<double>& s) {
-      const Matrices m = at(s);
-      return m.A != base.A || m.H != base.H || m.J != base.J;
-    };
-    for (std::size_t i = 0; i < model_.coordinates.size(); ++i) {
-      State<double> moved = states_[0];
-      moved.r[i] = states_[1].r[i];
-      if (differs(moved)) coordinates_.push_back(i);
-    }
-    State<double> turned = states_[0];
-    turned.R = states_[1].R;
-    orientation_ = differs(turned);
-  }
-
-  /// A random neighbour within the working range.
-  State<double> neighbour(const State<double>& s, double step) {
-    State<double> moved = s;
-    const auto symmetric = [this] { return 2 * source_.uniform() - 1; };
-    for (const std::size_t i : coordinates_) {
-      const double lower = model_.coordinates[i].lower.to_double(),
-                   upper = model_.coordinates[i].upper.to_double();
-      moved.r[i] = std::clamp(s.r[i] + step * (upper - lower) * symmetric(), lower, upper);
-    }
-    if (orientation_) {
-      Eigen::Vector3d turn(3 * step * symmetric(), 3 * step * symmetric(), 3 * step * symmetric());
-      if (model_.group == GroupKind::SE2) turn.head<2>().setZero();
-      const Eigen::Matrix3d R = lie::SO3<double>::exp(turn).R();
-      Mat3<double> by;
-      for (int i = 0; i < 3; ++i) {
-        for (int j = 0; j < 3; ++j) by(i, j) = R(i, j);
-      }
-      moved.R = s.R * by;
-    }
-    return moved;
-  }
-
-  /// The configuration where a quality of at most 1 falls to nothing, if a descent finds one.
-  std::optional<std::string> lowest(const Quality& quality) {
-    std::vector<std::pair<double, std::size_t>> ranked;
-    for (std::size_t i = 0; i < states_.size(); ++i) ranked.emplace_back(quality(states_[i]), i);
-    std::ranges::sort(ranked);
-    const int dimensions = static_cast<int>(coordinates_.size()) + (orientation_ ? 3 : 0);
-    for (int d = 0; d < descents; ++d) {
-      State<double> best = states_[ranked[static_cast<std::size_t>(d)].second];
-      double least = ranked[static_cast<std::size_t>(d)].first;
-      double step = 0.1;  // of the range
-      for (int i = 0; i < steps_each * dimensions && least > found && step > 1e-14; ++i) {
-        const State<double> tried = neighbour(best, step);
-        const double value = quality(tried);
-        const bool better = value < least;
-        if (better) best = tried, least = value;
-        step *= better ? 1.7 : 0.87;  // keeps about one success in five
-        step = std::min(step, 0.5);
-      }
-      if (least <= found) return text_of(best);
-    }
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::string text_of(const State<double>& s) const {
-    std::string text;
-    const auto rounded = [](double x) { return fmt::format("{:.3g}", std::abs(x) < 5e-4 ? 0.0 : x); };
-    for (const std::size_t i : coordinates_)
-      text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", model_.coordinates[i].name, rounded(s.r[i]));
-    if (!orientation_) return text;
-    text += text.empty() ? "R = [" : ", R = [";
-    for (int i = 0; i < 3; ++i)
-      text += fmt::format("{}[{}, {}, {}]", i == 0 ? "" : ", ", rounded(s.R(i, 0)), rounded(s.R(i, 1)),
-                          rounded(s.R(i, 2)));
-    return text + "]";
-  }
-
   const Model& model_;
   const Partition& partition_;
   Partition positions_;  // of the program's position inputs
   int k_, rank_, rows_;
+  std::vector<int> leading_rows_;
+  std::size_t charts_;
   ProgramCaller<double> call_;
-  SampleSource source_{4};  // another seed than the derivation's
-  std::vector<State<double>> states_;
-  std::vector<std::size_t> coordinates_;  // on which the matrices depend
-  bool orientation_ = false;
+  ConfigurationSearch search_;
   double column_size_ = 1, J_size_ = 1, independence_ = 1;
 };
 

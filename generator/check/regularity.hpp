@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "derive/derive.hpp"
 
@@ -18,6 +19,7 @@ struct Regularity {
   std::optional<std::string> singular_basis;
   /// A configuration where (A, B_p) itself loses rank.
   std::optional<std::string> rank_drop;
+  std::vector<int> dropped_rows;  // that depend on each other there
 };
 
 /// @param derivation  of this model, with the functions kinematics and constraints

@@ -43,6 +43,7 @@ class Verifier {
       parameters_.push_back(Exact::from_double(rounded));
       double_parameters_.push_back(rounded);
     }
+    chart_at_ = chart_finder<Exact>(derivation);
     exact_ = interpreting_caller<Exact>(program_, parameters_);
     compiled_ = compiled_caller(program_, parameters_);
   }
@@ -67,6 +68,7 @@ class Verifier {
   NamedValues<Exact> random_inputs(SampleSource& source) {
     state_ = random_state(model_, source);
     NamedValues<Exact> in = position_inputs(model_, partition_, state_);
+    chart_ = chart_prefix(chart_at_(in));
     in["g"] = {state_.p.x, state_.p.y, Exact::from_double(atan2(state_.R(1, 0), state_.R(0, 0)).to_double())};
     if (model_.group == GroupKind::SE2)
       state_.R = AxisRotation<Exact>{2, cos(in["g"][2]), sin(in["g"][2])}.matrix();
@@ -81,17 +83,18 @@ class Verifier {
 
   /// Imposed rates that satisfy C r_a_dot = 0, C r_a_ddot + ... = 0 as well as doubles can.
   void make_compatible(NamedValues<Exact>& in) {
-    if (find_function(program_, "compatibility") == nullptr) return;
+    const std::string compatibility = chart_ + "compatibility";
+    if (find_function(program_, compatibility) == nullptr) return;
     for (const char* name : {"velocity_residual", "acceleration_residual"}) {
       const std::string input = std::string(name) == "velocity_residual" ? "r_a_dot" : "r_a_ddot";
-      const std::vector<Exact> residual = exact_("compatibility", in).at(name);
+      const std::vector<Exact> residual = exact_(compatibility, in).at(name);
       residual_scale_[name] = size_of(residual);  // before its terms are made to cancel
       std::vector<Exact>& x = in.at(input);
       Matrix<Exact> C(static_cast<int>(residual.size()), static_cast<int>(x.size()));
       for (std::size_t j = 0; j < x.size(); ++j) {  // linear in x: columns by unit steps
         NamedValues<Exact> moved = in;
         moved[input][j] = x[j] + Exact(1);
-        const std::vector<Exact> column = exact_("compatibility", moved).at(name);
+        const std::vector<Exact> column = exact_(compatibility, moved).at(name);
         for (std::size_t i = 0; i < residual.size(); ++i)
           C(static_cast<int>(i), static_cast<int>(j)) = column[i] - residual[i];
       }
@@ -108,16 +111,27 @@ class Verifier {
     return out;
   }
 
+  /// Functions of a chart are compared where it is the best. Quality alone is compared everywhere but where a
+  /// chart divides by zero.
+  [[nodiscard]] bool is_of_another_chart(const std::string& function) const {
+    if (derivation_.reduction.charts.size() < 2) return false;
+    const std::size_t at = function.find("::");
+    if (at != std::string::npos) return function.substr(0, at + 2) != chart_;
+    return !chart_.empty() && find_function(program_, chart_prefix(1) + function) != nullptr;
+  }
+
   void compare(const NamedValues<Exact>& in) {
     const NamedValues<double> rounded = as_doubles(in);
     for (const Function& f : program_.functions) {
+      if (is_of_another_chart(f.name)) continue;
       const NamedValues<Exact> expected = exact_(f.name, in);
       const NamedValues<double> got = compiled_(f.name, rounded);
       for (const OutputBlock& b : f.outputs) {
         Record& record = records_[{f.name, b.name}];
         record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
         const double scale = size_of(expected.at(b.name));
-        record.scale.push_back(f.name == "compatibility" ? std::max(scale, residual_scale_[b.name]) : scale);
+        record.scale.push_back(f.name.ends_with("compatibility") ? std::max(scale, residual_scale_[b.name])
+                                                                 : scale);
         record.label.push_back(label_);
       }
       inputs_by_label_[label_] = in;
@@ -128,7 +142,8 @@ class Verifier {
   void check_formulas(const Mechanism<Exact>& mechanism, const Mechanism<double>& rounded,
                       const NamedValues<Exact>& in) {
     const auto run = [&](const std::string& name, const NamedValues<Exact>& at) {
-      return find_function(program_, name) != nullptr ? exact_(name, at) : NamedValues<Exact>{};
+      const std::string of_chart = chart_ + name;
+      return find_function(program_, of_chart) != nullptr ? exact_(of_chart, at) : NamedValues<Exact>{};
     };
     const NamedValues<Exact> kinematics = run("kinematics", in);
     EvaluationInput<Exact> input;
@@ -177,7 +192,7 @@ class Verifier {
       const double scale = std::max(size_of(want), 1e-3);
       const double error = distance(got, want) / scale;
       if (error > formula_worst_) formula_worst_ = error, formula_at_ = function + "." + output;
-      records_[{function, output}].recursion_error.push_back(distance(by_double, want) / scale);
+      records_[{chart_ + function, output}].recursion_error.push_back(distance(by_double, want) / scale);
     };
     std::vector<int> eta_at(n), r_p_at(partition_.passive.begin() + partition_.n, partition_.passive.end());
     for (std::size_t i = 0; i < n; ++i) eta_at[i] = static_cast<int>(i);
@@ -187,11 +202,11 @@ class Verifier {
     if (forward.contains("r_p_ddot"))
       agree("forward_dynamics", "r_p_ddot", forward.at("r_p_ddot"), pick(expected.acceleration, r_p_at),
             pick(numeric.acceleration, r_p_at));
-    if (find_function(program_, "inverse_torques") != nullptr)
-      agree("inverse_torques", "tau_a", exact_("inverse_torques", at).at("tau_a"), expected.tau_a,
+    if (find_function(program_, chart_ + "inverse_torques") != nullptr)
+      agree("inverse_torques", "tau_a", run("inverse_torques", at).at("tau_a"), expected.tau_a,
             numeric.tau_a);
-    if (find_function(program_, "multipliers") != nullptr)
-      agree("multipliers", "lambda", exact_("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
+    if (find_function(program_, chart_ + "multipliers") != nullptr)
+      agree("multipliers", "lambda", run("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
     balance_energy(mechanism, input, expected, at);
   }
 
@@ -226,12 +241,13 @@ class Verifier {
         s.r[i] += step * input.state.r_dot[i];
         s.r_dot[i] += step * e.acceleration[components.size() + i];
       }
-      const auto energies = dynamics.energies(s);
-      return energies.kinetic + energies.gravity;
+      return dynamics.energies(s);
     };
-    const double rate = ((energy(h) - energy(-h)) / (Exact(2) * h)).to_double();
+    const auto after = energy(h), before = energy(-h);
+    const double rate_of_gravity = ((after.gravity - before.gravity) / (Exact(2) * h)).to_double();
+    const double rate = ((after.kinetic - before.kinetic) / (Exact(2) * h)).to_double() + rate_of_gravity;
     const std::vector<Exact> inertial = dynamics.forces(input.state);
-    double power = 0, scale = std::abs(rate);
+    double power = 0, scale = std::max(std::abs(rate), std::abs(rate_of_gravity));  // gravity is power too
     const auto add = [&](double x) { power += x, scale = std::max(scale, std::abs(x)); };
     const auto components = free_components(model_.group);
     for (std::size_t i = 0; i < inertial.size(); ++i) {
@@ -239,8 +255,8 @@ class Verifier {
           i < components.size() ? input.state.eta[components[i]] : input.state.r_dot[i - components.size()];
       add(((e.force[i] - inertial[i]) * v).to_double());
     }
-    if (find_function(program_, "inverse_torques") != nullptr) {
-      const std::vector<double> tau = compiled_("inverse_torques", as_doubles(at)).at("tau_a");
+    if (find_function(program_, chart_ + "inverse_torques") != nullptr) {
+      const std::vector<double> tau = compiled_(chart_ + "inverse_torques", as_doubles(at)).at("tau_a");
       for (std::size_t i = 0; i < tau.size(); ++i) add(tau[i] * at.at("r_a_dot")[i].to_double());
     }
     if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
@@ -272,6 +288,7 @@ class Verifier {
     v.energy_balance = energy_balance_;
     for (const Function& f : program_.functions) {
       for (const OutputBlock& b : f.outputs) {
+        if (!records_.contains({f.name, b.name})) continue;  // of a chart that was never the best
         const Record& record = records_.at({f.name, b.name});
         std::vector<double> sizes = record.scale;
         std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
@@ -313,6 +330,8 @@ class Verifier {
   ProgramCaller<Exact> exact_;
   ProgramCaller<double> compiled_;
   State<Exact> state_;
+  ChartFinder<Exact> chart_at_;
+  std::string chart_;  // prefix of the functions of the best chart at the state
   std::string label_;
   std::map<std::string, double>
       residual_scale_;  // natural scale of the compatibility residuals, which vanish

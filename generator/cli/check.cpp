@@ -28,6 +28,15 @@ Coordinates sorted_coordinates(const Model& model, const ReductionReport& reduct
   return c;
 }
 
+std::vector<std::string> row_names(const Model& model, const std::vector<int>& rows) {
+  std::vector<std::string> names;
+  for (const int row : rows) {
+    const std::string& name = model.rows[static_cast<std::size_t>(row)].name;
+    names.push_back(name.empty() ? fmt::format("{}", row + 1) : name);
+  }
+  return names;
+}
+
 std::string json_text(const Model& model, const ReductionReport& reduction, const Regularity& regularity) {
   const RankAnalysis& ranks = reduction.ranks;
   const Partition& p = reduction.partition;
@@ -50,12 +59,25 @@ std::string json_text(const Model& model, const ReductionReport& reduction, cons
                  {"worst_condition", reduction.kernel.worst_condition},
                  {"irregular_samples", reduction.kernel.irregular},
                  {"singular_at", optional(regularity.singular_basis)}};
+  if (reduction.charts.size() > 1) {
+    nlohmann::ordered_json charts = nlohmann::ordered_json::array();
+    for (const Kernel& chart : reduction.charts)
+      charts.push_back({{"basis", chart.description}, {"worst_condition", chart.worst_condition}});
+    j["kernel"]["charts"] = std::move(charts);
+    j["kernel"]["no_single_basis"] = optional(reduction.why_charts);
+    j["kernel"]["unserved"] = optional(reduction.unserved);
+  }
   j["constraints"] = {{"worst_condition", ranks.worst_condition}, {"worst_at", ranks.worst_at}};
+  j["redundant_rows"] = row_names(model, ranks.redundant);
+  j["conditions_on_the_imposed_motion"] = row_names(model, ranks.conditions);
   j["rank_drops"] = nlohmann::ordered_json::array();
   for (const auto& drop : ranks.drops)
-    j["rank_drops"].push_back({{"where", drop.where}, {"rank", drop.rank}});
+    j["rank_drops"].push_back(
+        {{"where", drop.where}, {"rank", drop.rank}, {"rows", row_names(model, drop.rows)}});
   if (ranks.drops.empty() && regularity.rank_drop)
-    j["rank_drops"].push_back({{"where", *regularity.rank_drop}, {"rank", nullptr}});
+    j["rank_drops"].push_back({{"where", *regularity.rank_drop},
+                               {"rank", nullptr},
+                               {"rows", row_names(model, regularity.dropped_rows)}});
   j["deformation"] = kept_terms(model);
   j["notes"] = model.notes;
   return j.dump(1) + "\n";
@@ -89,12 +111,32 @@ void print(const Model& model, const ReductionReport& reduction, const Regularit
                               ? "none"
                               : fmt::format("{}; rank m = {} of (A, B_p, B_a), m° = {} of (A, B_p)",
                                             ranks.rows, ranks.m, ranks.m_locked));
+  if (!ranks.redundant.empty())
+    line("redundant rows", fmt::format("{}: implied by the others, whatever moves",
+                                       fmt::join(row_names(model, ranks.redundant), ", ")));
+  if (!ranks.conditions.empty())
+    line("conditions", fmt::format("{}: bind the motion of the active coordinates alone",
+                                   fmt::join(row_names(model, ranks.conditions), ", ")));
   line("class (Table I)", ranks.table_I_class(p));
-  line("kernel",
-       kernel.H.cols() == 0
-           ? kernel.description
-           : fmt::format("{}; {}", counted(kernel.H.cols(), "reduced velocity", "reduced velocities"),
-                         kernel.description));
+  if (reduction.charts.size() > 1) {
+    line("kernel", fmt::format("{}; no basis serves the whole range: an atlas of {} charts",
+                               counted(kernel.H.cols(), "reduced velocity", "reduced velocities"),
+                               reduction.charts.size()));
+    for (std::size_t c = 0; c < reduction.charts.size(); ++c)
+      line(fmt::format("  chart {}", c + 1),
+           fmt::format("{}; condition of H where it is to serve, worst {:.3g}",
+                       reduction.charts[c].description, reduction.charts[c].worst_condition));
+    if (reduction.why_charts)
+      line("  why", fmt::format("the best single basis is singular at {}", *reduction.why_charts));
+    if (reduction.unserved)
+      line("  not served", fmt::format("no chart is well conditioned at {}", *reduction.unserved));
+  } else {
+    line("kernel",
+         kernel.H.cols() == 0
+             ? kernel.description
+             : fmt::format("{}; {}", counted(kernel.H.cols(), "reduced velocity", "reduced velocities"),
+                           kernel.description));
+  }
   if (ranks.rows > 0) {
     const std::string basis =
         kernel.H.cols() == 0 ? "" : fmt::format("basis H {:.3g}, ", kernel.worst_condition);
@@ -111,9 +153,11 @@ void print(const Model& model, const ReductionReport& reduction, const Regularit
     line("", "name other free_velocities in the description, or keep motions away from there");
   }
   for (const auto& drop : ranks.drops)
-    line("rank drop", fmt::format("(A, B_p) has rank {} at {}", drop.rank, drop.where));
+    line("rank drop", fmt::format("(A, B_p) has rank {} at {}: {}", drop.rank, drop.where,
+                                  fmt::join(row_names(model, drop.rows), ", ")));
   if (ranks.drops.empty() && regularity.rank_drop)
-    line("rank drop", fmt::format("(A, B_p) loses rank at {}", *regularity.rank_drop));
+    line("rank drop", fmt::format("(A, B_p) loses rank at {}: {}", *regularity.rank_drop,
+                                  fmt::join(row_names(model, regularity.dropped_rows), ", ")));
   for (const std::string& terms : kept_terms(model)) line("deformation", terms);
   for (const std::string& note : model.notes) line("note", note);
 }

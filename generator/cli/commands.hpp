@@ -58,6 +58,7 @@ struct SimulateOptions {
   std::string scene;
   std::string output;
   bool work_precision = false;
+  bool conditioning = false;
 };
 
 int check(const CheckOptions& options);

@@ -10,6 +10,7 @@
 #include "check/compile_cache.hpp"
 #include "cli/common.hpp"
 #include "describe/deformation.hpp"
+#include "describe/function_names.hpp"
 #include "describe/scene.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
@@ -33,7 +34,10 @@ std::map<std::string, int> operations_without_scene(const GenerateOptions& optio
   const Scene scene = read_scene(file);
   DeriveRequest request = derive_request(options, scene.model);
   request.functions.clear();
-  for (const Function& f : program.functions) request.functions.push_back(f.name);
+  for (const Function& f : program.functions) {  // those of further charts come along
+    if (std::ranges::find(function_names(), f.name) != function_names().end())
+      request.functions.push_back(f.name);
+  }
   std::map<std::string, int> operations;
   try {
     const auto whole = derive(scene.model, request);

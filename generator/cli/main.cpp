@@ -102,6 +102,8 @@ int main(int argc, char** argv) {
                    "folder for the trajectory and its summary; default: out/<scene>");
   verb->add_flag("--work-precision", simulate.work_precision,
                  "error against CPU time over a ladder of tolerances");
+  verb->add_flag("--conditioning", simulate.conditioning,
+                 "conditioning and error of the accelerations along the path, as CSV and SVG");
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
   try {

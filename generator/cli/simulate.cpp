@@ -2,12 +2,14 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/common.hpp"
+#include "simulate/path_conditioning.hpp"
 #include "simulate/simulation.hpp"
 #include "simulate/work_precision.hpp"
 
@@ -99,6 +101,39 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
   return ok;
 }
 
+int print_conditioning(const Scene& scene, const std::filesystem::path& folder) {
+  const PathConditioning path = [&] {
+    ProgressLine line(scene.duration);
+    return path_conditioning(scene, [&](const char* stage, double t) { line(stage, t); });
+  }();
+  if (path.points.empty()) {
+    fmt::print("status      {}\n", path.motion.status);
+    return check_failed;
+  }
+  const auto by = [](double PathPoint::*member) {
+    return [member](const PathPoint& p) { return p.*member; };
+  };
+  const PathPoint& hardest = *std::ranges::max_element(path.points, {}, by(&PathPoint::condition));
+  const PathPoint& worst = *std::ranges::max_element(path.points, {}, by(&PathPoint::error));
+  fmt::print("{}, {}: {} states, status {}\n", scene.model.name, scene.name, path.points.size(),
+             path.motion.status);
+  fmt::print("  condition of (A, B_p)   at most {:.3g}, at t = {:.6g} s\n", hardest.condition, hardest.t);
+  fmt::print("  error of accelerations  at most {:.2e}, at t = {:.6g} s, where the condition is {:.3g}\n",
+             worst.error, worst.t, worst.condition);
+  if (path.motion.charts > 1) {
+    double least = 1;
+    for (const PathPoint& p : path.points) least = std::min(least, p.quality[p.chart - 1]);
+    fmt::print("  charts of the kernel    {}, changed {} times; quality of the one in use at least {:.3g}\n",
+               path.motion.charts, path.motion.chart_changes.size(), least);
+  }
+  const std::string csv = (folder / "conditioning.csv").string(),
+                    svg = (folder / "conditioning.svg").string();
+  write_output(csv, conditioning_csv(path));
+  write_output(svg, conditioning_svg(path, scene.model.name + ", " + scene.name));
+  fmt::print("  files                   {}, {}\n", csv, svg);
+  return path.motion.finished ? ok : check_failed;
+}
+
 std::string integrator_text(const Integrator& integrator) {
   return integrator.method == Integrator::Method::dopri5
              ? fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance)
@@ -113,6 +148,10 @@ nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& resul
           {"finished", result.finished},
           {"table_I", result.class_of_table_I},
           {"integrator", integrator_text(scene.integrator)},
+          {"projected", result.projected},
+          {"departure", finite(result.departure)},
+          {"charts", result.charts},
+          {"chart_changes_s", result.chart_changes},
           {"steps", result.steps},
           {"rejected", result.rejected},
           {"evaluations", result.evaluations},
@@ -135,6 +174,7 @@ int simulate(const SimulateOptions& options) {
       options.output.empty() ? std::filesystem::path("out") / (scene.model.name + "_" + scene.name)
                              : std::filesystem::path(options.output);
   if (options.work_precision) return print_work_precision(scene, folder);
+  if (options.conditioning) return print_conditioning(scene, folder);
 
   const SimulationResult result = [&] {
     ProgressLine line(scene.duration);
@@ -149,6 +189,11 @@ int simulate(const SimulateOptions& options) {
   fmt::print("  status                {} ({} s simulated, {} steps, {} rejected, {} evaluations)\n",
              result.status, result.rows.empty() ? 0.0 : result.rows.back()[0], result.steps, result.rejected,
              result.evaluations);
+  if (result.projected)
+    fmt::print("  imposed motion        projected to a compatible one, at most {:.3g} rad or m from it\n",
+               result.departure);
+  if (result.charts > 1)
+    fmt::print("  charts of the kernel  {}, changed {} times\n", result.charts, result.chart_changes.size());
   fmt::print("  one evaluation        {} operations, {:.0f} ns\n", result.operations,
              result.nanoseconds_per_evaluation);
   fmt::print("  energy balance        {:.2e} of the largest energy, {:.3g} J\n", result.energy_balance,

@@ -11,6 +11,7 @@
 
 #include "algebra/closed_form.hpp"
 #include "anholon/free_dynamics.hpp"
+#include "derive/charts.hpp"
 #include "derive/symbols.hpp"
 #include "describe/function_names.hpp"
 #include "describe/mechanise.hpp"
@@ -34,11 +35,12 @@ struct Route {
   std::vector<OutputBlock> outputs;
 };
 
-/// A partition of the velocities with its kinematic reduction.
+/// A partition of the velocities with its kinematic reduction, in the chart that is derived at the moment.
 struct Reduced {
   Partition partition;
   RankAnalysis ranks;
-  std::unique_ptr<KinematicReduction> reduction;
+  KernelAtlas atlas;
+  KinematicReduction* reduction = nullptr;
   [[nodiscard]] int k() const { return reduction->k(); }
 };
 
@@ -76,8 +78,7 @@ class Deriver {
       }
     }
     motion_ = reduce(motion_partition_);
-    nu_ = symbols_.block("nu", motion_.k(), "mixed",
-                         "reduced velocities: " + motion_.reduction->kernel().description);
+    nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + meaning_of_nu());
     r_a_dot_ = symbols_.block("r_a_dot", motion_partition_.s_a(), "rad/s or m/s", "rates of r_a");
     r_a_ddot_ =
         symbols_.block("r_a_ddot", motion_partition_.s_a(), "rad/s^2 or m/s^2", "second derivatives of r_a");
@@ -92,7 +93,20 @@ class Deriver {
     derive_position_conditions();
     derive_energies();
     derive_poses();
-    result_->reduction = {motion_.partition, motion_.ranks, motion_.reduction->kernel(), request_.inverse};
+    derive_further_charts();
+    result_->reduction = {motion_.partition,
+                          motion_.ranks,
+                          motion_.reduction->kernel(),
+                          request_.inverse,
+                          {},
+                          motion_.atlas.first_basis_singular_at,
+                          motion_.atlas.singular_at};
+    for (const auto& chart : motion_.atlas.charts) {
+      result_->reduction.charts.push_back(chart->kernel());
+      if (request_.rates)
+        result_->rates.push_back(
+            symbols_.motion(merged(motion_partition_, chart->velocities(r_a_dot_, nu_), r_a_dot_)));
+    }
     note_header();
     return std::move(result_);
   }
@@ -146,15 +160,16 @@ class Deriver {
       }
     }
     const auto best = cheapest();
-    for (const Route& r : routes) result_->candidates.push_back({name, r.name, cost(r), &r == &*best});
+    const std::string full_name = prefix_ + name;
+    for (const Route& r : routes) result_->candidates.push_back({full_name, r.name, cost(r), &r == &*best});
     program_.functions.push_back(
-        {name, meaning, best->outputs,
+        {full_name, meaning, best->outputs,
          remark.empty() ? "route: " + best->name : remark + "; route: " + best->name});
   }
 
   // ---- reduction
   // -----------------------------------------------------------------------------------------------
-  Reduced reduce(const Partition& partition) {
+  Reduced reduce(const Partition& partition, bool one_basis = false) {
     Reduced r;
     r.partition = partition;
     r.ranks = analyse_ranks(description_, defaults_, partition, samples_, request_.leading_rows);
@@ -171,9 +186,16 @@ class Deriver {
     std::vector<std::string> passive_names;
     for (const int i : partition.passive) passive_names.push_back(names_[static_cast<std::size_t>(i)]);
     tape_.section("kernel");
-    r.reduction = std::make_unique<KinematicReduction>(
-        tape_, ConstraintRows{G.block(rows, partition.passive), G.block(rows, partition.active)}, r.ranks,
-        request_.inverse, preferred, passive_names, symbols_.sampler(samples_));
+    r.atlas = choose_atlas(tape_, symbols_,
+                           {&model_,
+                            {G.block(rows, partition.passive), G.block(rows, partition.active)},
+                            &r.ranks,
+                            request_.inverse,
+                            preferred,
+                            passive_names,
+                            samples_,
+                            one_basis});
+    r.reduction = r.atlas.charts.front().get();
     return r;
   }
 
@@ -206,6 +228,35 @@ class Deriver {
                   "twist of the reference body in its own axes, linear part first", eta),
             block(acceleration ? "r_p_ddot" : "r_p_dot", "per r_p", "passive coordinates", r_p),
             block(driven + (acceleration ? "_ddot" : "_dot"), "per r_a", "torque-driven coordinates", r_a)};
+  }
+
+  [[nodiscard]] std::string meaning_of_nu() const {
+    const auto& charts = motion_.atlas.charts;
+    std::string text = motion_.reduction->kernel().description;
+    for (std::size_t c = 1; c < charts.size(); ++c)
+      text += fmt::format("; in chart {}: {}", c + 1, charts[c]->kernel().description);
+    return text;
+  }
+
+  /// The functions that know nu, once more for every further chart, and how good each chart is.
+  void derive_further_charts() {
+    const KernelAtlas& atlas = motion_.atlas;
+    if (atlas.charts.size() < 2) return;
+    for (std::size_t c = 1; c < atlas.charts.size(); ++c) {
+      prefix_ = chart_prefix(c);
+      motion_.reduction = atlas.charts[c].get();
+      derive_kinematics();
+      derive_reduced_dynamics();
+      derive_torques_and_multipliers();
+      derive_compatibility();
+    }
+    prefix_.clear();
+    motion_.reduction = atlas.charts.front().get();
+    emit("chart_quality",
+         "How good each chart is here, from 1 down to 0 where it is singular. Change where that in use falls "
+         "below a quarter of the best: nu is then what reduced_velocities of the new chart makes of what "
+         "kinematics of the old one gives.",
+         {{"elimination", {block("quality", "1", "one for each chart", atlas.quality)}}});
   }
 
   // ---- quantities
@@ -533,7 +584,7 @@ class Deriver {
     if (std::ranges::none_of(family, [this](const std::string& f) { return wanted(f); }) ||
         partition_of(model_).s_a() == 0 || !request_.torque_driven.empty())
       return;
-    Reduced all = reduce(partition_of(model_, {"*"}));
+    Reduced all = reduce(partition_of(model_, {"*"}), true);
     const KinematicReduction& k = *all.reduction;
     const auto w =
         symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + k.kernel().description);
@@ -583,7 +634,7 @@ class Deriver {
                  k.multipliers(residual, std::vector<Expr>(static_cast<std::size_t>(k.static_basis().cols()),
                                                            Expr(0))))}}});
     }
-    result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel(), request_.inverse};
+    result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel(), request_.inverse, {}};
   }
 
   void derive_position_conditions() {
@@ -642,7 +693,16 @@ class Deriver {
         "group {}: n = {}, s_p = {}, s_a = {}, rows = {}, m = {}, m_locked = {}", name(model_.group),
         motion_partition_.n, motion_partition_.s_p(), motion_partition_.s_a(), r.rows, r.m, r.m_locked));
     program_.notes.push_back("Table I: " + r.table_I_class(motion_partition_));
-    program_.notes.push_back("kernel: " + motion_.reduction->kernel().description);
+    const auto& charts = motion_.atlas.charts;
+    for (std::size_t c = 0; c < charts.size(); ++c)
+      program_.notes.push_back((charts.size() > 1 ? fmt::format("chart {}: ", c + 1) : "kernel: ") +
+                               charts[c]->kernel().description);
+    if (charts.size() > 1)
+      program_.notes.push_back(
+          "no basis serves everywhere: functions that know nu are there once for each chart, in namespaces "
+          "chart1, chart2, ...; those without such a namespace are of chart 1; choose_chart() compares and "
+          "is "
+          "the only function that branches");
   }
 
   const Model& model_;
@@ -660,10 +720,13 @@ class Deriver {
   std::vector<std::string> names_;
   std::vector<Exact> defaults_;
   Reduced motion_;
+  std::string prefix_;  // of the names of functions: the chart
   std::vector<Expr> nu_, r_a_dot_, r_a_ddot_;
 };
 
 }  // namespace
+
+std::string chart_prefix(std::size_t chart) { return chart == 0 ? "" : fmt::format("chart{}::", chart + 1); }
 
 OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots) {
   const Tape& tape = program.tape;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "describe/model.hpp"
@@ -25,6 +26,7 @@ struct DeriveRequest {
   Inverse inverse = Inverse::pseudo;
   std::vector<int> leading_rows;  // for Inverse::leading; row indices
   bool closed_forms = true;       // also try GiNaC's simplified closed form of each function
+  bool rates = false;             // fill Derivation::rates
 };
 
 /// What a route to a function costs.
@@ -39,15 +41,24 @@ struct CandidateReport {
 struct ReductionReport {
   Partition partition;
   RankAnalysis ranks;
-  Kernel kernel;  // on the program's tape
+  Kernel kernel;  // on the program's tape; of the first chart
   Inverse inverse = Inverse::pseudo;
+  std::vector<Kernel> charts;                  // more than one where no basis serves the whole range
+  std::optional<std::string> why_charts = {};  // a configuration where the best single basis is singular
+  std::optional<std::string> unserved = {};    // one that no chart serves, if a search found it
 };
+
+/// What stands before the names of a chart's functions: nothing for the first, "chart2::" for the second.
+std::string chart_prefix(std::size_t chart);
 
 struct Derivation {
   Program program;
   ReductionReport reduction;                     // motion-driven
   std::optional<ReductionReport> torque_driven;  // all active coordinates by torque, where it was wanted
   std::vector<CandidateReport> candidates;
+  /// For each chart: (input, its time derivative at the velocities that nu and r_a_dot mean) of pose, shape
+  /// and t.
+  std::vector<std::vector<std::pair<NodeId, NodeId>>> rates;
 };
 
 /// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.

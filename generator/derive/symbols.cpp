@@ -112,15 +112,10 @@ std::vector<std::pair<NodeId, NodeId>> ProgramSymbols::motion(const std::vector<
   return rates;
 }
 
-Sampler ProgramSymbols::sampler(const std::vector<SampleState>& samples) const {
+Sampler ProgramSymbols::sampler(const std::vector<State<double>>& states) const {
   auto inputs = std::make_shared<std::vector<std::vector<double>>>();
-  std::vector<double> parameters;
-  for (const Parameter& p : model_.parameters) parameters.push_back(p.value.to_double());
-  for (const SampleState& sample : samples) {
-    State<double> state;
-    for (std::size_t i = 0; i < 9; ++i) state.R.m[i] = sample.state.R.m[i].to_double();
-    for (int i = 0; i < 3; ++i) state.p[i] = sample.state.p[i].to_double();
-    for (const Exact& r : sample.state.r) state.r.push_back(r.to_double());
+  const std::vector<double> parameters = default_parameters();
+  for (const State<double>& state : states) {
     std::vector<double> values(program_.tape.inputs().size(), 0.0);
     fill_position(state, parameters, values);
     inputs->push_back(std::move(values));
@@ -135,6 +130,23 @@ Sampler ProgramSymbols::sampler(const std::vector<SampleState>& samples) const {
     }
     return result;
   };
+}
+
+ConfigurationSearch::Values ProgramSymbols::evaluator(const std::vector<NodeId>& nodes) const {
+  const auto run = std::make_shared<Interpreter<double>>(program_.tape, nodes);
+  return [this, run, parameters = default_parameters()](const State<double>& state) {
+    std::vector<double> inputs(program_.tape.inputs().size(), 0.0);
+    fill_position(state, parameters, inputs);
+    std::vector<double> outputs(run->output_count());
+    (*run)(inputs, outputs);
+    return outputs;
+  };
+}
+
+std::vector<double> ProgramSymbols::default_parameters() const {
+  std::vector<double> parameters;
+  for (const Parameter& p : model_.parameters) parameters.push_back(p.value.to_double());
+  return parameters;
 }
 
 }  // namespace anholon

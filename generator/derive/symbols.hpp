@@ -9,9 +9,9 @@
 
 #include "anholon/mechanism.hpp"
 #include "describe/model.hpp"
+#include "reduce/configuration_search.hpp"
 #include "reduce/elimination.hpp"
 #include "reduce/partition.hpp"
-#include "reduce/samples.hpp"
 #include "tape/interface.hpp"
 
 namespace anholon {
@@ -32,8 +32,10 @@ class ProgramSymbols {
   [[nodiscard]] State<Expr> moving(const std::vector<Expr>& v) const;
   /// (input, rate) of every position input for velocities v (n + s), with t_dot = 1.
   [[nodiscard]] std::vector<std::pair<NodeId, NodeId>> motion(const std::vector<Expr>& v) const;
-  /// Evaluates nodes that depend on parameters and position at sampled states, default parameters.
-  [[nodiscard]] Sampler sampler(const std::vector<SampleState>& samples) const;
+  /// Evaluates nodes that depend on parameters and position at some states, default parameters.
+  [[nodiscard]] Sampler sampler(const std::vector<State<double>>& states) const;
+  /// Evaluates these nodes at any state, default parameters.
+  [[nodiscard]] ConfigurationSearch::Values evaluator(const std::vector<NodeId>& nodes) const;
 
   /// Values of the position and parameter inputs at a state; other inputs are zero.
   template <class S>
@@ -59,6 +61,8 @@ class ProgramSymbols {
   }
 
  private:
+  [[nodiscard]] std::vector<double> default_parameters() const;
+
   const Model& model_;
   Program& program_;
   std::vector<Expr> parameters_;

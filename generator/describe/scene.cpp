@@ -281,6 +281,8 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& path) 
   read_modes(root, scene, findings);
   read_torque_driven(root, scene, findings);
   read_motion(root, path, scene, reading);
+  if (const auto choice = root.optional_choice("incompatible_motion", {"refuse", "project"}))
+    scene.project_motion = *choice == 1;
   read_torques(root, scene, reading);
   read_initial_state(root, scene, reading);
   read_integrator(root, scene, reading);

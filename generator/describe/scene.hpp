@@ -75,6 +75,8 @@ struct Scene {
   std::vector<std::string> torque_driven;  // active coordinates whose torque is imposed
   std::vector<ImposedMotion> motion;
   std::optional<MotionTable> motion_table;
+  bool project_motion =
+      false;  // an imposed motion that rows do not allow: moved to what they allow, or refused
   std::vector<ImposedTorque> torques;
   InitialState initial;
   Integrator integrator;

@@ -54,6 +54,7 @@ json block_data(const Block& block, std::size_t index) {
 
 json function_data(const Program& program, const PlannedFunction& function) {
   json data = {{"name", function.name},
+               {"qualified", (function.scope.empty() ? "" : function.scope + "::") + function.unqualified},
                {"quoted_name", c_literal(function.function->name)},
                {"quoted_meaning", c_literal(function.function->meaning)},
                {"has_inputs", !function.inputs.empty()},

@@ -191,6 +191,13 @@ std::string equations(const Model& model, const Derivation& derivation, const Eq
   page.section("Kinematic model, eq. (11)", "kinematics", {{"H", "H"}, {"J", "J"}},
                passive + " = " + (motion.empty() ? "0" : motion));
   page.text("Kernel: " + r.kernel.description + ".");
+  if (r.charts.size() > 1) {
+    std::string others;
+    for (std::size_t c = 1; c < r.charts.size(); ++c)
+      others += fmt::format("{}chart {}: {}", c > 1 ? "; " : "", c + 1, r.charts[c].description);
+    page.text("No basis serves everywhere: this is chart 1 of " + std::to_string(r.charts.size()) + "; " +
+              others + ".");
+  }
   page.section("Compatibility of the imposed motion", "compatibility",
                {{"velocity_residual", "0 = N^T B_a \\dot{r}_a"}});
   page.section("Free dynamics, eq. (1)", "free_dynamics",

@@ -119,6 +119,7 @@ class HeaderWriter {
     data["functions"] = json::array();
     for (const PlannedFunction& function : plan_.functions)
       data["functions"].push_back(function_data(function));
+    write_charts(data);
     data["uses_sign"] = uses_sign();
     data["uses_batch"] = uses_batch_;
     data["sines_cosines"] = without_last_newline(std::string(embedded::sines_cosines));
@@ -272,13 +273,33 @@ class HeaderWriter {
     const Body body = body_of(statements(results, given, names), function.name, arguments);
     if (!body.arguments.contains(0)) arguments[0] = "const Prepared<Real>&";
     json data;
-    data["name"] = function.name;
-    data["arguments"] = argument_list(arguments, std::string("inline void (").size() + function.name.size());
+    data["name"] = function.unqualified;
+    data["has_scope"] = !function.scope.empty();
+    data["scope"] = function.scope;
+    data["arguments"] =
+        argument_list(arguments, std::string("inline void (").size() + function.unqualified.size());
     data["doc"] = without_last_newline(doc);
     data["body"] = body.text;
     data["has_blocks"] = !body.blocks.empty();
     data["blocks"] = body.blocks;
     return data;
+  }
+
+  /// Names of the first chart's functions in a namespace like those of the others.
+  void write_charts(json& data) const {
+    std::set<std::string> charts, shared;
+    for (const PlannedFunction& function : plan_.functions) {
+      if (function.scope.empty()) continue;
+      charts.insert(function.scope);
+      shared.insert(function.unqualified);
+    }
+    data["has_charts"] = !charts.empty();
+    data["first_chart"] = json::array();
+    for (const PlannedFunction& function : plan_.functions) {
+      if (function.scope.empty() && shared.contains(function.name))
+        data["first_chart"].push_back(
+            {{"text", fmt::format("using {}::{};", joined(plan_.name_space, "::"), function.name)}});
+    }
   }
 
   struct Body {

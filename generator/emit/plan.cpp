@@ -95,7 +95,11 @@ EmissionPlan plan_emission(const Program& program) {
     planned.function = &function;
     const std::vector<NodeId> roots = roots_of(function);
     if (roots.empty()) continue;
-    planned.name = functions.claim(function.name);
+    planned.name = planned.unqualified = functions.claim(function.name);
+    if (const std::size_t at = function.name.find("::"); at != std::string::npos) {
+      planned.scope = identifier(function.name.substr(0, at));
+      planned.unqualified = identifier(function.name.substr(at + 2));
+    }
     planned.operations = count_operations(program.tape, roots, plan.prepared_values);
     planned.unprepared = count_operations(program.tape, roots);
     const std::vector<NodeId> needed = needed_nodes(program.tape, roots, plan.prepared_values);

@@ -20,7 +20,9 @@ struct PlannedOutput {
 
 struct PlannedFunction {
   const Function* function = nullptr;
-  std::string name;
+  std::string name;                    // flat: chart2_kinematics
+  std::string scope;                   // namespace within the program's: chart2; mostly empty
+  std::string unqualified;             // name in that namespace: kinematics
   std::vector<std::size_t> inputs;     // indices into Program::inputs: those that the function reads
   std::vector<PlannedOutput> outputs;  // none of size 0
   OperationCount operations;           // per call, after prepare()

@@ -92,6 +92,16 @@ std::vector<int> Elimination::pivot_columns() const {
   return columns;
 }
 
+bool Elimination::has_constant_pivots() const {
+  return std::ranges::all_of(pivots_, [](const Pivot& p) { return p.inverse.constant_value().has_value(); });
+}
+
+std::vector<Expr> Elimination::factors() const {
+  std::vector<Expr> values;
+  for (const Factor& f : factors_) values.push_back(f.value);
+  return values;
+}
+
 std::vector<Expr> Elimination::column(int j) const {
   std::vector<Expr> c;
   for (int i = 0; i < A_.rows(); ++i) c.push_back(A_(i, j));

@@ -33,6 +33,10 @@ class Elimination {
   [[nodiscard]] std::vector<Expr> solve(std::vector<Expr> b) const;
   /// mu (rows) with A_P^T mu = c_P on the pivot columns P.
   [[nodiscard]] std::vector<Expr> solve_transposed(const std::vector<Expr>& c) const;
+  /// Whether every pivot is a number: then nothing can vanish that is divided by.
+  [[nodiscard]] bool has_constant_pivots() const;
+  /// Factors by which rows are added to others; large where a pivot is small.
+  [[nodiscard]] std::vector<Expr> factors() const;
   /// Column j of A as a right-hand side.
   [[nodiscard]] std::vector<Expr> column(int j) const;
 

@@ -20,10 +20,10 @@ namespace {
 
 constexpr int combination_limit = 400;   // free sets that are tried one by one
 constexpr int derivation_limit = 12;     // of these, how many are derived and counted
-constexpr double condition_limit = 1e8;  // beyond it a basis counts as irregular at a sample
+constexpr double condition_limit = 1e7;  // beyond it a basis counts as irregular at a sample
 constexpr double dependable_pivot =
     1e-3;                           // least pivot of the leading rows, for a static basis that divides by it
-constexpr double vanishing = 1e-9;  // a column this much smaller than its median has vanished
+constexpr double vanishing = 1e-7;  // a column this much smaller than its median has vanished
 
 std::vector<int> range(int n) {
   std::vector<int> r(static_cast<std::size_t>(n));
@@ -99,16 +99,56 @@ KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const Ra
                                        const std::vector<std::string>& names, const Sampler& sampler)
     : tape_(tape), sampler_(sampler), rows_(std::move(rows)), leading_(ranks.leading_rows) {
   A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
-  split_redundant_rows(inverse);
+  split_redundant_rows(inverse, range(rows_.A.cols()));
   B_1_ = weights_.times(rows_.B);
-  choose_kernel(preferred_free, names);
+  choose_kernel(preferred_free);
+  describe_kernel(names);
 }
 
-void KinematicReduction::split_redundant_rows(Inverse inverse) {
+KinematicReduction::KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks,
+                                       Inverse inverse, const ChartRequest& chart,
+                                       const std::vector<std::string>& names)
+    : tape_(tape),
+      sampler_(chart.domain),
+      rows_(std::move(rows)),
+      leading_(ranks.leading_rows),
+      wanted_projection_(chart.static_by_projection) {
+  A_1_ = rows_.A.block(leading_, range(rows_.A.cols()));
+  const std::vector<int> pivots = complement(chart.free, rows_.A.cols());
+  split_redundant_rows(inverse, pivots);
+  B_1_ = weights_.times(rows_.B);
+  std::optional<Kernel> kernel = candidate(chart.free, false);
+  if (!kernel) throw UnsupportedError("a chart's free velocities leave dependent ones");
+  kernel_ = std::move(*kernel);
+  kernel_elimination_.emplace(tape_, A_1_, pivots, sampler_);
+  describe_kernel(names);
+}
+
+Expr KinematicReduction::quality(const std::vector<double>& sizes) const {
+  Expr sum = 1;
+  const auto size = [&](int i) {
+    return Expr(tape_, tape_.constant(Exact::from_double(sizes[static_cast<std::size_t>(i)])));
+  };
+  for (int j = 0; j < kernel_.H.cols(); ++j) {
+    for (int i = 0; i < kernel_.H.rows(); ++i) {
+      if (std::ranges::find(kernel_.free, i) != kernel_.free.end()) continue;
+      const Expr h = kernel_.H(i, j) * (size(kernel_.free[static_cast<std::size_t>(j)]) / size(i));
+      sum += h * h;
+    }
+  }
+  if (kernel_elimination_) {
+    for (const Expr& f : kernel_elimination_->factors()) {
+      if (!f.constant_value()) sum += f * f;
+    }
+  }
+  return Expr(1) / sqrt(sum);
+}
+
+void KinematicReduction::split_redundant_rows(Inverse inverse, const std::vector<int>& pivots) {
   const int count = rows_.A.rows();
   const int independent = static_cast<int>(leading_.size());
   N_ = Matrix<Expr>(count, count - independent);
-  if (independent > 0) elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
+  if (independent > 0) elimination_.emplace(tape_, A_1_, pivots, sampler_);
   const std::vector<int> dependent = complement(leading_, count);
   for (std::size_t d = 0; d < dependent.size(); ++d) {  // row = w A_1
     std::vector<Expr> row;
@@ -128,7 +168,9 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
   const std::vector<int> P = elimination_->pivot_columns();
   weights_ = RowWeights(rows_.A.block(range(count), P));
   A_1_ = weights_.times(rows_.A);
-  if (elimination_->smallest_pivot() < dependable_pivot) {  // the leading rows are dependent somewhere
+  static_by_projection_ =  // where the leading rows are dependent somewhere
+      wanted_projection_.value_or(elimination_->smallest_pivot() < dependable_pivot);
+  if (static_by_projection_) {
     for (std::size_t d = 0; d < dependent.size(); ++d) {
       std::vector<Expr> e(static_cast<std::size_t>(count), Expr(0));
       e[static_cast<std::size_t>(dependent[d])] = 1;
@@ -139,7 +181,7 @@ void KinematicReduction::split_redundant_rows(Inverse inverse) {
   for (int j = 0; j < independent; ++j) {  // what Gram-Schmidt makes zero and one is so exactly
     for (int i = j; i < independent; ++i) A_1_(i, P[static_cast<std::size_t>(j)]) = i == j ? 1 : 0;
   }
-  elimination_.emplace(tape_, A_1_, range(A_1_.cols()), sampler_);
+  elimination_.emplace(tape_, A_1_, pivots, sampler_);
 }
 
 std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free,
@@ -162,6 +204,8 @@ std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free
     } catch (const std::logic_error&) {
       return std::nullopt;  // the other columns are dependent
     }
+    kernel.divides_by_constants =
+        (!elimination || elimination->has_constant_pivots()) && rows_.A.rows() == A_1_.rows();
     for (std::size_t c = 0; c < free.size(); ++c) {
       if (elimination) {
         const std::vector<Expr> x = elimination->solve(elimination->column(free[c]));
@@ -199,7 +243,8 @@ void KinematicReduction::judge(Kernel& kernel) const {
       Eigen::MatrixXd h = H[s];
       for (int c = 0; c < h.cols() && regular; ++c) {
         const double size = h.col(c).norm();
-        regular = size > vanishing * medians[static_cast<std::size_t>(c)];
+        const double ordinary = medians[static_cast<std::size_t>(c)];
+        regular = size > vanishing * ordinary && size * vanishing < ordinary;
         h.col(c) /= size;
       }
       if (regular) {
@@ -213,8 +258,7 @@ void KinematicReduction::judge(Kernel& kernel) const {
   }
 }
 
-void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
-                                       const std::vector<std::string>& names) {
+void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
   const int passive = A_1_.cols();
   const int k = passive - A_1_.rows();
   // numeric worth of a free set: how far the other columns stay from singular, relative to all columns
@@ -293,7 +337,11 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free,
         "no kernel basis is regular anywhere: the constraints tie the free velocities together");
   if (!kernel_.content_divided && A_1_.rows() > 0)
     kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
+}
 
+void KinematicReduction::describe_kernel(const std::vector<std::string>& names) {
+  const int passive = A_1_.cols();
+  const int k = kernel_.H.cols();
   std::vector<std::string> free_names;
   for (const int c : kernel_.free) free_names.push_back(names[static_cast<std::size_t>(c)]);
   if (passive == 0) {

@@ -28,10 +28,18 @@ struct Kernel {
   Matrix<Expr> H;         // passive x k
   Matrix<Expr> J;         // passive x active
   std::vector<int> free;  // passive columns that nu names, or that the content-divided basis was built on
-  bool content_divided = false;  // else nu are the free velocities themselves
-  double worst_condition = 1;    // of H over the samples
-  std::string description;       // one sentence for reports
-  int irregular = 0;             // samples at which H or J is not finite, vanishes or loses rank
+  bool content_divided = false;       // else nu are the free velocities themselves
+  double worst_condition = 1;         // of H over the samples
+  std::string description;            // one sentence for reports
+  int irregular = 0;                  // samples at which H or J is not finite, vanishes or loses rank
+  bool divides_by_constants = false;  // alone: H and J are then regular wherever the rows are finite
+};
+
+/// A basis for a part of the working range.
+struct ChartRequest {
+  std::vector<int> free;      // passive columns that nu names
+  Sampler domain;             // values at the configurations that it has to serve
+  bool static_by_projection;  // how the basis of the static loadings is made, the same for all charts
 };
 
 class KinematicReduction {
@@ -40,6 +48,18 @@ class KinematicReduction {
   KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
                      const std::vector<int>& preferred_free, const std::vector<std::string>& names,
                      const Sampler& sampler);
+  /// A chart: pivoted, on the given free velocities.
+  KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
+                     const ChartRequest& chart, const std::vector<std::string>& names);
+
+  /// How good a chart is at a configuration, from 1 down to 0 where it is singular:
+  ///
+  ///   1 / sqrt(1 + sum (H_ij size_j / size_i)^2 + sum of the squares of the factors of its elimination),
+  ///
+  /// the sum over velocities that are not free. Not a number where the elimination divides zero by zero.
+  /// @param sizes  (passive) what is an ordinary size of each passive velocity
+  [[nodiscard]] Expr quality(const std::vector<double>& sizes) const;
+  [[nodiscard]] bool static_by_projection() const { return static_by_projection_; }
 
   [[nodiscard]] const Kernel& kernel() const { return kernel_; }
   [[nodiscard]] int k() const { return kernel_.H.cols(); }
@@ -65,10 +85,12 @@ class KinematicReduction {
                                                      const std::vector<Expr>& r_a_dot) const;
 
  private:
-  void split_redundant_rows(Inverse inverse);
-  void choose_kernel(const std::vector<int>& preferred_free, const std::vector<std::string>& names);
+  /// @param pivots  columns that may hold pivots
+  void split_redundant_rows(Inverse inverse, const std::vector<int>& pivots);
+  void choose_kernel(const std::vector<int>& preferred_free);
   std::optional<Kernel> candidate(const std::vector<int>& free, bool content_divided) const;
   void judge(Kernel& kernel) const;
+  void describe_kernel(const std::vector<std::string>& names);
 
   Tape& tape_;
   Sampler sampler_;
@@ -78,6 +100,8 @@ class KinematicReduction {
   Matrix<Expr> A_1_;    // C A‡: m° independent rows, m° x passive
   Matrix<Expr> B_1_;    // C B_a
   Matrix<Expr> N_;
+  std::optional<bool> wanted_projection_;  // of a chart
+  bool static_by_projection_ = false;
   std::optional<Elimination> elimination_;         // for the multipliers
   std::optional<Elimination> kernel_elimination_;  // on the kernel's own pivots, for its drift
   Kernel kernel_;

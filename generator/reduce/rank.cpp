@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "anholon/free_dynamics.hpp"
@@ -102,6 +103,7 @@ std::vector<SamplePlace> places_that_matter(const SampleState& sample, const Dep
 struct FoundDrop {
   std::vector<SamplePlace> places;
   int rank;
+  std::vector<int> rows;
   /// Whether this one says no more than `other`: every place of it is here as well.
   [[nodiscard]] bool follows_from(const FoundDrop& other) const {
     return rank == other.rank && std::ranges::all_of(other.places, [this](const SamplePlace& p) {
@@ -112,7 +114,40 @@ struct FoundDrop {
   }
 };
 
+std::vector<std::vector<double>> nested(const Eigen::MatrixXd& a) {
+  std::vector<std::vector<double>> rows(static_cast<std::size_t>(a.rows()));
+  for (Eigen::Index i = 0; i < a.rows(); ++i)
+    rows[static_cast<std::size_t>(i)].assign(a.row(i).begin(), a.row(i).end());
+  return rows;
+}
+
 }  // namespace
+
+std::vector<int> dependent_rows(const std::vector<std::vector<double>>& A, const std::vector<int>& leading) {
+  constexpr double zero = 1e-7;        // of the largest singular value: configurations are found to 1e-8
+  constexpr double takes_part = 0.02;  // of the largest entry of a combination
+  if (leading.empty()) return {};
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(leading.size()),
+                       static_cast<Eigen::Index>(A.front().size()));
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    for (Eigen::Index j = 0; j < rows.cols(); ++j)
+      rows(i, j) =
+          A[static_cast<std::size_t>(leading[static_cast<std::size_t>(i)])][static_cast<std::size_t>(j)];
+  }
+  const SingularValues svd = singular_values(rows.transpose());  // V: combinations of rows
+  std::vector<int> found;
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    bool takes = false;
+    for (Eigen::Index c = 0; c < rows.rows(); ++c) {
+      const bool lost =
+          c >= svd.sigma.size() || !(svd.sigma(c) > zero * std::max(svd.sigma(0), 1e-300));
+      const Eigen::VectorXd u = svd.V.col(c);
+      takes = takes || (lost && std::abs(u(i)) > takes_part * u.cwiseAbs().maxCoeff());
+    }
+    if (takes) found.push_back(leading[static_cast<std::size_t>(i)]);
+  }
+  return found;
+}
 
 std::string RankAnalysis::table_I_class(const Partition& partition) const {
   const bool has_kernel = static_cast<int>(partition.passive.size()) > m_locked;
@@ -142,26 +177,40 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
 
   std::vector<Matrix<Exact>> matrices;  // (A, B_p, B_a) at every sample
   for (const SampleState& sample : samples) matrices.push_back(dynamics.constraints(sample.state).first);
-  Matrix<Exact> generic;  // at a random sample of full rank
+  Matrix<Exact> generic, generic_all;  // at samples of full rank
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const int locked = rank_of(matrices[s].block(all_rows, partition.passive), zero_tolerance);
     if (locked > analysis.m_locked || generic.rows() == 0)
       generic = matrices[s].block(all_rows, partition.passive);
     analysis.m_locked = std::max(analysis.m_locked, locked);
-    analysis.m = std::max(analysis.m, rank_of(matrices[s].block(all_rows, all_columns), zero_tolerance));
+    const int whole = rank_of(matrices[s].block(all_rows, all_columns), zero_tolerance);
+    if (whole > analysis.m || generic_all.rows() == 0) generic_all = matrices[s].block(all_rows, all_columns);
+    analysis.m = std::max(analysis.m, whole);
   }
 
   std::vector<int> order = preferred_rows;
   for (const int row : all_rows) {
     if (std::ranges::find(order, row) == order.end()) order.push_back(row);
   }
-  std::vector<int> every(partition.passive.size());
-  std::iota(every.begin(), every.end(), 0);
+  const auto is_independent = [&](const Matrix<Exact>& of, const std::vector<int>& rows) {
+    std::vector<int> every(static_cast<std::size_t>(of.cols()));
+    std::iota(every.begin(), every.end(), 0);
+    return rank_of(of.block(rows, every), zero_tolerance) == static_cast<int>(rows.size());
+  };
+  std::vector<int> independent;  // of all columns; those of the passive ones come first
+  const auto with = [](std::vector<int> rows, int row) {
+    rows.push_back(row);
+    return rows;
+  };
   for (const int row : order) {
-    std::vector<int> tried = analysis.leading_rows;
-    tried.push_back(row);
-    if (rank_of(generic.block(tried, every), zero_tolerance) == static_cast<int>(tried.size()))
-      analysis.leading_rows = tried;
+    if (is_independent(generic, with(analysis.leading_rows, row))) analysis.leading_rows.push_back(row);
+  }
+  independent = analysis.leading_rows;
+  for (const int row : order) {
+    if (std::ranges::find(independent, row) != independent.end()) continue;
+    const bool binds = is_independent(generic_all, with(independent, row));
+    if (binds) independent.push_back(row);
+    (binds ? analysis.conditions : analysis.redundant).push_back(row);
   }
 
   const Dependence on = dependence(
@@ -173,7 +222,8 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
   for (std::size_t s = 0; s < samples.size(); ++s) {
     const Matrix<Exact> locked = matrices[s].block(all_rows, partition.passive);
     if (const int rank = rank_of(locked, drop_tolerance); rank < analysis.m_locked) {
-      drops.push_back({places_that_matter(samples[s], on, true), rank});
+      drops.push_back({places_that_matter(samples[s], on, true), rank,
+                       dependent_rows(nested(to_double(locked)), analysis.leading_rows)});
       continue;
     }
     const SingularValues svd = singular_values(to_double(locked));
@@ -197,7 +247,7 @@ RankAnalysis analyse_ranks(const MechanismDescription& description, const std::v
       const bool is_earlier = &other < &drops[i] && other.places.size() == drops[i].places.size();
       return (is_shorter || is_earlier) && drops[i].follows_from(other);
     });
-    if (!is_implied) analysis.drops.push_back({text_of(drops[i].places), drops[i].rank});
+    if (!is_implied) analysis.drops.push_back({text_of(drops[i].places), drops[i].rank, drops[i].rows});
   }
   return analysis;
 }

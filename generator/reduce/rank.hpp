@@ -21,14 +21,22 @@ struct RankAnalysis {
   struct Drop {
     std::string where;  // "r1 = pi/2"; only coordinates on which (A, B_p) depends are named
     int rank;
+    std::vector<int> rows;  // that depend on each other there, and only there
   };
-  std::vector<Drop> drops;     // special configurations at which (A, B_p) loses rank
-  double worst_condition = 1;  // of (A, B_p) over the samples that keep the rank
-  std::string worst_at;        // empty where (A, B_p) is the same everywhere
+  std::vector<int> redundant;   // rows that others imply whatever moves: rows - m of them
+  std::vector<int> conditions;  // rows that (A, B_p) implies: they bind the imposed motion, m - m° of them
+  std::vector<Drop> drops;      // special configurations at which (A, B_p) loses rank
+  double worst_condition = 1;   // of (A, B_p) over the samples that keep the rank
+  std::string worst_at;         // empty where (A, B_p) is the same everywhere
 
   /// e.g. "H nonzero, lambda_stat = 0 (dynamic)"
   [[nodiscard]] std::string table_I_class(const Partition& partition) const;
 };
+
+/// Rows that take part in a dependency that exists at A alone, not where the rank is `rank`: the combinations
+/// u with u A = 0 beyond those of rows that are redundant everywhere.
+/// @param leading  rows that are independent almost everywhere
+std::vector<int> dependent_rows(const std::vector<std::vector<double>>& A, const std::vector<int>& leading);
 
 /// @param preferred_rows  rows to take as the leading ones, may be empty
 RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters,

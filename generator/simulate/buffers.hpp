@@ -33,9 +33,12 @@ class Buffers {
         lambda = blocks_["lambda"];
   Block kinetic = blocks_["kinetic"], gravity = blocks_["gravity"], elastic = blocks_["elastic"],
         dissipated_power = blocks_["dissipated_power"], applied_power = blocks_["applied_power"];
-  Block A = blocks_["A"], B_p = blocks_["B_p"], B_a = blocks_["B_a"],
-        velocity_residual = blocks_["velocity_residual"];
+  Block A = blocks_["A"], B_p = blocks_["B_p"], B_a = blocks_["B_a"], bias = blocks_["bias"],
+        lambda_stat_basis = blocks_["lambda_stat_basis"];
+  Block velocity_residual = blocks_["velocity_residual"],
+        acceleration_residual = blocks_["acceleration_residual"];
   Block Phi = blocks_["Phi"], Phi_q = blocks_["Phi_q"];
+  Block chart_quality = blocks_["quality"];
 };
 
 }  // namespace anholon

@@ -122,6 +122,9 @@ bool integrate_gauss(Field&& field, integrate::State<G>& state, typename G::Scal
     const Vector y_end = state.y + increment;
     carry = (y_end - state.y) - increment;
     state.y = y_end;
+    if constexpr (requires { field.correct(t_begin, state.g, state.y); }) {
+      if (field.correct(t_begin + S(step + 1) * h, state.g, state.y)) carry.setZero();
+    }
   }
   state.t = t_end;
   return true;

@@ -101,7 +101,8 @@ void meet_position_conditions(const Scene& scene, const SceneProgram& program,
         "give an initial pose and coordinates at which they touch, or nearly so");
 }
 
-/// State at t = 0; y has room for the quadratures.
+/// State at t = 0, in the chart that is best there, in which it leaves the runner; y has room for the
+/// quadratures.
 template <class G>
 integrate::State<G> initial_state(const Scene& scene, const SceneProgram& program,
                                   Runner<typename G::Scalar>& run, int quadratures) {
@@ -118,9 +119,12 @@ integrate::State<G> initial_state(const Scene& scene, const SceneProgram& progra
     if (kept[static_cast<std::size_t>(index)] >= 0 && at != program.reduced.passive.end())
       state.y(at - program.reduced.passive.begin() - program.original.n) = real(value);
   }
+  run.impose(S(0));
+  run.start_at_wanted_motion(state.y);
   meet_position_conditions<G>(scene, program, run, state);
   run.impose(S(0));
   run.set(state.g, state.y);
+  run.use_chart(run.best_chart_here());
   initial_velocities(scene, program, run);
   const Eigen::Index shape = run.size() - static_cast<Eigen::Index>(run.b.nu.size());
   for (std::size_t i = 0; i < run.b.nu.size(); ++i)

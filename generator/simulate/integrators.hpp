@@ -27,6 +27,11 @@ struct Field {
   }
   bool correct(double t, G& g, Eigen::VectorXd& y) const { return correction && correction(t, g, y); }
 };
+/// Of anything that an integrator of the runtime takes as a field with corrections.
+template <class G, class From>
+Field<G> field_with_corrections(const From& from) {
+  return {from, [from](double t, G& g, Eigen::VectorXd& y) { return from.correct(t, g, y); }};
+}
 template <class G>
 using DenseObserver = std::function<void(const integrate::DenseStep<G>&)>;
 template <class G>

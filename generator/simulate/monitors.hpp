@@ -5,6 +5,7 @@
 // imposed motion.
 
 #include <string>
+#include <vector>
 
 #include "simulate/runner.hpp"
 
@@ -29,7 +30,20 @@ class EnergyMonitor {
 /// without rows.
 double constraint_residual(const SceneProgram& program, Runner<double>& run);
 
-/// Why an over-constrained system cannot follow the imposed motion at time t; empty where it can.
-std::string incompatibility(Runner<double>& run, double t);
+/// The conditions that an over-constrained system puts on its imposed motion, one for each row that the
+/// leading rows of (A, B_p) imply.
+class CompatibilityMonitor {
+ public:
+  CompatibilityMonitor(const SceneProgram& program, Runner<double>& run);
+  /// Which row the imposed rates or accelerations violate at the state in the buffers; empty where none.
+  /// Needs rates().
+  std::string violation(double t);
+
+ private:
+  const SceneProgram& program_;
+  Runner<double>& run_;
+  std::vector<int> implied_;                    // rows
+  std::vector<double> rate_size_, accel_size_;  // of the terms of each condition, the largest so far
+};
 
 }  // namespace anholon

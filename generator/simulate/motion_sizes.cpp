@@ -33,6 +33,9 @@ std::vector<char> angles_of_shape(const SceneProgram& program) {
   };
   for (const int i : program.original.passive) add(i);
   for (const int i : program.driven) add(i);
+  if (program.projects_motion) {
+    for (const int i : program.reduced.active) add(i);
+  }
   return angles;
 }
 
@@ -52,7 +55,7 @@ std::vector<double> MotionSizes::of_velocity_state() const {
 }
 
 MotionSizes::MotionSizes(const SceneProgram& program, const Runner<double>& run)
-    : shape(run.b.r_p.size() + program.driven.size(), 1),
+    : shape(run.b.r_p.size() + run.carried_coordinates().size(), 1),
       nu(run.b.nu.size(), 1),
       velocities(program.reduced.passive.size(), 1) {}
 
@@ -79,7 +82,7 @@ void MotionSizesCollector::observe(double turn, double displacement, double work
   seen_.angle = std::max(seen_.angle, std::min(turn, 1.0));
   seen_.length = std::max(seen_.length, displacement);
   widen(seen_.shape, b.r_p);
-  widen(seen_.shape, run_.driven_coordinates(), b.r_p.size());
+  widen(seen_.shape, run_.carried_coordinates(), b.r_p.size());
   widen(seen_.nu, b.nu);
   widen(seen_.velocities, b.eta);
   widen(seen_.velocities, b.r_p_dot, b.eta.size());

@@ -58,13 +58,15 @@ class MotionSizesCollector {
 /// may have been larger than the quantity itself
 bool overestimated(const MotionSizes& used, const MotionSizes& seen);
 
-/// Sizes along the motion from `initial`, whose y has the quadratures; all 1 where the coarse run fails.
+/// Sizes along the motion from `initial`, whose y has the quadratures; all 1 where the coarse run fails. The
+/// runner is left in the chart of `initial`.
 template <class G>
 MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const integrate::State<G>& initial,
                          double duration) {
   constexpr double tolerance = 1e-3;
   constexpr int most_passes = 6;  // each may find the motion smaller than the tolerance of the one before
   MotionSizes sizes(program, run);
+  const std::size_t chart = run.chart();
   for (int pass = 0; pass < most_passes; ++pass) {
     MotionSizesCollector collector(program, run);
     const auto observe = [&](double t, const G& g, const auto& y) {
@@ -78,14 +80,16 @@ MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const
       collector.observe(turn, displacement, y(y.size() - 2), y(y.size() - 1));
     };
     integrate::State<G> state = initial;
+    run.use_chart(chart);
     observe(0.0, state.g, state.y);
     const std::vector<double> y_sizes = sizes.of_state();
     auto options = relative_tolerance(tolerance, sizes, y_sizes);
     options.max_step = duration / 20;  // so that the run sees the motion
     options.max_steps = 100'000;
-    const auto outcome =
-        integrate_adaptive<G>(Field<G>{run.template field_of<G>(), {}}, state, duration, options,
-                              [&](const auto& step) { observe(step.t_end(), step.g_end(), step.y_end()); });
+    const auto outcome = integrate_adaptive<G>(
+        field_with_corrections<G>(run.template charted_field<G>()), state, duration, options,
+        [&](const auto& step) { observe(step.t_end(), step.g_end(), step.y_end()); });
+    run.use_chart(chart);
     if (!outcome) return {program, run};
     const MotionSizes seen = collector.sizes();
     const bool again = overestimated(sizes, seen);

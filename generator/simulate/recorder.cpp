@@ -20,8 +20,14 @@ const char* multiplier_unit(const RowDescription& row) {
 
 }  // namespace
 
-Recorder::Recorder(const SceneProgram& program, Runner<double>& run, SimulationResult& result)
-    : program_(program), run_(run), result_(result) {
+Recorder::Recorder(const SceneProgram& program, Runner<double>& run, SimulationResult& result,
+                   const RowObserver& observer)
+    : program_(program),
+      run_(run),
+      result_(result),
+      observer_(observer),
+      compatibility_(program, run),
+      rank_(program, run) {
   const Buffers<double>& b = run.b;
   const Partition& p = program.original;
   const GroupKind group = program.model.group;
@@ -65,6 +71,8 @@ Recorder::Recorder(const SceneProgram& program, Runner<double>& run, SimulationR
   for (const int i : p.active) rate(i, is_driven(i) ? b.r_d_dot[driven++] : b.r_a_dot[motion++]);
   for (std::size_t i = 0; i < b.nu.size(); ++i) column(fmt::format("nu_{} [mixed]", i + 1), b.nu[i]);
 
+  if (run.charts() > 1) column("chart [1]", run.chart_number);
+
   motion = driven = 0;
   for (const int i : p.active) {
     if (!is_driven(i) && !run.torques) continue;
@@ -92,7 +100,8 @@ void Recorder::observe() {
   result_.largest_energy = energy_.scale();
   residual_ = constraint_residual(program_, run_);
   result_.constraint_residual = std::max(result_.constraint_residual, residual_);
-  if (result_.violation.empty()) result_.violation = incompatibility(run_, run_.b.t[0]);
+  if (result_.violation.empty()) result_.violation = compatibility_.violation(run_.b.t[0]);
+  if (!result_.violation.empty()) run_.stop();
 }
 
 void Recorder::add_row() {
@@ -101,6 +110,7 @@ void Recorder::add_row() {
   std::vector<double> row;
   for (const double* source : sources_) row.push_back(*source);
   result_.rows.push_back(std::move(row));
+  if (observer_) observer_(program_, run_);
 }
 
 }  // namespace anholon

@@ -10,6 +10,7 @@
 
 #include "anholon/monitors.hpp"
 #include "simulate/monitors.hpp"
+#include "simulate/rank_monitor.hpp"
 #include "simulate/runner.hpp"
 #include "simulate/simulation.hpp"
 
@@ -18,7 +19,8 @@ namespace anholon {
 class Recorder {
  public:
   /// Names the columns of `result`, to which rows are added.
-  Recorder(const SceneProgram& program, Runner<double>& run, SimulationResult& result);
+  Recorder(const SceneProgram& program, Runner<double>& run, SimulationResult& result,
+           const RowObserver& observer = {});
   Recorder(const Recorder&) = delete;  // columns point into it
   Recorder& operator=(const Recorder&) = delete;
   ~Recorder() = default;
@@ -31,6 +33,8 @@ class Recorder {
     result_.position_residual = std::max(result_.position_residual, position_residual);
     run_.impose(t);
     run_.set(g, y);
+    result_.departure = std::max(result_.departure, run_.departure());
+    if (result_.violation.empty()) result_.violation = rank_.passed(t, g, y).value_or("");
     work_ = y(y.size() - 2), dissipated_ = y(y.size() - 1);
     result_.orthonormality = std::max(result_.orthonormality, orthonormality_defect(Eigen::Matrix3d(g.R())));
     observe();
@@ -50,8 +54,11 @@ class Recorder {
   const SceneProgram& program_;
   Runner<double>& run_;
   SimulationResult& result_;
+  RowObserver observer_;
   std::vector<const double*> sources_;  // of the columns
   EnergyMonitor energy_;
+  CompatibilityMonitor compatibility_;
+  RankMonitor rank_;
   double potential_ = 0, work_ = 0, dissipated_ = 0, defect_ = 0, residual_ = 0, position_residual_ = 0;
 };
 

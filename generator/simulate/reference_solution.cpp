@@ -43,14 +43,17 @@ ReferenceSolution reference_solution(const Scene& scene, const SceneProgram& pro
   with_group<long double>(program.model.group, [&]<class G>(std::type_identity<G>) {
     Runner<long double> run(scene, program, &program.derivation->program);
     const integrate::State<G> initial = initial_state<G>(scene, program, run, 0);
-    const auto field = run.template field_of<G>();
+    const auto field = run.template charted_field<G>();
+    const std::size_t chart = run.chart();
     std::vector<long double> coarser;
     for (long steps = first_steps; steps <= most_steps; steps *= 2) {
       integrate::State<G> state = initial;
+      run.use_chart(chart);
       if (!integrate_gauss<stages>(field, state, static_cast<long double>(scene.duration), steps)) {
         coarser.clear();
         continue;
       }
+      run.express_in_best_chart(state);
       std::vector<long double> finer = final_values(state);
       if (!coarser.empty()) {
         const double difference = state_error(finer, coarser, sizes);

@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
+#include "anholon/charts.hpp"
 #include "simulate/bound_call.hpp"
 #include "simulate/buffers.hpp"
 #include "simulate/scene_program.hpp"
@@ -15,9 +19,16 @@
 
 namespace anholon {
 
-/// y = (r_p, r_d, nu), then work and dissipated energy where y has room for them.
+/// The functions that know nu.
+struct ChartCalls {
+  Call imposed_torque, rates, kinematics, torques, multipliers, reduced_velocities, compatibility,
+      projected_accelerations;
+};
+
+/// y = (r_p, r_d, nu), then work and dissipated energy where y has room for them; behind r_d the
+/// motion-driven coordinates where their motion is projected.
 template <class S>
-class Runner {
+class Runner : public ChartCalls {
  public:
   template <class Code>
   Runner(const Scene& scene, const SceneProgram& program, const Code& code)
@@ -38,14 +49,20 @@ class Runner {
           std::ranges::find(program.driven, program.original.active[i]) != program.driven.end();
       (driven ? driven_at_ : motion_at_).push_back(i);
     }
-    imposed = bound(code, "imposed", b), imposed_torque = bound(code, "imposed_torque", b),
-    rates = bound(code, "rates", b), kinematics = bound(code, "kinematics", b),
-    torques = bound(code, "inverse_torques", b);
-    multipliers = bound(code, "multipliers", b), constraints = bound(code, "constraints", b),
-    energies = bound(code, "energies", b);
-    reduced_velocities = bound(code, "reduced_velocities", b),
-    compatibility = bound(code, "compatibility", b);
-    position_conditions = bound(code, "position_conditions", b);
+    carried_at_ = driven_at_;
+    if (program.projects_motion) carried_at_.insert(carried_at_.end(), motion_at_.begin(), motion_at_.end());
+    imposed = bound(code, "imposed", b), constraints = bound(code, "constraints", b),
+    energies = bound(code, "energies", b), position_conditions = bound(code, "position_conditions", b);
+    chart_quality = bound(code, "chart_quality", b), projected_rates = bound(code, "projected_rates", b);
+    for (std::size_t c = 0; c < program.derivation->reduction.charts.size(); ++c) {
+      const std::string chart = chart_prefix(c);
+      charts_.push_back({bound(code, chart + "imposed_torque", b), bound(code, chart + "rates", b),
+                         bound(code, chart + "kinematics", b), bound(code, chart + "inverse_torques", b),
+                         bound(code, chart + "multipliers", b), bound(code, chart + "reduced_velocities", b),
+                         bound(code, chart + "compatibility", b),
+                         bound(code, chart + "projected_accelerations", b)});
+    }
+    use_chart(0);
     if (scene.motion_table) table_.emplace(scene, program);
   }
 
@@ -54,6 +71,7 @@ class Runner {
     b.t[0] = t;
     if (imposed) imposed();
     if (table_) (*table_)(t, b);
+    if (projected_rates) return;  // follows from the position: set()
     for (std::size_t i = 0; i < motion_at_.size(); ++i)
       b.r_a[motion_at_[i]] = b.r_m[i], b.r_a_dot[i] = b.r_m_dot[i], b.r_a_ddot[i] = b.r_m_ddot[i];
   }
@@ -70,23 +88,75 @@ class Runner {
     if constexpr (requires { g.theta(); }) b.g[0] = g.x(), b.g[1] = g.y(), b.g[2] = g.theta();
     Eigen::Index next = 0;
     for (S& x : b.r_p) x = y(next++);
-    for (const std::size_t i : driven_at_) b.r_a[i] = y(next++);
+    for (const std::size_t i : carried_at_) b.r_a[i] = y(next++);
     for (S& x : b.nu) x = y(next++);
+    if (projected_rates) projected_rates(), projected_accelerations();
     if (!imposed_torque) return;
     imposed_torque();
     std::vector<S>& tau = motion_at_.empty() ? b.tau_a : b.tau_d;
     for (std::size_t i = 0; i < driven_at_.size(); ++i) tau[i] = b.torque[i];
   }
 
-  /// Torque-driven coordinates, in the order of y.
-  [[nodiscard]] std::vector<S> driven_coordinates() const {
-    std::vector<S> r_d;
-    for (const std::size_t i : driven_at_) r_d.push_back(b.r_a[i]);
-    return r_d;
+  /// How many bases there are for the admissible velocities, and which one nu means now.
+  [[nodiscard]] std::size_t charts() const { return charts_.size(); }
+  [[nodiscard]] std::size_t chart() const { return static_cast<std::size_t>(chart_number) - 1; }
+  void use_chart(std::size_t chart) {
+    chart_number = static_cast<double>(chart + 1);
+    static_cast<ChartCalls&>(*this) = charts_[chart];
+  }
+  /// The chart that is best at the position in the buffers.
+  [[nodiscard]] std::size_t best_chart_here() {
+    if (!chart_quality) return 0;
+    chart_quality();
+    return best_chart(std::span<const S>(b.chart_quality));
+  }
+  /// Goes on in another chart where the present one has become poor; the velocities stay, nu in y changes.
+  /// @return whether it did. Needs impose().
+  template <class G, class Vector>
+  bool change_chart(const G& g, Vector& y) {
+    if (!chart_quality) return false;
+    set(g, y);
+    chart_quality();
+    const std::size_t next = next_chart(std::span<const S>(b.chart_quality), chart());
+    if (next == chart()) return false;
+    move_to_chart(next, y);
+    return true;
+  }
+  /// Expresses the velocities in a chart. Needs set().
+  template <class Vector>
+  void move_to_chart(std::size_t next, Vector& y) {
+    if (next == chart()) return;
+    kinematics();
+    use_chart(next);
+    reduced_velocities();
+    const auto shape = static_cast<Eigen::Index>(b.r_p.size() + carried_at_.size());
+    for (std::size_t i = 0; i < b.nu.size(); ++i) y(shape + static_cast<Eigen::Index>(i)) = b.nu[i];
+  }
+
+  /// Coordinates of r_a that are part of the state, in the order of y: torque-driven ones, and those whose
+  /// motion is projected.
+  [[nodiscard]] std::vector<S> carried_coordinates() const {
+    std::vector<S> r;
+    for (const std::size_t i : carried_at_) r.push_back(b.r_a[i]);
+    return r;
+  }
+  /// Starts a projected motion where the wanted one is. Needs impose().
+  template <class Vector>
+  void start_at_wanted_motion(Vector& y) const {
+    if (!projected_rates) return;
+    const auto at = static_cast<Eigen::Index>(b.r_p.size() + driven_at_.size());
+    for (std::size_t i = 0; i < motion_at_.size(); ++i) y(at + static_cast<Eigen::Index>(i)) = b.r_m[i];
+  }
+  /// Largest distance of the motion-driven coordinates from what the scene wants, rad or m.
+  [[nodiscard]] S departure() const {
+    S largest = S(0);
+    for (std::size_t i = 0; i < motion_at_.size(); ++i)
+      largest = std::max(largest, std::abs(b.r_a[motion_at_[i]] - b.r_m[i]));
+    return largest;
   }
 
   /// Size of y without quadratures.
-  [[nodiscard]] int size() const { return static_cast<int>(b.r_p.size() + driven_at_.size()) + k_; }
+  [[nodiscard]] int size() const { return static_cast<int>(b.r_p.size() + carried_at_.size()) + k_; }
 
   template <class G, class Vector, class Tangent>
   void field(S t, const G& g, const Vector& y, Tangent& eta, Vector& y_dot) {
@@ -99,7 +169,14 @@ class Runner {
     Eigen::Index next = 0;
     for (const S& x : b.r_p_dot) y_dot(next++) = x;
     for (const S& x : b.r_d_dot) y_dot(next++) = x;
+    if (projected_rates) {
+      for (const S& x : b.r_a_dot) y_dot(next++) = x;
+    }
     for (const S& x : b.nu_dot) y_dot(next++) = x;
+    if (stopped_) {
+      eta.setConstant(std::numeric_limits<S>::quiet_NaN());
+      y_dot.setConstant(std::numeric_limits<S>::quiet_NaN());
+    }
     if (y.size() == next) return;
     if (energies) energies();
     y_dot(next++) = power() + b.applied_power[0];
@@ -111,6 +188,37 @@ class Runner {
   auto field_of() {
     return
         [this](S t, const G& g, const auto& y, auto& eta, auto& y_dot) { this->field(t, g, y, eta, y_dot); };
+  }
+
+  /// From now on the field is not finite, so that an integrator ends.
+  void stop() { stopped_ = true; }
+
+  /// The field with its changes of chart at the ends of steps.
+  template <class G>
+  struct ChartedField {
+    Runner& run;
+    template <class Vector, class Tangent>
+    void operator()(S t, const G& g, const Vector& y, Tangent& eta, Vector& y_dot) const {
+      run.field(t, g, y, eta, y_dot);
+    }
+    template <class Vector>
+    bool correct(S t, G& g, Vector& y) const {
+      if (run.charts() < 2) return false;
+      run.impose(t);
+      return run.change_chart(g, y);
+    }
+  };
+  template <class G>
+  ChartedField<G> charted_field() {
+    return {*this};
+  }
+  /// Writes the velocities of a state in the chart that is best there, so that final states can be compared.
+  template <class State>
+  void express_in_best_chart(State& state) {
+    if (charts() < 2) return;
+    impose(state.t);
+    set(state.g, state.y);
+    move_to_chart(best_chart_here(), state.y);
   }
 
   /// Power of imposed and computed torques, after rates().
@@ -125,9 +233,9 @@ class Runner {
   }
 
   Buffers<S> b;
-  Call imposed, imposed_torque, rates, kinematics, torques, multipliers, constraints, energies,
-      reduced_velocities, compatibility, position_conditions;
+  Call imposed, constraints, energies, position_conditions, chart_quality, projected_rates;
   long evaluations = 0;
+  double chart_number = 1;  // of the chart in use, for reports
 
  private:
   /// Components of the position that a program takes: those that the group leaves free, none of a planar
@@ -141,7 +249,9 @@ class Runner {
 
   const SceneProgram& program_;
   int k_;
-  std::vector<std::size_t> motion_at_, driven_at_;  // positions in r_a
+  std::vector<std::size_t> motion_at_, driven_at_, carried_at_;  // positions in r_a
+  bool stopped_ = false;
+  std::vector<ChartCalls> charts_;
   std::optional<TableMotion<S>> table_;
 };
 

@@ -10,7 +10,7 @@
 namespace anholon {
 
 std::vector<NodeId> scene_expressions(const Scene& scene, const SceneProgram& p,
-                                      const std::vector<Expr>& expressions) {
+                                      const std::vector<Expr>& expressions, std::size_t chart) {
   Program& program = p.derivation->program;
   Tape& from = *scene.model.tape;
   std::vector<Expr> inputs(from.inputs().size(), Expr(0));
@@ -25,7 +25,7 @@ std::vector<NodeId> scene_expressions(const Scene& scene, const SceneProgram& p,
   const auto velocity = [&](const std::string& name) {  // an output of the kinematics, or imposed
     for (const Function& f : program.functions) {
       for (const OutputBlock& b : f.outputs) {
-        if (f.name == "kinematics" && b.name == name) return b.nodes;
+        if (f.name == chart_prefix(chart) + "kinematics" && b.name == name) return b.nodes;
       }
     }
     return block(name);

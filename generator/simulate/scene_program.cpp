@@ -50,28 +50,32 @@ void add_imposed_torque(const Scene& scene, SceneProgram& p) {
   for (const ImposedTorque& t : entries_for(scene, p, scene.torques, p.driven, {}))
     torque.push_back(t.torque);
   const int size = static_cast<int>(torque.size());
-  p.derivation->program.functions.push_back(
-      {"imposed_torque",
-       "Torques on the torque-driven coordinates.",
-       {{"torque", "N m or N", "torque-driven coordinates", size, 1, scene_expressions(scene, p, torque)}},
-       ""});
+  for (std::size_t c = 0; c < p.derivation->reduction.charts.size(); ++c) {  // velocities are those of nu
+    p.derivation->program.functions.push_back({chart_prefix(c) + "imposed_torque",
+                                               "Torques on the torque-driven coordinates.",
+                                               {{"torque", "N m or N", "torque-driven coordinates", size, 1,
+                                                 scene_expressions(scene, p, torque, c)}},
+                                               ""});
+  }
 }
 
 /// Velocities and reduced accelerations by one program, so that what they share is computed once.
-void add_rates(SceneProgram& p) {
+void add_rates(SceneProgram& p, std::size_t chart) {
   Program& program = p.derivation->program;
-  Function rates{"rates", "Velocities and reduced accelerations for one evaluation of the field.", {}, ""};
+  const std::string prefix = chart_prefix(chart);
+  Function rates{
+      prefix + "rates", "Velocities and reduced accelerations for one evaluation of the field.", {}, ""};
   std::vector<NodeId> roots;
   for (const Function& f : program.functions) {
     for (const OutputBlock& b : f.outputs) {
       const bool velocity =
-          f.name == "kinematics" && (b.name == "eta" || b.name == "r_p_dot" || b.name == "r_d_dot");
-      if (!velocity && !(f.name == "forward_dynamics" && b.name == "nu_dot")) continue;
+          f.name == prefix + "kinematics" && (b.name == "eta" || b.name == "r_p_dot" || b.name == "r_d_dot");
+      if (!velocity && !(f.name == prefix + "forward_dynamics" && b.name == "nu_dot")) continue;
       rates.outputs.push_back(b);
       roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
     }
   }
-  p.operations = operations_per_call(program, roots).total();
+  p.operations = std::max(p.operations, operations_per_call(program, roots).total());
   if (!rates.outputs.empty()) program.functions.push_back(std::move(rates));
 }
 
@@ -85,6 +89,7 @@ SceneProgram make_program(const Scene& scene) {
   request.functions = {"kinematics",       "reduced_velocities", "constraints",
                        "forward_dynamics", "inverse_torques",    "multipliers",
                        "compatibility",    "energies",           "position_conditions"};
+  request.rates = scene.project_motion;
   p.derivation = derive(p.model, request);
   p.original = partition_of(p.model);
   p.reduced = partition_of(p.model, request.torque_driven);
@@ -93,7 +98,8 @@ SceneProgram make_program(const Scene& scene) {
   }
   add_imposed_torque(scene, p);
   add_imposed_motion(scene, p);
-  add_rates(p);
+  if (scene.project_motion) add_projection(p);
+  for (std::size_t c = 0; c < p.derivation->reduction.charts.size(); ++c) add_rates(p, c);
   return p;
 }
 

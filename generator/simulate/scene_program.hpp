@@ -16,15 +16,23 @@ namespace anholon {
 struct SceneProgram {
   Model model;  // specialised
   std::unique_ptr<Derivation> derivation;
-  Partition original, reduced;  // all active apart; torque-driven ones with the passive
-  std::vector<int> driven;      // torque-driven velocity indices
-  int operations = 0;           // of one evaluation of the field
+  Partition original, reduced;   // all active apart; torque-driven ones with the passive
+  std::vector<int> driven;       // torque-driven velocity indices
+  bool projects_motion = false;  // the imposed rates are moved to compatible ones: r_a is part of the state
+  int operations = 0;            // of one evaluation of the field
 };
 
 SceneProgram make_program(const Scene& scene);
 
-/// Nodes of the program for expressions of the scene. Velocities are those that nu and r_a_dot mean.
+/// Functions `projected_rates` and `projected_accelerations`: from the wanted rates r_m_dot(t) to the nearest
+/// that are compatible where the robot is, and their exact time derivative,
+///
+///   r_a_dot = r_m_dot - C^T (C C^T)^-1 C r_m_dot,   C = N^T B_a.
+void add_projection(SceneProgram& program);
+
+/// Nodes of the program for expressions of the scene. Velocities are those that nu and r_a_dot mean in a
+/// chart.
 std::vector<NodeId> scene_expressions(const Scene& scene, const SceneProgram& program,
-                                      const std::vector<Expr>& expressions);
+                                      const std::vector<Expr>& expressions, std::size_t chart = 0);
 
 }  // namespace anholon

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "check/compile_cache.hpp"
@@ -15,12 +16,27 @@
 #include "simulate/integrators.hpp"
 #include "simulate/motion_sizes.hpp"
 #include "simulate/position_keeper.hpp"
+#include "simulate/rank_monitor.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/runner.hpp"
 #include "simulate/scene_program.hpp"
 
 namespace anholon {
 namespace {
+
+/// Why an integration failed, if an instant lies here or within the next step that no motion passes.
+template <class G>
+std::optional<std::string> obstacle_ahead(const SceneProgram& program, Runner<double>& run,
+                                          const integrate::State<G>& state, double step) {
+  constexpr double close = 1e-5;  // steps shrink towards such an instant until time has no more digits
+  RankMonitor monitor(program, run);
+  run.impose(state.t), run.set(state.g, state.y);
+  if (run.rates) run.rates();
+  if (auto here = monitor.obstacle(state.t, close)) return here;
+  monitor.passed(state.t, state.g, state.y);
+  run.impose(state.t + step), run.set(state.g, state.y);
+  return monitor.passed(state.t + step, state.g, state.y);
+}
 
 /// Dormand-Prince over the whole duration: dense output at the wanted times, or rows at its own steps.
 template <class G>
@@ -76,7 +92,7 @@ integrate::Result<double> integrate_with_fixed_step(const Scene& scene, const Fi
           progress("integrating", now);
         });
     total.accepted_steps += part.accepted_steps, total.evaluations += part.evaluations;
-    total.status = part.status;
+    total.status = part.status, total.next_step = part.next_step;
     if (!part) break;
   }
   return total;
@@ -96,7 +112,8 @@ void require_duration(const Scene& scene) {
     throw ModelError(scene.where, "the scene has no duration", "write how long it lasts, in s: duration = 5");
 }
 
-SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progress) {
+SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progress,
+                                const RowObserver& observer) {
   require_duration(scene);
   const Progress progress = wanted_progress ? wanted_progress : [](const char*, double) {};
   progress("deriving", 0);
@@ -113,9 +130,18 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progr
     PositionKeeper<G> keeper(program, run);
     keeper.start(0.0, state.g, state.y);
     Field<G> field{run.template field_of<G>(), {}};
-    if (!keeper.empty())
-      field.correction = [&keeper](double t, G& g, Eigen::VectorXd& y) { return keeper(t, g, y); };
-    Recorder recorder(program, run, result);
+    result.charts = run.charts();
+    result.projected = program.projects_motion;
+    if (!keeper.empty() || run.charts() > 1) {
+      field.correction = [&keeper, &result, charted = run.template charted_field<G>()](double t, G& g,
+                                                                                       Eigen::VectorXd& y) {
+        const bool moved = keeper(t, g, y);
+        const bool changed = charted.correct(t, g, y);
+        if (changed) result.chart_changes.push_back(t);
+        return moved || changed;
+      };
+    }
+    Recorder recorder(program, run, result, observer);
     recorder.record(0.0, state.g, state.y, keeper.residual(0.0, state.g, state.y));
     if (!result.violation.empty()) {
       result.status = result.violation;
@@ -134,7 +160,10 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progr
     result.steps = outcome.accepted_steps, result.rejected = outcome.rejected_steps,
     result.evaluations = outcome.evaluations;
     result.status = integrate::name(outcome.status);
-    if (!outcome) result.status += fmt::format(" at t = {:.6g} s", state.t);
+    if (!outcome) {
+      const auto obstacle = obstacle_ahead(program, run, state, outcome.next_step);
+      result.status = obstacle.value_or(fmt::format("{} at t = {:.6g} s", result.status, state.t));
+    }
     if (!result.violation.empty()) result.status = result.violation;
     result.finished = outcome && result.violation.empty();
     run.impose(state.t), run.set(state.g, state.y);

@@ -28,14 +28,25 @@ struct SimulationResult {
   int operations = 0;              // of one evaluation of the field
   bool was_cached = false;         // the compiled code
   std::string class_of_table_I;
+  std::size_t charts = 1;             // of the kernel
+  bool projected = false;             // the imposed motion, to a compatible one
+  double departure = 0;               // largest distance of r_a from what the scene wants [rad or m]
+  std::vector<double> chart_changes;  // times at which the motion went on in another chart [s]
   std::string violation;  // the first compatibility condition that the imposed motion violates, and when
 };
 
 /// Told what is being done, and the time that the motion has reached [s]; called at every step.
 using Progress = std::function<void(const char* stage, double t)>;
 
+struct SceneProgram;
+template <class S>
+class Runner;
+/// Told of each row of the trajectory, with the state in the buffers.
+using RowObserver = std::function<void(const SceneProgram& program, Runner<double>& run)>;
+
 /// @throws ModelError, CompileError
-SimulationResult simulate_scene(const Scene& scene, const Progress& progress = {});
+SimulationResult simulate_scene(const Scene& scene, const Progress& progress = {},
+                                const RowObserver& observer = {});
 
 /// @throws ModelError where the scene has no duration
 void require_duration(const Scene& scene);

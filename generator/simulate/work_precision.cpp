@@ -52,6 +52,8 @@ WorkPrecision work_precision(const Scene& scene,
                              const std::function<void(const WorkPrecisionPoint&)>& on_point,
                              const Ladder& ladder) {
   require_duration(scene);
+  if (scene.project_motion)
+    throw UnsupportedError("work-precision needs a motion that is given, not one that is projected");
   const SceneProgram program = make_program(scene);
   const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
   WorkPrecision result;
@@ -62,8 +64,15 @@ WorkPrecision work_precision(const Scene& scene,
     const ReferenceSolution reference = reference_solution(scene, program, sizes);
     result.reference_steps = reference.steps, result.reference_error = reference.own_error;
     const integrate::State<G> initial = initial_state<G>(scene, program, run, 0);
+    const std::size_t chart = run.chart();
     RecursionDynamics recursion(program, run);
     const integrate::State<G> expanded = recursion.expanded(initial);
+    const auto charted = field_with_corrections<G>(run.template charted_field<G>());
+    const Field<G> generated{[&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
+                               if (t == 0) run.use_chart(chart);  // each integration starts there
+                               charted.rates(t, g, y, eta, y_dot);
+                             },
+                             charted.correction};
     std::vector<double> reduced_sizes = sizes.of_state();
     reduced_sizes.resize(static_cast<std::size_t>(initial.y.size()));  // no quadratures here
     const std::vector<double> expanded_sizes = sizes.of_velocity_state();
@@ -81,9 +90,10 @@ WorkPrecision work_precision(const Scene& scene,
       integrate::State<G> state;
       auto options = relative_tolerance(tolerance, sizes, reduced_sizes);
       options.max_steps = 100'000'000;
-      add(measured<G>("generated", tolerance, initial, Field<G>{run.template field_of<G>(), {}}, options,
-                      scene.duration, state),
-          state);
+      const WorkPrecisionPoint by_code =
+          measured<G>("generated", tolerance, initial, generated, options, scene.duration, state);
+      run.express_in_best_chart(state);
+      add(by_code, state);
       if (!ladder.recursion) continue;
       if (expected_seconds > enough_seconds) {
         add({"recursion", tolerance, 0, 0, 0, "left out: too long"}, initial);
@@ -97,7 +107,10 @@ WorkPrecision work_precision(const Scene& scene,
       const WorkPrecisionPoint point =
           measured<G>("recursion", tolerance, expanded, field, options, scene.duration, state);
       expected_seconds = growth * point.cpu_seconds;
-      add(point, recursion.reduced(state));
+      run.use_chart(chart);
+      integrate::State<G> reduced = recursion.reduced(state);
+      run.express_in_best_chart(reduced);
+      add(point, reduced);
     }
   });
   return result;
