@@ -6,26 +6,25 @@
 //
 //   group SE3: n = 6, s_p = 0, s_a = 0, rows = 3, m = 3, m_locked = 3
 //   Table I: H nonzero, lambda_stat = 0 (dynamic)
-//   kernel: denominator-free basis, content divided out, built on free velocities (Omega_X, Omega_Y, Omega_Z)
+//   kernel: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           2 add, 11 mul, 3 neg, 1 sqrt
-//   reduced_velocities   12 add, 21 mul, 3 div, 1 sqrt
+//   kinematics           2 add, 10 mul, 1 div, 3 neg, 1 sqrt
+//   reduced_velocities   none
 //   constraints          7 add, 26 mul, 3 div, 3 neg, 1 sqrt
 //   free_dynamics        6 add, 16 mul, 5 neg
-//   reduced_dynamics     17 add, 52 mul, 2 neg, 1 sqrt
-//   forward_dynamics     35 add, 78 mul, 4 div, 1 neg, 1 sqrt
-//   multipliers          13 add, 30 mul, 1 neg, 1 sqrt
+//   reduced_dynamics     11 add, 34 mul, 2 div, 1 neg, 1 sqrt
+//   forward_dynamics     31 add, 66 mul, 6 div, 1 neg, 1 sqrt
+//   multipliers          18 add, 40 mul, 1 div, 1 sqrt
 //   position_conditions  2 add, 8 mul, 2 div, 1 neg, 1 sqrt
 //   energies             5 add, 12 mul
 //   body_poses           none
-//   prepare              2 add, 2 mul, once per set of parameters
+//   prepare              3 add, 3 mul, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
 //   p (3) m: position of the reference body in the world
-//   nu (3) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-//     (Omega_X, Omega_Y, Omega_Z)
+//   nu (3) mixed: reduced velocities: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 //   eta (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
 //   nu_dot (3) mixed: derivative of nu
 //
@@ -108,26 +107,27 @@ struct Prepared {
   Real g;
   Real J_d;
   Real J_a;
-  Real k1;  // R * R
-  Real k2;  // J_d - J_a
-  Real k3;  // J_a - J_d
-  Real k4;  // m * k1
+  Real k1;  // J_d - J_a
+  Real k2;  // J_a - J_d
+  Real k3;  // m * R
+  Real k4;  // m * R * R
+  Real k5;  // k4 + J_a
 };
 
 /// To be called once per set of parameter values.
-/// operations: 2 add, 2 mul
+/// operations: 3 add, 3 mul
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
-  // kernel
-  const Real t1 = par.R * par.R;
-
   // disc: wrench
-  const Real t2 = par.J_d - par.J_a;
-  const Real t3 = par.J_a - par.J_d;
+  const Real t1 = par.J_d - par.J_a;
+  const Real t2 = par.J_a - par.J_d;
 
   // passive accelerations
-  const Real t4 = par.m * t1;
+  const Real t3 = par.m * par.R;
+  const Real t4 = par.R * par.R;
+  const Real t5 = par.m * t4;
+  const Real t6 = t5 + par.J_a;
 
   result.m = par.m;
   result.R = par.R;
@@ -137,18 +137,17 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k1 = t1;
   result.k2 = t2;
   result.k3 = t3;
-  result.k4 = t4;
+  result.k4 = t5;
+  result.k5 = t6;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
 /// route: kernel
-/// operations: 2 add, 11 mul, 3 neg, 1 sqrt
+/// operations: 2 add, 10 mul, 1 div, 3 neg, 1 sqrt
 /// @param[in]  par      made by prepare()
 /// @param[in]  R        (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (3) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (Omega_X, Omega_Y, Omega_Z)
+/// @param[in]  nu       (3) mixed: reduced velocities: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 /// @param[out] eta_out  (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
 /// @param[out] H        (6x3) mixed: kernel of (A, B_p), rows (eta, r_p)
 template <class Real>
@@ -164,106 +163,59 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t2 = R[6] * R[6];
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
+  const Real t5 = constant<Real>(1.0L) / t4;
+  const Real t6 = R[6] * t5;
+  const Real t7 = t6 * par.R;
+  const Real t8 = -t7;
+  const Real t9 = R[8] * t5;
+  const Real t10 = par.R * t9;
+  const Real t11 = -t10;
 
   // kernel
-  const Real t5 = par.R * R[8];
-  const Real t6 = t5 * nu[1];
-  const Real t7 = nu[0] * t4;
-  const Real t8 = nu[1] * t4;
-  const Real t9 = -t5;
-  const Real t10 = par.R * R[6];
-  const Real t11 = t10 * nu[1];
-  const Real t12 = -t11;
-  const Real t13 = nu[2] * t4;
-  const Real t14 = -t10;
-  const Real t15 = nu[2] * t10;
-  const Real t16 = nu[0] * t5;
-  const Real t17 = t15 - t16;
+  const Real t12 = t10 * nu[1];
+  const Real t13 = t7 * nu[2];
+  const Real t14 = t10 * nu[0];
+  const Real t15 = t13 - t14;
+  const Real t16 = t7 * nu[1];
+  const Real t17 = -t16;
 
-  eta_out[0] = t6;
-  eta_out[1] = t17;
-  eta_out[2] = t12;
-  eta_out[3] = t7;
-  eta_out[4] = t8;
-  eta_out[5] = t13;
+  eta_out[0] = t12;
+  eta_out[1] = t15;
+  eta_out[2] = t17;
+  eta_out[3] = nu[0];
+  eta_out[4] = nu[1];
+  eta_out[5] = nu[2];
   H[0] = constant<Real>(0.0L);
-  H[1] = t5;
+  H[1] = t10;
   H[2] = constant<Real>(0.0L);
-  H[3] = t9;
+  H[3] = t11;
   H[4] = constant<Real>(0.0L);
-  H[5] = t10;
+  H[5] = t7;
   H[6] = constant<Real>(0.0L);
-  H[7] = t14;
+  H[7] = t8;
   H[8] = constant<Real>(0.0L);
-  H[9] = t4;
+  H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
   H[12] = constant<Real>(0.0L);
-  H[13] = t4;
+  H[13] = constant<Real>(1.0L);
   H[14] = constant<Real>(0.0L);
   H[15] = constant<Real>(0.0L);
   H[16] = constant<Real>(0.0L);
-  H[17] = t4;
+  H[17] = constant<Real>(1.0L);
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
 /// route: kernel
-/// operations: 12 add, 21 mul, 3 div, 1 sqrt
+/// operations: none
 /// @param[in]  par     made by prepare()
-/// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  eta     (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
 /// @param[out] nu_out  (3) mixed: reduced velocities
 template <class Real>
-inline void reduced_velocities(const Prepared<Real>& par,
-                               const Real (&R)[9],
-                               const Real (&eta)[6],
-                               Real (&nu_out)[3]) noexcept {
-  using std::sqrt;
-  using detail::constant;
-  // joint angles
-  const Real t1 = R[8] * R[8];
-  const Real t2 = R[6] * R[6];
-  const Real t3 = t1 + t2;
-  const Real t4 = sqrt(t3);
-
-  // kernel
-  const Real t5 = par.R * R[8];
-  const Real t6 = eta[0] * t5;
-  const Real t7 = par.R * R[6];
-  const Real t8 = eta[2] * t7;
-  const Real t9 = t6 - t8;
-  const Real t10 = eta[4] * t4;
-  const Real t11 = t9 + t10;
-  const Real t12 = t5 * t5;
-  const Real t13 = t7 * t7;
-  const Real t14 = t12 + t13;
-  const Real t15 = t14 + t3;
-  const Real t16 = constant<Real>(1.0L) / t15;
-  const Real t17 = t11 * t16;
-  const Real t18 = t12 + t3;
-  const Real t19 = constant<Real>(1.0L) / t18;
-  const Real t20 = eta[3] * t4;
-  const Real t21 = eta[1] * t5;
-  const Real t22 = t20 - t21;
-  const Real t23 = t19 * t22;
-  const Real t24 = t5 * t7;
-  const Real t25 = t19 * t24;
-  const Real t26 = t13 + t3;
-  const Real t27 = t24 * t25;
-  const Real t28 = t26 - t27;
-  const Real t29 = constant<Real>(1.0L) / t28;
-  const Real t30 = eta[1] * t7;
-  const Real t31 = eta[5] * t4;
-  const Real t32 = t30 + t31;
-  const Real t33 = t25 * t22;
-  const Real t34 = t32 + t33;
-  const Real t35 = t29 * t34;
-  const Real t36 = t25 * t35;
-  const Real t37 = t23 + t36;
-
-  nu_out[0] = t37;
-  nu_out[1] = t17;
-  nu_out[2] = t35;
+inline void reduced_velocities(const Prepared<Real>&, const Real (&eta)[6], Real (&nu_out)[3]) noexcept {
+  nu_out[0] = eta[3];
+  nu_out[1] = eta[4];
+  nu_out[2] = eta[5];
 }
 
 /// Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot +
@@ -387,9 +339,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   // disc: wrench
   const Real t18 = par.m * t11;
   const Real t19 = -t18;
-  const Real t20 = par.k2 * t6;
+  const Real t20 = par.k1 * t6;
   const Real t21 = -t20;
-  const Real t22 = par.k3 * t17;
+  const Real t22 = par.k2 * t17;
   const Real t23 = -t22;
   const Real t24 = par.m * t5;
   const Real t25 = -t24;
@@ -442,12 +394,10 @@ inline void free_dynamics(const Prepared<Real>& par,
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
 /// route: closed form
-/// operations: 17 add, 52 mul, 2 neg, 1 sqrt
+/// operations: 11 add, 34 mul, 2 div, 1 neg, 1 sqrt
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (3) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (Omega_X, Omega_Y, Omega_Z)
+/// @param[in]  nu   (3) mixed: reduced velocities: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 /// @param[out] M_r  (3x3) mixed: reduced mass matrix, symmetric positive definite
 /// @param[out] f_r  (3) mixed: reduced forces
 template <class Real>
@@ -469,95 +419,76 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t6 = R[8] * nu[0];
   const Real t7 = t5 - t6;
 
-  // passive accelerations
-  const Real t8 = R[8] * R[6];
-  const Real t9 = par.k1 * t8;
-  const Real t10 = t9 * par.m;
-  const Real t11 = -t10;
-  const Real t12 = nu[0] * nu[0];
-  const Real t13 = nu[2] * nu[2];
-  const Real t14 = t12 + t13;
-  const Real t15 = par.k1 * t14;
-  const Real t16 = t15 * par.m;
-  const Real t17 = t12 * par.J_d;
-  const Real t18 = t16 + t17;
-  const Real t19 = R[8] * t18;
-  const Real t20 = nu[0] * nu[2];
-  const Real t21 = R[6] * t20;
-  const Real t22 = t21 * par.J_d;
-  const Real t23 = t19 - t22;
-  const Real t24 = R[7] * t23;
-  const Real t25 = t3 * nu[2];
-  const Real t26 = t25 * nu[1];
-  const Real t27 = par.k2 * t26;
-  const Real t28 = t24 - t27;
-  const Real t29 = t28 * t4;
-  const Real t30 = R[7] * R[8];
-  const Real t31 = t30 * par.g;
-  const Real t32 = t31 * par.R;
-  const Real t33 = par.m * t32;
-  const Real t34 = t29 + t33;
-  const Real t35 = t3 * par.J_d;
-  const Real t36 = t1 * par.k4;
-  const Real t37 = t35 + t36;
-  const Real t38 = par.k1 * t3;
-  const Real t39 = par.m * t38;
-  const Real t40 = t3 * par.J_a;
-  const Real t41 = t39 + t40;
-  const Real t42 = R[7] * R[6];
-  const Real t43 = t42 * par.g;
-  const Real t44 = t43 * par.R;
-  const Real t45 = t44 * par.m;
-  const Real t46 = par.J_d * t13;
-  const Real t47 = t16 + t46;
-  const Real t48 = t47 * R[6];
-  const Real t49 = R[8] * t20;
-  const Real t50 = t49 * par.J_d;
-  const Real t51 = t48 - t50;
-  const Real t52 = R[7] * t51;
-  const Real t53 = t3 * nu[1];
-  const Real t54 = t53 * nu[0];
-  const Real t55 = t54 * par.k2;
-  const Real t56 = t52 - t55;
-  const Real t57 = t56 * t4;
-  const Real t58 = t45 + t57;
-  const Real t59 = -t58;
-  const Real t60 = par.k4 * t2;
-  const Real t61 = t35 + t60;
-  const Real t62 = R[8] * nu[2];
-  const Real t63 = nu[0] * R[6];
-  const Real t64 = t62 + t63;
-  const Real t65 = R[7] * nu[1];
-  const Real t66 = t64 - t65;
-  const Real t67 = par.k1 * t66;
-  const Real t68 = par.m * t67;
-  const Real t69 = t65 * par.J_a;
-  const Real t70 = t68 - t69;
-  const Real t71 = t7 * t4;
-  const Real t72 = t70 * t71;
+  // joint angles
+  const Real t8 = t3 * t4;
 
-  M_r[0] = t37;
+  // disc: acceleration
+  const Real t9 = nu[0] * nu[1];
+  const Real t10 = nu[2] * nu[1];
+  const Real t11 = nu[2] * nu[2];
+
+  // disc: wrench
+  const Real t12 = par.k1 * t10;
+
+  // passive accelerations
+  const Real t13 = t3 * t3;
+  const Real t14 = par.k3 / t13;
+  const Real t15 = R[7] * R[8];
+  const Real t16 = t1 * t11;
+  const Real t17 = nu[0] * t3;
+  const Real t18 = t5 * constant<Real>(2.0L);
+  const Real t19 = t18 - t6;
+  const Real t20 = R[8] * t19;
+  const Real t21 = t17 + t20;
+  const Real t22 = nu[0] * t21;
+  const Real t23 = t16 + t22;
+  const Real t24 = par.R * t23;
+  const Real t25 = par.g * t8;
+  const Real t26 = t24 + t25;
+  const Real t27 = t15 * t26;
+  const Real t28 = t14 * t27;
+  const Real t29 = t28 - t12;
+  const Real t30 = R[8] * R[6];
+  const Real t31 = par.k4 / t3;
+  const Real t32 = t30 * t31;
+  const Real t33 = -t32;
+  const Real t34 = t31 * t2;
+  const Real t35 = par.J_d + t34;
+  const Real t36 = par.k1 * t9;
+  const Real t37 = R[7] * R[6];
+  const Real t38 = t37 * t26;
+  const Real t39 = t38 * t14;
+  const Real t40 = t36 - t39;
+  const Real t41 = R[8] * nu[2];
+  const Real t42 = nu[0] * R[6];
+  const Real t43 = t41 + t42;
+  const Real t44 = t43 * t3;
+  const Real t45 = par.R * t7;
+  const Real t46 = t44 * t45;
+  const Real t47 = t46 * t14;
+  const Real t48 = t1 * t31;
+  const Real t49 = t48 + par.J_d;
+
+  M_r[0] = t49;
   M_r[1] = constant<Real>(0.0L);
-  M_r[2] = t11;
+  M_r[2] = t33;
   M_r[3] = constant<Real>(0.0L);
-  M_r[4] = t41;
+  M_r[4] = par.k5;
   M_r[5] = constant<Real>(0.0L);
-  M_r[6] = t11;
+  M_r[6] = t33;
   M_r[7] = constant<Real>(0.0L);
-  M_r[8] = t61;
-  f_r[0] = t34;
-  f_r[1] = t72;
-  f_r[2] = t59;
+  M_r[8] = t35;
+  f_r[0] = t29;
+  f_r[1] = t47;
+  f_r[2] = t40;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
 /// route: projected recursion
-/// operations: 35 add, 78 mul, 4 div, 1 neg, 1 sqrt
+/// operations: 31 add, 66 mul, 6 div, 1 neg, 1 sqrt
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (3) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (Omega_X, Omega_Y, Omega_Z)
+/// @param[in]  nu          (3) mixed: reduced velocities: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 /// @param[out] nu_dot_out  (3) mixed: derivative of nu
 /// @param[out] eta_dot     (6) m/s^2, rad/s^2: twist of the reference body in its own axes, linear part first
 template <class Real>
@@ -573,169 +504,153 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t2 = R[6] * R[6];
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
-  const Real t5 = constant<Real>(2.0L) * t4;
+  const Real t5 = constant<Real>(1.0L) / t4;
+  const Real t6 = R[6] * t5;
+  const Real t7 = t6 * par.R;
+  const Real t8 = constant<Real>(2.0L) * t4;
+  const Real t9 = R[8] * t5;
+  const Real t10 = par.R * t9;
 
   // kernel
-  const Real t6 = par.R * R[8];
-  const Real t7 = t6 * nu[1];
-  const Real t8 = nu[0] * t4;
-  const Real t9 = nu[1] * t4;
-  const Real t10 = nu[2] * t4;
-  const Real t11 = par.R * R[6];
-  const Real t12 = nu[2] * t11;
-  const Real t13 = nu[0] * t6;
-  const Real t14 = t12 - t13;
-  const Real t15 = t11 * nu[1];
+  const Real t11 = R[6] * nu[1];
+  const Real t12 = t10 * nu[1];
+  const Real t13 = t7 * nu[2];
+  const Real t14 = t10 * nu[0];
+  const Real t15 = t13 - t14;
+  const Real t16 = t7 * nu[1];
+  const Real t17 = R[8] * nu[1];
 
   // disc: acceleration
-  const Real t16 = par.g * R[6];
-  const Real t17 = R[7] * par.g;
-  const Real t18 = R[8] * par.g;
+  const Real t18 = par.g * R[6];
+  const Real t19 = R[7] * par.g;
+  const Real t20 = R[8] * par.g;
 
   // joint angles
-  const Real t19 = R[7] * t10;
-  const Real t20 = t9 * R[8];
-  const Real t21 = t19 - t20;
-  const Real t22 = t21 * R[6];
-  const Real t23 = t22 * constant<Real>(2.0L);
-  const Real t24 = t9 * R[6];
-  const Real t25 = R[7] * t8;
-  const Real t26 = t24 - t25;
-  const Real t27 = R[8] * t26;
-  const Real t28 = t27 * constant<Real>(2.0L);
-  const Real t29 = t23 + t28;
-  const Real t30 = t29 / t5;
+  const Real t21 = R[7] * nu[0];
+  const Real t22 = t11 - t21;
+  const Real t23 = t22 * t5;
+  const Real t24 = t22 * R[8];
+  const Real t25 = t24 * constant<Real>(2.0L);
+  const Real t26 = R[7] * nu[2];
+  const Real t27 = t26 - t17;
+  const Real t28 = t27 * R[6];
+  const Real t29 = t28 * constant<Real>(2.0L);
+  const Real t30 = t25 + t29;
+  const Real t31 = t30 / t8;
+  const Real t32 = t5 * t31;
+  const Real t33 = t32 / t4;
+  const Real t34 = t33 * R[8];
+  const Real t35 = t23 - t34;
+  const Real t36 = par.R * t35;
+  const Real t37 = nu[0] * t36;
+  const Real t38 = t27 * t5;
+  const Real t39 = t33 * R[6];
+  const Real t40 = t38 - t39;
+  const Real t41 = t40 * par.R;
+  const Real t42 = t41 * nu[1];
+  const Real t43 = nu[2] * t41;
+  const Real t44 = t36 * nu[1];
 
   // drift of the kernel
-  const Real t31 = t30 * nu[2];
-  const Real t32 = t21 * par.R;
-  const Real t33 = nu[2] * t32;
-  const Real t34 = par.R * t26;
-  const Real t35 = t34 * nu[0];
-  const Real t36 = t33 - t35;
-  const Real t37 = t32 * nu[1];
-  const Real t38 = t30 * nu[1];
-  const Real t39 = t34 * nu[1];
-  const Real t40 = nu[0] * t30;
+  const Real t45 = t43 - t37;
 
   // disc: acceleration
-  const Real t41 = t8 * t14;
-  const Real t42 = t7 * t9;
-  const Real t43 = t41 - t42;
-  const Real t44 = t43 - t37;
-  const Real t45 = t44 + t18;
-  const Real t46 = t8 * t9;
-  const Real t47 = t9 * t15;
-  const Real t48 = t10 * t14;
-  const Real t49 = t47 + t48;
-  const Real t50 = t39 - t49;
-  const Real t51 = t16 + t50;
-  const Real t52 = t7 * t10;
-  const Real t53 = t8 * t15;
-  const Real t54 = t52 + t53;
-  const Real t55 = t54 + t36;
-  const Real t56 = t17 + t55;
-  const Real t57 = t9 * t10;
+  const Real t46 = t12 * nu[2];
+  const Real t47 = nu[0] * t16;
+  const Real t48 = t46 + t47;
+  const Real t49 = t48 + t45;
+  const Real t50 = t19 + t49;
+  const Real t51 = nu[0] * nu[1];
+  const Real t52 = nu[2] * nu[1];
+  const Real t53 = t16 * nu[1];
+  const Real t54 = t15 * nu[2];
+  const Real t55 = t53 + t54;
+  const Real t56 = t44 - t55;
+  const Real t57 = t18 + t56;
+  const Real t58 = nu[0] * t15;
+  const Real t59 = t12 * nu[1];
+  const Real t60 = t58 - t59;
+  const Real t61 = t60 - t42;
+  const Real t62 = t61 + t20;
 
   // disc: wrench
-  const Real t58 = par.m * t51;
-  const Real t59 = par.k3 * t46;
-  const Real t60 = t31 * par.J_d;
-  const Real t61 = t59 + t60;
-  const Real t62 = t45 * par.m;
-  const Real t63 = par.m * t56;
-  const Real t64 = t38 * par.J_a;
-  const Real t65 = par.J_d * t40;
-  const Real t66 = par.k2 * t57;
-  const Real t67 = t65 + t66;
+  const Real t63 = par.k2 * t51;
+  const Real t64 = par.k1 * t52;
+  const Real t65 = par.m * t50;
+  const Real t66 = par.m * t57;
+  const Real t67 = par.m * t62;
 
   // reduced forces
-  const Real t68 = t63 * t11;
-  const Real t69 = t61 * t4;
-  const Real t70 = t68 + t69;
-  const Real t71 = t62 * t11;
-  const Real t72 = t58 * t6;
-  const Real t73 = t71 - t72;
-  const Real t74 = t64 * t4;
-  const Real t75 = t73 - t74;
-  const Real t76 = t63 * t6;
-  const Real t77 = t4 * t67;
-  const Real t78 = t76 - t77;
+  const Real t68 = t65 * t10;
+  const Real t69 = t68 - t64;
+  const Real t70 = t7 * t67;
+  const Real t71 = t10 * t66;
+  const Real t72 = t70 - t71;
+  const Real t73 = t7 * t65;
+  const Real t74 = t63 + t73;
 
   // disc: wrench
-  const Real t79 = par.J_d * t4;
-  const Real t80 = par.m * t6;
+  const Real t75 = par.m * t10;
 
   // reduced mass matrix
-  const Real t81 = t80 * t11;
-  const Real t82 = t79 * t4;
-  const Real t83 = t6 * t80;
-  const Real t84 = t82 + t83;
+  const Real t76 = t10 * t75;
+  const Real t77 = par.J_d + t76;
+  const Real t78 = t7 * t75;
 
   // disc: wrench
-  const Real t85 = par.J_a * t4;
-  const Real t86 = par.m * t11;
+  const Real t79 = t7 * par.m;
 
   // reduced mass matrix
-  const Real t87 = t85 * t4;
-  const Real t88 = t86 * t11;
-  const Real t89 = t88 + t83;
-  const Real t90 = t87 + t89;
+  const Real t80 = t7 * t79;
+  const Real t81 = t80 + t76;
+  const Real t82 = t81 + par.J_a;
 
   // reduced mass matrix
-  const Real t91 = t88 + t82;
+  const Real t83 = t80 + par.J_d;
 
   // reduced accelerations
-  const Real t92 = constant<Real>(1.0L) / t84;
-  const Real t93 = t81 * t92;
-  const Real t94 = t93 * t78;
-  const Real t95 = t94 - t70;
-  const Real t96 = t81 * t93;
-  const Real t97 = t91 - t96;
-  const Real t98 = constant<Real>(1.0L) / t97;
-  const Real t99 = t95 * t98;
-  const Real t100 = t99 * t93;
-  const Real t101 = t92 * t78;
-  const Real t102 = t100 + t101;
-  const Real t103 = constant<Real>(1.0L) / t90;
-  const Real t104 = t75 * t103;
+  const Real t84 = constant<Real>(1.0L) / t82;
+  const Real t85 = t84 * t72;
+  const Real t86 = constant<Real>(1.0L) / t77;
+  const Real t87 = t69 * t86;
+  const Real t88 = t78 * t86;
+  const Real t89 = t69 * t88;
+  const Real t90 = t89 - t74;
+  const Real t91 = t78 * t88;
+  const Real t92 = t83 - t91;
+  const Real t93 = constant<Real>(1.0L) / t92;
+  const Real t94 = t90 * t93;
+  const Real t95 = t94 * t88;
+  const Real t96 = t87 + t95;
 
   // passive accelerations
-  const Real t105 = t99 * t4;
-  const Real t106 = t31 + t105;
-  const Real t107 = t6 * t104;
-  const Real t108 = t107 + t39;
-  const Real t109 = t99 * t11;
-  const Real t110 = t102 * t6;
-  const Real t111 = t109 - t110;
-  const Real t112 = t111 + t36;
-  const Real t113 = t104 * t4;
-  const Real t114 = t113 + t38;
-  const Real t115 = t102 * t4;
-  const Real t116 = t115 + t40;
-  const Real t117 = t11 * t104;
-  const Real t118 = t117 + t37;
-  const Real t119 = -t118;
+  const Real t97 = t10 * t85;
+  const Real t98 = t97 + t44;
+  const Real t99 = t7 * t94;
+  const Real t100 = t10 * t96;
+  const Real t101 = t99 - t100;
+  const Real t102 = t101 + t45;
+  const Real t103 = t7 * t85;
+  const Real t104 = t103 + t42;
+  const Real t105 = -t104;
 
-  nu_dot_out[0] = t102;
-  nu_dot_out[1] = t104;
-  nu_dot_out[2] = t99;
-  eta_dot[0] = t108;
-  eta_dot[1] = t112;
-  eta_dot[2] = t119;
-  eta_dot[3] = t116;
-  eta_dot[4] = t114;
-  eta_dot[5] = t106;
+  nu_dot_out[0] = t96;
+  nu_dot_out[1] = t85;
+  nu_dot_out[2] = t94;
+  eta_dot[0] = t98;
+  eta_dot[1] = t102;
+  eta_dot[2] = t105;
+  eta_dot[3] = t96;
+  eta_dot[4] = t85;
+  eta_dot[5] = t94;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
 /// route: closed form
-/// operations: 13 add, 30 mul, 1 neg, 1 sqrt
+/// operations: 18 add, 40 mul, 1 div, 1 sqrt
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (3) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (Omega_X, Omega_Y, Omega_Z)
+/// @param[in]  nu      (3) mixed: reduced velocities: pivoted basis, nu = (Omega_X, Omega_Y, Omega_Z)
 /// @param[in]  nu_dot  (3) mixed: derivative of nu
 /// @param[out] lambda  (3) mixed: one for each row of eq. (2)
 template <class Real>
@@ -745,6 +660,7 @@ inline void multipliers(const Prepared<Real>& par,
                         const Real (&nu_dot)[3],
                         Real (&lambda)[3]) noexcept {
   using std::sqrt;
+  using detail::constant;
   // joint angles
   const Real t1 = R[8] * R[8];
   const Real t2 = R[6] * R[6];
@@ -756,53 +672,76 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t6 = R[8] * nu[0];
   const Real t7 = t5 - t6;
 
+  // joint angles
+  const Real t8 = t3 * t4;
+
   // disc: acceleration
-  const Real t8 = par.g * R[6];
-  const Real t9 = R[7] * par.g;
-  const Real t10 = R[8] * par.g;
+  const Real t9 = par.g * R[6];
+  const Real t10 = R[7] * par.g;
+  const Real t11 = R[8] * par.g;
+
+  // joint angles
+  const Real t12 = R[7] * nu[0];
+
+  // disc: acceleration
+  const Real t13 = nu[0] * nu[0];
+  const Real t14 = nu[0] * nu[2];
+  const Real t15 = nu[2] * nu[2];
 
   // passive accelerations
-  const Real t11 = R[7] * nu[1];
-  const Real t12 = R[8] * nu[2];
-  const Real t13 = t11 - t12;
-  const Real t14 = nu[0] * t13;
-  const Real t15 = t7 * nu[0];
-  const Real t16 = nu[2] * nu[1];
-  const Real t17 = nu[0] * nu[0];
-  const Real t18 = nu[2] * nu[2];
-  const Real t19 = t17 + t18;
+  const Real t16 = t1 * t15;
+  const Real t17 = nu[0] * t3;
+  const Real t18 = t5 * constant<Real>(2.0L);
+  const Real t19 = t18 - t6;
+  const Real t20 = R[8] * t19;
+  const Real t21 = t17 + t20;
+  const Real t22 = nu[0] * t21;
+  const Real t23 = t16 + t22;
+  const Real t24 = R[7] * t23;
+  const Real t25 = R[7] * nu[1];
+
+  // disc: acceleration
+  const Real t26 = nu_dot[1] + t14;
+  const Real t27 = t14 - nu_dot[1];
 
   // multipliers
-  const Real t20 = R[6] * nu_dot[2];
-  const Real t21 = R[8] * nu_dot[0];
-  const Real t22 = t20 - t21;
-  const Real t23 = t19 * t4;
-  const Real t24 = R[7] * t23;
-  const Real t25 = t22 + t24;
-  const Real t26 = t25 * par.R;
-  const Real t27 = t26 + t9;
-  const Real t28 = par.m * t27;
-  const Real t29 = R[7] * t16;
-  const Real t30 = t15 - t29;
-  const Real t31 = t30 * t4;
-  const Real t32 = R[6] * nu_dot[1];
-  const Real t33 = t31 - t32;
-  const Real t34 = t33 * par.R;
-  const Real t35 = t34 + t10;
-  const Real t36 = par.m * t35;
-  const Real t37 = R[6] * t18;
-  const Real t38 = t14 + t37;
-  const Real t39 = t38 * t4;
-  const Real t40 = R[8] * nu_dot[1];
-  const Real t41 = t39 - t40;
-  const Real t42 = par.R * t41;
-  const Real t43 = t42 - t8;
-  const Real t44 = par.m * t43;
-  const Real t45 = -t44;
+  const Real t28 = par.m * t10;
+  const Real t29 = par.k3 / t8;
+  const Real t30 = R[6] * nu_dot[2];
+  const Real t31 = R[8] * nu_dot[0];
+  const Real t32 = t30 - t31;
+  const Real t33 = t32 * t3;
+  const Real t34 = t24 + t33;
+  const Real t35 = t29 * t34;
+  const Real t36 = t28 + t35;
+  const Real t37 = par.m * t11;
+  const Real t38 = t27 * t3;
+  const Real t39 = t7 * nu[1];
+  const Real t40 = R[7] * t39;
+  const Real t41 = t38 + t40;
+  const Real t42 = t41 * R[6];
+  const Real t43 = t25 * nu[2];
+  const Real t44 = t13 * R[8];
+  const Real t45 = t43 + t44;
+  const Real t46 = t45 * t3;
+  const Real t47 = t42 - t46;
+  const Real t48 = t29 * t47;
+  const Real t49 = t37 + t48;
+  const Real t50 = t9 * par.m;
+  const Real t51 = t26 * t3;
+  const Real t52 = t40 - t51;
+  const Real t53 = R[8] * t52;
+  const Real t54 = t12 * nu[1];
+  const Real t55 = R[6] * t15;
+  const Real t56 = t54 + t55;
+  const Real t57 = t56 * t3;
+  const Real t58 = t53 + t57;
+  const Real t59 = t29 * t58;
+  const Real t60 = t50 - t59;
 
-  lambda[0] = t45;
-  lambda[1] = t28;
-  lambda[2] = t36;
+  lambda[0] = t60;
+  lambda[1] = t36;
+  lambda[2] = t49;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.
@@ -829,29 +768,27 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
 
-  // kernel
-  const Real t5 = par.R * t3;
-
   // joint angles
-  const Real t6 = t3 * t4;
+  const Real t5 = t3 * t4;
 
   // conditions on the position
-  const Real t7 = R[7] * par.R;
-  const Real t8 = t3 * t7;
-  const Real t9 = t8 / t6;
-  const Real t10 = t9 * R[6];
-  const Real t11 = -t10;
-  const Real t12 = R[8] * t9;
-  const Real t13 = t5 / t4;
+  const Real t6 = R[7] * par.R;
+  const Real t7 = t3 * t6;
+  const Real t8 = t7 / t5;
+  const Real t9 = t8 * R[6];
+  const Real t10 = -t9;
+  const Real t11 = R[8] * t8;
+  const Real t12 = par.R * t3;
+  const Real t13 = t12 / t4;
   const Real t14 = p[2] - t13;
 
   Phi[0] = t14;
   Phi_q[0] = R[6];
   Phi_q[1] = R[7];
   Phi_q[2] = R[8];
-  Phi_q[3] = t12;
+  Phi_q[3] = t11;
   Phi_q[4] = constant<Real>(0.0L);
-  Phi_q[5] = t11;
+  Phi_q[5] = t10;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;

@@ -6,17 +6,17 @@
 //
 //   group SE3: n = 6, s_p = 0, s_a = 2, rows = 6, m = 5, m_locked = 5
 //   Table I: H nonzero, lambda_stat = 0 (dynamic)
-//   kernel: denominator-free basis, content divided out, built on free velocities (V_X)
+//   kernel: pivoted basis, nu = (Omega_Y)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics                 5 add, 18 mul, 1 div, 4 neg, 1 sqrt
-//   reduced_velocities         6 add, 10 mul, 1 div, 1 sqrt
+//   kinematics                 4 add, 24 mul, 2 div, 7 neg, 1 sqrt
+//   reduced_velocities         none
 //   constraints                9 add, 28 mul, 3 div, 4 neg, 1 sqrt
 //   free_dynamics              22 add, 37 mul, 4 neg
-//   reduced_dynamics           15 add, 46 mul, 1 div, 1 sqrt
-//   forward_dynamics           75 add, 126 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
-//   inverse_torques            35 add, 82 mul, 1 div, 1 neg, 1 sqrt
-//   multipliers                99 add, 159 mul, 4 div, 1 sqrt, 2 sin, 2 cos
+//   reduced_dynamics           17 add, 54 mul, 2 div, 1 neg, 1 sqrt
+//   forward_dynamics           90 add, 141 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
+//   inverse_torques            30 add, 67 mul, 1 div, 1 sqrt
+//   multipliers                76 add, 166 mul, 2 div, 1 sqrt
 //   torque_driven_kinematics   4 add, 11 mul, 3 neg, 1 sqrt
 //   torque_driven_velocities   17 add, 24 mul, 3 div, 1 sqrt
 //   torque_driven_dynamics     145 add, 227 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
@@ -24,14 +24,13 @@
 //   position_conditions        9 add, 11 mul, 2 div, 1 neg, 1 sqrt
 //   energies                   20 add, 32 mul
 //   body_poses                 18 add, 27 mul, 2 sin, 2 cos
-//   prepare                    24 add, 14 mul, 1 div, 2 neg, once per set of parameters
+//   prepare                    29 add, 16 mul, 1 div, 2 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
 //   p (3) m: position of the reference body in the world
 //   r_a (2) rad or m: left_spin, right_spin
-//   nu (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-//     (V_X)
+//   nu (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 //   r_a_dot (2) rad/s or m/s: rates of r_a
 //   r_a_ddot (2) rad/s^2 or m/s^2: second derivatives of r_a
 //   eta (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
@@ -161,30 +160,32 @@ struct Prepared {
   Real k4;  // m * l
   Real k5;  // w * w
   Real k6;  // 1 / (2 * k5)
-  Real k7;  // R * R
-  Real k8;  // k1 - J_z
-  Real k9;  // k2 - k1
-  Real k10;  // J_z - k2
-  Real k11;  // J_a - J_d
-  Real k12;  // J_d - J_a
-  Real k13;  // -k4
-  Real k14;  // (J_d + m_w * k5 - J_a) * 2 + J_x - J_y
-  Real k15;  // k2 + J_a * 2
-  Real k16;  // J_x - J_z
-  Real k17;  // J_z + 2 * (J_d + m_w * k5)
-  Real k18;  // (J_d + m_w * k5 - J_a) * 2 + k10
-  Real k19;  // k1 + 2 * (J_d + m_w * k5)
-  Real k20;  // m_w * 2 + m
-  Real k21;  // w * k5
-  Real k22;  // J_x + 2 * (J_d + m_w * k5)
-  Real k23;  // k1 + 2 * J_d
-  Real k24;  // J_y + l * l * m * 2 + J_x - J_z
-  Real k25;  // 2 * J_d + J_z
+  Real k7;  // k1 - J_z
+  Real k8;  // k2 - k1
+  Real k9;  // J_z - k2
+  Real k10;  // J_a - J_d
+  Real k11;  // J_d - J_a
+  Real k12;  // -k4
+  Real k13;  // (J_d + m_w * k5 - J_a) * 2 + J_x - J_y
+  Real k14;  // k2 + J_a * 2
+  Real k15;  // J_x - J_z
+  Real k16;  // J_z + 2 * (J_d + m_w * k5)
+  Real k17;  // (J_d + m_w * k5 - J_a) * 2 + k9
+  Real k18;  // k1 + 2 * (J_d + m_w * k5)
+  Real k19;  // m_w * 2 + m
+  Real k20;  // R * k4
+  Real k21;  // k1 + 2 * J_d
+  Real k22;  // 2 * J_d + J_z
+  Real k23;  // w * k5
+  Real k24;  // m_w + 0.5 * m
+  Real k25;  // J_y + J_x - J_z + (J_a + l * l * m) * 2
   Real k26;  // J_x - J_y - J_z
+  Real k27;  // k26 - J_a * 2
+  Real k28;  // J_y + l * l * m * 2 + J_x - J_z
 };
 
 /// To be called once per set of parameter values.
-/// operations: 24 add, 14 mul, 1 div, 2 neg
+/// operations: 29 add, 16 mul, 1 div, 2 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -200,50 +201,61 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t7 = par.w * par.w;
   const Real t8 = constant<Real>(2.0L) * t7;
   const Real t9 = constant<Real>(1.0L) / t8;
-  const Real t10 = par.R * par.R;
 
   // hull: wrench
-  const Real t11 = t3 - par.J_z;
-  const Real t12 = t4 - t3;
-  const Real t13 = par.J_z - t4;
+  const Real t10 = t3 - par.J_z;
+  const Real t11 = t4 - t3;
+  const Real t12 = par.J_z - t4;
 
   // left_wheel: wrench
-  const Real t14 = par.J_a - par.J_d;
-  const Real t15 = par.J_d - par.J_a;
+  const Real t13 = par.J_a - par.J_d;
+  const Real t14 = par.J_d - par.J_a;
 
   // hull: wrench
-  const Real t16 = -t6;
+  const Real t15 = -t6;
 
   // left_wheel: joint force
-  const Real t17 = par.m_w * t7;
-  const Real t18 = par.J_d + t17;
-  const Real t19 = t18 - par.J_a;
-  const Real t20 = t19 * constant<Real>(2.0L);
-  const Real t21 = par.J_x - par.J_y;
-  const Real t22 = t20 + t21;
-  const Real t23 = par.J_a * constant<Real>(2.0L);
-  const Real t24 = t4 + t23;
-  const Real t25 = par.J_x - par.J_z;
-  const Real t26 = constant<Real>(2.0L) * t18;
-  const Real t27 = par.J_z + t26;
-  const Real t28 = t20 + t13;
-  const Real t29 = t3 + t26;
-  const Real t30 = par.m_w * constant<Real>(2.0L);
-  const Real t31 = t30 + par.m;
+  const Real t16 = par.m_w * t7;
+  const Real t17 = par.J_d + t16;
+  const Real t18 = t17 - par.J_a;
+  const Real t19 = t18 * constant<Real>(2.0L);
+  const Real t20 = par.J_x - par.J_y;
+  const Real t21 = t19 + t20;
+  const Real t22 = par.J_a * constant<Real>(2.0L);
+  const Real t23 = t4 + t22;
+  const Real t24 = par.J_x - par.J_z;
+  const Real t25 = constant<Real>(2.0L) * t17;
+  const Real t26 = par.J_z + t25;
+  const Real t27 = t19 + t12;
+  const Real t28 = t3 + t25;
+  const Real t29 = par.m_w * constant<Real>(2.0L);
+  const Real t30 = t29 + par.m;
+
+  // passive accelerations
+  const Real t31 = par.R * t6;
 
   // torques
-  const Real t32 = par.w * t7;
-  const Real t33 = par.J_x + t26;
+  const Real t32 = constant<Real>(2.0L) * par.J_d;
+  const Real t33 = t3 + t32;
+  const Real t34 = t32 + par.J_z;
+  const Real t35 = par.w * t7;
 
   // multipliers
-  const Real t34 = constant<Real>(2.0L) * par.J_d;
-  const Real t35 = t3 + t34;
-  const Real t36 = t2 * constant<Real>(2.0L);
-  const Real t37 = t36 + par.J_x;
-  const Real t38 = par.J_y + t37;
+  const Real t36 = constant<Real>(0.5L) * par.m;
+  const Real t37 = par.m_w + t36;
+  const Real t38 = par.J_y + par.J_x;
   const Real t39 = t38 - par.J_z;
-  const Real t40 = t34 + par.J_z;
-  const Real t41 = t21 - par.J_z;
+  const Real t40 = par.J_a + t2;
+  const Real t41 = t40 * constant<Real>(2.0L);
+  const Real t42 = t39 + t41;
+  const Real t43 = t20 - par.J_z;
+  const Real t44 = t43 - t22;
+
+  // multipliers
+  const Real t45 = t2 * constant<Real>(2.0L);
+  const Real t46 = t45 + par.J_x;
+  const Real t47 = par.J_y + t46;
+  const Real t48 = t47 - par.J_z;
 
   result.g = par.g;
   result.R = par.R;
@@ -268,31 +280,31 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k10 = t13;
   result.k11 = t14;
   result.k12 = t15;
-  result.k13 = t16;
-  result.k14 = t22;
+  result.k13 = t21;
+  result.k14 = t23;
   result.k15 = t24;
-  result.k16 = t25;
+  result.k16 = t26;
   result.k17 = t27;
   result.k18 = t28;
-  result.k19 = t29;
+  result.k19 = t30;
   result.k20 = t31;
-  result.k21 = t32;
-  result.k22 = t33;
+  result.k21 = t33;
+  result.k22 = t34;
   result.k23 = t35;
-  result.k24 = t39;
-  result.k25 = t40;
-  result.k26 = t41;
+  result.k24 = t37;
+  result.k25 = t42;
+  result.k26 = t43;
+  result.k27 = t44;
+  result.k28 = t48;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
-/// route: kernel
-/// operations: 5 add, 18 mul, 1 div, 4 neg, 1 sqrt
+/// route: closed form
+/// operations: 4 add, 24 mul, 2 div, 7 neg, 1 sqrt
 /// @param[in]  par      made by prepare()
 /// @param[in]  R        (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (V_X)
+/// @param[in]  nu       (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 /// @param[in]  r_a_dot  (2) rad/s or m/s: rates of r_a
 /// @param[out] eta_out  (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
 /// @param[out] H        (6) mixed: kernel of (A, B_p), rows (eta, r_p)
@@ -314,97 +326,76 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t4 = sqrt(t3);
 
   // kernel
-  const Real t5 = par.R * R[6];
-  const Real t6 = -t5;
-  const Real t7 = par.R * R[8];
-  const Real t8 = nu[0] * t7;
+  const Real t5 = par.R / t4;
+  const Real t6 = R[8] * t5;
+  const Real t7 = R[6] * t5;
+  const Real t8 = -t7;
   const Real t9 = constant<Real>(0.5L) * R[6];
   const Real t10 = t4 * par.w;
   const Real t11 = par.R / t10;
   const Real t12 = t9 * t11;
   const Real t13 = -t12;
-  const Real t14 = t12 * r_a_dot[1];
-  const Real t15 = t12 * r_a_dot[0];
-  const Real t16 = t14 - t15;
-  const Real t17 = constant<Real>(0.5L) * R[8];
-  const Real t18 = t17 * t11;
-  const Real t19 = t18 * r_a_dot[1];
-  const Real t20 = t18 * r_a_dot[0];
-  const Real t21 = t19 - t20;
-  const Real t22 = -t18;
-  const Real t23 = t4 * nu[0];
-  const Real t24 = constant<Real>(0.5L) * r_a_dot[0];
-  const Real t25 = constant<Real>(0.5L) * r_a_dot[1];
-  const Real t26 = t24 + t25;
-  const Real t27 = t23 - t26;
-  const Real t28 = nu[0] * t5;
-  const Real t29 = -t28;
+  const Real t14 = t9 * t5;
+  const Real t15 = -t14;
+  const Real t16 = constant<Real>(0.5L) * R[8];
+  const Real t17 = t16 * t5;
+  const Real t18 = nu[0] * constant<Real>(2.0L);
+  const Real t19 = t18 + r_a_dot[0];
+  const Real t20 = t19 + r_a_dot[1];
+  const Real t21 = t20 * R[8];
+  const Real t22 = constant<Real>(0.5L) * t21;
+  const Real t23 = t22 * t5;
+  const Real t24 = r_a_dot[0] - r_a_dot[1];
+  const Real t25 = t24 * R[8];
+  const Real t26 = t25 * constant<Real>(0.5L);
+  const Real t27 = t26 * t11;
+  const Real t28 = -t27;
+  const Real t29 = t24 * R[6];
+  const Real t30 = constant<Real>(0.5L) * t29;
+  const Real t31 = t11 * t30;
+  const Real t32 = -t31;
+  const Real t33 = t20 * R[6];
+  const Real t34 = constant<Real>(0.5L) * t33;
+  const Real t35 = t34 * t5;
+  const Real t36 = -t35;
+  const Real t37 = t16 * t11;
+  const Real t38 = -t37;
 
-  eta_out[0] = t8;
+  eta_out[0] = t23;
   eta_out[1] = constant<Real>(0.0L);
-  eta_out[2] = t29;
-  eta_out[3] = t16;
-  eta_out[4] = t27;
-  eta_out[5] = t21;
-  H[0] = t7;
+  eta_out[2] = t36;
+  eta_out[3] = t32;
+  eta_out[4] = nu[0];
+  eta_out[5] = t28;
+  H[0] = t6;
   H[1] = constant<Real>(0.0L);
-  H[2] = t6;
+  H[2] = t8;
   H[3] = constant<Real>(0.0L);
-  H[4] = t4;
+  H[4] = constant<Real>(1.0L);
   H[5] = constant<Real>(0.0L);
-  J[0] = constant<Real>(0.0L);
-  J[1] = constant<Real>(0.0L);
+  J[0] = t17;
+  J[1] = t17;
   J[2] = constant<Real>(0.0L);
   J[3] = constant<Real>(0.0L);
-  J[4] = constant<Real>(0.0L);
-  J[5] = constant<Real>(0.0L);
+  J[4] = t15;
+  J[5] = t15;
   J[6] = t13;
   J[7] = t12;
-  J[8] = constant<Real>(-0.5L);
-  J[9] = constant<Real>(-0.5L);
-  J[10] = t22;
-  J[11] = t18;
+  J[8] = constant<Real>(0.0L);
+  J[9] = constant<Real>(0.0L);
+  J[10] = t38;
+  J[11] = t37;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
-/// route: closed form
-/// operations: 6 add, 10 mul, 1 div, 1 sqrt
-/// @param[in]  par      made by prepare()
-/// @param[in]  R        (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  r_a_dot  (2) rad/s or m/s: rates of r_a
-/// @param[in]  eta      (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
-/// @param[out] nu_out   (1) mixed: reduced velocities
+/// route: kernel
+/// operations: none
+/// @param[in]  par     made by prepare()
+/// @param[in]  eta     (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
+/// @param[out] nu_out  (1) mixed: reduced velocities
 template <class Real>
-inline void reduced_velocities(const Prepared<Real>& par,
-                               const Real (&R)[9],
-                               const Real (&r_a_dot)[2],
-                               const Real (&eta)[6],
-                               Real (&nu_out)[1]) noexcept {
-  using std::sqrt;
-  using detail::constant;
-  // joint angles
-  const Real t1 = R[6] * R[6];
-  const Real t2 = R[8] * R[8];
-  const Real t3 = t1 + t2;
-  const Real t4 = sqrt(t3);
-
-  // kernel
-  const Real t5 = eta[4] * constant<Real>(2.0L);
-  const Real t6 = r_a_dot[0] + r_a_dot[1];
-  const Real t7 = t5 + t6;
-  const Real t8 = constant<Real>(0.5L) * t7;
-  const Real t9 = t4 * t8;
-  const Real t10 = R[6] * eta[2];
-  const Real t11 = eta[0] * R[8];
-  const Real t12 = t10 - t11;
-  const Real t13 = par.R * t12;
-  const Real t14 = t9 - t13;
-  const Real t15 = par.R * t3;
-  const Real t16 = par.R * t15;
-  const Real t17 = t3 + t16;
-  const Real t18 = t14 / t17;
-
-  nu_out[0] = t18;
+inline void reduced_velocities(const Prepared<Real>&, const Real (&eta)[6], Real (&nu_out)[1]) noexcept {
+  nu_out[0] = eta[4];
 }
 
 /// Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot +
@@ -565,111 +556,109 @@ inline void free_dynamics(const Prepared<Real>& par,
                           Real (&f)[6],
                           Real (&Q_a)[2]) noexcept {
   using detail::constant;
-  // kernel
-  const Real t1 = r_a_dot[0] + r_a_dot[1];
-
   // hull: acceleration
-  const Real t2 = eta[0] * eta[4];
-  const Real t3 = par.g * R[7];
-  const Real t4 = eta[3] * eta[3];
-  const Real t5 = eta[4] * eta[4];
-  const Real t6 = t4 + t5;
-  const Real t7 = eta[4] * eta[2];
-  const Real t8 = eta[2] * eta[3];
-  const Real t9 = eta[1] * eta[3];
-  const Real t10 = eta[5] * eta[3];
-  const Real t11 = par.g * R[8];
-  const Real t12 = eta[5] * eta[1];
-  const Real t13 = eta[5] * eta[0];
-  const Real t14 = par.g * R[6];
+  const Real t1 = eta[0] * eta[4];
+  const Real t2 = par.g * R[7];
+  const Real t3 = eta[3] * eta[3];
+  const Real t4 = eta[4] * eta[4];
+  const Real t5 = t3 + t4;
+  const Real t6 = eta[4] * eta[2];
+  const Real t7 = eta[2] * eta[3];
+  const Real t8 = eta[1] * eta[3];
+  const Real t9 = eta[5] * eta[3];
+  const Real t10 = par.g * R[8];
+  const Real t11 = eta[5] * eta[1];
+  const Real t12 = eta[5] * eta[0];
+  const Real t13 = par.g * R[6];
 
   // left_wheel: joint force
-  const Real t15 = t3 - t8;
-  const Real t16 = eta[4] * par.l;
-  const Real t17 = eta[0] + t16;
-  const Real t18 = eta[5] * t17;
-  const Real t19 = t15 + t18;
-  const Real t20 = t19 * par.m;
-  const Real t21 = t3 + t13;
-  const Real t22 = t21 - t8;
-  const Real t23 = t22 * par.m_w;
-  const Real t24 = t23 * constant<Real>(2.0L);
-  const Real t25 = t20 + t24;
-  const Real t26 = -t25;
-  const Real t27 = par.k16 * t10;
-  const Real t28 = par.l * eta[3];
-  const Real t29 = t28 - eta[1];
-  const Real t30 = eta[5] * t29;
-  const Real t31 = t7 + t14;
-  const Real t32 = t30 + t31;
-  const Real t33 = t32 * par.l;
-  const Real t34 = t33 * par.m;
-  const Real t35 = t27 + t34;
-  const Real t36 = -t35;
-  const Real t37 = t15 * par.k4;
-  const Real t38 = par.J_a * t1;
+  const Real t14 = t2 - t7;
+  const Real t15 = eta[4] * par.l;
+  const Real t16 = eta[0] + t15;
+  const Real t17 = eta[5] * t16;
+  const Real t18 = t14 + t17;
+  const Real t19 = t18 * par.m;
+  const Real t20 = t2 + t12;
+  const Real t21 = t20 - t7;
+  const Real t22 = t21 * par.m_w;
+  const Real t23 = t22 * constant<Real>(2.0L);
+  const Real t24 = t19 + t23;
+  const Real t25 = -t24;
+  const Real t26 = par.k15 * t9;
+  const Real t27 = par.l * eta[3];
+  const Real t28 = t27 - eta[1];
+  const Real t29 = eta[5] * t28;
+  const Real t30 = t6 + t13;
+  const Real t31 = t29 + t30;
+  const Real t32 = t31 * par.l;
+  const Real t33 = t32 * par.m;
+  const Real t34 = t26 + t33;
+  const Real t35 = -t34;
+  const Real t36 = t14 * par.k4;
+  const Real t37 = r_a_dot[0] + r_a_dot[1];
+  const Real t38 = par.J_a * t37;
   const Real t39 = eta[0] * par.l;
   const Real t40 = par.m * t39;
   const Real t41 = t38 + t40;
-  const Real t42 = eta[4] * par.k18;
+  const Real t42 = eta[4] * par.k17;
   const Real t43 = t41 - t42;
   const Real t44 = eta[5] * t43;
-  const Real t45 = t37 + t44;
-  const Real t46 = t9 + t11;
-  const Real t47 = t46 - t2;
+  const Real t45 = t36 + t44;
+  const Real t46 = t8 + t10;
+  const Real t47 = t46 - t1;
   const Real t48 = t47 * par.m_w;
   const Real t49 = t48 * constant<Real>(2.0L);
-  const Real t50 = t6 * par.l;
+  const Real t50 = t5 * par.l;
   const Real t51 = t47 - t50;
   const Real t52 = t51 * par.m;
   const Real t53 = t49 + t52;
   const Real t54 = -t53;
-  const Real t55 = eta[4] * par.k14;
+  const Real t55 = eta[4] * par.k13;
   const Real t56 = t55 - t38;
   const Real t57 = t56 * eta[3];
-  const Real t58 = t31 - t12;
+  const Real t58 = t30 - t11;
   const Real t59 = t58 * par.m_w;
   const Real t60 = t59 * constant<Real>(2.0L);
-  const Real t61 = par.m * t32;
+  const Real t61 = par.m * t31;
   const Real t62 = t60 + t61;
   const Real t63 = -t62;
 
-  M_eta_eta[0] = par.k20;
+  M_eta_eta[0] = par.k19;
   M_eta_eta[1] = constant<Real>(0.0L);
   M_eta_eta[2] = constant<Real>(0.0L);
   M_eta_eta[3] = constant<Real>(0.0L);
   M_eta_eta[4] = par.k4;
   M_eta_eta[5] = constant<Real>(0.0L);
   M_eta_eta[6] = constant<Real>(0.0L);
-  M_eta_eta[7] = par.k20;
+  M_eta_eta[7] = par.k19;
   M_eta_eta[8] = constant<Real>(0.0L);
-  M_eta_eta[9] = par.k13;
+  M_eta_eta[9] = par.k12;
   M_eta_eta[10] = constant<Real>(0.0L);
   M_eta_eta[11] = constant<Real>(0.0L);
   M_eta_eta[12] = constant<Real>(0.0L);
   M_eta_eta[13] = constant<Real>(0.0L);
-  M_eta_eta[14] = par.k20;
+  M_eta_eta[14] = par.k19;
   M_eta_eta[15] = constant<Real>(0.0L);
   M_eta_eta[16] = constant<Real>(0.0L);
   M_eta_eta[17] = constant<Real>(0.0L);
   M_eta_eta[18] = constant<Real>(0.0L);
-  M_eta_eta[19] = par.k13;
+  M_eta_eta[19] = par.k12;
   M_eta_eta[20] = constant<Real>(0.0L);
-  M_eta_eta[21] = par.k19;
+  M_eta_eta[21] = par.k18;
   M_eta_eta[22] = constant<Real>(0.0L);
   M_eta_eta[23] = constant<Real>(0.0L);
   M_eta_eta[24] = par.k4;
   M_eta_eta[25] = constant<Real>(0.0L);
   M_eta_eta[26] = constant<Real>(0.0L);
   M_eta_eta[27] = constant<Real>(0.0L);
-  M_eta_eta[28] = par.k15;
+  M_eta_eta[28] = par.k14;
   M_eta_eta[29] = constant<Real>(0.0L);
   M_eta_eta[30] = constant<Real>(0.0L);
   M_eta_eta[31] = constant<Real>(0.0L);
   M_eta_eta[32] = constant<Real>(0.0L);
   M_eta_eta[33] = constant<Real>(0.0L);
   M_eta_eta[34] = constant<Real>(0.0L);
-  M_eta_eta[35] = par.k17;
+  M_eta_eta[35] = par.k16;
   M_a[0] = constant<Real>(0.0L);
   M_a[1] = constant<Real>(0.0L);
   M_a[2] = constant<Real>(0.0L);
@@ -687,10 +676,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   m_aa[2] = constant<Real>(0.0L);
   m_aa[3] = par.J_a;
   f[0] = t63;
-  f[1] = t26;
+  f[1] = t25;
   f[2] = t54;
   f[3] = t45;
-  f[4] = t36;
+  f[4] = t35;
   f[5] = t57;
   Q_a[0] = constant<Real>(0.0L);
   Q_a[1] = constant<Real>(0.0L);
@@ -698,12 +687,10 @@ inline void free_dynamics(const Prepared<Real>& par,
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
 /// route: closed form
-/// operations: 15 add, 46 mul, 1 div, 1 sqrt
+/// operations: 17 add, 54 mul, 2 div, 1 neg, 1 sqrt
 /// @param[in]  par       made by prepare()
 /// @param[in]  R         (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (V_X)
+/// @param[in]  nu        (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 /// @param[in]  r_a_dot   (2) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot  (2) rad/s^2 or m/s^2: second derivatives of r_a
 /// @param[out] M_r       (1) mixed: reduced mass matrix, symmetric positive definite
@@ -725,83 +712,95 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t4 = sqrt(t3);
 
   // kernel
-  const Real t5 = t4 * nu[0];
-  const Real t6 = constant<Real>(2.0L) * t5;
-  const Real t7 = t6 - r_a_dot[0];
-  const Real t8 = t7 - r_a_dot[1];
-  const Real t9 = r_a_dot[0] - r_a_dot[1];
+  const Real t5 = nu[0] * constant<Real>(2.0L);
+  const Real t6 = t5 + r_a_dot[0];
+  const Real t7 = t6 + r_a_dot[1];
+  const Real t8 = r_a_dot[0] - r_a_dot[1];
+
+  // joint angles
+  const Real t9 = t4 * t3;
 
   // hull: acceleration
-  const Real t10 = par.g * R[6];
+  const Real t10 = nu[0] * nu[0];
 
   // passive accelerations
   const Real t11 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t12 = t4 * par.J_y;
-  const Real t13 = t11 * t12;
-  const Real t14 = t13 * constant<Real>(0.5L);
-  const Real t15 = constant<Real>(2.0L) * t10;
-  const Real t16 = t11 * par.l;
-  const Real t17 = t15 - t16;
-  const Real t18 = t4 * t17;
-  const Real t19 = constant<Real>(0.5L) * t18;
-  const Real t20 = t8 * t8;
-  const Real t21 = constant<Real>(0.25L) * t20;
-  const Real t22 = R[6] * t21;
-  const Real t23 = t11 * R[8];
-  const Real t24 = t23 * constant<Real>(0.5L);
-  const Real t25 = t22 - t24;
-  const Real t26 = par.R * t25;
-  const Real t27 = t19 + t26;
-  const Real t28 = t27 * par.l;
-  const Real t29 = t28 * par.m;
-  const Real t30 = t14 - t29;
-  const Real t31 = nu[0] * t3;
-  const Real t32 = t31 * R[7];
-  const Real t33 = par.w * t32;
+  const Real t12 = par.J_a * t11;
+  const Real t13 = R[6] * par.l;
+  const Real t14 = par.m * t13;
+  const Real t15 = par.g * t14;
+  const Real t16 = t12 + t15;
+  const Real t17 = t4 * t2;
+  const Real t18 = t17 * par.k5;
+  const Real t19 = t11 * t18;
+  const Real t20 = t19 * par.k19;
+  const Real t21 = t20 * constant<Real>(2.0L);
+  const Real t22 = t8 * t8;
+  const Real t23 = t22 * par.k20;
+  const Real t24 = t23 * t3;
+  const Real t25 = t7 * R[7];
+  const Real t26 = t25 * par.w;
+  const Real t27 = R[8] * par.l;
+  const Real t28 = t8 * t27;
+  const Real t29 = t26 + t28;
+  const Real t30 = t29 * t8;
+  const Real t31 = t30 * par.l;
+  const Real t32 = R[6] * par.k5;
+  const Real t33 = t11 * t32;
   const Real t34 = t33 * constant<Real>(2.0L);
-  const Real t35 = t1 * t9;
-  const Real t36 = par.R * t35;
-  const Real t37 = t34 + t36;
-  const Real t38 = t37 * par.k4;
-  const Real t39 = par.k8 * t4;
-  const Real t40 = R[8] * par.l;
-  const Real t41 = par.m * t40;
-  const Real t42 = t41 * par.R;
-  const Real t43 = t39 + t42;
-  const Real t44 = t43 * t9;
-  const Real t45 = t44 * R[8];
-  const Real t46 = t38 + t45;
-  const Real t47 = par.k7 * R[6];
-  const Real t48 = t47 * t9;
-  const Real t49 = t46 * t48;
-  const Real t50 = constant<Real>(0.25L) * t49;
-  const Real t51 = t3 * par.k5;
-  const Real t52 = t50 / t51;
-  const Real t53 = t30 - t52;
-  const Real t54 = t3 * par.k20;
-  const Real t55 = t54 * par.R;
-  const Real t56 = t4 * R[8];
-  const Real t57 = t56 * par.l;
-  const Real t58 = t57 * par.m;
-  const Real t59 = t58 * constant<Real>(2.0L);
-  const Real t60 = t55 + t59;
-  const Real t61 = t60 * par.R;
-  const Real t62 = par.k15 * t3;
-  const Real t63 = t61 + t62;
+  const Real t35 = t31 + t34;
+  const Real t36 = t35 * par.m;
+  const Real t37 = R[6] * par.m_w;
+  const Real t38 = t37 * par.k5;
+  const Real t39 = t11 * t38;
+  const Real t40 = t39 * constant<Real>(4.0L);
+  const Real t41 = t22 * par.k15;
+  const Real t42 = t41 * R[8];
+  const Real t43 = t40 + t42;
+  const Real t44 = t36 + t43;
+  const Real t45 = t4 * t44;
+  const Real t46 = t24 + t45;
+  const Real t47 = t46 * R[6];
+  const Real t48 = t21 + t47;
+  const Real t49 = par.R * t48;
+  const Real t50 = par.l * t3;
+  const Real t51 = t50 * par.m;
+  const Real t52 = par.k5 * t51;
+  const Real t53 = t11 * R[8];
+  const Real t54 = t10 * R[6];
+  const Real t55 = t54 * constant<Real>(2.0L);
+  const Real t56 = t53 + t55;
+  const Real t57 = t52 * t56;
+  const Real t58 = t57 * constant<Real>(2.0L);
+  const Real t59 = t49 + t58;
+  const Real t60 = par.R * t59;
+  const Real t61 = constant<Real>(0.25L) * t60;
+  const Real t62 = t9 * par.k5;
+  const Real t63 = t61 / t62;
+  const Real t64 = t16 + t63;
+  const Real t65 = -t64;
+  const Real t66 = t3 * par.k19;
+  const Real t67 = t66 * par.R;
+  const Real t68 = t4 * R[8];
+  const Real t69 = t68 * par.l;
+  const Real t70 = t69 * par.m;
+  const Real t71 = t70 * constant<Real>(2.0L);
+  const Real t72 = t67 + t71;
+  const Real t73 = t72 * par.R;
+  const Real t74 = t73 / t3;
+  const Real t75 = par.k14 + t74;
 
-  M_r[0] = t63;
-  f_r[0] = t53;
+  M_r[0] = t75;
+  f_r[0] = t65;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
 /// route: projected recursion
-/// operations: 75 add, 126 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
+/// operations: 90 add, 141 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_a         (2) rad or m: left_spin, right_spin
-/// @param[in]  nu
-///     (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (V_X)
+/// @param[in]  nu          (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 /// @param[in]  r_a_dot     (2) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot    (2) rad/s^2 or m/s^2: second derivatives of r_a
 /// @param[out] nu_dot_out  (1) mixed: derivative of nu
@@ -830,272 +829,300 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
   const Real t5 = t4 * constant<Real>(2.0L);
+  const Real t6 = constant<Real>(1.0L) / t4;
+  const Real t7 = R[6] * t6;
+  const Real t8 = par.R * t7;
+  const Real t9 = R[8] * t6;
+  const Real t10 = t9 * par.R;
 
   // kernel
-  const Real t6 = par.R * R[8];
-  const Real t7 = nu[0] * t6;
-  const Real t8 = par.R * R[6];
-  const Real t9 = nu[0] * t8;
-  const Real t10 = constant<Real>(0.5L) * R[6];
-  const Real t11 = t4 * par.w;
-  const Real t12 = par.R / t11;
-  const Real t13 = t10 * t12;
-  const Real t14 = t13 * r_a_dot[1];
-  const Real t15 = t13 * r_a_dot[0];
-  const Real t16 = t14 - t15;
-  const Real t17 = constant<Real>(0.5L) * R[8];
-  const Real t18 = t17 * t12;
-  const Real t19 = t18 * r_a_dot[1];
-  const Real t20 = t18 * r_a_dot[0];
-  const Real t21 = t19 - t20;
-  const Real t22 = t4 * nu[0];
-  const Real t23 = constant<Real>(0.5L) * r_a_dot[0];
-  const Real t24 = constant<Real>(0.5L) * r_a_dot[1];
-  const Real t25 = t23 + t24;
-  const Real t26 = t22 - t25;
+  const Real t11 = nu[0] * t8;
+  const Real t12 = constant<Real>(0.5L) * t8;
+  const Real t13 = t12 * r_a_dot[0];
+  const Real t14 = t12 * r_a_dot[1];
+  const Real t15 = t13 + t14;
+  const Real t16 = t11 + t15;
+  const Real t17 = nu[0] * t10;
+  const Real t18 = constant<Real>(0.5L) * t10;
+  const Real t19 = r_a_dot[0] * t18;
+  const Real t20 = r_a_dot[1] * t18;
+  const Real t21 = t19 + t20;
+  const Real t22 = t17 + t21;
+  const Real t23 = t12 * par.w;
+  const Real t24 = constant<Real>(2.0L) * t23;
+  const Real t25 = par.k6 * t24;
+  const Real t26 = t25 * r_a_dot[1];
+  const Real t27 = t25 * r_a_dot[0];
+  const Real t28 = t26 - t27;
+  const Real t29 = par.w * t18;
+  const Real t30 = t29 * constant<Real>(2.0L);
+  const Real t31 = par.k6 * t30;
+  const Real t32 = t31 * r_a_dot[1];
+  const Real t33 = t31 * r_a_dot[0];
+  const Real t34 = t32 - t33;
+  const Real t35 = t31 * t8;
+  const Real t36 = t25 * t10;
+  const Real t37 = t35 - t36;
+  const Real t38 = t37 * r_a_dot[1];
+  const Real t39 = t36 - t35;
+  const Real t40 = r_a_dot[0] * t39;
+  const Real t41 = t38 + t40;
 
   // hull: acceleration
-  const Real t27 = par.g * R[8];
-  const Real t28 = par.g * R[6];
+  const Real t42 = par.g * R[8];
+  const Real t43 = par.g * R[6];
 
   // joint angles
-  const Real t29 = t21 * R[7];
-  const Real t30 = R[6] * t26;
+  const Real t44 = nu[0] + r_a_dot[0];
+  const Real t45 = nu[0] * R[6];
+  const Real t46 = t28 * R[7];
+  const Real t47 = t45 - t46;
+  const Real t48 = t47 * t6;
+  const Real t49 = t47 * R[8];
+  const Real t50 = t49 * constant<Real>(2.0L);
+  const Real t51 = t34 * R[7];
+  const Real t52 = nu[0] * R[8];
+  const Real t53 = t51 - t52;
+  const Real t54 = t53 * R[6];
+  const Real t55 = t54 * constant<Real>(2.0L);
+  const Real t56 = t50 + t55;
+  const Real t57 = t56 / t5;
+  const Real t58 = t57 * t6;
+  const Real t59 = t58 / t4;
+  const Real t60 = t59 * R[8];
+  const Real t61 = t48 - t60;
+  const Real t62 = par.R * t61;
+  const Real t63 = t44 * t62;
+  const Real t64 = nu[0] + r_a_dot[1];
+  const Real t65 = t64 * t62;
+  const Real t66 = t53 * t6;
+  const Real t67 = t59 * R[6];
+  const Real t68 = t66 - t67;
+  const Real t69 = t68 * par.R;
+  const Real t70 = t69 * t34;
+  const Real t71 = t44 * t69;
+  const Real t72 = t28 * t62;
+  const Real t73 = t69 * t64;
 
   // drift of the kernel
-  const Real t31 = t15 - t14;
-  const Real t32 = t31 * R[7];
-  const Real t33 = t32 + t30;
-  const Real t34 = constant<Real>(0.5L) * t33;
-  const Real t35 = t34 * t12;
-  const Real t36 = t33 * R[8];
-  const Real t37 = t36 * constant<Real>(2.0L);
-  const Real t38 = t25 - t22;
-  const Real t39 = R[8] * t38;
-  const Real t40 = t39 + t29;
-  const Real t41 = R[6] * t40;
-  const Real t42 = constant<Real>(2.0L) * t41;
-  const Real t43 = t37 + t42;
-  const Real t44 = t43 / t5;
-  const Real t45 = par.w * t44;
-  const Real t46 = t45 * t12;
-  const Real t47 = t46 / t11;
-  const Real t48 = t47 * t17;
-  const Real t49 = t35 - t48;
-  const Real t50 = t49 * r_a_dot[1];
-  const Real t51 = t49 * r_a_dot[0];
-  const Real t52 = t50 - t51;
-  const Real t53 = t18 * r_a_ddot[1];
-  const Real t54 = t18 * r_a_ddot[0];
-  const Real t55 = t53 - t54;
-  const Real t56 = t52 + t55;
-  const Real t57 = nu[0] * t44;
-  const Real t58 = constant<Real>(0.5L) * r_a_ddot[1];
-  const Real t59 = constant<Real>(0.5L) * r_a_ddot[0];
-  const Real t60 = t58 + t59;
-  const Real t61 = t57 - t60;
-  const Real t62 = par.R * t33;
-  const Real t63 = t62 * nu[0];
-  const Real t64 = par.R * t40;
-  const Real t65 = nu[0] * t64;
-  const Real t66 = t13 * r_a_ddot[1];
-  const Real t67 = t13 * r_a_ddot[0];
-  const Real t68 = t66 - t67;
-  const Real t69 = constant<Real>(0.5L) * t40;
-  const Real t70 = t69 * t12;
-  const Real t71 = t47 * t10;
-  const Real t72 = t70 - t71;
-  const Real t73 = t72 * r_a_dot[1];
-  const Real t74 = t72 * r_a_dot[0];
-  const Real t75 = t73 - t74;
-  const Real t76 = t68 + t75;
+  const Real t74 = r_a_ddot[0] * t39;
+  const Real t75 = t37 * r_a_ddot[1];
+  const Real t76 = t74 + t75;
+  const Real t77 = t71 + t73;
+  const Real t78 = t77 * constant<Real>(0.5L);
+  const Real t79 = t71 - t78;
+  const Real t80 = par.w * t79;
+  const Real t81 = t73 - t78;
+  const Real t82 = t81 * par.w;
+  const Real t83 = t80 - t82;
+  const Real t84 = par.k6 * t83;
+  const Real t85 = t84 * t10;
+  const Real t86 = t70 - t72;
+  const Real t87 = t85 + t86;
+  const Real t88 = t63 + t65;
+  const Real t89 = constant<Real>(0.5L) * t88;
+  const Real t90 = t89 - t65;
+  const Real t91 = par.w * t90;
+  const Real t92 = t89 - t63;
+  const Real t93 = t92 * par.w;
+  const Real t94 = t91 - t93;
+  const Real t95 = par.k6 * t94;
+  const Real t96 = t95 * t8;
+  const Real t97 = t87 - t96;
+  const Real t98 = t76 + t97;
+  const Real t99 = t31 * r_a_ddot[1];
+  const Real t100 = t31 * r_a_ddot[0];
+  const Real t101 = t99 - t100;
+  const Real t102 = t101 - t95;
+  const Real t103 = t18 * r_a_ddot[0];
+  const Real t104 = r_a_ddot[1] * t18;
+  const Real t105 = t103 + t104;
+  const Real t106 = t89 + t105;
+  const Real t107 = t25 * r_a_ddot[1];
+  const Real t108 = t25 * r_a_ddot[0];
+  const Real t109 = t107 - t108;
+  const Real t110 = t109 - t84;
+  const Real t111 = t12 * r_a_ddot[1];
+  const Real t112 = t12 * r_a_ddot[0];
+  const Real t113 = t111 + t112;
+  const Real t114 = t113 + t78;
 
   // hull: acceleration
-  const Real t77 = t21 * t26;
-  const Real t78 = t76 + t77;
-  const Real t79 = t16 * t26;
-  const Real t80 = t79 - t56;
-  const Real t81 = t16 * t21;
-  const Real t82 = t61 + t81;
-  const Real t83 = t9 * t26;
-  const Real t84 = t63 - t83;
-  const Real t85 = t84 + t28;
-  const Real t86 = t7 * t26;
-  const Real t87 = t86 + t65;
-  const Real t88 = t27 - t87;
-  const Real t89 = t16 * t16;
-  const Real t90 = t26 * t26;
-  const Real t91 = t89 + t90;
+  const Real t115 = t28 * t34;
+  const Real t116 = t28 * t41;
+  const Real t117 = nu[0] * t22;
+  const Real t118 = t116 - t117;
+  const Real t119 = t118 - t114;
+  const Real t120 = t119 + t42;
+  const Real t121 = nu[0] * t34;
+  const Real t122 = t110 + t121;
+  const Real t123 = t16 * nu[0];
+  const Real t124 = t34 * t41;
+  const Real t125 = t123 + t124;
+  const Real t126 = t106 - t125;
+  const Real t127 = t126 + t43;
+  const Real t128 = nu[0] * nu[0];
+  const Real t129 = t28 * t28;
+  const Real t130 = t128 + t129;
+  const Real t131 = nu[0] * t28;
+  const Real t132 = t131 - t102;
 
   // left_wheel: acceleration
-  const Real t92 = t78 * par.w;
-  const Real t93 = t88 + t92;
-  const Real t94 = c_r_a_0_ * t93;
-  const Real t95 = t80 * par.w;
-  const Real t96 = t95 + t85;
-  const Real t97 = s_r_a_0_ * t96;
-  const Real t98 = t94 + t97;
-  const Real t99 = t61 + r_a_ddot[0];
-  const Real t100 = t96 * c_r_a_0_;
-  const Real t101 = s_r_a_0_ * t93;
-  const Real t102 = t100 - t101;
+  const Real t133 = par.w * t132;
+  const Real t134 = t127 + t133;
+  const Real t135 = t134 * c_r_a_0_;
+  const Real t136 = t122 * par.w;
+  const Real t137 = t120 + t136;
+  const Real t138 = s_r_a_0_ * t137;
+  const Real t139 = t135 - t138;
+  const Real t140 = s_r_a_0_ * t134;
+  const Real t141 = t137 * c_r_a_0_;
+  const Real t142 = t140 + t141;
 
   // right_wheel: acceleration
-  const Real t103 = t61 + r_a_ddot[1];
-  const Real t104 = t85 - t95;
-  const Real t105 = t104 * s_r_a_1_;
-  const Real t106 = t88 - t92;
-  const Real t107 = c_r_a_1_ * t106;
-  const Real t108 = t105 + t107;
-  const Real t109 = c_r_a_1_ * t104;
-  const Real t110 = s_r_a_1_ * t106;
-  const Real t111 = t109 - t110;
+  const Real t143 = t127 - t133;
+  const Real t144 = c_r_a_1_ * t143;
+  const Real t145 = t120 - t136;
+  const Real t146 = t145 * s_r_a_1_;
+  const Real t147 = t144 - t146;
+  const Real t148 = c_r_a_1_ * t145;
+  const Real t149 = t143 * s_r_a_1_;
+  const Real t150 = t148 + t149;
 
   // hull: wrench
-  const Real t112 = t88 * par.m;
-  const Real t113 = par.k4 * t91;
-  const Real t114 = t112 - t113;
-  const Real t115 = t85 * par.k4;
-  const Real t116 = par.k2 * t61;
-  const Real t117 = par.k8 * t81;
-  const Real t118 = t116 + t117;
-  const Real t119 = t115 + t118;
-  const Real t120 = t82 * par.k4;
-  const Real t121 = t85 * par.m;
-  const Real t122 = t120 + t121;
+  const Real t151 = t115 * par.k4;
+  const Real t152 = t127 * par.m;
+  const Real t153 = t151 + t152;
+  const Real t154 = t120 * par.m;
+  const Real t155 = t130 * par.k4;
+  const Real t156 = t154 - t155;
+  const Real t157 = t115 * par.k7;
+  const Real t158 = t127 * par.k4;
+  const Real t159 = t157 + t158;
 
   // left_wheel: wrench
-  const Real t123 = par.J_a * t99;
-  const Real t124 = par.m_w * t102;
-  const Real t125 = t98 * par.m_w;
+  const Real t160 = par.J_a * r_a_ddot[0];
+  const Real t161 = t139 * par.m_w;
+  const Real t162 = t142 * par.m_w;
 
   // right_wheel: wrench
-  const Real t126 = par.J_a * t103;
-  const Real t127 = t108 * par.m_w;
-  const Real t128 = par.m_w * t111;
+  const Real t163 = t150 * par.m_w;
+  const Real t164 = par.J_a * r_a_ddot[1];
+  const Real t165 = t147 * par.m_w;
 
   // right_wheel: joint force
-  const Real t129 = t127 * s_r_a_1_;
-  const Real t130 = c_r_a_1_ * t128;
-  const Real t131 = t129 + t130;
-  const Real t132 = t131 + t122;
-  const Real t133 = t127 * c_r_a_1_;
-  const Real t134 = t128 * s_r_a_1_;
-  const Real t135 = t133 - t134;
-  const Real t136 = t135 + t114;
-  const Real t137 = t126 + t119;
+  const Real t166 = t164 + t159;
+  const Real t167 = c_r_a_1_ * t165;
+  const Real t168 = t163 * s_r_a_1_;
+  const Real t169 = t167 + t168;
+  const Real t170 = t153 + t169;
+  const Real t171 = c_r_a_1_ * t163;
+  const Real t172 = s_r_a_1_ * t165;
+  const Real t173 = t171 - t172;
+  const Real t174 = t156 + t173;
 
   // left_wheel: joint force
-  const Real t138 = c_r_a_0_ * t125;
-  const Real t139 = s_r_a_0_ * t124;
-  const Real t140 = t138 - t139;
-  const Real t141 = t140 + t136;
-  const Real t142 = s_r_a_0_ * t125;
-  const Real t143 = t124 * c_r_a_0_;
-  const Real t144 = t142 + t143;
-  const Real t145 = t132 + t144;
-  const Real t146 = t123 + t137;
+  const Real t175 = t162 * c_r_a_0_;
+  const Real t176 = s_r_a_0_ * t161;
+  const Real t177 = t175 - t176;
+  const Real t178 = t177 + t174;
+  const Real t179 = t166 + t160;
+  const Real t180 = s_r_a_0_ * t162;
+  const Real t181 = t161 * c_r_a_0_;
+  const Real t182 = t180 + t181;
+  const Real t183 = t182 + t170;
 
   // reduced forces
-  const Real t147 = t141 * t8;
-  const Real t148 = t145 * t6;
-  const Real t149 = t147 - t148;
-  const Real t150 = t4 * t146;
-  const Real t151 = t149 - t150;
+  const Real t184 = t178 * t8;
+  const Real t185 = t183 * t10;
+  const Real t186 = t184 - t185;
+  const Real t187 = t186 - t179;
 
   // left_wheel: acceleration
-  const Real t152 = s_r_a_0_ * t8;
-  const Real t153 = c_r_a_0_ * t6;
-  const Real t154 = t152 + t153;
-  const Real t155 = s_r_a_0_ * t6;
-  const Real t156 = c_r_a_0_ * t8;
-  const Real t157 = t155 - t156;
+  const Real t188 = s_r_a_0_ * t8;
+  const Real t189 = c_r_a_0_ * t10;
+  const Real t190 = t188 + t189;
+  const Real t191 = s_r_a_0_ * t10;
+  const Real t192 = c_r_a_0_ * t8;
+  const Real t193 = t191 - t192;
 
   // right_wheel: acceleration
-  const Real t158 = c_r_a_1_ * t6;
-  const Real t159 = s_r_a_1_ * t8;
-  const Real t160 = t158 + t159;
-  const Real t161 = s_r_a_1_ * t6;
-  const Real t162 = c_r_a_1_ * t8;
-  const Real t163 = t161 - t162;
+  const Real t194 = c_r_a_1_ * t10;
+  const Real t195 = s_r_a_1_ * t8;
+  const Real t196 = t194 + t195;
+  const Real t197 = s_r_a_1_ * t10;
+  const Real t198 = c_r_a_1_ * t8;
+  const Real t199 = t197 - t198;
 
   // hull: wrench
-  const Real t164 = par.m * t8;
-  const Real t165 = par.m * t6;
-  const Real t166 = t4 * par.k4;
-  const Real t167 = t165 + t166;
-  const Real t168 = par.k4 * t6;
-  const Real t169 = par.k2 * t4;
-  const Real t170 = t168 + t169;
+  const Real t200 = par.m * t10;
+  const Real t201 = t200 + par.k4;
+  const Real t202 = par.m * t8;
+  const Real t203 = par.k4 * t10;
+  const Real t204 = par.k2 + t203;
 
   // left_wheel: wrench
-  const Real t171 = t154 * par.m_w;
-  const Real t172 = par.m_w * t157;
-  const Real t173 = par.J_a * t4;
+  const Real t205 = t190 * par.m_w;
+  const Real t206 = par.m_w * t193;
 
   // right_wheel: wrench
-  const Real t174 = t160 * par.m_w;
-  const Real t175 = t163 * par.m_w;
+  const Real t207 = t196 * par.m_w;
+  const Real t208 = t199 * par.m_w;
 
   // right_wheel: joint force
-  const Real t176 = t170 + t173;
-  const Real t177 = s_r_a_1_ * t175;
-  const Real t178 = c_r_a_1_ * t174;
-  const Real t179 = t177 + t178;
-  const Real t180 = t167 + t179;
-  const Real t181 = c_r_a_1_ * t175;
-  const Real t182 = t174 * s_r_a_1_;
-  const Real t183 = t181 - t182;
-  const Real t184 = t183 - t164;
+  const Real t209 = c_r_a_1_ * t207;
+  const Real t210 = t208 * s_r_a_1_;
+  const Real t211 = t209 + t210;
+  const Real t212 = t201 + t211;
+  const Real t213 = c_r_a_1_ * t208;
+  const Real t214 = t207 * s_r_a_1_;
+  const Real t215 = t213 - t214;
+  const Real t216 = t215 - t202;
+  const Real t217 = par.J_a + t204;
 
   // left_wheel: joint force
-  const Real t185 = t176 + t173;
-  const Real t186 = s_r_a_0_ * t172;
-  const Real t187 = c_r_a_0_ * t171;
-  const Real t188 = t186 + t187;
-  const Real t189 = t188 + t180;
-  const Real t190 = c_r_a_0_ * t172;
-  const Real t191 = s_r_a_0_ * t171;
-  const Real t192 = t190 - t191;
-  const Real t193 = t184 + t192;
+  const Real t218 = s_r_a_0_ * t206;
+  const Real t219 = t205 * c_r_a_0_;
+  const Real t220 = t218 + t219;
+  const Real t221 = t212 + t220;
+  const Real t222 = t206 * c_r_a_0_;
+  const Real t223 = t205 * s_r_a_0_;
+  const Real t224 = t222 - t223;
+  const Real t225 = t224 + t216;
+  const Real t226 = par.J_a + t217;
 
   // reduced mass matrix
-  const Real t194 = t189 * t6;
-  const Real t195 = t8 * t193;
-  const Real t196 = t194 - t195;
-  const Real t197 = t4 * t185;
-  const Real t198 = t196 + t197;
+  const Real t227 = t221 * t10;
+  const Real t228 = t225 * t8;
+  const Real t229 = t227 - t228;
+  const Real t230 = t229 + t226;
 
   // reduced accelerations
-  const Real t199 = constant<Real>(1.0L) / t198;
-  const Real t200 = t199 * t151;
+  const Real t231 = constant<Real>(1.0L) / t230;
+  const Real t232 = t231 * t187;
 
   // passive accelerations
-  const Real t201 = t200 * t8;
-  const Real t202 = t201 + t65;
-  const Real t203 = -t202;
-  const Real t204 = t200 * t6;
-  const Real t205 = t204 + t63;
-  const Real t206 = t4 * t200;
-  const Real t207 = t61 + t206;
+  const Real t233 = t232 * t10;
+  const Real t234 = t233 + t106;
+  const Real t235 = t232 * t8;
+  const Real t236 = t235 + t114;
+  const Real t237 = -t236;
 
-  nu_dot_out[0] = t200;
-  eta_dot[0] = t205;
-  eta_dot[1] = constant<Real>(0.0L);
-  eta_dot[2] = t203;
-  eta_dot[3] = t76;
-  eta_dot[4] = t207;
-  eta_dot[5] = t56;
+  nu_dot_out[0] = t232;
+  eta_dot[0] = t234;
+  eta_dot[1] = t98;
+  eta_dot[2] = t237;
+  eta_dot[3] = t110;
+  eta_dot[4] = t232;
+  eta_dot[5] = t102;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
 /// route: closed form
-/// operations: 35 add, 82 mul, 1 div, 1 neg, 1 sqrt
+/// operations: 30 add, 67 mul, 1 div, 1 sqrt
 /// @param[in]  par        made by prepare()
 /// @param[in]  R          (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  nu
-///     (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (V_X)
+/// @param[in]  nu         (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 /// @param[in]  r_a_dot    (2) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot   (2) rad/s^2 or m/s^2: second derivatives of r_a
 /// @param[in]  nu_dot     (1) mixed: derivative of nu
@@ -1117,146 +1144,130 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t4 = sqrt(t3);
 
   // kernel
-  const Real t5 = nu[0] * R[8];
-  const Real t6 = par.R * t5;
-  const Real t7 = r_a_dot[0] - r_a_dot[1];
-  const Real t8 = nu[0] * R[6];
-  const Real t9 = par.R * R[8];
-  const Real t10 = t4 * nu[0];
+  const Real t5 = r_a_dot[0] - r_a_dot[1];
 
   // joint angles
-  const Real t11 = t4 * t3;
+  const Real t6 = t4 * t3;
+
+  // joint angles
+  const Real t7 = nu[0] + r_a_dot[0];
+  const Real t8 = nu[0] + r_a_dot[1];
+  const Real t9 = nu[0] * R[8];
 
   // hull: acceleration
-  const Real t12 = par.g * R[6];
+  const Real t10 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t13 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t14 = t4 * par.l;
-  const Real t15 = t14 + t9;
-  const Real t16 = t7 * t7;
-  const Real t17 = R[7] * t10;
-  const Real t18 = t17 * par.l;
-  const Real t19 = t18 * par.m;
-  const Real t20 = r_a_ddot[0] - r_a_ddot[1];
+  const Real t11 = r_a_ddot[1] + r_a_ddot[0];
+  const Real t12 = t10 * R[6];
+  const Real t13 = t5 * t5;
+  const Real t14 = R[6] * par.l;
+  const Real t15 = par.m * t14;
+  const Real t16 = par.l * t3;
+  const Real t17 = t16 * par.m;
+  const Real t18 = par.k5 * t17;
+  const Real t19 = r_a_ddot[0] - r_a_ddot[1];
 
-  // passive accelerations
-  const Real t21 = t4 * nu_dot[0];
+  // left_wheel: acceleration
+  const Real t20 = nu_dot[0] + r_a_ddot[0];
+
+  // right_wheel: acceleration
+  const Real t21 = nu_dot[0] + r_a_ddot[1];
+
+  // left_wheel: wrench
+  const Real t22 = par.J_a * t20;
+
+  // right_wheel: wrench
+  const Real t23 = par.J_a * t21;
 
   // torques
-  const Real t22 = t3 * R[7];
-  const Real t23 = R[6] * t22;
-  const Real t24 = t23 * par.l;
-  const Real t25 = t24 * par.m;
-  const Real t26 = t25 * par.k5;
-  const Real t27 = par.g * t26;
-  const Real t28 = t27 * constant<Real>(4.0L);
-  const Real t29 = t4 * t2;
-  const Real t30 = t29 * par.w;
-  const Real t31 = t30 * t20;
-  const Real t32 = t31 * par.k17;
-  const Real t33 = t32 * constant<Real>(2.0L);
-  const Real t34 = par.w * t19;
-  const Real t35 = t34 * t7;
-  const Real t36 = t7 * t8;
-  const Real t37 = par.R * t36;
-  const Real t38 = par.l * t20;
-  const Real t39 = t37 - t38;
-  const Real t40 = t39 * par.l;
-  const Real t41 = t40 * par.m;
-  const Real t42 = par.k22 * t20;
-  const Real t43 = t41 - t42;
-  const Real t44 = R[6] * t43;
-  const Real t45 = t35 + t44;
-  const Real t46 = constant<Real>(2.0L) * t45;
-  const Real t47 = constant<Real>(4.0L) * t10;
-  const Real t48 = t47 - r_a_dot[0];
-  const Real t49 = constant<Real>(3.0L) * r_a_dot[1];
-  const Real t50 = t48 - t49;
-  const Real t51 = par.k16 * t50;
-  const Real t52 = t50 * par.l;
-  const Real t53 = t6 * constant<Real>(2.0L);
-  const Real t54 = t52 + t53;
-  const Real t55 = par.l * t54;
-  const Real t56 = t55 * par.m;
-  const Real t57 = t51 + t56;
-  const Real t58 = t57 * t7;
-  const Real t59 = t58 * R[8];
-  const Real t60 = t46 + t59;
-  const Real t61 = t4 * t60;
-  const Real t62 = par.w * t61;
-  const Real t63 = R[8] * R[7];
-  const Real t64 = par.R * t63;
-  const Real t65 = t16 * t64;
-  const Real t66 = par.k8 * t65;
-  const Real t67 = t62 + t66;
-  const Real t68 = t67 * R[6];
-  const Real t69 = t33 - t68;
-  const Real t70 = par.R * t69;
-  const Real t71 = t28 + t70;
-  const Real t72 = t71 * constant<Real>(0.125L);
-  const Real t73 = par.k21 * t11;
-  const Real t74 = par.R / t73;
-  const Real t75 = t72 * t74;
-  const Real t76 = r_a_ddot[1] - r_a_ddot[0];
-  const Real t77 = par.J_a * t76;
-  const Real t78 = par.J_y * t21;
-  const Real t79 = t77 + t78;
-  const Real t80 = t15 * nu_dot[0];
-  const Real t81 = t80 + t12;
-  const Real t82 = par.l * t81;
-  const Real t83 = t82 * par.m;
-  const Real t84 = t79 + t83;
-  const Real t85 = constant<Real>(2.0L) * t84;
-  const Real t86 = t13 * par.k2;
-  const Real t87 = t85 - t86;
-  const Real t88 = constant<Real>(0.25L) * t87;
-  const Real t89 = t75 - t88;
-  const Real t90 = par.J_a * t20;
-  const Real t91 = t90 + t78;
-  const Real t92 = t91 + t83;
-  const Real t93 = t92 * constant<Real>(2.0L);
-  const Real t94 = t93 - t86;
-  const Real t95 = constant<Real>(0.25L) * t94;
-  const Real t96 = constant<Real>(3.0L) * r_a_dot[0];
-  const Real t97 = t47 - t96;
-  const Real t98 = t97 - r_a_dot[1];
-  const Real t99 = par.k16 * t98;
-  const Real t100 = t98 * par.l;
-  const Real t101 = t100 + t53;
-  const Real t102 = t101 * par.l;
-  const Real t103 = t102 * par.m;
-  const Real t104 = t99 + t103;
-  const Real t105 = t104 * t7;
-  const Real t106 = t105 * R[8];
-  const Real t107 = t44 - t35;
-  const Real t108 = t107 * constant<Real>(2.0L);
-  const Real t109 = t106 + t108;
-  const Real t110 = t4 * t109;
-  const Real t111 = t110 * par.w;
-  const Real t112 = t111 + t66;
-  const Real t113 = t112 * R[6];
-  const Real t114 = t33 - t113;
-  const Real t115 = par.R * t114;
-  const Real t116 = t28 + t115;
-  const Real t117 = t116 * constant<Real>(0.125L);
-  const Real t118 = t117 * t74;
-  const Real t119 = t95 + t118;
-  const Real t120 = -t119;
+  const Real t24 = R[6] * R[7];
+  const Real t25 = par.g * t24;
+  const Real t26 = nu_dot[0] * R[8];
+  const Real t27 = t12 + t26;
+  const Real t28 = t27 * par.w;
+  const Real t29 = t25 - t28;
+  const Real t30 = t18 * t29;
+  const Real t31 = constant<Real>(4.0L) * t30;
+  const Real t32 = par.R * t15;
+  const Real t33 = t5 * t32;
+  const Real t34 = t33 * t7;
+  const Real t35 = t34 * t3;
+  const Real t36 = t21 * par.m_w;
+  const Real t37 = t36 * constant<Real>(4.0L);
+  const Real t38 = nu_dot[0] * constant<Real>(2.0L);
+  const Real t39 = t11 + t38;
+  const Real t40 = par.m * t39;
+  const Real t41 = t37 + t40;
+  const Real t42 = t41 * par.w;
+  const Real t43 = t42 * par.w;
+  const Real t44 = par.k22 * t19;
+  const Real t45 = t43 - t44;
+  const Real t46 = t45 * t2;
+  const Real t47 = t5 * t9;
+  const Real t48 = t47 * par.k7;
+  const Real t49 = t48 * constant<Real>(2.0L);
+  const Real t50 = par.k21 * t19;
+  const Real t51 = t43 - t50;
+  const Real t52 = t51 * R[6];
+  const Real t53 = t49 + t52;
+  const Real t54 = R[6] * t53;
+  const Real t55 = t46 + t54;
+  const Real t56 = t55 * t4;
+  const Real t57 = t35 + t56;
+  const Real t58 = t57 * constant<Real>(2.0L);
+  const Real t59 = t58 * par.w;
+  const Real t60 = R[8] * R[7];
+  const Real t61 = t60 * R[6];
+  const Real t62 = par.R * t61;
+  const Real t63 = t13 * t62;
+  const Real t64 = par.k7 * t63;
+  const Real t65 = t59 + t64;
+  const Real t66 = par.R * t65;
+  const Real t67 = t31 - t66;
+  const Real t68 = constant<Real>(0.125L) * t67;
+  const Real t69 = par.k23 * t6;
+  const Real t70 = par.R / t69;
+  const Real t71 = t68 * t70;
+  const Real t72 = t23 - t71;
+  const Real t73 = t25 + t28;
+  const Real t74 = t73 * t18;
+  const Real t75 = t74 * constant<Real>(4.0L);
+  const Real t76 = t33 * t8;
+  const Real t77 = t76 * t3;
+  const Real t78 = par.m_w * t20;
+  const Real t79 = t78 * constant<Real>(4.0L);
+  const Real t80 = t40 + t79;
+  const Real t81 = t80 * par.w;
+  const Real t82 = t81 * par.w;
+  const Real t83 = t82 + t44;
+  const Real t84 = t83 * t2;
+  const Real t85 = t50 + t82;
+  const Real t86 = t85 * R[6];
+  const Real t87 = t86 - t49;
+  const Real t88 = t87 * R[6];
+  const Real t89 = t84 + t88;
+  const Real t90 = t4 * t89;
+  const Real t91 = t77 - t90;
+  const Real t92 = constant<Real>(2.0L) * t91;
+  const Real t93 = t92 * par.w;
+  const Real t94 = t93 + t64;
+  const Real t95 = t94 * par.R;
+  const Real t96 = t75 - t95;
+  const Real t97 = t96 * constant<Real>(0.125L);
+  const Real t98 = t97 * t70;
+  const Real t99 = t98 + t22;
 
-  tau_a_out[0] = t89;
-  tau_a_out[1] = t120;
+  tau_a_out[0] = t99;
+  tau_a_out[1] = t72;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion
-/// operations: 99 add, 159 mul, 4 div, 1 sqrt, 2 sin, 2 cos
+/// route: closed form
+/// operations: 76 add, 166 mul, 2 div, 1 sqrt
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
-/// @param[in]  r_a          (2) rad or m: left_spin, right_spin
-/// @param[in]  nu
-///     (1) mixed: reduced velocities: denominator-free basis, content divided out, built on free velocities
-///         (V_X)
+/// @param[in]  nu           (1) mixed: reduced velocities: pivoted basis, nu = (Omega_Y)
 /// @param[in]  r_a_dot      (2) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot     (2) rad/s^2 or m/s^2: second derivatives of r_a
 /// @param[in]  nu_dot       (1) mixed: derivative of nu
@@ -1267,341 +1278,285 @@ inline void inverse_torques(const Prepared<Real>& par,
 template <class Real>
 inline void multipliers(const Prepared<Real>& par,
                         const Real (&R)[9],
-                        const Real (&r_a)[2],
                         const Real (&nu)[1],
                         const Real (&r_a_dot)[2],
                         const Real (&r_a_ddot)[2],
                         const Real (&nu_dot)[1],
                         const Real (&lambda_stat)[1],
                         Real (&lambda)[6]) noexcept {
-  using std::cos;
-  using std::sin;
   using std::sqrt;
   using detail::constant;
-  const Real s_r_a_0_ = sin(r_a[0]);
-  const Real c_r_a_0_ = cos(r_a[0]);
-  const Real s_r_a_1_ = sin(r_a[1]);
-  const Real c_r_a_1_ = cos(r_a[1]);
-
   // joint angles
   const Real t1 = R[6] * R[6];
   const Real t2 = R[8] * R[8];
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
-  const Real t5 = t4 * constant<Real>(2.0L);
-  const Real t6 = constant<Real>(1.0L) / t4;
-  const Real t7 = R[6] * t6;
-  const Real t8 = par.R * t7;
-  const Real t9 = R[8] * t6;
-  const Real t10 = t9 * par.R;
 
   // kernel
-  const Real t11 = par.R * R[8];
-  const Real t12 = nu[0] * t11;
-  const Real t13 = par.R * R[6];
-  const Real t14 = nu[0] * t13;
-  const Real t15 = constant<Real>(0.5L) * R[6];
-  const Real t16 = t4 * par.w;
-  const Real t17 = par.R / t16;
-  const Real t18 = t15 * t17;
-  const Real t19 = t18 * r_a_dot[1];
-  const Real t20 = t18 * r_a_dot[0];
-  const Real t21 = t19 - t20;
-  const Real t22 = constant<Real>(0.5L) * R[8];
-  const Real t23 = t22 * t17;
-  const Real t24 = t23 * r_a_dot[1];
-  const Real t25 = t23 * r_a_dot[0];
-  const Real t26 = t24 - t25;
-  const Real t27 = t4 * nu[0];
-  const Real t28 = constant<Real>(0.5L) * r_a_dot[0];
-  const Real t29 = constant<Real>(0.5L) * r_a_dot[1];
-  const Real t30 = t28 + t29;
-  const Real t31 = t27 - t30;
-
-  // hull: acceleration
-  const Real t32 = par.g * R[7];
-  const Real t33 = par.g * R[8];
-  const Real t34 = par.g * R[6];
+  const Real t5 = nu[0] * constant<Real>(2.0L);
+  const Real t6 = t5 + r_a_dot[0];
+  const Real t7 = t6 + r_a_dot[1];
+  const Real t8 = r_a_dot[0] - r_a_dot[1];
 
   // joint angles
-  const Real t35 = r_a_dot[0] + t31;
-  const Real t36 = t26 * R[7];
-  const Real t37 = R[6] * t31;
-  const Real t38 = r_a_dot[1] + t31;
+  const Real t9 = t4 * t3;
 
-  // drift of the kernel
-  const Real t39 = constant<Real>(0.5L) * r_a_ddot[1];
-  const Real t40 = constant<Real>(0.5L) * r_a_ddot[0];
-  const Real t41 = t39 + t40;
-  const Real t42 = t20 - t19;
-  const Real t43 = t42 * R[7];
-  const Real t44 = t43 + t37;
-  const Real t45 = constant<Real>(0.5L) * t44;
-  const Real t46 = t45 * t17;
-  const Real t47 = t44 * R[8];
-  const Real t48 = t47 * constant<Real>(2.0L);
-  const Real t49 = t30 - t27;
-  const Real t50 = R[8] * t49;
-  const Real t51 = t50 + t36;
-  const Real t52 = R[6] * t51;
-  const Real t53 = constant<Real>(2.0L) * t52;
-  const Real t54 = t48 + t53;
-  const Real t55 = t54 / t5;
-  const Real t56 = par.w * t55;
-  const Real t57 = t56 * t17;
-  const Real t58 = t57 / t16;
-  const Real t59 = t58 * t22;
-  const Real t60 = t46 - t59;
-  const Real t61 = t60 * r_a_dot[1];
-  const Real t62 = t60 * r_a_dot[0];
-  const Real t63 = t61 - t62;
-  const Real t64 = t23 * r_a_ddot[1];
-  const Real t65 = t23 * r_a_ddot[0];
-  const Real t66 = t64 - t65;
-  const Real t67 = t63 + t66;
-  const Real t68 = par.R * t44;
-  const Real t69 = t68 * nu[0];
-  const Real t70 = nu[0] * t55;
-  const Real t71 = par.R * t51;
-  const Real t72 = nu[0] * t71;
-  const Real t73 = t18 * r_a_ddot[1];
-  const Real t74 = t18 * r_a_ddot[0];
-  const Real t75 = t73 - t74;
-  const Real t76 = constant<Real>(0.5L) * t51;
-  const Real t77 = t76 * t17;
-  const Real t78 = t58 * t15;
-  const Real t79 = t77 - t78;
-  const Real t80 = t79 * r_a_dot[1];
-  const Real t81 = t79 * r_a_dot[0];
-  const Real t82 = t80 - t81;
-  const Real t83 = t75 + t82;
-
-  // left_wheel: twist
-  const Real t84 = t21 * c_r_a_0_;
-  const Real t85 = s_r_a_0_ * t26;
-  const Real t86 = t84 - t85;
-  const Real t87 = s_r_a_0_ * t21;
-  const Real t88 = c_r_a_0_ * t26;
-  const Real t89 = t87 + t88;
-
-  // right_wheel: twist
-  const Real t90 = c_r_a_1_ * t26;
-  const Real t91 = t21 * s_r_a_1_;
-  const Real t92 = t90 + t91;
-  const Real t93 = c_r_a_1_ * t21;
-  const Real t94 = s_r_a_1_ * t26;
-  const Real t95 = t93 - t94;
+  // joint angles
+  const Real t10 = nu[0] + r_a_dot[0];
+  const Real t11 = nu[0] + r_a_dot[1];
+  const Real t12 = nu[0] * R[8];
 
   // hull: acceleration
-  const Real t96 = t12 * t31;
-  const Real t97 = t26 * t31;
-  const Real t98 = t83 + t97;
-  const Real t99 = t21 * t31;
-  const Real t100 = t99 - t67;
-  const Real t101 = t12 * t26;
-  const Real t102 = t14 * t21;
-  const Real t103 = t101 + t102;
-  const Real t104 = t32 + t103;
-  const Real t105 = t97 - t83;
-  const Real t106 = t21 * t26;
-  const Real t107 = t26 * t26;
-  const Real t108 = t21 * t21;
-  const Real t109 = t107 + t108;
-  const Real t110 = t31 * t31;
-  const Real t111 = t108 + t110;
-  const Real t112 = t14 * t31;
-
-  // left_wheel: acceleration
-  const Real t113 = par.w * t109;
-  const Real t114 = t104 - t113;
-  const Real t115 = c_r_a_0_ * t83;
-  const Real t116 = t67 * s_r_a_0_;
-  const Real t117 = t115 - t116;
-  const Real t118 = t89 * r_a_dot[0];
-  const Real t119 = t117 - t118;
-  const Real t120 = t100 * par.w;
-  const Real t121 = t35 * t89;
-  const Real t122 = t35 * t86;
-  const Real t123 = t98 * par.w;
-  const Real t124 = s_r_a_0_ * t83;
-  const Real t125 = t67 * c_r_a_0_;
-  const Real t126 = t124 + t125;
-  const Real t127 = t86 * r_a_dot[0];
-  const Real t128 = t126 + t127;
-
-  // right_wheel: acceleration
-  const Real t129 = c_r_a_1_ * t83;
-  const Real t130 = t67 * s_r_a_1_;
-  const Real t131 = t129 - t130;
-  const Real t132 = t92 * r_a_dot[1];
-  const Real t133 = t131 - t132;
-  const Real t134 = t92 * t38;
-  const Real t135 = s_r_a_1_ * t83;
-  const Real t136 = c_r_a_1_ * t67;
-  const Real t137 = t135 + t136;
-  const Real t138 = r_a_dot[1] * t95;
-  const Real t139 = t137 + t138;
-  const Real t140 = t113 + t104;
-  const Real t141 = t38 * t95;
-
-  // hull: wrench
-  const Real t142 = par.k4 * t111;
-  const Real t143 = t67 * par.J_z;
-  const Real t144 = t99 * par.k9;
-  const Real t145 = t143 + t144;
-  const Real t146 = t97 * par.k10;
-  const Real t147 = par.k1 * t83;
-  const Real t148 = t146 + t147;
-  const Real t149 = t104 * par.k4;
-  const Real t150 = t148 - t149;
-  const Real t151 = t104 * par.m;
-  const Real t152 = t105 * par.k4;
-  const Real t153 = t151 + t152;
-
-  // left_wheel: wrench
-  const Real t154 = par.k11 * t122;
-  const Real t155 = t128 * par.J_d;
-  const Real t156 = t154 + t155;
-  const Real t157 = t114 * par.m_w;
-  const Real t158 = t121 * par.k12;
-  const Real t159 = t119 * par.J_d;
-  const Real t160 = t158 + t159;
-
-  // right_wheel: wrench
-  const Real t161 = par.k11 * t141;
-  const Real t162 = t139 * par.J_d;
-  const Real t163 = t161 + t162;
-  const Real t164 = t140 * par.m_w;
-  const Real t165 = t133 * par.J_d;
-  const Real t166 = t134 * par.k12;
-  const Real t167 = t165 + t166;
-
-  // right_wheel: joint force
-  const Real t168 = t164 + t153;
-  const Real t169 = t163 * c_r_a_1_;
-  const Real t170 = s_r_a_1_ * t167;
-  const Real t171 = t169 - t170;
-  const Real t172 = t163 * s_r_a_1_;
-  const Real t173 = c_r_a_1_ * t167;
-  const Real t174 = t172 + t173;
-
-  // left_wheel: joint force
-  const Real t175 = t156 * c_r_a_0_;
-  const Real t176 = s_r_a_0_ * t160;
-  const Real t177 = t175 - t176;
-  const Real t178 = t156 * s_r_a_0_;
-  const Real t179 = c_r_a_0_ * t160;
-  const Real t180 = t178 + t179;
-  const Real t181 = t168 + t157;
+  const Real t13 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t182 = t4 * nu_dot[0];
-  const Real t183 = t182 - t41;
-  const Real t184 = t183 + t70;
-  const Real t185 = nu_dot[0] * t13;
-  const Real t186 = t185 + t72;
-  const Real t187 = nu_dot[0] * t11;
-  const Real t188 = t187 + t69;
-
-  // hull: acceleration
-  const Real t189 = t96 + t186;
-  const Real t190 = t33 - t189;
-  const Real t191 = t184 + t106;
-  const Real t192 = t188 - t112;
-  const Real t193 = t192 + t34;
+  const Real t14 = t3 * par.k5;
+  const Real t15 = t4 * par.l;
+  const Real t16 = r_a_ddot[1] + r_a_ddot[0];
+  const Real t17 = t8 * par.m_w;
+  const Real t18 = R[8] * t3;
+  const Real t19 = t8 * t8;
+  const Real t20 = R[6] * par.l;
+  const Real t21 = par.m * t20;
+  const Real t22 = t7 * t3;
+  const Real t23 = t4 * R[6];
+  const Real t24 = t7 * t8;
+  const Real t25 = t24 * t3;
+  const Real t26 = r_a_dot[0] * r_a_dot[0];
+  const Real t27 = r_a_dot[1] * r_a_dot[1];
+  const Real t28 = t26 - t27;
+  const Real t29 = t4 * R[7];
+  const Real t30 = par.R * t8;
+  const Real t31 = r_a_ddot[0] - r_a_ddot[1];
+  const Real t32 = R[8] * par.l;
+  const Real t33 = par.m * t32;
+  const Real t34 = t33 * par.R;
 
   // left_wheel: acceleration
-  const Real t194 = t120 + t193;
-  const Real t195 = t194 * c_r_a_0_;
-  const Real t196 = t190 + t123;
-  const Real t197 = s_r_a_0_ * t196;
-  const Real t198 = t195 - t197;
-  const Real t199 = t196 * c_r_a_0_;
-  const Real t200 = s_r_a_0_ * t194;
-  const Real t201 = t199 + t200;
+  const Real t35 = nu_dot[0] + r_a_ddot[0];
 
   // right_wheel: acceleration
-  const Real t202 = t193 - t120;
-  const Real t203 = t202 * s_r_a_1_;
-  const Real t204 = t190 - t123;
-  const Real t205 = c_r_a_1_ * t204;
-  const Real t206 = t203 + t205;
-  const Real t207 = t202 * c_r_a_1_;
-  const Real t208 = t204 * s_r_a_1_;
-  const Real t209 = t207 - t208;
+  const Real t36 = nu_dot[0] + r_a_ddot[1];
 
-  // hull: wrench
-  const Real t210 = t190 * par.m;
-  const Real t211 = t210 - t142;
-  const Real t212 = t191 * par.k4;
-  const Real t213 = par.m * t193;
-  const Real t214 = t212 + t213;
-
-  // left_wheel: wrench
-  const Real t215 = par.m_w * t201;
-  const Real t216 = t198 * par.m_w;
-
-  // right_wheel: wrench
-  const Real t217 = t209 * par.m_w;
-  const Real t218 = t206 * par.m_w;
-
-  // right_wheel: joint force
-  const Real t219 = c_r_a_1_ * t218;
-  const Real t220 = t217 * s_r_a_1_;
-  const Real t221 = t219 - t220;
-  const Real t222 = t221 * par.w;
-  const Real t223 = t174 - t222;
-  const Real t224 = t223 + t150;
-  const Real t225 = t218 * s_r_a_1_;
-  const Real t226 = c_r_a_1_ * t217;
-  const Real t227 = t225 + t226;
-  const Real t228 = par.w * t227;
-  const Real t229 = t171 + t228;
-  const Real t230 = t145 + t229;
-  const Real t231 = t211 + t221;
-  const Real t232 = t227 + t214;
-
-  // left_wheel: joint force
-  const Real t233 = t215 * c_r_a_0_;
-  const Real t234 = s_r_a_0_ * t216;
-  const Real t235 = t233 - t234;
-  const Real t236 = t235 + t231;
-  const Real t237 = t235 * par.w;
-  const Real t238 = t180 + t237;
-  const Real t239 = t224 + t238;
-  const Real t240 = t216 * c_r_a_0_;
-  const Real t241 = t215 * s_r_a_0_;
-  const Real t242 = t240 + t241;
-  const Real t243 = t242 + t232;
-  const Real t244 = t242 * par.w;
-  const Real t245 = t177 - t244;
-  const Real t246 = t230 + t245;
+  // torques
+  const Real t37 = par.k23 * t9;
+  const Real t38 = t8 * t12;
+  const Real t39 = t36 * par.m_w;
+  const Real t40 = t39 * constant<Real>(4.0L);
+  const Real t41 = nu_dot[0] * constant<Real>(2.0L);
+  const Real t42 = t16 + t41;
+  const Real t43 = par.m * t42;
+  const Real t44 = t40 + t43;
+  const Real t45 = t44 * par.w;
+  const Real t46 = t45 * par.w;
+  const Real t47 = par.k21 * t31;
+  const Real t48 = t46 - t47;
+  const Real t49 = R[6] * R[7];
+  const Real t50 = par.R * t21;
+  const Real t51 = t8 * t50;
+  const Real t52 = t51 * t11;
+  const Real t53 = t51 * t10;
+  const Real t54 = par.m_w * t35;
+  const Real t55 = t54 * constant<Real>(4.0L);
+  const Real t56 = t43 + t55;
+  const Real t57 = t56 * par.w;
+  const Real t58 = t57 * par.w;
+  const Real t59 = par.k22 * t31;
+  const Real t60 = t58 + t59;
+  const Real t61 = t47 + t58;
+  const Real t62 = R[8] * R[7];
+  const Real t63 = t46 - t59;
 
   // multipliers
-  const Real t247 = constant<Real>(0.5L) * t243;
-  const Real t248 = t181 * t8;
-  const Real t249 = t248 + t246;
-  const Real t250 = par.k6 * t249;
-  const Real t251 = t250 * par.w;
-  const Real t252 = t247 - t251;
-  const Real t253 = constant<Real>(0.5L) * t181;
-  const Real t254 = lambda_stat[0] + t253;
-  const Real t255 = t236 * constant<Real>(0.5L);
-  const Real t256 = t181 * t10;
-  const Real t257 = t256 - t239;
-  const Real t258 = par.k6 * t257;
-  const Real t259 = t258 * par.w;
-  const Real t260 = t255 - t259;
-  const Real t261 = t253 - lambda_stat[0];
-  const Real t262 = t247 + t251;
-  const Real t263 = t259 + t255;
+  const Real t64 = R[8] * par.k19;
+  const Real t65 = par.g * t64;
+  const Real t66 = t13 * par.l;
+  const Real t67 = t66 * par.m;
+  const Real t68 = t65 - t67;
+  const Real t69 = t68 * constant<Real>(0.5L);
+  const Real t70 = t9 * R[7];
+  const Real t71 = t70 * par.l;
+  const Real t72 = par.m * t71;
+  const Real t73 = t72 * par.k5;
+  const Real t74 = par.g * t73;
+  const Real t75 = constant<Real>(4.0L) * t74;
+  const Real t76 = par.w * R[7];
+  const Real t77 = t76 * par.k19;
+  const Real t78 = constant<Real>(2.0L) * t77;
+  const Real t79 = par.g * t78;
+  const Real t80 = par.J_a * t28;
+  const Real t81 = t79 - t80;
+  const Real t82 = par.k25 * t8;
+  const Real t83 = t82 * nu[0];
+  const Real t84 = t81 - t83;
+  const Real t85 = t84 * t3;
+  const Real t86 = t85 * constant<Real>(2.0L);
+  const Real t87 = t7 * t30;
+  const Real t88 = t87 * t3;
+  const Real t89 = t76 * t8;
+  const Real t90 = t7 * t89;
+  const Real t91 = nu[0] * constant<Real>(6.0L);
+  const Real t92 = t91 + r_a_dot[0];
+  const Real t93 = t92 + r_a_dot[1];
+  const Real t94 = t93 * t8;
+  const Real t95 = t94 * R[8];
+  const Real t96 = R[6] * t31;
+  const Real t97 = t96 * constant<Real>(2.0L);
+  const Real t98 = t95 - t97;
+  const Real t99 = t98 * par.l;
+  const Real t100 = t90 + t99;
+  const Real t101 = t4 * t100;
+  const Real t102 = t88 + t101;
+  const Real t103 = t102 * par.m;
+  const Real t104 = par.w * t29;
+  const Real t105 = t104 * t10;
+  const Real t106 = t105 * constant<Real>(2.0L);
+  const Real t107 = par.R * t22;
+  const Real t108 = t106 + t107;
+  const Real t109 = t17 * t108;
+  const Real t110 = t109 * constant<Real>(2.0L);
+  const Real t111 = t103 + t110;
+  const Real t112 = t111 * par.R;
+  const Real t113 = t86 - t112;
+  const Real t114 = t113 * R[8];
+  const Real t115 = t4 * t61;
+  const Real t116 = t52 - t115;
+  const Real t117 = t116 * t23;
+  const Real t118 = t117 * constant<Real>(2.0L);
+  const Real t119 = t114 - t118;
+  const Real t120 = t119 * par.w;
+  const Real t121 = t4 * par.k21;
+  const Real t122 = t121 + t34;
+  const Real t123 = par.R * t62;
+  const Real t124 = t19 * t123;
+  const Real t125 = t122 * t124;
+  const Real t126 = t120 - t125;
+  const Real t127 = par.R * t126;
+  const Real t128 = t75 + t127;
+  const Real t129 = constant<Real>(0.125L) * t128;
+  const Real t130 = constant<Real>(1.0L) / t37;
+  const Real t131 = t129 * t130;
+  const Real t132 = t69 - t131;
+  const Real t133 = nu_dot[0] * par.l;
+  const Real t134 = t133 * par.m;
+  const Real t135 = R[6] * par.k19;
+  const Real t136 = par.g * t135;
+  const Real t137 = t134 + t136;
+  const Real t138 = constant<Real>(0.5L) * t137;
+  const Real t139 = t8 * par.k27;
+  const Real t140 = nu[0] * t139;
+  const Real t141 = t81 + t140;
+  const Real t142 = t141 * t3;
+  const Real t143 = t142 * constant<Real>(2.0L);
+  const Real t144 = nu[0] * constant<Real>(4.0L);
+  const Real t145 = t144 + r_a_dot[0];
+  const Real t146 = t145 - r_a_dot[1];
+  const Real t147 = t8 * t146;
+  const Real t148 = R[8] * t147;
+  const Real t149 = t148 - t97;
+  const Real t150 = t149 * par.l;
+  const Real t151 = t90 + t150;
+  const Real t152 = t4 * t151;
+  const Real t153 = t88 + t152;
+  const Real t154 = t153 * par.m;
+  const Real t155 = t110 + t154;
+  const Real t156 = par.R * t155;
+  const Real t157 = t143 - t156;
+  const Real t158 = t157 * R[6];
+  const Real t159 = t18 * t60;
+  const Real t160 = t159 * constant<Real>(2.0L);
+  const Real t161 = t158 - t160;
+  const Real t162 = t161 * par.w;
+  const Real t163 = t4 * par.k22;
+  const Real t164 = t163 + t34;
+  const Real t165 = t49 * par.R;
+  const Real t166 = t19 * t165;
+  const Real t167 = t164 * t166;
+  const Real t168 = t162 - t167;
+  const Real t169 = par.R * t168;
+  const Real t170 = t169 * constant<Real>(0.125L);
+  const Real t171 = t170 * t130;
+  const Real t172 = t138 - t171;
+  const Real t173 = t104 * t11;
+  const Real t174 = t173 * constant<Real>(2.0L);
+  const Real t175 = t107 - t174;
+  const Real t176 = t17 * t175;
+  const Real t177 = t176 * constant<Real>(2.0L);
+  const Real t178 = t97 - t95;
+  const Real t179 = t178 * par.l;
+  const Real t180 = t90 + t179;
+  const Real t181 = t4 * t180;
+  const Real t182 = t88 - t181;
+  const Real t183 = t182 * par.m;
+  const Real t184 = t177 + t183;
+  const Real t185 = t184 * par.R;
+  const Real t186 = t86 - t185;
+  const Real t187 = t186 * R[8];
+  const Real t188 = t48 * t4;
+  const Real t189 = t53 + t188;
+  const Real t190 = t189 * t23;
+  const Real t191 = t190 * constant<Real>(2.0L);
+  const Real t192 = t187 - t191;
+  const Real t193 = t192 * par.w;
+  const Real t194 = t193 - t125;
+  const Real t195 = t194 * par.R;
+  const Real t196 = t75 + t195;
+  const Real t197 = constant<Real>(0.125L) * t196;
+  const Real t198 = t197 * t130;
+  const Real t199 = t198 + t69;
+  const Real t200 = t18 * t63;
+  const Real t201 = t200 * constant<Real>(2.0L);
+  const Real t202 = t144 + r_a_dot[1];
+  const Real t203 = t202 - r_a_dot[0];
+  const Real t204 = t203 * t8;
+  const Real t205 = t204 * R[8];
+  const Real t206 = t97 - t205;
+  const Real t207 = t206 * par.l;
+  const Real t208 = t90 + t207;
+  const Real t209 = t4 * t208;
+  const Real t210 = t88 - t209;
+  const Real t211 = t210 * par.m;
+  const Real t212 = t177 + t211;
+  const Real t213 = par.R * t212;
+  const Real t214 = t143 - t213;
+  const Real t215 = t214 * R[6];
+  const Real t216 = t201 + t215;
+  const Real t217 = t216 * par.w;
+  const Real t218 = t217 - t167;
+  const Real t219 = t218 * par.R;
+  const Real t220 = constant<Real>(0.125L) * t219;
+  const Real t221 = t220 * t130;
+  const Real t222 = t221 + t138;
+  const Real t223 = par.k24 * R[7];
+  const Real t224 = par.g * t223;
+  const Real t225 = t224 - lambda_stat[0];
+  const Real t226 = t62 * par.l;
+  const Real t227 = t226 * par.m;
+  const Real t228 = t227 * par.R;
+  const Real t229 = t19 * t228;
+  const Real t230 = t25 * par.k19;
+  const Real t231 = par.R * t230;
+  const Real t232 = t15 * par.m;
+  const Real t233 = t38 * constant<Real>(2.0L);
+  const Real t234 = t96 - t233;
+  const Real t235 = t232 * t234;
+  const Real t236 = t235 * constant<Real>(2.0L);
+  const Real t237 = t231 - t236;
+  const Real t238 = t237 * par.w;
+  const Real t239 = t229 + t238;
+  const Real t240 = par.R * t239;
+  const Real t241 = t240 / t14;
+  const Real t242 = t241 * constant<Real>(0.125L);
+  const Real t243 = t225 - t242;
+  const Real t244 = lambda_stat[0] + t224;
+  const Real t245 = t244 - t242;
 
-  lambda[0] = t252;
-  lambda[1] = t261;
-  lambda[2] = t260;
-  lambda[3] = t262;
-  lambda[4] = t254;
-  lambda[5] = t263;
+  lambda[0] = t172;
+  lambda[1] = t243;
+  lambda[2] = t132;
+  lambda[3] = t222;
+  lambda[4] = t245;
+  lambda[5] = t199;
 }
 
 /// All velocities from the reduced ones, active joints free.
@@ -1707,52 +1662,52 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
   const Real t5 = t4 * constant<Real>(2.0L);
 
   // kernel
-  const Real t6 = par.R * R[6];
-  const Real t7 = t6 * t6;
+  const Real t6 = t4 * par.w;
+  const Real t7 = par.R * R[6];
   const Real t8 = par.R * R[8];
-  const Real t9 = t8 * t8;
-  const Real t10 = t7 + t9;
-  const Real t11 = t10 + t3;
-  const Real t12 = eta[0] * t8;
-  const Real t13 = t6 * eta[2];
-  const Real t14 = t12 - t13;
-  const Real t15 = t4 * par.w;
 
   // kernel
-  const Real t16 = t15 * t15;
-  const Real t17 = t16 + t10;
-  const Real t18 = t17 + t16;
-  const Real t19 = constant<Real>(1.0L) / t18;
-  const Real t20 = eta[5] * t8;
-  const Real t21 = t6 * eta[3];
+  const Real t9 = t6 * t6;
+  const Real t10 = t7 * t7;
+  const Real t11 = t8 * t8;
+  const Real t12 = t10 + t11;
+  const Real t13 = t9 + t12;
+  const Real t14 = t13 + t9;
+  const Real t15 = constant<Real>(1.0L) / t14;
+  const Real t16 = eta[5] * t8;
+  const Real t17 = t7 * eta[3];
+  const Real t18 = t16 + t17;
+  const Real t19 = t6 * r_a_dot[0];
+  const Real t20 = t18 - t19;
+  const Real t21 = t6 * r_a_dot[1];
   const Real t22 = t20 + t21;
-  const Real t23 = t15 * r_a_dot[0];
-  const Real t24 = t22 - t23;
-  const Real t25 = t15 * r_a_dot[1];
-  const Real t26 = t24 + t25;
-  const Real t27 = t19 * t26;
-  const Real t28 = t11 + t3;
-  const Real t29 = constant<Real>(1.0L) / t28;
-  const Real t30 = t29 * t5;
-  const Real t31 = eta[4] - r_a_dot[0];
-  const Real t32 = t31 - r_a_dot[1];
-  const Real t33 = t4 * r_a_dot[0];
-  const Real t34 = t33 + t14;
+  const Real t23 = t15 * t22;
+  const Real t24 = t12 + t3;
+  const Real t25 = t24 + t3;
+  const Real t26 = constant<Real>(1.0L) / t25;
+  const Real t27 = t26 * t5;
+  const Real t28 = eta[4] - r_a_dot[0];
+  const Real t29 = t28 - r_a_dot[1];
+  const Real t30 = t4 * r_a_dot[0];
+  const Real t31 = eta[0] * t8;
+  const Real t32 = t7 * eta[2];
+  const Real t33 = t31 - t32;
+  const Real t34 = t30 + t33;
   const Real t35 = t4 * r_a_dot[1];
   const Real t36 = t34 + t35;
-  const Real t37 = t36 * t30;
-  const Real t38 = t32 + t37;
-  const Real t39 = t30 * t5;
+  const Real t37 = t36 * t27;
+  const Real t38 = t29 + t37;
+  const Real t39 = t27 * t5;
   const Real t40 = constant<Real>(3.0L) - t39;
   const Real t41 = constant<Real>(1.0L) / t40;
   const Real t42 = t38 * t41;
-  const Real t43 = t30 * t42;
-  const Real t44 = t36 * t29;
+  const Real t43 = t27 * t42;
+  const Real t44 = t36 * t26;
   const Real t45 = t43 + t44;
 
   w_out[0] = t45;
   w_out[1] = t42;
-  w_out[2] = t27;
+  w_out[2] = t23;
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
@@ -1804,309 +1759,303 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t10 = par.g * R[8];
   const Real t11 = par.g * R[6];
 
-  // left_wheel: acceleration
-  const Real t12 = s_r_a_0_ * t7;
-  const Real t13 = c_r_a_0_ * t8;
-  const Real t14 = t12 + t13;
-  const Real t15 = s_r_a_0_ * t8;
-  const Real t16 = c_r_a_0_ * t7;
-  const Real t17 = t15 - t16;
-
-  // right_wheel: acceleration
-  const Real t18 = c_r_a_1_ * t8;
-  const Real t19 = s_r_a_1_ * t7;
-  const Real t20 = t18 + t19;
-  const Real t21 = s_r_a_1_ * t8;
-  const Real t22 = c_r_a_1_ * t7;
-  const Real t23 = t21 - t22;
-
-  // hull: wrench
-  const Real t24 = par.m * t7;
-  const Real t25 = par.m * t8;
-  const Real t26 = par.k4 * t8;
-
-  // left_wheel: wrench
-  const Real t27 = t14 * par.m_w;
-  const Real t28 = par.m_w * t17;
-  const Real t29 = par.J_a * t4;
-
-  // right_wheel: wrench
-  const Real t30 = t20 * par.m_w;
-  const Real t31 = t23 * par.m_w;
-
-  // right_wheel: joint force
-  const Real t32 = c_r_a_1_ * t31;
-  const Real t33 = t30 * s_r_a_1_;
-  const Real t34 = t32 - t33;
-  const Real t35 = t34 * par.w;
-  const Real t36 = s_r_a_1_ * t31;
-  const Real t37 = c_r_a_1_ * t30;
-  const Real t38 = t36 + t37;
-  const Real t39 = par.w * t38;
-  const Real t40 = t34 - t24;
-
-  // left_wheel: joint force
-  const Real t41 = s_r_a_0_ * t28;
-  const Real t42 = c_r_a_0_ * t27;
-  const Real t43 = t41 + t42;
-  const Real t44 = t43 * par.w;
-  const Real t45 = t39 - t44;
-  const Real t46 = c_r_a_0_ * t28;
-  const Real t47 = s_r_a_0_ * t27;
-  const Real t48 = t46 - t47;
-  const Real t49 = t40 + t48;
-  const Real t50 = par.w * t48;
-  const Real t51 = t50 - t35;
-
-  // reduced mass matrix
-  const Real t52 = t7 * t49;
-
   // kernel
-  const Real t53 = t4 * w[0];
-  const Real t54 = t53 - w[1];
-  const Real t55 = w[2] * t6;
-  const Real t56 = t54 - t55;
-  const Real t57 = w[0] * t8;
-  const Real t58 = w[2] * t7;
-  const Real t59 = w[0] * t7;
-  const Real t60 = w[2] * t8;
-  const Real t61 = t55 + t54;
+  const Real t12 = t4 * w[0];
+  const Real t13 = t12 - w[1];
+  const Real t14 = w[2] * t6;
+  const Real t15 = t13 - t14;
+  const Real t16 = w[0] * t8;
+  const Real t17 = w[2] * t7;
+  const Real t18 = w[0] * t7;
+  const Real t19 = w[2] * t8;
+  const Real t20 = t14 + t13;
 
   // joint angles
-  const Real t62 = t56 + w[1];
-  const Real t63 = t60 * R[7];
-  const Real t64 = w[1] * R[8];
-  const Real t65 = t63 - t64;
-  const Real t66 = t65 * R[6];
-  const Real t67 = t66 * constant<Real>(2.0L);
-  const Real t68 = w[1] * R[6];
-  const Real t69 = t58 * R[7];
-  const Real t70 = t68 - t69;
-  const Real t71 = R[8] * t70;
-  const Real t72 = t71 * constant<Real>(2.0L);
-  const Real t73 = t67 + t72;
-  const Real t74 = t73 / t5;
-  const Real t75 = w[1] + t61;
+  const Real t21 = t15 + w[1];
+  const Real t22 = t19 * R[7];
+  const Real t23 = w[1] * R[8];
+  const Real t24 = t22 - t23;
+  const Real t25 = t24 * R[6];
+  const Real t26 = t25 * constant<Real>(2.0L);
+  const Real t27 = w[1] * R[6];
+  const Real t28 = t17 * R[7];
+  const Real t29 = t27 - t28;
+  const Real t30 = R[8] * t29;
+  const Real t31 = t30 * constant<Real>(2.0L);
+  const Real t32 = t26 + t31;
+  const Real t33 = t32 / t5;
+  const Real t34 = w[1] + t20;
 
   // drift of the kernel
-  const Real t76 = par.R * t65;
-  const Real t77 = t76 * w[2];
-  const Real t78 = t76 * w[0];
-  const Real t79 = t74 * w[0];
-  const Real t80 = t74 * par.w;
-  const Real t81 = w[2] * t80;
-  const Real t82 = t79 - t81;
-  const Real t83 = par.R * t70;
-  const Real t84 = w[2] * t83;
-  const Real t85 = t83 * w[0];
-  const Real t86 = t79 + t81;
+  const Real t35 = par.R * t24;
+  const Real t36 = t35 * w[2];
+  const Real t37 = t35 * w[0];
+  const Real t38 = t33 * w[0];
+  const Real t39 = t33 * par.w;
+  const Real t40 = w[2] * t39;
+  const Real t41 = t38 - t40;
+  const Real t42 = par.R * t29;
+  const Real t43 = w[2] * t42;
+  const Real t44 = t42 * w[0];
+  const Real t45 = t38 + t40;
 
   // left_wheel: twist
-  const Real t87 = t60 * c_r_a_0_;
-  const Real t88 = t58 * s_r_a_0_;
-  const Real t89 = t87 + t88;
-  const Real t90 = t58 * c_r_a_0_;
-  const Real t91 = s_r_a_0_ * t60;
-  const Real t92 = t90 - t91;
+  const Real t46 = t19 * c_r_a_0_;
+  const Real t47 = t17 * s_r_a_0_;
+  const Real t48 = t46 + t47;
+  const Real t49 = t17 * c_r_a_0_;
+  const Real t50 = s_r_a_0_ * t19;
+  const Real t51 = t49 - t50;
 
   // right_wheel: twist
-  const Real t93 = c_r_a_1_ * t58;
-  const Real t94 = t60 * s_r_a_1_;
-  const Real t95 = t93 - t94;
-  const Real t96 = t58 * s_r_a_1_;
-  const Real t97 = c_r_a_1_ * t60;
-  const Real t98 = t96 + t97;
+  const Real t52 = c_r_a_1_ * t17;
+  const Real t53 = t19 * s_r_a_1_;
+  const Real t54 = t52 - t53;
+  const Real t55 = t17 * s_r_a_1_;
+  const Real t56 = c_r_a_1_ * t19;
+  const Real t57 = t55 + t56;
 
   // hull: acceleration
-  const Real t99 = t58 * t60;
-  const Real t100 = w[1] * t60;
-  const Real t101 = t77 + t100;
-  const Real t102 = t58 * w[1];
-  const Real t103 = t102 - t84;
-  const Real t104 = w[1] * w[1];
-  const Real t105 = t58 * t58;
-  const Real t106 = t104 + t105;
-  const Real t107 = t57 * w[1];
-  const Real t108 = t78 + t107;
-  const Real t109 = t10 - t108;
-  const Real t110 = t59 * w[1];
-  const Real t111 = t85 - t110;
-  const Real t112 = t111 + t11;
-  const Real t113 = t58 * t59;
-  const Real t114 = t57 * t60;
-  const Real t115 = t113 + t114;
-  const Real t116 = t115 + t9;
+  const Real t58 = t17 * t19;
+  const Real t59 = w[1] * t19;
+  const Real t60 = t36 + t59;
+  const Real t61 = t17 * w[1];
+  const Real t62 = t61 - t43;
+  const Real t63 = w[1] * w[1];
+  const Real t64 = t17 * t17;
+  const Real t65 = t63 + t64;
+  const Real t66 = t16 * w[1];
+  const Real t67 = t37 + t66;
+  const Real t68 = t10 - t67;
+  const Real t69 = t18 * w[1];
+  const Real t70 = t44 - t69;
+  const Real t71 = t70 + t11;
+  const Real t72 = t17 * t18;
+  const Real t73 = t16 * t19;
+  const Real t74 = t72 + t73;
+  const Real t75 = t74 + t9;
 
   // left_wheel: acceleration
-  const Real t117 = t77 * s_r_a_0_;
-  const Real t118 = t84 * c_r_a_0_;
-  const Real t119 = t117 + t118;
-  const Real t120 = t56 * t92;
-  const Real t121 = t119 + t120;
-  const Real t122 = t62 * t92;
-  const Real t123 = t103 * par.w;
-  const Real t124 = t112 + t123;
-  const Real t125 = t124 * c_r_a_0_;
-  const Real t126 = t101 * par.w;
-  const Real t127 = t109 + t126;
-  const Real t128 = s_r_a_0_ * t127;
-  const Real t129 = t125 - t128;
-  const Real t130 = t77 * c_r_a_0_;
-  const Real t131 = s_r_a_0_ * t84;
-  const Real t132 = t130 - t131;
-  const Real t133 = t56 * t89;
-  const Real t134 = t132 - t133;
-  const Real t135 = s_r_a_0_ * t124;
-  const Real t136 = c_r_a_0_ * t127;
-  const Real t137 = t135 + t136;
-  const Real t138 = t62 * t89;
+  const Real t76 = t36 * s_r_a_0_;
+  const Real t77 = t43 * c_r_a_0_;
+  const Real t78 = t76 + t77;
+  const Real t79 = t15 * t51;
+  const Real t80 = t78 + t79;
+  const Real t81 = t21 * t51;
+  const Real t82 = t62 * par.w;
+  const Real t83 = t71 + t82;
+  const Real t84 = t83 * c_r_a_0_;
+  const Real t85 = t60 * par.w;
+  const Real t86 = t68 + t85;
+  const Real t87 = s_r_a_0_ * t86;
+  const Real t88 = t84 - t87;
+  const Real t89 = t36 * c_r_a_0_;
+  const Real t90 = s_r_a_0_ * t43;
+  const Real t91 = t89 - t90;
+  const Real t92 = t15 * t48;
+  const Real t93 = t91 - t92;
+  const Real t94 = s_r_a_0_ * t83;
+  const Real t95 = c_r_a_0_ * t86;
+  const Real t96 = t94 + t95;
+  const Real t97 = t21 * t48;
 
   // right_wheel: acceleration
-  const Real t139 = t95 * t61;
-  const Real t140 = t77 * s_r_a_1_;
-  const Real t141 = c_r_a_1_ * t84;
-  const Real t142 = t140 + t141;
-  const Real t143 = t139 + t142;
-  const Real t144 = t75 * t95;
-  const Real t145 = t77 * c_r_a_1_;
-  const Real t146 = t84 * s_r_a_1_;
-  const Real t147 = t145 - t146;
-  const Real t148 = t61 * t98;
-  const Real t149 = t147 - t148;
-  const Real t150 = t75 * t98;
-  const Real t151 = t112 - t123;
-  const Real t152 = c_r_a_1_ * t151;
-  const Real t153 = t109 - t126;
-  const Real t154 = t153 * s_r_a_1_;
-  const Real t155 = t152 - t154;
-  const Real t156 = t151 * s_r_a_1_;
-  const Real t157 = c_r_a_1_ * t153;
-  const Real t158 = t156 + t157;
+  const Real t98 = t54 * t20;
+  const Real t99 = t36 * s_r_a_1_;
+  const Real t100 = c_r_a_1_ * t43;
+  const Real t101 = t99 + t100;
+  const Real t102 = t98 + t101;
+  const Real t103 = t34 * t54;
+  const Real t104 = t36 * c_r_a_1_;
+  const Real t105 = t43 * s_r_a_1_;
+  const Real t106 = t104 - t105;
+  const Real t107 = t20 * t57;
+  const Real t108 = t106 - t107;
+  const Real t109 = t34 * t57;
+  const Real t110 = t71 - t82;
+  const Real t111 = c_r_a_1_ * t110;
+  const Real t112 = t68 - t85;
+  const Real t113 = t112 * s_r_a_1_;
+  const Real t114 = t111 - t113;
+  const Real t115 = t110 * s_r_a_1_;
+  const Real t116 = c_r_a_1_ * t112;
+  const Real t117 = t115 + t116;
 
   // hull: wrench
-  const Real t159 = t109 * par.m;
-  const Real t160 = t106 * par.k4;
-  const Real t161 = t159 - t160;
-  const Real t162 = t112 * par.k4;
-  const Real t163 = t99 * par.k8;
-  const Real t164 = t162 + t163;
-  const Real t165 = t102 * par.k9;
-  const Real t166 = par.J_z * t84;
-  const Real t167 = t165 + t166;
-  const Real t168 = t99 * par.k4;
-  const Real t169 = t112 * par.m;
-  const Real t170 = t168 + t169;
-  const Real t171 = t100 * par.k10;
-  const Real t172 = par.k1 * t77;
-  const Real t173 = t171 + t172;
-  const Real t174 = t116 * par.k4;
-  const Real t175 = t173 - t174;
+  const Real t118 = t68 * par.m;
+  const Real t119 = t65 * par.k4;
+  const Real t120 = t118 - t119;
+  const Real t121 = t71 * par.k4;
+  const Real t122 = t58 * par.k7;
+  const Real t123 = t121 + t122;
+  const Real t124 = t61 * par.k8;
+  const Real t125 = par.J_z * t43;
+  const Real t126 = t124 + t125;
+  const Real t127 = t58 * par.k4;
+  const Real t128 = t71 * par.m;
+  const Real t129 = t127 + t128;
+  const Real t130 = t59 * par.k9;
+  const Real t131 = par.k1 * t36;
+  const Real t132 = t130 + t131;
+  const Real t133 = t75 * par.k4;
+  const Real t134 = t132 - t133;
 
   // left_wheel: wrench
-  const Real t176 = t121 * par.J_d;
-  const Real t177 = t122 * par.k11;
-  const Real t178 = t176 + t177;
-  const Real t179 = t138 * par.k12;
-  const Real t180 = t134 * par.J_d;
-  const Real t181 = t179 + t180;
-  const Real t182 = par.m_w * t137;
-  const Real t183 = par.J_a * t82;
-  const Real t184 = t129 * par.m_w;
+  const Real t135 = t80 * par.J_d;
+  const Real t136 = t81 * par.k10;
+  const Real t137 = t135 + t136;
+  const Real t138 = t97 * par.k11;
+  const Real t139 = t93 * par.J_d;
+  const Real t140 = t138 + t139;
+  const Real t141 = par.m_w * t96;
+  const Real t142 = par.J_a * t41;
+  const Real t143 = t88 * par.m_w;
 
   // right_wheel: wrench
-  const Real t185 = t144 * par.k11;
-  const Real t186 = t143 * par.J_d;
-  const Real t187 = t185 + t186;
-  const Real t188 = par.m_w * t158;
-  const Real t189 = par.m_w * t155;
-  const Real t190 = t150 * par.k12;
-  const Real t191 = t149 * par.J_d;
-  const Real t192 = t190 + t191;
-  const Real t193 = par.J_a * t86;
+  const Real t144 = t103 * par.k10;
+  const Real t145 = t102 * par.J_d;
+  const Real t146 = t144 + t145;
+  const Real t147 = par.m_w * t117;
+  const Real t148 = par.m_w * t114;
+  const Real t149 = t109 * par.k11;
+  const Real t150 = t108 * par.J_d;
+  const Real t151 = t149 + t150;
+  const Real t152 = par.J_a * t45;
 
   // right_wheel: joint force
-  const Real t194 = c_r_a_1_ * t189;
-  const Real t195 = t188 * s_r_a_1_;
-  const Real t196 = t194 + t195;
-  const Real t197 = t196 + t170;
-  const Real t198 = c_r_a_1_ * t187;
-  const Real t199 = t192 * s_r_a_1_;
-  const Real t200 = t198 - t199;
-  const Real t201 = t196 * par.w;
-  const Real t202 = t200 + t201;
-  const Real t203 = t167 + t202;
-  const Real t204 = t164 + t193;
-  const Real t205 = c_r_a_1_ * t188;
-  const Real t206 = t189 * s_r_a_1_;
-  const Real t207 = t205 - t206;
-  const Real t208 = t161 + t207;
-  const Real t209 = t187 * s_r_a_1_;
-  const Real t210 = c_r_a_1_ * t192;
-  const Real t211 = t209 + t210;
-  const Real t212 = t207 * par.w;
-  const Real t213 = t211 - t212;
-  const Real t214 = t213 + t175;
+  const Real t153 = c_r_a_1_ * t148;
+  const Real t154 = t147 * s_r_a_1_;
+  const Real t155 = t153 + t154;
+  const Real t156 = t155 + t129;
+  const Real t157 = c_r_a_1_ * t146;
+  const Real t158 = t151 * s_r_a_1_;
+  const Real t159 = t157 - t158;
+  const Real t160 = t155 * par.w;
+  const Real t161 = t159 + t160;
+  const Real t162 = t126 + t161;
+  const Real t163 = t123 + t152;
+  const Real t164 = c_r_a_1_ * t147;
+  const Real t165 = t148 * s_r_a_1_;
+  const Real t166 = t164 - t165;
+  const Real t167 = t120 + t166;
+  const Real t168 = t146 * s_r_a_1_;
+  const Real t169 = c_r_a_1_ * t151;
+  const Real t170 = t168 + t169;
+  const Real t171 = t166 * par.w;
+  const Real t172 = t170 - t171;
+  const Real t173 = t172 + t134;
 
   // left_wheel: joint force
-  const Real t215 = c_r_a_0_ * t184;
-  const Real t216 = s_r_a_0_ * t182;
-  const Real t217 = t215 + t216;
-  const Real t218 = t197 + t217;
-  const Real t219 = t178 * c_r_a_0_;
-  const Real t220 = t181 * s_r_a_0_;
-  const Real t221 = t219 - t220;
-  const Real t222 = t217 * par.w;
-  const Real t223 = t221 - t222;
-  const Real t224 = t203 + t223;
-  const Real t225 = c_r_a_0_ * t182;
-  const Real t226 = s_r_a_0_ * t184;
-  const Real t227 = t225 - t226;
-  const Real t228 = t227 + t208;
-  const Real t229 = t204 + t183;
-  const Real t230 = par.w * t227;
-  const Real t231 = t181 * c_r_a_0_;
-  const Real t232 = t178 * s_r_a_0_;
-  const Real t233 = t231 + t232;
-  const Real t234 = t230 + t233;
-  const Real t235 = t234 + t214;
+  const Real t174 = c_r_a_0_ * t143;
+  const Real t175 = s_r_a_0_ * t141;
+  const Real t176 = t174 + t175;
+  const Real t177 = t156 + t176;
+  const Real t178 = t137 * c_r_a_0_;
+  const Real t179 = t140 * s_r_a_0_;
+  const Real t180 = t178 - t179;
+  const Real t181 = t176 * par.w;
+  const Real t182 = t180 - t181;
+  const Real t183 = t162 + t182;
+  const Real t184 = c_r_a_0_ * t141;
+  const Real t185 = s_r_a_0_ * t143;
+  const Real t186 = t184 - t185;
+  const Real t187 = t186 + t167;
+  const Real t188 = t163 + t142;
+  const Real t189 = par.w * t186;
+  const Real t190 = t140 * c_r_a_0_;
+  const Real t191 = t137 * s_r_a_0_;
+  const Real t192 = t190 + t191;
+  const Real t193 = t189 + t192;
+  const Real t194 = t193 + t173;
 
   // reduced forces
-  const Real t236 = t193 - tau_a[1];
-  const Real t237 = t183 - tau_a[0];
-  const Real t238 = t237 - t229;
-  const Real t239 = t236 + t238;
-  const Real t240 = tau_a[0] - t183;
-  const Real t241 = t4 * t240;
-  const Real t242 = t7 * t228;
-  const Real t243 = t218 * t8;
-  const Real t244 = t242 - t243;
-  const Real t245 = t241 + t244;
-  const Real t246 = tau_a[1] - t193;
-  const Real t247 = t4 * t246;
-  const Real t248 = t245 + t247;
-  const Real t249 = t6 * t246;
-  const Real t250 = t7 * t235;
-  const Real t251 = t224 * t8;
-  const Real t252 = t250 + t251;
-  const Real t253 = t6 * t240;
-  const Real t254 = t252 + t253;
-  const Real t255 = t249 - t254;
+  const Real t195 = t152 - tau_a[1];
+  const Real t196 = t142 - tau_a[0];
+  const Real t197 = t196 - t188;
+  const Real t198 = t195 + t197;
+  const Real t199 = tau_a[0] - t142;
+  const Real t200 = t4 * t199;
+  const Real t201 = t7 * t187;
+  const Real t202 = t177 * t8;
+  const Real t203 = t201 - t202;
+  const Real t204 = t200 + t203;
+  const Real t205 = tau_a[1] - t152;
+  const Real t206 = t4 * t205;
+  const Real t207 = t204 + t206;
+  const Real t208 = t6 * t205;
+  const Real t209 = t7 * t194;
+  const Real t210 = t183 * t8;
+  const Real t211 = t209 + t210;
+  const Real t212 = t6 * t199;
+  const Real t213 = t211 + t212;
+  const Real t214 = t208 - t213;
+
+  // left_wheel: acceleration
+  const Real t215 = s_r_a_0_ * t7;
+  const Real t216 = c_r_a_0_ * t8;
+  const Real t217 = t215 + t216;
+  const Real t218 = s_r_a_0_ * t8;
+  const Real t219 = c_r_a_0_ * t7;
+  const Real t220 = t218 - t219;
+
+  // right_wheel: acceleration
+  const Real t221 = c_r_a_1_ * t8;
+  const Real t222 = s_r_a_1_ * t7;
+  const Real t223 = t221 + t222;
+  const Real t224 = s_r_a_1_ * t8;
+  const Real t225 = c_r_a_1_ * t7;
+  const Real t226 = t224 - t225;
+
+  // hull: wrench
+  const Real t227 = par.m * t7;
+  const Real t228 = par.m * t8;
+  const Real t229 = par.k4 * t8;
+
+  // left_wheel: wrench
+  const Real t230 = t217 * par.m_w;
+  const Real t231 = par.m_w * t220;
+  const Real t232 = par.J_a * t4;
+
+  // right_wheel: wrench
+  const Real t233 = t223 * par.m_w;
+  const Real t234 = t226 * par.m_w;
 
   // right_wheel: joint force
-  const Real t256 = t25 + t38;
+  const Real t235 = c_r_a_1_ * t234;
+  const Real t236 = t233 * s_r_a_1_;
+  const Real t237 = t235 - t236;
+  const Real t238 = t237 * par.w;
+  const Real t239 = s_r_a_1_ * t234;
+  const Real t240 = c_r_a_1_ * t233;
+  const Real t241 = t239 + t240;
+  const Real t242 = t228 + t241;
+  const Real t243 = par.w * t241;
+  const Real t244 = t237 - t227;
 
   // left_wheel: joint force
-  const Real t257 = t256 + t43;
+  const Real t245 = s_r_a_0_ * t231;
+  const Real t246 = c_r_a_0_ * t230;
+  const Real t247 = t245 + t246;
+  const Real t248 = t242 + t247;
+  const Real t249 = t247 * par.w;
+  const Real t250 = t243 - t249;
+  const Real t251 = c_r_a_0_ * t231;
+  const Real t252 = s_r_a_0_ * t230;
+  const Real t253 = t251 - t252;
+  const Real t254 = t244 + t253;
+  const Real t255 = par.w * t253;
+  const Real t256 = t255 - t238;
 
   // reduced mass matrix
-  const Real t258 = t45 * t8;
-  const Real t259 = t7 * t51;
-  const Real t260 = t258 + t259;
-  const Real t261 = t4 * t29;
-  const Real t262 = t257 * t8;
-  const Real t263 = t262 - t52;
-  const Real t264 = t263 + t261;
-  const Real t265 = t261 + t264;
+  const Real t257 = t250 * t8;
+  const Real t258 = t7 * t256;
+  const Real t259 = t257 + t258;
+  const Real t260 = t4 * t232;
+  const Real t261 = t248 * t8;
+  const Real t262 = t7 * t254;
+  const Real t263 = t261 - t262;
+  const Real t264 = t263 + t260;
+  const Real t265 = t260 + t264;
 
   // left_wheel: acceleration
   const Real t266 = par.w * t7;
@@ -2117,7 +2066,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t271 = t266 * c_r_a_0_;
   const Real t272 = s_r_a_0_ * t268;
   const Real t273 = t271 - t272;
-  const Real t274 = t16 - t15;
+  const Real t274 = t219 - t218;
 
   // right_wheel: acceleration
   const Real t275 = t268 * s_r_a_1_;
@@ -2126,7 +2075,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t278 = t266 * s_r_a_1_;
   const Real t279 = c_r_a_1_ * t268;
   const Real t280 = t278 + t279;
-  const Real t281 = t22 - t21;
+  const Real t281 = t225 - t224;
 
   // hull: wrench
   const Real t282 = par.k1 * t7;
@@ -2135,7 +2084,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   // left_wheel: wrench
   const Real t284 = par.J_d * t274;
   const Real t285 = t273 * par.m_w;
-  const Real t286 = t14 * par.J_d;
+  const Real t286 = t217 * par.J_d;
   const Real t287 = par.J_a * t6;
   const Real t288 = t270 * par.m_w;
 
@@ -2143,7 +2092,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t289 = t281 * par.J_d;
   const Real t290 = t277 * par.m_w;
   const Real t291 = t280 * par.m_w;
-  const Real t292 = t20 * par.J_d;
+  const Real t292 = t223 * par.J_d;
 
   // right_wheel: joint force
   const Real t293 = t290 * s_r_a_1_;
@@ -2195,24 +2144,24 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // reduced accelerations
   const Real t335 = constant<Real>(1.0L) / t265;
-  const Real t336 = t248 * t335;
-  const Real t337 = t26 * t335;
-  const Real t338 = t337 * t26;
+  const Real t336 = t207 * t335;
+  const Real t337 = t229 * t335;
+  const Real t338 = t337 * t229;
   const Real t339 = par.k2 - t338;
   const Real t340 = constant<Real>(1.0L) / t339;
-  const Real t341 = t337 * t248;
-  const Real t342 = t239 - t341;
+  const Real t341 = t337 * t207;
+  const Real t342 = t198 - t341;
   const Real t343 = t340 * t342;
-  const Real t344 = t260 * t335;
-  const Real t345 = t260 * t344;
+  const Real t344 = t259 * t335;
+  const Real t345 = t259 * t344;
   const Real t346 = t334 - t345;
-  const Real t347 = t337 * t260;
+  const Real t347 = t337 * t259;
   const Real t348 = t347 * t340;
   const Real t349 = t347 * t348;
   const Real t350 = t346 - t349;
   const Real t351 = constant<Real>(1.0L) / t350;
-  const Real t352 = t344 * t248;
-  const Real t353 = t255 - t352;
+  const Real t352 = t344 * t207;
+  const Real t353 = t214 - t352;
   const Real t354 = t348 * t342;
   const Real t355 = t353 + t354;
   const Real t356 = t351 * t355;
@@ -2225,21 +2174,21 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // accelerations
   const Real t363 = t356 * t8;
-  const Real t364 = t363 + t84;
+  const Real t364 = t363 + t43;
   const Real t365 = t362 * t7;
-  const Real t366 = t78 + t365;
+  const Real t366 = t37 + t365;
   const Real t367 = -t366;
   const Real t368 = t362 * t8;
-  const Real t369 = t368 + t85;
+  const Real t369 = t368 + t44;
   const Real t370 = t4 * t362;
   const Real t371 = t370 - t358;
   const Real t372 = t356 * t6;
   const Real t373 = t371 - t372;
-  const Real t374 = t82 + t373;
+  const Real t374 = t41 + t373;
   const Real t375 = t356 * t7;
-  const Real t376 = t77 + t375;
+  const Real t376 = t36 + t375;
   const Real t377 = t371 + t372;
-  const Real t378 = t377 + t86;
+  const Real t378 = t377 + t45;
 
   w_dot_out[0] = t362;
   w_dot_out[1] = t358;
@@ -2285,187 +2234,187 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t6 = par.g * R[7];
 
   // passive accelerations
-  const Real t7 = R[8] * par.k20;
-  const Real t8 = t3 * par.k20;
-  const Real t9 = par.R * R[7];
-  const Real t10 = t4 * R[6];
+  const Real t7 = t3 * par.k19;
+  const Real t8 = par.R * R[7];
+  const Real t9 = t4 * R[6];
+  const Real t10 = t4 * R[7];
 
   // multipliers
-  const Real t11 = R[7] * par.k20;
+  const Real t11 = R[8] * par.k19;
+  const Real t12 = par.g * t11;
+  const Real t13 = R[6] * par.k19;
+  const Real t14 = par.g * t13;
 
   // kernel
-  const Real t12 = w[2] * par.w;
-  const Real t13 = t12 + w[0];
-  const Real t14 = w[2] * R[8];
-  const Real t15 = t12 - w[0];
-  const Real t16 = t4 * w[0];
-  const Real t17 = w[2] * R[6];
+  const Real t15 = w[2] * par.w;
+  const Real t16 = t15 + w[0];
+  const Real t17 = w[2] * R[8];
+  const Real t18 = t15 - w[0];
+  const Real t19 = t4 * w[0];
+  const Real t20 = w[2] * R[6];
 
   // joint angles
-  const Real t18 = w[1] * R[8];
+  const Real t21 = w[1] * R[8];
 
   // hull: acceleration
-  const Real t19 = w[1] * w[1];
+  const Real t22 = w[1] * w[1];
 
   // multipliers
-  const Real t20 = t15 * par.m_w;
-  const Real t21 = par.m * w[0];
-  const Real t22 = t21 * constant<Real>(0.5L);
-  const Real t23 = t20 - t22;
-  const Real t24 = t23 * R[8];
-  const Real t25 = t24 * R[7];
-  const Real t26 = t1 * w[2];
-  const Real t27 = par.l * t26;
-  const Real t28 = t27 * par.m;
-  const Real t29 = constant<Real>(0.5L) * t28;
-  const Real t30 = t25 - t29;
-  const Real t31 = w[2] * t30;
-  const Real t32 = t31 * par.R;
-  const Real t33 = w_dot[2] * par.w;
-  const Real t34 = t33 - w_dot[0];
-  const Real t35 = t34 * par.m_w;
-  const Real t36 = par.m * w_dot[0];
-  const Real t37 = constant<Real>(0.5L) * t36;
-  const Real t38 = t35 - t37;
-  const Real t39 = R[6] * t38;
-  const Real t40 = t32 + t39;
-  const Real t41 = par.R * t40;
-  const Real t42 = par.g * t7;
-  const Real t43 = t19 * par.l;
-  const Real t44 = t43 * par.m;
-  const Real t45 = t42 - t44;
-  const Real t46 = t45 * constant<Real>(0.5L);
-  const Real t47 = t41 + t46;
-  const Real t48 = par.g * t11;
-  const Real t49 = w_dot[2] * R[6];
-  const Real t50 = t49 * par.l;
-  const Real t51 = t50 * par.m;
-  const Real t52 = par.R * t51;
-  const Real t53 = t48 - t52;
-  const Real t54 = par.k24 * w[1];
-  const Real t55 = par.J_a * t16;
-  const Real t56 = t55 * constant<Real>(2.0L);
-  const Real t57 = t54 + t56;
-  const Real t58 = t4 * t57;
-  const Real t59 = t4 * w[2];
-  const Real t60 = t59 * R[7];
-  const Real t61 = t60 * par.J_x;
-  const Real t62 = par.m_w * w[0];
-  const Real t63 = t62 * t3;
-  const Real t64 = par.R * t63;
-  const Real t65 = t60 * par.J_d;
-  const Real t66 = t64 - t65;
-  const Real t67 = t66 * constant<Real>(2.0L);
-  const Real t68 = t61 - t67;
-  const Real t69 = t9 * w[2];
-  const Real t70 = t69 - t16;
-  const Real t71 = w[1] * constant<Real>(2.0L);
-  const Real t72 = t70 - t71;
-  const Real t73 = t72 * R[8];
-  const Real t74 = t60 * par.l;
-  const Real t75 = t73 + t74;
-  const Real t76 = t75 * par.l;
-  const Real t77 = par.R * w[0];
-  const Real t78 = t77 * t3;
-  const Real t79 = t76 - t78;
-  const Real t80 = par.m * t79;
-  const Real t81 = t68 + t80;
-  const Real t82 = t81 * par.R;
-  const Real t83 = t58 - t82;
-  const Real t84 = t83 * w[2];
-  const Real t85 = t53 + t84;
-  const Real t86 = R[8] * t85;
-  const Real t87 = w[2] * w[0];
-  const Real t88 = R[6] * t87;
-  const Real t89 = t88 * par.l;
-  const Real t90 = t89 * par.m;
-  const Real t91 = par.R * t90;
-  const Real t92 = par.k23 * w_dot[2];
-  const Real t93 = t91 - t92;
-  const Real t94 = t93 * t10;
-  const Real t95 = t86 + t94;
-  const Real t96 = t95 * par.R;
-  const Real t97 = t4 * R[7];
-  const Real t98 = par.l * t97;
-  const Real t99 = t98 * par.m;
-  const Real t100 = par.g * t99;
-  const Real t101 = t96 + t100;
-  const Real t102 = constant<Real>(0.5L) * t101;
-  const Real t103 = constant<Real>(1.0L) / t5;
-  const Real t104 = t102 * t103;
-  const Real t105 = t47 - t104;
-  const Real t106 = t13 * par.m_w;
-  const Real t107 = t106 + t22;
-  const Real t108 = t107 * R[8];
-  const Real t109 = t108 * R[7];
-  const Real t110 = t109 + t29;
-  const Real t111 = t110 * w[2];
-  const Real t112 = par.R * t111;
-  const Real t113 = t33 + w_dot[0];
-  const Real t114 = par.m_w * t113;
-  const Real t115 = t114 + t37;
-  const Real t116 = t115 * R[6];
-  const Real t117 = t112 + t116;
-  const Real t118 = par.R * t117;
-  const Real t119 = t46 - t118;
-  const Real t120 = t119 + t104;
-  const Real t121 = w_dot[1] * par.l;
-  const Real t122 = t121 * par.m;
-  const Real t123 = R[6] * par.k20;
-  const Real t124 = par.g * t123;
-  const Real t125 = t122 + t124;
+  const Real t23 = t18 * par.m_w;
+  const Real t24 = par.m * w[0];
+  const Real t25 = t24 * constant<Real>(0.5L);
+  const Real t26 = t23 - t25;
+  const Real t27 = t26 * R[8];
+  const Real t28 = t27 * R[7];
+  const Real t29 = t1 * w[2];
+  const Real t30 = par.l * t29;
+  const Real t31 = t30 * par.m;
+  const Real t32 = constant<Real>(0.5L) * t31;
+  const Real t33 = t28 - t32;
+  const Real t34 = w[2] * t33;
+  const Real t35 = t34 * par.R;
+  const Real t36 = w_dot[2] * par.w;
+  const Real t37 = t36 - w_dot[0];
+  const Real t38 = t37 * par.m_w;
+  const Real t39 = par.m * w_dot[0];
+  const Real t40 = constant<Real>(0.5L) * t39;
+  const Real t41 = t38 - t40;
+  const Real t42 = R[6] * t41;
+  const Real t43 = t35 + t42;
+  const Real t44 = par.R * t43;
+  const Real t45 = t22 * par.l;
+  const Real t46 = t45 * par.m;
+  const Real t47 = t12 - t46;
+  const Real t48 = t47 * constant<Real>(0.5L);
+  const Real t49 = t44 + t48;
+  const Real t50 = R[7] * par.k19;
+  const Real t51 = par.g * t50;
+  const Real t52 = w_dot[2] * R[6];
+  const Real t53 = t52 * par.l;
+  const Real t54 = t53 * par.m;
+  const Real t55 = par.R * t54;
+  const Real t56 = t51 - t55;
+  const Real t57 = par.k28 * w[1];
+  const Real t58 = par.J_a * t19;
+  const Real t59 = t58 * constant<Real>(2.0L);
+  const Real t60 = t57 + t59;
+  const Real t61 = t4 * t60;
+  const Real t62 = t4 * w[2];
+  const Real t63 = t62 * R[7];
+  const Real t64 = t63 * par.J_x;
+  const Real t65 = par.m_w * w[0];
+  const Real t66 = t65 * t3;
+  const Real t67 = par.R * t66;
+  const Real t68 = t63 * par.J_d;
+  const Real t69 = t67 - t68;
+  const Real t70 = t69 * constant<Real>(2.0L);
+  const Real t71 = t64 - t70;
+  const Real t72 = t8 * w[2];
+  const Real t73 = t72 - t19;
+  const Real t74 = w[1] * constant<Real>(2.0L);
+  const Real t75 = t73 - t74;
+  const Real t76 = t75 * R[8];
+  const Real t77 = t63 * par.l;
+  const Real t78 = t76 + t77;
+  const Real t79 = t78 * par.l;
+  const Real t80 = par.R * w[0];
+  const Real t81 = t80 * t3;
+  const Real t82 = t79 - t81;
+  const Real t83 = par.m * t82;
+  const Real t84 = t71 + t83;
+  const Real t85 = t84 * par.R;
+  const Real t86 = t61 - t85;
+  const Real t87 = t86 * w[2];
+  const Real t88 = t56 + t87;
+  const Real t89 = R[8] * t88;
+  const Real t90 = w[2] * w[0];
+  const Real t91 = R[6] * t90;
+  const Real t92 = t91 * par.l;
+  const Real t93 = t92 * par.m;
+  const Real t94 = par.R * t93;
+  const Real t95 = par.k21 * w_dot[2];
+  const Real t96 = t94 - t95;
+  const Real t97 = t96 * t9;
+  const Real t98 = t89 + t97;
+  const Real t99 = t98 * par.R;
+  const Real t100 = par.l * t10;
+  const Real t101 = t100 * par.m;
+  const Real t102 = par.g * t101;
+  const Real t103 = t99 + t102;
+  const Real t104 = constant<Real>(0.5L) * t103;
+  const Real t105 = constant<Real>(1.0L) / t5;
+  const Real t106 = t104 * t105;
+  const Real t107 = t49 - t106;
+  const Real t108 = t16 * par.m_w;
+  const Real t109 = t108 + t25;
+  const Real t110 = t109 * R[8];
+  const Real t111 = t110 * R[7];
+  const Real t112 = t111 + t32;
+  const Real t113 = t112 * w[2];
+  const Real t114 = par.R * t113;
+  const Real t115 = t36 + w_dot[0];
+  const Real t116 = par.m_w * t115;
+  const Real t117 = t116 + t40;
+  const Real t118 = t117 * R[6];
+  const Real t119 = t114 + t118;
+  const Real t120 = par.R * t119;
+  const Real t121 = t48 - t120;
+  const Real t122 = t121 + t106;
+  const Real t123 = w_dot[1] * par.l;
+  const Real t124 = t123 * par.m;
+  const Real t125 = t124 + t14;
   const Real t126 = t125 * constant<Real>(0.5L);
-  const Real t127 = t23 * R[7];
-  const Real t128 = t14 * par.l;
+  const Real t127 = t26 * R[7];
+  const Real t128 = t17 * par.l;
   const Real t129 = t128 * par.m;
   const Real t130 = constant<Real>(0.5L) * t129;
   const Real t131 = t127 + t130;
-  const Real t132 = t131 * t17;
+  const Real t132 = t131 * t20;
   const Real t133 = t132 * par.R;
-  const Real t134 = R[8] * t38;
+  const Real t134 = R[8] * t41;
   const Real t135 = t133 - t134;
   const Real t136 = par.R * t135;
   const Real t137 = t126 + t136;
   const Real t138 = t4 * w_dot[2];
   const Real t139 = t138 * R[8];
-  const Real t140 = par.k25 * t139;
-  const Real t141 = t59 * par.k25;
+  const Real t140 = par.k22 * t139;
+  const Real t141 = t62 * par.k22;
   const Real t142 = t141 * R[7];
-  const Real t143 = t18 * par.l;
+  const Real t143 = t21 * par.l;
   const Real t144 = t143 * par.m;
   const Real t145 = t144 * constant<Real>(2.0L);
   const Real t146 = t142 - t145;
-  const Real t147 = t14 * R[7];
+  const Real t147 = t17 * R[7];
   const Real t148 = t147 * par.l;
   const Real t149 = par.m * t148;
-  const Real t150 = t8 * w[0];
+  const Real t150 = t7 * w[0];
   const Real t151 = t149 - t150;
   const Real t152 = par.R * t151;
   const Real t153 = t146 + t152;
   const Real t154 = par.R * t153;
   const Real t155 = w[1] * par.k26;
-  const Real t156 = t155 - t56;
+  const Real t156 = t155 - t59;
   const Real t157 = t4 * t156;
   const Real t158 = t154 + t157;
   const Real t159 = t158 * w[2];
-  const Real t160 = t53 - t159;
+  const Real t160 = t56 - t159;
   const Real t161 = R[6] * t160;
   const Real t162 = t140 + t161;
   const Real t163 = t162 * par.R;
   const Real t164 = constant<Real>(0.5L) * t163;
-  const Real t165 = t164 * t103;
+  const Real t165 = t164 * t105;
   const Real t166 = t137 - t165;
-  const Real t167 = t6 * par.k20;
+  const Real t167 = t6 * par.k19;
   const Real t168 = t152 - t145;
   const Real t169 = w[2] * t168;
-  const Real t170 = t51 + t169;
+  const Real t170 = t54 + t169;
   const Real t171 = par.R * t170;
   const Real t172 = t167 - t171;
   const Real t173 = constant<Real>(0.5L) * t172;
-  const Real t174 = t115 * R[8];
-  const Real t175 = t107 * R[7];
+  const Real t174 = t117 * R[8];
+  const Real t175 = t109 * R[7];
   const Real t176 = t175 - t130;
-  const Real t177 = t176 * t17;
+  const Real t177 = t176 * t20;
   const Real t178 = t177 * par.R;
   const Real t179 = t174 - t178;
   const Real t180 = t179 * par.R;
@@ -2474,10 +2423,10 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
 
   lambda[0] = t166;
   lambda[1] = t173;
-  lambda[2] = t105;
+  lambda[2] = t107;
   lambda[3] = t182;
   lambda[4] = t173;
-  lambda[5] = t120;
+  lambda[5] = t122;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.
@@ -2504,33 +2453,33 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
 
-  // kernel
-  const Real t5 = par.R * t3;
-
   // joint angles
-  const Real t6 = t4 * t3;
+  const Real t5 = t4 * t3;
 
   // passive accelerations
-  const Real t7 = par.R * R[7];
+  const Real t6 = par.R * R[7];
 
   // multipliers
-  const Real t8 = par.w * R[7];
+  const Real t7 = par.w * R[7];
+
+  // kernel
+  const Real t8 = par.R * t3;
 
   // conditions on the position
   const Real t9 = par.w * R[8];
-  const Real t10 = t7 * t3;
-  const Real t11 = t10 / t6;
+  const Real t10 = t6 * t3;
+  const Real t11 = t10 / t5;
   const Real t12 = t11 * R[8];
   const Real t13 = t9 + t12;
   const Real t14 = R[6] * par.w;
   const Real t15 = t11 * R[6];
   const Real t16 = t14 + t15;
   const Real t17 = -t16;
-  const Real t18 = p[2] - t8;
-  const Real t19 = t5 / t4;
+  const Real t18 = p[2] - t7;
+  const Real t19 = t8 / t4;
   const Real t20 = t18 - t19;
   const Real t21 = t14 - t15;
-  const Real t22 = t8 + p[2];
+  const Real t22 = t7 + p[2];
   const Real t23 = t22 - t19;
   const Real t24 = t12 - t9;
 
@@ -2581,24 +2530,22 @@ inline void energies(const Prepared<Real>& par,
                      Real (&dissipated_power)[1],
                      Real (&applied_power)[1]) noexcept {
   using detail::constant;
-  // kernel
-  const Real t1 = r_a_dot[0] + r_a_dot[1];
-
   // joint angles
-  const Real t2 = eta[5] * eta[5];
+  const Real t1 = eta[5] * eta[5];
 
   // hull: acceleration
-  const Real t3 = eta[3] * eta[3];
-  const Real t4 = eta[4] * eta[4];
-  const Real t5 = t3 + t4;
-  const Real t6 = t2 + t3;
-  const Real t7 = eta[1] * eta[3];
+  const Real t2 = eta[3] * eta[3];
+  const Real t3 = eta[4] * eta[4];
+  const Real t4 = t2 + t3;
+  const Real t5 = t1 + t2;
+  const Real t6 = eta[1] * eta[3];
 
   // left_wheel: acceleration
-  const Real t8 = t6 * par.w;
+  const Real t7 = t5 * par.w;
 
   // left_wheel: joint force
-  const Real t9 = t5 * par.l;
+  const Real t8 = r_a_dot[0] + r_a_dot[1];
+  const Real t9 = t4 * par.l;
   const Real t10 = eta[0] * par.l;
   const Real t11 = par.m * t10;
 
@@ -2615,15 +2562,15 @@ inline void energies(const Prepared<Real>& par,
   const Real t19 = t17 + t18;
 
   // right_wheel: energy
-  const Real t20 = par.w * t8;
+  const Real t20 = par.w * t7;
   const Real t21 = t19 + t20;
   const Real t22 = t21 * par.m_w;
-  const Real t23 = eta[4] + t1;
+  const Real t23 = eta[4] + t8;
   const Real t24 = par.J_a * t23;
   const Real t25 = t24 + t11;
   const Real t26 = eta[4] * t25;
-  const Real t27 = t6 * par.J_d;
-  const Real t28 = t7 * par.l;
+  const Real t27 = t5 * par.J_d;
+  const Real t28 = t6 * par.l;
   const Real t29 = t28 * par.m;
   const Real t30 = t27 - t29;
   const Real t31 = t26 + t30;
@@ -2631,10 +2578,10 @@ inline void energies(const Prepared<Real>& par,
   const Real t33 = t9 * par.l;
   const Real t34 = t19 + t33;
   const Real t35 = t34 * par.m;
-  const Real t36 = par.J_y * t4;
-  const Real t37 = par.J_x * t3;
+  const Real t36 = par.J_y * t3;
+  const Real t37 = par.J_x * t2;
   const Real t38 = t36 + t37;
-  const Real t39 = par.J_z * t2;
+  const Real t39 = par.J_z * t1;
   const Real t40 = t38 + t39;
   const Real t41 = t12 + t14;
   const Real t42 = par.J_a * t41;

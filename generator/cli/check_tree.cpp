@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -13,6 +12,7 @@
 #include "anholon/free_dynamics.hpp"
 #include "cli/common.hpp"
 #include "describe/mechanise.hpp"
+#include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon::cli {
@@ -85,9 +85,7 @@ Conditioning conditioning(const Model& model) {
     state.r_dot.assign(state.r.size(), 0);
     const Matrix<double> M = dynamics.mass_matrix(state);
     if (M.rows() == 0) return result;
-    const Eigen::Map<const Eigen::MatrixXd> as_eigen(M.entries().data(), M.rows(), M.cols());
-    const Eigen::VectorXd values =
-        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(as_eigen, Eigen::EigenvaluesOnly).eigenvalues();
+    const Eigen::VectorXd values = eigenvalues(to_eigen(M));
     const double least = values(0), most = values(values.size() - 1);
     const bool definite = least > 1e-14 * most;
     result.worst = std::max(result.worst, definite ? most / least : std::numeric_limits<double>::infinity());

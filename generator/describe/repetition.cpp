@@ -276,14 +276,15 @@ std::vector<Count> take_counts(Value& document, const CountValues& overrides, Fi
     reader.report_unknown_keys();
     if (value == nullptr || range == nullptr) continue;
     const auto number = whole_number(*value);
-    const auto least = range->items.size() == 2 ? whole_number(range->items[0]) : std::nullopt;
-    const auto most = range->items.size() == 2 ? whole_number(range->items[1]) : std::nullopt;
-    if (!number || !least || !most || *least > *most) {
+    const bool is_pair = range->items.size() == 2;  // anything else counts as a range without numbers
+    const int least = is_pair ? whole_number(range->items[0]).value_or(1) : 1;
+    const int most = is_pair ? whole_number(range->items[1]).value_or(0) : 0;
+    if (!number || least > most) {
       findings.error(entry.value.where, fmt::format("{} has no whole number or no range", what),
                      "write { value = 8, range = [3, 30] }");
       continue;
     }
-    count.value = *number, count.least = *least, count.most = *most;
+    count.value = *number, count.least = least, count.most = most;
     const auto replaced = overrides.find(count.name);
     if (replaced != overrides.end()) count.value = replaced->second;
     if (count.value < count.least || count.value > count.most)

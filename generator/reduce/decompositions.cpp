@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "reduce/decompositions.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <Eigen/SVD>
 
 namespace anholon {
@@ -15,6 +16,10 @@ template ConstrainedSolution<double> solve_constrained(const DynamicMatrix<doubl
 SingularValues singular_values(const Eigen::MatrixXd& m) {
   const Eigen::JacobiSVD<Eigen::MatrixXd> svd(m, Eigen::ComputeFullV);
   return {svd.singularValues(), svd.matrixV()};
+}
+
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& m) {
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m, Eigen::EigenvaluesOnly).eigenvalues();
 }
 
 }  // namespace anholon

@@ -29,4 +29,7 @@ struct SingularValues {
 };
 SingularValues singular_values(const Eigen::MatrixXd& m);
 
+/// Of a symmetric matrix, rising.
+Eigen::VectorXd eigenvalues(const Eigen::MatrixXd& m);
+
 }  // namespace anholon

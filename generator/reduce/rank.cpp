@@ -139,8 +139,7 @@ std::vector<int> dependent_rows(const std::vector<std::vector<double>>& A, const
   for (Eigen::Index i = 0; i < rows.rows(); ++i) {
     bool takes = false;
     for (Eigen::Index c = 0; c < rows.rows(); ++c) {
-      const bool lost =
-          c >= svd.sigma.size() || !(svd.sigma(c) > zero * std::max(svd.sigma(0), 1e-300));
+      const bool lost = c >= svd.sigma.size() || !(svd.sigma(c) > zero * std::max(svd.sigma(0), 1e-300));
       const Eigen::VectorXd u = svd.V.col(c);
       takes = takes || (lost && std::abs(u(i)) > takes_part * u.cwiseAbs().maxCoeff());
     }

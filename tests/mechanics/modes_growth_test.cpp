@@ -59,7 +59,9 @@ TEST(ModesOfTheSnakeBoard, CostOperationsByAPolynomialLaw) {
       const double law = at(1) + slope * (n - 1) + bend * (n - 1) * (n - 8);
       EXPECT_NEAR(at(n) / law, 1, 0.05) << deformation << ", n = " << n;
     }
-    if (degree == 2) EXPECT_GT(bend, 1);
+    if (degree == 2) {
+      EXPECT_GT(bend, 1);
+    }
   }
 }
 
