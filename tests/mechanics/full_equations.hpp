@@ -83,9 +83,10 @@ void add_scaled(BlockErrors& errors, const std::string& block, const Column& wan
 
 /// Accelerations, torques and multipliers of the derived program, at 100 admissible states, against the full
 /// equations: with r_a(t) given and with the torques given.
-/// @param one_chart  the kernel has no basis that is regular everywhere (the rows name a direction of the
-/// world): the program may lose the square of the condition number of its basis, as M_r = H^T M H does
-void expect_reduced_motion_of(const Model& model, const Robot& robot, bool one_chart = false);
+/// @param several_charts  the kernel has no basis that is regular everywhere (the rows name a direction of
+/// the world). With torques given, the program stays in one chart and may lose the square of the condition
+/// number of its basis, as M_r = H^T M H does
+void expect_reduced_motion_of(const Model& model, const Robot& robot, bool several_charts = false);
 
 /// Likewise with some of the active coordinates driven by torque and the others by motion.
 void expect_hybrid_motion_of(const Model& model, const Robot& robot, const std::set<std::string>& driven);
