@@ -21,7 +21,7 @@
 
 #include "derive/tree_functions.hpp"
 #include "describe/read_model.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "optimise/tape/count.hpp"
 
 namespace {
@@ -100,12 +100,12 @@ int main(int argc, char** argv) {
   int status = 0;
   for (const auto& file : files) {
     try {
-      UrdfOptions options;
+      RobotOptions options;
       options.floating = !fixed.contains(file.stem().string());
       TreeRequest request;
       request.trace = passes;
       const auto derive_file = [&] {
-        return derive_tree(file.extension() == ".urdf" ? read_urdf(file, options) : read_model(file),
+        return derive_tree(file.extension() == ".urdf" ? read_robot(file, options) : read_model(file),
                            request);
       };
       const auto start = std::chrono::steady_clock::now();

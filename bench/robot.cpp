@@ -5,7 +5,7 @@
 #include <random>
 
 #include "describe/mechanise.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "optimise/model/merge_fixed.hpp"
 
 namespace anholon::bench {
@@ -50,9 +50,9 @@ Mat3<double> random_rotation(std::mt19937& random) {
 }  // namespace
 
 Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t count) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = floating;
-  Robot robot{urdf.stem().string(), read_urdf(urdf, options), {}, {}};
+  Robot robot{urdf.stem().string(), read_robot(urdf, options), {}, {}};
   robot.model.potential = robot.model.dissipation = 0;
   robot.model.forces.clear();
   robot.mechanism = merged_mechanism(robot.model);

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "derive/tree_functions.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
 #include "urdf/chain.hpp"
@@ -64,7 +64,7 @@ void chains(const std::vector<std::string>& functions, const std::vector<int>& l
   for (std::size_t i = 0; i < functions.size() + 2; ++i) fmt::print("---:|");
   fmt::print("\n");
   for (const int n : lengths) {
-    const Model model = read_urdf_text(testing::chain(n), "chain.urdf");
+    const Model model = read_robot_text(testing::chain(n), "chain.urdf");
     TreeRequest request;
     request.functions = functions;
     const double start = seconds(RUSAGE_SELF);
@@ -86,12 +86,12 @@ void chains(const std::vector<std::string>& functions, const std::vector<int>& l
 }
 
 void robot(const std::filesystem::path& file, bool fixed) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = !fixed;
   TreeRequest request;
   request.functions = tree_function_names();
   double start = seconds(RUSAGE_SELF);
-  const auto derivation = derive_tree(read_urdf(file, options), request);
+  const auto derivation = derive_tree(read_robot(file, options), request);
   const double derived = seconds(RUSAGE_SELF) - start;
   start = seconds(RUSAGE_SELF);
   const std::string header = emit_header(derivation->program);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// `check` for a robot from a URDF file: what was read, merged, dropped, snapped and assumed.
+// `check` for a robot from a robot file: what was read, merged, dropped, snapped and assumed.
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

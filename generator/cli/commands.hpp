@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 
 namespace anholon::cli {
 
@@ -24,8 +24,8 @@ struct ModelOptions {
   std::string scene;  // path, empty: standard
   std::vector<std::string> functions;
   std::string inverse = "pseudo";   // or "leading:ROW[,ROW...]"
-  UrdfOptions urdf;                 // of a URDF file
-  std::string gravity;              // of a URDF file, m/s^2 along -z; empty: its default
+  RobotOptions robot;               // of a robot file
+  std::string gravity;              // of a robot file, m/s^2 along -z; empty: its own or the default
   bool search = true;               // of a tree: try every formulation
   std::vector<std::string> counts;  // of a model file: "N=12"
 };

@@ -23,17 +23,17 @@ bool named(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-/// Options that only a URDF file has.
-UrdfOptions urdf_options(const ModelOptions& options) {
-  UrdfOptions urdf = options.urdf;
-  if (options.gravity.empty()) return urdf;
+/// Options that only a robot file has.
+RobotOptions robot_options(const ModelOptions& options) {
+  RobotOptions robot = options.robot;
+  if (options.gravity.empty()) return robot;
   try {
-    urdf.gravity = Exact::from_decimal(options.gravity);
+    robot.gravity = Exact::from_decimal(options.gravity);
   } catch (const std::invalid_argument&) {
     throw std::invalid_argument(
         fmt::format("--gravity is '{}', not a decimal number in m/s^2", options.gravity));
   }
-  return urdf;
+  return robot;
 }
 
 /// --count N=12 as numbers by name.
@@ -55,15 +55,17 @@ CountValues counts_of(const ModelOptions& options) {
 }  // namespace
 
 Model load_model(const ModelOptions& options) {
-  const bool has_urdf_option = options.urdf.floating || options.urdf.as_written ||
-                               options.urdf.symbolic_inertia || !options.gravity.empty();
-  if (is_urdf(options.model) && options.scene.empty()) return read_urdf(options.model, urdf_options(options));
-  if (has_urdf_option)
+  const bool has_robot_option = options.robot.floating || options.robot.as_written ||
+                                options.robot.symbolic_inertia || !options.gravity.empty();
+  if (is_robot_file(options.model) && options.scene.empty())
+    return read_robot(options.model, robot_options(options));
+  if (has_robot_option)
     throw std::invalid_argument(
-        "--floating, --as-written, --symbolic-inertia and --gravity are for a URDF file without a scene; a "
-        "model file says these things itself (docs/urdf.md)");
+        "--floating, --as-written, --symbolic-inertia and --gravity are for a robot file (URDF, SDFormat, "
+        "MJCF) "
+        "without a scene; a model file says these things itself (docs/robot-files.md)");
   if (!options.counts.empty() &&
-      (!options.scene.empty() || is_urdf(options.model) || is_scene(options.model)))
+      (!options.scene.empty() || is_robot_file(options.model) || is_scene(options.model)))
     throw std::invalid_argument("--count is for a model file; a scene says it itself: counts = { N = 12 }");
   if (!options.scene.empty()) {
     const Scene scene = read_scene(options.scene);
@@ -83,8 +85,8 @@ bool wants_tree(const ModelOptions& options, const Model& model) {
     });
   };
   if (!options.scene.empty() || !is_driven_tree(model)) return false;
-  return is_urdf(options.model) ? !only_in(function_names(), tree_function_names())
-                                : only_in(tree_function_names(), function_names());
+  return is_robot_file(options.model) ? !only_in(function_names(), tree_function_names())
+                                      : only_in(tree_function_names(), function_names());
 }
 
 TreeRequest tree_request(const ModelOptions& options) {

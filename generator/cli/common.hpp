@@ -28,7 +28,7 @@ struct AnyDerivation {
   }
 };
 
-/// Whether the functions of a tree are wanted: of a URDF file as it stands, without a scene, unless a
+/// Whether the functions of a tree are wanted: of a robot file as it stands, without a scene, unless a
 /// function is named that only the reduction has; of another model, where a function is named that only a
 /// tree has.
 bool wants_tree(const ModelOptions& options, const Model& model);
@@ -38,7 +38,7 @@ TreeRequest tree_request(const ModelOptions& options);
 /// Functions, inverse and scene name as a request.
 DeriveRequest derive_request(const ModelOptions& options, const Model& model);
 
-/// `check` for a robot from a URDF file.
+/// `check` for a robot from a robot file.
 int check_tree(const CheckOptions& options, const Model& model);
 
 /// Writes to the file by renaming a finished temporary, or to standard output if the name is empty.

@@ -30,7 +30,7 @@ int operations_of(const Program& program, const Function& f) {
 /// scene.
 std::map<std::string, int> operations_without_scene(const GenerateOptions& options, const Program& program) {
   const std::string file = !options.scene.empty() ? options.scene : options.model;
-  if (is_urdf(file) || !is_scene(file)) return {};
+  if (is_robot_file(file) || !is_scene(file)) return {};
   const Scene scene = read_scene(file);
   DeriveRequest request = derive_request(options, scene.model);
   request.functions.clear();

@@ -25,7 +25,8 @@ int main(int argc, char** argv) {
   std::function<int()> run;
 
   const auto model_options = [](CLI::App* verb, cli::ModelOptions& o, bool functions) {
-    verb->add_option("MODEL", o.model, "description of the robot or a scene of it (TOML), or its URDF file")
+    verb->add_option("MODEL", o.model,
+                     "description of the robot or a scene of it (TOML), or its URDF, SDFormat or MJCF file")
         ->required();
     verb->add_option("--scene", o.scene, "scene file: what is frozen, locked, kept, driven");
     verb->add_option(
@@ -33,15 +34,20 @@ int main(int argc, char** argv) {
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
     verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")->delimiter(',');
     if (functions)
-      verb->add_option("--functions", o.functions,
-                       "functions to generate, separated by commas; default: all, or of a URDF file the five "
-                       "of docs/urdf.md; 'all' for every one there")
+      verb->add_option(
+              "--functions", o.functions,
+              "functions to generate, separated by commas; default: all, or of a robot file the five "
+              "of docs/robot-files.md; 'all' for every one there")
           ->delimiter(',');
-    verb->add_flag("--floating", o.urdf.floating, "URDF: the root link moves freely");
-    verb->add_flag("--as-written", o.urdf.as_written, "URDF: angles and axes exactly as their digits say");
-    verb->add_flag("--symbolic-inertia", o.urdf.symbolic_inertia, "URDF: inertial figures become parameters");
-    verb->add_option("--gravity", o.gravity, "URDF: acceleration along -z of the world, m/s^2; default 9.81");
-    verb->add_flag("!--no-search", o.search, "URDF: take the first formulation instead of the cheapest");
+    verb->add_flag("--floating", o.robot.floating, "URDF: the root link moves freely");
+    verb->add_flag("--as-written", o.robot.as_written,
+                   "robot file: angles and axes exactly as their digits say");
+    verb->add_flag("--symbolic-inertia", o.robot.symbolic_inertia,
+                   "robot file: inertial figures become parameters");
+    verb->add_option("--gravity", o.gravity,
+                     "robot file: acceleration along -z of the world, m/s^2; default: the file's, or 9.81");
+    verb->add_flag("!--no-search", o.search,
+                   "robot file: take the first formulation instead of the cheapest");
   };
 
   cli::CheckOptions check;

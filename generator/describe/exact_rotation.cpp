@@ -5,39 +5,28 @@
 #include <numbers>
 
 namespace anholon {
-namespace {
 
 const Exact& snapping_distance() {
   static const Exact distance = Exact::from_decimal("1e-10");
   return distance;
 }
 
-ExactMatrix turn(std::size_t axis, const Exact& angle, bool snap) {
-  const std::size_t i = (axis + 1) % 3;
-  const std::size_t j = (axis + 2) % 3;
-  const auto [c, s] = cosine_and_sine(angle, snap);
-  ExactMatrix R;
-  R[4 * axis] = 1;
-  R[4 * i] = c;
-  R[4 * j] = c;
-  R[3 * i + j] = -s;
-  R[3 * j + i] = s;
-  return R;
+const Exact& rounding_distance() {
+  static const Exact distance = Exact::from_decimal("1e-34");
+  return distance;
 }
 
-}  // namespace
-
-std::optional<int> eighth_turns(const Exact& angle) {
+std::optional<int> eighth_turns(const Exact& angle, const Exact& within) {
   const double turns = angle.to_double() / (std::numbers::pi / 4);
   if (std::abs(turns) > 1e6) return std::nullopt;
   const int k = static_cast<int>(std::lround(turns));
   const Exact distance = abs(angle - Exact::ratio(k, 4) * Exact::pi());
-  return distance < snapping_distance() ? std::optional(k) : std::nullopt;
+  return distance < within ? std::optional(k) : std::nullopt;
 }
 
 std::array<Exact, 2> cosine_and_sine(const Exact& angle, bool snap) {
   if (angle.is_zero()) return {1, 0};
-  const std::optional<int> turns = snap ? eighth_turns(angle) : std::nullopt;
+  const std::optional<int> turns = eighth_turns(angle, snap ? snapping_distance() : rounding_distance());
   if (!turns) return {cos(angle), sin(angle)};
   const int k = ((*turns % 8) + 8) % 8;
   const Exact h = sqrt(Exact::ratio(1, 2));
@@ -50,7 +39,7 @@ Exact settled(const Exact& x) {
   const double twice = 2 * x.to_double();
   if (std::abs(twice) > 1e6) return x;
   const Exact near = Exact::ratio(std::lround(twice), 2);
-  return abs(x - near) < Exact::from_decimal("1e-34") ? near : x;
+  return abs(x - near) < rounding_distance() ? near : x;
 }
 
 ExactMatrix product(const ExactMatrix& a, const ExactMatrix& b) {
@@ -72,8 +61,32 @@ ExactMatrix transposed(const ExactMatrix& a) {
   return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]};
 }
 
-ExactMatrix rotation_from_rpy(const ExactVector& rpy, bool snap) {
-  return product(product(turn(2, rpy[2], snap), turn(1, rpy[1], snap)), turn(0, rpy[0], snap));
+ExactMatrix identity_matrix() { return {1, 0, 0, 0, 1, 0, 0, 0, 1}; }
+
+ExactMatrix turn(std::size_t axis, const Exact& angle, bool snap) {
+  const std::size_t i = (axis + 1) % 3;
+  const std::size_t j = (axis + 2) % 3;
+  const auto [c, s] = cosine_and_sine(angle, snap);
+  ExactMatrix R;
+  R[4 * axis] = 1;
+  R[4 * i] = c;
+  R[4 * j] = c;
+  R[3 * i + j] = -s;
+  R[3 * j + i] = s;
+  return R;
+}
+
+ExactPose compose(const ExactPose& a, const ExactPose& b) {
+  if (a.R == identity_matrix()) return {b.R, {a.p[0] + b.p[0], a.p[1] + b.p[1], a.p[2] + b.p[2]}};
+  const ExactVector p = product(a.R, b.p);
+  return {b.R == identity_matrix() ? a.R : product(a.R, b.R),
+          {settled(a.p[0] + p[0]), settled(a.p[1] + p[1]), settled(a.p[2] + p[2])}};
+}
+
+ExactPose inverse(const ExactPose& a) {
+  const ExactMatrix R = transposed(a.R);
+  const ExactVector p = product(R, a.p);
+  return {R, {-settled(p[0]), -settled(p[1]), -settled(p[2])}};
 }
 
 ExactVector unit_vector(const ExactVector& a, bool snap) {

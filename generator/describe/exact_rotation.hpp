@@ -15,14 +15,21 @@ namespace anholon {
 using ExactVector = std::array<Exact, 3>;
 using ExactMatrix = std::array<Exact, 9>;  // row-major
 
-/// The k for which the angle is within 1e-10 of k pi/4, if there is one.
-std::optional<int> eighth_turns(const Exact& angle);
+/// How near an angle or a direction must be to an exact one to be taken for it: 1e-10.
+const Exact& snapping_distance();
+/// What arithmetic with the working digits leaves of a zero: 1e-34.
+const Exact& rounding_distance();
 
-/// Cosine and sine; of k pi/4 exactly where `snap` allows it.
+/// The k for which the angle is k pi/4 within a distance, if there is one.
+std::optional<int> eighth_turns(const Exact& angle, const Exact& within);
+
+/// Cosine and sine; exact for k pi/4. @param snap  whether an angle within 1e-10 of it is it
 std::array<Exact, 2> cosine_and_sine(const Exact& angle, bool snap);
 
-/// Rz(yaw) Ry(pitch) Rx(roll).
-ExactMatrix rotation_from_rpy(const ExactVector& rpy, bool snap);
+ExactMatrix identity_matrix();
+
+/// The turn by an angle about coordinate axis 0, 1 or 2.
+ExactMatrix turn(std::size_t axis, const Exact& angle, bool snap);
 
 /// The unit vector along a, which is not zero. @param snap  whether a direction within 1e-10 of a coordinate
 /// axis is it
@@ -31,6 +38,14 @@ ExactVector unit_vector(const ExactVector& a, bool snap);
 ExactMatrix product(const ExactMatrix& a, const ExactMatrix& b);
 ExactVector product(const ExactMatrix& a, const ExactVector& v);
 ExactMatrix transposed(const ExactMatrix& a);
+
+/// A frame in another: orientation and origin.
+struct ExactPose {
+  ExactMatrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  ExactVector p = {0, 0, 0};
+};
+ExactPose compose(const ExactPose& a, const ExactPose& b);
+ExactPose inverse(const ExactPose& a);
 
 /// The multiple of 1/2 that x is up to the rounding of its last digits, else x.
 Exact settled(const Exact& x);

@@ -66,7 +66,7 @@ std::vector<std::string> reserved_names();
 void read_parameters(TableReader& root, Reading& reading);
 
 /// Finds bodies, joints and couplings; fills the names, parents and joint kinds of Model::bodies and the
-/// coordinates. A model that has bodies already, from a URDF file, gets more of them.
+/// coordinates. A model that has bodies already, from a robot file, gets more of them.
 Outline read_outline(TableReader& root, Reading& reading);
 
 /// Makes the inputs of the model's tape, in the order of StateSymbols, and the names that stand for them.

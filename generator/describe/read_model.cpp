@@ -7,8 +7,8 @@
 
 #include "describe/names.hpp"
 #include "describe/read_parts.hpp"
+#include "describe/read_robot.hpp"
 #include "describe/read_supplement.hpp"
-#include "describe/read_urdf.hpp"
 #include "describe/sha256.hpp"
 
 namespace anholon {
@@ -123,8 +123,8 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
   repetitions.throw_if_any();
   write_out(document, own_counts, repetitions);
   repetitions.throw_if_any();
-  if (document.find("urdf") != nullptr) {
-    Model model = read_supplemented_urdf(document, text, file_name, overrides);
+  if (std::ranges::any_of(supplement_keys, [&](const char* key) { return document.find(key) != nullptr; })) {
+    Model model = read_supplemented_robot(document, text, file_name, overrides);
     model.counts = own_counts;
     return model;
   }
@@ -157,8 +157,8 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
 
 Model read_model(const std::filesystem::path& path, const ParameterValues& overrides,
                  const CountValues& counts) {
-  if (!is_urdf(path)) return read_model_text(read_bytes(path), path.string(), overrides, counts);
-  return read_urdf(path);  // its figures are numbers: there is nothing to override
+  if (!is_robot_file(path)) return read_model_text(read_bytes(path), path.string(), overrides, counts);
+  return read_robot(path);  // its figures are numbers: there is nothing to override
 }
 
 }  // namespace anholon

@@ -22,7 +22,7 @@ void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading);
 /// Axis, range, drive, spring, damper and friction of a body's joint.
 void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading);
 
-/// Drive, range, spring, damper and friction alone: what a URDF file does not say of its joints.
+/// Drive, range, spring, damper and friction alone: what a robot file does not say of its joints.
 /// @param coordinate  index of the coordinate that moves the joint; -1 where the joint follows others
 void read_joint_supplement(TableReader& joint, const BodyDescription& described, int coordinate,
                            Reading& reading);

@@ -14,7 +14,7 @@
 #include "derive/derive.hpp"
 #include "derive/tree_functions.hpp"
 #include "describe/read_model.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "emit/equations.hpp"
 #include "emit/header.hpp"
 
@@ -69,11 +69,11 @@ std::string generated_text(const std::string& name) {
   const fs::path urdf = root / "models" / name / (name + ".urdf");
   if (!fs::exists(urdf))
     return emit_header(derive(read_model(root / "models" / name / (name + ".toml")))->program);
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = name != "arm7";
   TreeRequest request;
   if (name == "humanoid") request.functions = {"inverse_dynamics", "gravity_forces"};
-  return emit_header(derive_tree(read_urdf(urdf, options), request)->program);
+  return emit_header(derive_tree(read_robot(urdf, options), request)->program);
 }
 
 class EveryModel : public testing::TestWithParam<std::string> {};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <gtest/gtest.h>
 
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 
 namespace anholon {
 namespace {
@@ -9,7 +9,7 @@ namespace {
 /// What the reader says of a text; empty where it reads it.
 std::string fault(const std::string& text) {
   try {
-    read_urdf_text(text, "bad.urdf");
+    read_robot_text(text, "bad.urdf");
     return "";
   } catch (const ModelError& error) {
     return error.what();
@@ -47,8 +47,10 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"NotClosed", "<robot name='r'>\n<link name='a'>\n</robot>\n",
             "bad.urdf:2:1: error: an element is closed by the tag of another one; mend the XML there or in "
             "the lines above"},
-        Bad{"OtherRoot", "<sdf version='1.6'/>\n",
-            "bad.urdf:1:1: error: the outermost element is <sdf>; a URDF file is one <robot>"},
+        Bad{"OtherRoot", "<machine/>\n",
+            "bad.urdf:1:1: error: the outermost element is <machine>; a robot file is one <robot> (URDF), "
+            "<sdf> "
+            "(SDFormat) or <mujoco> (MJCF)"},
         Bad{"NoName", "<robot>\n<link name='a'/>\n</robot>\n",
             "bad.urdf:1:1: error: the robot has no 'name'; write name=\"...\""},
         Bad{"NoLink", "<robot name='r'/>\n",
@@ -133,7 +135,9 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"MimicsItself", pair(hinge("<mimic joint='j'/>")),
             "bad.urdf:4:68: error: joint 'j' mimics itself in the end; let one joint of the circle be free"},
         Bad{"Text", pair(hinge("revolves")),
-            "bad.urdf:4:1: error: joint 'j' has text in it; remove the text; data stands in attributes"}),
+            "bad.urdf:4:1: error: joint 'j' has text in it; remove the text; data stands in attributes or in "
+            "elements "
+            "of their own"}),
     [](const ::testing::TestParamInfo<Bad>& info) { return info.param.what; });
 
 TEST(BadUrdf, AllFaultsOfElementsAreReportedAtOnce) {

@@ -101,7 +101,7 @@ void expect_agreement(const Model& model, const std::string& name, double tolera
 TEST(EvaluateTree, Arm7) { expect_agreement(testing::shipped_robot("arm7"), "arm7", 1e-12); }
 TEST(EvaluateTree, Quadruped) { expect_agreement(testing::shipped_robot("quadruped"), "quadruped", 1e-11); }
 TEST(EvaluateTree, ArmWithDampersAndMimic) {
-  expect_agreement(read_urdf_text(testing::arm(), "arm.urdf"), "arm", 1e-12);
+  expect_agreement(read_robot_text(testing::arm(), "arm.urdf"), "arm", 1e-12);
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "derive/tree_functions.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "urdf/chain.hpp"
 
 namespace anholon {
@@ -20,7 +20,7 @@ double exponent(const std::string& function) {
   const auto operations = [&](int links) {
     TreeRequest request;
     request.functions = {function};
-    const auto derivation = derive_tree(read_urdf_text(testing::chain(links), "chain.urdf"), request);
+    const auto derivation = derive_tree(read_robot_text(testing::chain(links), "chain.urdf"), request);
     const auto chosen = std::ranges::find_if(derivation->candidates, &CandidateReport::chosen);
     return static_cast<double>(chosen->operations);
   };

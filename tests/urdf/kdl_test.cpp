@@ -76,7 +76,7 @@ std::string frictionless_chain() {
          joint("weld", "fixed", "five", "tool", "0 0 0.1", "0.2 0.1 -0.3", "0 0 1") + "</robot>\n";
 }
 
-TEST(Kdl, ChainOfOurOwn) { compare(read_urdf_text(frictionless_chain(), "chain.urdf")); }
+TEST(Kdl, ChainOfOurOwn) { compare(read_robot_text(frictionless_chain(), "chain.urdf")); }
 
 TEST(Kdl, Arm7) { compare(testing::shipped_robot("arm7")); }
 
@@ -84,7 +84,7 @@ TEST(Kdl, Iiwa) {
   const std::filesystem::path file = std::filesystem::path(ANHOLON_ROBOTS) / "iiwa.urdf";
   if (std::string(ANHOLON_ROBOTS).empty() || !std::filesystem::exists(file))
     GTEST_SKIP() << "ANHOLON_ROBOTS has no iiwa";
-  compare(read_urdf(file));
+  compare(read_robot(file));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 #include "derive/tree_functions.hpp"
 #include "describe/mechanise.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "urdf/random_state.hpp"
 
 namespace anholon::testing {
@@ -44,9 +44,9 @@ inline Mechanism<double> mechanism_of(const Model& model) {
 
 /// A robot that this project ships.
 inline Model shipped_robot(const std::string& name) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = name != "arm7";
-  return read_urdf(std::filesystem::path(ANHOLON_SOURCE_DIR) / "models" / name / (name + ".urdf"), options);
+  return read_robot(std::filesystem::path(ANHOLON_SOURCE_DIR) / "models" / name / (name + ".urdf"), options);
 }
 
 }  // namespace anholon::testing

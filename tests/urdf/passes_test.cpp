@@ -9,7 +9,7 @@
 #include "anholon/composite.hpp"
 #include "anholon/free_dynamics.hpp"
 #include "describe/mechanise.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "optimise/model/align_parallel.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/model/regroup.hpp"
@@ -28,9 +28,9 @@ namespace anholon {
 namespace {
 
 Mechanism<Exact> floating_arm() {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  return mechanise<Exact>(describe_mechanism(read_urdf_text(testing::arm(), "arm.urdf", options)),
+  return mechanise<Exact>(describe_mechanism(read_robot_text(testing::arm(), "arm.urdf", options)),
                           std::vector<Exact>{});
 }
 

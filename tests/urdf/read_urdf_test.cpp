@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "describe/read_urdf.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
 #include "describe/mechanise.hpp"
 #include "describe/names.hpp"
+#include "describe/read_robot.hpp"
 #include "urdf/small_robots.hpp"
 
 namespace anholon {
@@ -34,7 +33,7 @@ Mechanism<Exact> mechanism_of(const Model& model) {
 }
 
 TEST(ReadUrdf, AnglesNearQuarterTurnsAreExact) {
-  const Model model = read_urdf_text(two("revolute", "1.57079632679 0 -3.14159265359", "0 0 1"), "two.urdf");
+  const Model model = read_robot_text(two("revolute", "1.57079632679 0 -3.14159265359", "0 0 1"), "two.urdf");
   const Mechanism<Exact> m = mechanism_of(model);
   const std::array<int, 9> expected = {-1, 0, 0, 0, 0, 1, 0, 1, 0};  // Rz(-pi) Rx(pi/2)
   for (std::size_t i = 0; i < 9; ++i) EXPECT_EQ(m.bodies[1].R.m[i], Exact(expected[i])) << i;
@@ -43,9 +42,9 @@ TEST(ReadUrdf, AnglesNearQuarterTurnsAreExact) {
 }
 
 TEST(ReadUrdf, AsWrittenKeepsDigits) {
-  UrdfOptions options;
+  RobotOptions options;
   options.as_written = true;
-  const Model model = read_urdf_text(two("revolute", "1.57079632679 0 0", "0 0 1"), "two.urdf", options);
+  const Model model = read_robot_text(two("revolute", "1.57079632679 0 0", "0 0 1"), "two.urdf", options);
   const Exact tilt = mechanism_of(model).bodies[1].R(1, 1);
   EXPECT_FALSE(tilt.is_zero());
   EXPECT_LT(abs(tilt), Exact::from_decimal("1e-11"));
@@ -53,19 +52,19 @@ TEST(ReadUrdf, AsWrittenKeepsDigits) {
 }
 
 TEST(ReadUrdf, AnglesFarFromQuarterTurnsStay) {
-  const Model model = read_urdf_text(two("revolute", "1.5707963 0 0", "0 0 1"), "two.urdf");
+  const Model model = read_robot_text(two("revolute", "1.5707963 0 0", "0 0 1"), "two.urdf");
   EXPECT_FALSE(mechanism_of(model).bodies[1].R(1, 1).is_zero());
 }
 
 TEST(ReadUrdf, AxesAreMadeUnitVectors) {
-  const Model model = read_urdf_text(two("revolute", "0 0 0", "1e-12 0 -2"), "two.urdf");
+  const Model model = read_robot_text(two("revolute", "0 0 0", "1e-12 0 -2"), "two.urdf");
   EXPECT_EQ(model.bodies[1].joint.axis[2].constant_value(), Exact(-1));
   EXPECT_TRUE(model.bodies[1].joint.axis[0].is_zero());
   EXPECT_TRUE(notes_contain(model, "axis of joint 'j' taken as (0, 0, -1)"));
 }
 
 TEST(ReadUrdf, InertiaIsAboutTheOrigin) {
-  const Model model = read_urdf_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf");
+  const Model model = read_robot_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf");
   const BodyDescription& b = model.bodies[1];
   EXPECT_EQ(b.mass.constant_value(), Exact(2));
   EXPECT_EQ(b.first_moment[1].constant_value(), Exact::from_decimal("0.4"));
@@ -75,9 +74,9 @@ TEST(ReadUrdf, InertiaIsAboutTheOrigin) {
 }
 
 TEST(ReadUrdf, SymbolicInertiaNamesWhatIsNotZero) {
-  UrdfOptions options;
+  RobotOptions options;
   options.symbolic_inertia = true;
-  const Model model = read_urdf_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf", options);
+  const Model model = read_robot_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf", options);
   std::vector<std::string> names;
   for (const Parameter& p : model.parameters) names.push_back(p.name);
   EXPECT_EQ(names.size(), 17U);  // the first link's centre of mass is its origin
@@ -87,7 +86,7 @@ TEST(ReadUrdf, SymbolicInertiaNamesWhatIsNotZero) {
 }
 
 TEST(ReadUrdf, MimicIsACoupling) {
-  const Model model = read_urdf_text(testing::arm(), "arm.urdf");
+  const Model model = read_robot_text(testing::arm(), "arm.urdf");
   EXPECT_EQ(model.coordinates.size(), 6U);
   EXPECT_EQ(model.bodies.size(), 10U);
   const Mechanism<Exact> m = mechanism_of(model);
@@ -100,7 +99,7 @@ TEST(ReadUrdf, MimicIsACoupling) {
 }
 
 TEST(ReadUrdf, FloatingRootJointMakesTheGroup) {
-  const Model model = read_urdf_text(
+  const Model model = read_robot_text(
       "<robot name='f'><link name='world'/>" + link("a", "1", "0 0 0") +
           "<joint name='free' type='floating'><parent link='world'/><child link='a'/></joint></robot>",
       "f.urdf");
@@ -110,7 +109,7 @@ TEST(ReadUrdf, FloatingRootJointMakesTheGroup) {
 }
 
 TEST(ReadUrdf, PlanarJointIsAChain) {
-  const Model model = read_urdf_text(two("planar", "0 0 0", "0 0 1"), "two.urdf");
+  const Model model = read_robot_text(two("planar", "0 0 0", "0 0 1"), "two.urdf");
   ASSERT_EQ(model.coordinates.size(), 3U);
   EXPECT_EQ(model.coordinates[0].name, "j_x");
   EXPECT_EQ(model.coordinates[2].name, "j_angle");
@@ -120,7 +119,7 @@ TEST(ReadUrdf, PlanarJointIsAChain) {
 }
 
 TEST(ReadUrdf, NamesBecomeIdentifiers) {
-  const Model model = read_urdf_text(
+  const Model model = read_robot_text(
       "<robot name='2 legs &quot;x&quot;'>" + link("a-b", "1", "0 0 0") + link("a b", "1", "0 0 0") +
           link("class", "1", "0 0 0") + joint("t", "revolute", "a-b", "a b", "0 0 0", "0 0 0", "0 0 1") +
           joint("return", "revolute", "a b", "class", "0 0 0", "0 0 0", "0 0 1") + "</robot>",
@@ -135,13 +134,13 @@ TEST(ReadUrdf, NamesBecomeIdentifiers) {
 }
 
 TEST(ReadUrdf, LimitsAreTheRange) {
-  const Model model = read_urdf_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf");
+  const Model model = read_robot_text(two("revolute", "0 0 0", "0 0 1"), "two.urdf");
   EXPECT_EQ(model.coordinates[0].lower, Exact(-2));
   EXPECT_EQ(model.coordinates[0].upper, Exact(2));
 }
 
 TEST(ReadUrdf, VisualsAreLeftOutWithANote) {
-  const Model model = read_urdf_text(
+  const Model model = read_robot_text(
       "<robot name='v'><link name='a'><visual><geometry><mesh "
       "filename='x'/></geometry></visual></link></robot>",
       "v.urdf");

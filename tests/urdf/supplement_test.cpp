@@ -194,7 +194,8 @@ TEST_F(Supplement, CouplesAJointOfTheFile) {
 TEST_F(Supplement, HasExactMessages) {
   const std::string head = "anholon = 1\nurdf = \"cart.urdf\"\n";
   EXPECT_EQ(fault("anholon = 1\nurdf = \"wagon.urdf\"\n"),
-            "robot.toml:2:8: error: 'wagon.urdf' is not a URDF file; name a file ending in .urdf or .xml, "
+            "robot.toml:2:8: error: 'wagon.urdf' is not a URDF file; name a file ending in .urdf, .sdf, "
+            ".mjcf or .xml, "
             "relative to this one");
   EXPECT_EQ(fault(head + "[[joint]]\nname = \"steet\"\n"),
             "robot.toml:4:8: error: 'steet' is not a joint that moves a coordinate; did you mean 'steer'?");
@@ -208,9 +209,10 @@ TEST_F(Supplement, HasExactMessages) {
             "robot.toml:5:14: error: 'k' is not a known name; only numbers are known here");
   EXPECT_EQ(fault(head + "[[constraint]]\nkind = \"no_lateral_slip\"\nbody = \"for\"\n"),
             "robot.toml:5:8: error: 'for' is not a body; did you mean 'fore'?");
-  EXPECT_EQ(fault(head + "[[coupling]]\ncoordinate = \"caster\"\nequals = \"steer\"\n"),
-            "cart.urdf:10:1: error: joint 'caster' has damping or friction, and 'caster' is coupled by a "
-            "supplement; say it in the supplement instead, as a coupling, damping or friction");
+  EXPECT_EQ(
+      fault(head + "[[coupling]]\ncoordinate = \"caster\"\nequals = \"steer\"\n"),
+      "cart.urdf:10:1: error: joint 'caster' has damping, friction or a spring, and 'caster' is coupled by a "
+      "supplement; say it in the supplement instead, as a coupling, damping, friction or stiffness");
 }
 
 }  // namespace

@@ -27,6 +27,6 @@ anholon_urdf_verb(Generate "" generate models/quadruped/quadruped.urdf --floatin
 anholon_urdf_verb(Verify "" verify models/arm7/arm7.urdf --samples 20)
 anholon_urdf_verb(Gravity "0, 0, -1.62. m/s" check models/arm7/arm7.urdf --gravity 1.62)
 anholon_urdf_verb(GravityIsANumber "--gravity is 'down', not a decimal number" check models/arm7/arm7.urdf --gravity down)
-anholon_urdf_verb(OptionOfAnotherFormat "are for a URDF file" check models/arm6/arm6.toml --floating)
+anholon_urdf_verb(OptionOfAnotherFormat "are for a robot file" check models/arm6/arm6.toml --floating)
 anholon_urdf_verb(TreeFunctionsOfAModelFile "mass_matrix +[0-9]+" generate models/arm6/arm6.toml --functions mass_matrix
   -o ${CMAKE_CURRENT_BINARY_DIR}/urdf_generated)

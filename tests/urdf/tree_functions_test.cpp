@@ -13,7 +13,7 @@
 
 #include "anholon/free_dynamics.hpp"
 #include "describe/mechanise.hpp"
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 #include "optimise/tape/count.hpp"
 #include "urdf/random_state.hpp"
 #include "urdf/small_robots.hpp"
@@ -88,28 +88,28 @@ void verify(const Model& model, const TreeRequest& request = {}) {
           Exact::from_decimal("1e-60"));
 }
 
-TEST(TreeFunctions, ArmWithEveryKindOfJoint) { verify(read_urdf_text(testing::serial_arm(), "arm.urdf")); }
-TEST(TreeFunctions, ArmWithMimic) { verify(read_urdf_text(testing::arm(), "arm.urdf")); }
+TEST(TreeFunctions, ArmWithEveryKindOfJoint) { verify(read_robot_text(testing::serial_arm(), "arm.urdf")); }
+TEST(TreeFunctions, ArmWithMimic) { verify(read_robot_text(testing::arm(), "arm.urdf")); }
 TEST(TreeFunctions, WithoutSearch) {
   TreeRequest request;
   request.search = false;
-  verify(read_urdf_text(testing::serial_arm(), "arm.urdf"), request);
+  verify(read_robot_text(testing::serial_arm(), "arm.urdf"), request);
 }
 TEST(TreeFunctions, FloatingWalker) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  verify(read_urdf_text(testing::walker(), "walker.urdf", options));
+  verify(read_robot_text(testing::walker(), "walker.urdf", options));
 }
 TEST(TreeFunctions, FloatingArm) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  verify(read_urdf_text(testing::arm(), "arm.urdf", options));
+  verify(read_robot_text(testing::arm(), "arm.urdf", options));
 }
 TEST(TreeFunctions, SymbolicInertia) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
   options.symbolic_inertia = true;
-  verify(read_urdf_text(testing::walker(), "walker.urdf", options));
+  verify(read_robot_text(testing::walker(), "walker.urdf", options));
 }
 
 /// The functions beyond the standard ones, on a branching robot with a free base and one that mimics.
@@ -207,11 +207,11 @@ void verify_others(const Model& model) {
 }
 
 TEST(TreeFunctions, ALinkFixedToTheReferenceBodyHasAConstantJacobianAndNoBias) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
   TreeRequest request;
   request.functions = {"jacobians"};
-  const auto derivation = derive_tree(read_urdf_text(testing::arm(), "arm.urdf", options), request);
+  const auto derivation = derive_tree(read_robot_text(testing::arm(), "arm.urdf", options), request);
   int seen = 0;
   for (const OutputBlock& b : derivation->program.functions.at(0).outputs) {
     if (b.name != "bias_mount" && b.name != "J_mount") continue;
@@ -225,17 +225,17 @@ TEST(TreeFunctions, ALinkFixedToTheReferenceBodyHasAConstantJacobianAndNoBias) {
 }
 
 TEST(TreeFunctions, OthersOfTheWalker) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  verify_others(read_urdf_text(testing::walker(), "walker.urdf", options));
+  verify_others(read_robot_text(testing::walker(), "walker.urdf", options));
 }
-TEST(TreeFunctions, OthersOfTheArm) { verify_others(read_urdf_text(testing::arm(), "arm.urdf")); }
+TEST(TreeFunctions, OthersOfTheArm) { verify_others(read_robot_text(testing::arm(), "arm.urdf")); }
 
 TEST(TreeFunctions, RegressorTimesFiguresIsInverseDynamics) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
   const Model model =
-      read_urdf_text(testing::walker(), "walker.urdf", options);  // no dampers, no fixed joints
+      read_robot_text(testing::walker(), "walker.urdf", options);  // no dampers, no fixed joints
   TreeRequest request;
   request.functions = {"inverse_dynamics", "regressor"};
   const auto derivation = derive_tree(model, request);
@@ -258,7 +258,7 @@ TEST(TreeFunctions, RegressorTimesFiguresIsInverseDynamics) {
 }
 
 TEST(TreeFunctions, SearchNeverCostsOperations) {
-  const Model model = read_urdf_text(testing::walker(), "walker.urdf");
+  const Model model = read_robot_text(testing::walker(), "walker.urdf");
   TreeRequest plain;
   plain.search = false;
   const auto total = [](const TreeDerivation& d) {
@@ -270,7 +270,7 @@ TEST(TreeFunctions, SearchNeverCostsOperations) {
 }
 
 TEST(TreeFunctions, TraceEndsWithWhatIsKeptAndChangesNothing) {
-  const Model model = read_urdf_text(testing::walker(), "walker.urdf");
+  const Model model = read_robot_text(testing::walker(), "walker.urdf");
   TreeRequest traced;
   traced.trace = true;
   const auto derivation = derive_tree(model, traced);
@@ -294,7 +294,7 @@ TEST(TreeFunctions, TraceEndsWithWhatIsKeptAndChangesNothing) {
 }
 
 TEST(TreeFunctions, SameProgramEveryTime) {
-  const Model model = read_urdf_text(testing::walker(), "walker.urdf");
+  const Model model = read_robot_text(testing::walker(), "walker.urdf");
   const auto a = derive_tree(model);
   const auto b = derive_tree(model);
   ASSERT_EQ(a->program.tape.size(), b->program.tape.size());
@@ -313,11 +313,11 @@ class Robots : public ::testing::TestWithParam<std::string> {
       GTEST_SKIP() << "ANHOLON_ROBOTS has no " << GetParam();
   }
   [[nodiscard]] Model model(bool symbolic_inertia = false) const {
-    UrdfOptions options;
+    RobotOptions options;
     options.symbolic_inertia = symbolic_inertia;
     options.floating = GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" &&
                        GetParam() != "double_pendulum";
-    return read_urdf(file_, options);
+    return read_robot(file_, options);
   }
   std::filesystem::path file_;
 };

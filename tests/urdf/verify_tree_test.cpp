@@ -30,22 +30,22 @@ void expect_passed(const Model& model, const std::vector<std::string>& functions
 }
 
 TEST(VerifyTree, EveryFunctionOfTheSmallArm) {
-  expect_passed(read_urdf_text(testing::arm(), "arm.urdf"), tree_function_names(), 5);
+  expect_passed(read_robot_text(testing::arm(), "arm.urdf"), tree_function_names(), 5);
 }
 TEST(VerifyTree, EveryFunctionOfTheWalker) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  expect_passed(read_urdf_text(testing::walker(), "walker.urdf", options), tree_function_names(), 5);
+  expect_passed(read_robot_text(testing::walker(), "walker.urdf", options), tree_function_names(), 5);
 }
 TEST(VerifyTree, EveryFunctionOfAFreeBaseWithAFixedLink) {
-  UrdfOptions options;
+  RobotOptions options;
   options.floating = true;
-  expect_passed(read_urdf_text(testing::arm(), "arm.urdf", options), tree_function_names(), 5);
+  expect_passed(read_robot_text(testing::arm(), "arm.urdf", options), tree_function_names(), 5);
 }
 TEST(VerifyTree, SymbolicInertia) {
-  UrdfOptions options;
+  RobotOptions options;
   options.symbolic_inertia = true;
-  expect_passed(read_urdf_text(testing::arm(), "arm.urdf", options), {}, 20);
+  expect_passed(read_robot_text(testing::arm(), "arm.urdf", options), {}, 20);
 }
 TEST(VerifyTree, Arm7) { expect_passed(testing::shipped_robot("arm7"), tree_function_names(), 10); }
 TEST(VerifyTree, Quadruped) { expect_passed(testing::shipped_robot("quadruped"), {}, 10); }
@@ -53,7 +53,7 @@ TEST(VerifyTree, Humanoid) { expect_passed(testing::shipped_robot("humanoid"), {
 
 /// A program with one output changed by 1e-12 of itself has to fail.
 TEST(VerifyTree, FindsAWrongFunction) {
-  const Model model = read_urdf_text(testing::serial_arm(), "arm.urdf");
+  const Model model = read_robot_text(testing::serial_arm(), "arm.urdf");
   TreeRequest request;
   request.functions = {"inverse_dynamics"};
   const auto derivation = derive_tree(model, request);
@@ -76,11 +76,11 @@ TEST_P(RealRobots, PassVerification) {
   const std::string folder = chosen == nullptr ? ANHOLON_ROBOTS : chosen;
   const std::filesystem::path file = std::filesystem::path(folder) / (GetParam() + ".urdf");
   if (folder.empty() || !std::filesystem::exists(file)) GTEST_SKIP() << "no " << GetParam();
-  UrdfOptions options;
+  RobotOptions options;
   options.floating =
       GetParam() != "ur5" && GetParam() != "iiwa" && GetParam() != "panda" && GetParam() != "double_pendulum";
   const bool all = GetParam() != "talos_full";
-  expect_passed(read_urdf(file, options), all ? tree_function_names() : std::vector<std::string>{},
+  expect_passed(read_robot(file, options), all ? tree_function_names() : std::vector<std::string>{},
                 GetParam().starts_with("talos") ? 5 : 20);
 }
 

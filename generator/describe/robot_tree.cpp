@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "describe/urdf_tree.hpp"
+#include "describe/robot_tree.hpp"
 
 #include <fmt/format.h>
 
 #include <functional>
 #include <map>
 
+#include "describe/findings.hpp"
 #include "describe/names.hpp"
 
 namespace anholon {
@@ -34,14 +35,14 @@ std::vector<std::string> keys(const Index& index) {
 
 }  // namespace
 
-UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
+RobotTree robot_tree(const RobotFile& file, const Location& whole_file) {
   Findings findings;
   const Index links = index_of(file.links, "link", findings);
   const Index joints = index_of(file.joints, "joint", findings);
   std::vector<int> carrier(file.links.size(), -1);
   std::vector<std::vector<int>> children(file.links.size());
   for (std::size_t j = 0; j < file.joints.size(); ++j) {
-    const UrdfJoint& joint = file.joints[j];
+    const RobotJoint& joint = file.joints[j];
     bool known = true;
     for (const auto& [name, where] :
          {std::pair{joint.parent, joint.parent_where}, std::pair{joint.child, joint.child_where}}) {
@@ -83,7 +84,7 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
                      fmt::format("there are {} root links: {}", roots.size(), listed(roots)),
                      "join them by joints; one link is the root");
 
-  UrdfTree tree;
+  RobotTree tree;
   std::vector<char> reached(file.links.size(), 0);
   const std::function<void(int, int, int)> visit = [&](int link, int joint, int parent) {
     reached[static_cast<std::size_t>(link)] = 1;
@@ -101,8 +102,8 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
   }
 
   for (std::size_t j = 0; j < file.joints.size(); ++j) {
-    UrdfFollower follower{static_cast<int>(j), 1, 0};
-    const UrdfJoint* joint = &file.joints[j];
+    RobotFollower follower{static_cast<int>(j), 1, 0};
+    const RobotJoint* joint = &file.joints[j];
     for (std::size_t steps = 0; joint->mimic && !findings.size(); ++steps) {
       const auto leader = joints.find(joint->mimic->joint);
       const Location& where = joint->mimic->where;
@@ -122,8 +123,8 @@ UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file) {
       follower.multiplier *= joint->mimic->multiplier;
       follower.leader = leader->second;
       joint = &file.joints[static_cast<std::size_t>(leader->second)];
-      if (joint->type != UrdfJointType::revolute && joint->type != UrdfJointType::continuous &&
-          joint->type != UrdfJointType::prismatic)
+      if (joint->type != RobotJointType::revolute && joint->type != RobotJointType::continuous &&
+          joint->type != RobotJointType::prismatic)
         findings.error(where,
                        fmt::format("joint '{}' mimics '{}', which has no single displacement",
                                    file.joints[j].name, joint->name),

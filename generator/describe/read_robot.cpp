@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-#include "describe/read_urdf.hpp"
+#include "describe/read_robot.hpp"
 
 #include <fmt/format.h>
 
@@ -7,10 +7,13 @@
 #include <set>
 
 #include "describe/document.hpp"
+#include "describe/mjcf_elements.hpp"
 #include "describe/names.hpp"
 #include "describe/outline.hpp"
+#include "describe/robot_tree.hpp"
+#include "describe/sdf_elements.hpp"
 #include "describe/sha256.hpp"
-#include "describe/urdf_tree.hpp"
+#include "describe/urdf_elements.hpp"
 
 namespace anholon {
 namespace {
@@ -53,31 +56,43 @@ class NameGiver {
   std::set<std::string> taken_;
 };
 
-/// "pi/2", "-3 pi/4" for k quarters of pi.
-std::string quarters_of_pi(int k) {
-  if (k == 0) return "0";
-  const int divisor = k % 4 == 0 ? 4 : k % 2 == 0 ? 2 : 1;
-  const int numerator = k / divisor;
-  const std::string factor = numerator == 1 ? "" : numerator == -1 ? "-" : fmt::format("{} ", numerator);
-  return fmt::format("{}pi{}", factor, divisor == 4 ? "" : fmt::format("/{}", 4 / divisor));
-}
-
-bool is_zero(const UrdfInertial& inertial) {
+bool is_zero(const RobotInertial& inertial) {
   return inertial.mass.is_zero() &&
          std::ranges::all_of(inertial.inertia, [](const Exact& x) { return x.is_zero(); });
 }
 
-class UrdfReader {
+RobotFile read_elements(const XmlSource& source, RobotFormat format, bool snap) {
+  switch (format) {
+    case RobotFormat::urdf:
+      return read_urdf_elements(source, snap);
+    case RobotFormat::sdf:
+      return read_sdf_elements(source, snap);
+    case RobotFormat::mjcf:
+      return read_mjcf_elements(source, snap);
+  }
+  return {};
+}
+
+RobotFormat format_of(const XmlSource& source) {
+  const std::string_view name = source.root().Name();
+  if (name == "robot") return RobotFormat::urdf;
+  if (name == "sdf") return RobotFormat::sdf;
+  if (name == "mujoco") return RobotFormat::mjcf;
+  throw ModelError(source.place(source.root()), fmt::format("the outermost element is <{}>", name),
+                   "a robot file is one <robot> (URDF), <sdf> (SDFormat) or <mujoco> (MJCF)");
+}
+
+/// The links and joints of a file as a model.
+class RobotBuilder {
  public:
-  UrdfReader(std::string_view text, const std::string& file_name, const UrdfOptions& options,
-             const UrdfSupplement& supplement)
+  /// @param whole_file  as a place
+  RobotBuilder(RobotFile file, const Location& whole_file, const RobotOptions& options,
+               const RobotSupplement& supplement)
       : options_(options),
         supplement_(supplement),
-        source_(text, file_name),
-        file_(read_urdf_elements(source_)),
-        tree_(urdf_tree(file_, {file_name, 0, 0})) {
-    model_.file = std::filesystem::path(file_name).filename().string();
-    model_.sha256 = sha256_of(text);
+        whole_file_(whole_file),
+        file_(std::move(file)),
+        tree_(robot_tree(file_, whole_file)) {
     model_.parameters = supplement.parameters;
   }
 
@@ -85,8 +100,8 @@ class UrdfReader {
     model_.notes = file_.notes;
     model_.title = file_.name;
     model_.name = NameGiver("robot", model_.notes)(file_.name);
-    model_.group = options_.floating ? GroupKind::SE3 : GroupKind::fixed;
-    model_.gravity = {0, 0, constant(-options_.gravity)};
+    model_.group = options_.floating || file_.base == RobotBase::free ? GroupKind::SE3 : GroupKind::fixed;
+    read_gravity();
     drop_world();
     name_coordinates();
     leave_out_coupled();
@@ -100,33 +115,50 @@ class UrdfReader {
 
  private:
   Expr constant(const Exact& x) { return {*model_.tape, model_.tape->constant(x)}; }
-  [[nodiscard]] const UrdfLink& link(std::size_t node) const {
+  [[nodiscard]] const RobotLink& link(std::size_t node) const {
     return file_.links[static_cast<std::size_t>(tree_.nodes[node].link)];
   }
-  [[nodiscard]] const UrdfJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
+  [[nodiscard]] const RobotJoint& joint(int j) const { return file_.joints[static_cast<std::size_t>(j)]; }
   void note(std::string text) { model_.notes.push_back(std::move(text)); }
+
+  void read_gravity() {
+    const ExactVector standard = {0, 0, -Exact::from_decimal("9.81")};
+    const ExactVector g =
+        options_.gravity ? ExactVector{0, 0, -*options_.gravity} : file_.gravity.value_or(standard);
+    for (std::size_t i = 0; i < 3; ++i) model_.gravity[i] = constant(g[i]);
+  }
 
   /// A massless root whose only joint is a floating one is the world itself.
   void drop_world() {
-    if (tree_.nodes.size() < 2) return;
-    const auto& inertial = link(0).inertial;
-    const bool one_child = std::ranges::count(tree_.nodes, 0, &UrdfNode::parent) == 1;
-    const UrdfJoint& first = joint(tree_.nodes[1].joint);
-    if (first.type != UrdfJointType::floating || !one_child || (inertial && !is_zero(*inertial))) return;
+    if (!root_is_free()) {
+      if (options_.floating && file_.base == RobotBase::fixed)
+        throw ModelError(whole_file_,
+                         "--floating is asked for, and the file joins the robot to the world itself",
+                         "leave out --floating, or give the file a free root");
+      return;
+    }
+    const RobotJoint& first = joint(tree_.nodes[1].joint);
     note(fmt::format(
         "assumed: floating joint '{}': link '{}' is the reference body and moves in SE(3); '{}' is the world",
         first.name, link(1).name, link(0).name));
     model_.group = GroupKind::SE3;
     tree_.nodes.erase(tree_.nodes.begin());
-    for (UrdfNode& node : tree_.nodes) --node.parent;
+    for (RobotNode& node : tree_.nodes) --node.parent;
     tree_.nodes[0] = {tree_.nodes[0].link, -1, -1};
+  }
+
+  [[nodiscard]] bool root_is_free() const {
+    if (tree_.nodes.size() < 2) return false;
+    const auto& inertial = link(0).inertial;
+    return joint(tree_.nodes[1].joint).type == RobotJointType::floating &&
+           std::ranges::count(tree_.nodes, 0, &RobotNode::parent) == 1 && (!inertial || is_zero(*inertial));
   }
 
   /// One coordinate for each displacement of a joint that does not mimic.
   void name_coordinates() {
     NameGiver name("joint", model_.notes);
     first_coordinate_.assign(file_.joints.size(), -1);
-    const auto add = [&](const UrdfJoint& j, const std::string& text, bool is_angle, bool is_chain) {
+    const auto add = [&](const RobotJoint& j, const std::string& text, bool is_angle, bool is_chain) {
       Coordinate c;
       c.name = name(text);
       c.drive = Drive::active;
@@ -135,23 +167,23 @@ class UrdfReader {
       c.lower = -c.upper;
       c.where = j.where;
       if (j.limit && !is_chain) c.lower = (*j.limit)[0], c.upper = (*j.limit)[1];
-      if (!j.limit && j.type == UrdfJointType::revolute)
+      if (!j.limit && j.type == RobotJointType::revolute)
         note(fmt::format("assumed: joint '{}' has no limits: range [-pi, pi]", j.name));
       if (!is_angle && (is_chain || !j.limit))
         note(fmt::format("assumed: joint '{}' has no limits along {}: range [-1, 1] m", j.name, c.name));
       model_.coordinates.push_back(std::move(c));
     };
-    for (const UrdfNode& node : tree_.nodes) {
+    for (const RobotNode& node : tree_.nodes) {
       if (node.joint < 0) continue;
       const auto j = static_cast<std::size_t>(node.joint);
-      const UrdfJoint& described = file_.joints[j];
-      if (described.mimic || described.type == UrdfJointType::fixed) continue;
+      const RobotJoint& described = file_.joints[j];
+      if (described.mimic || described.type == RobotJointType::fixed) continue;
       first_coordinate_[j] = static_cast<int>(model_.coordinates.size());
-      if (described.type == UrdfJointType::planar) {
+      if (described.type == RobotJointType::planar) {
         for (const char* part : {"x", "y"})
           add(described, fmt::format("{}_{}", described.name, part), false, true);
         add(described, described.name + "_angle", true, true);
-      } else if (described.type == UrdfJointType::floating) {
+      } else if (described.type == RobotJointType::floating) {
         for (const char* part : {"x", "y", "z"})
           add(described, fmt::format("{}_{}", described.name, part), false, true);
         for (const char* part : {"yaw", "pitch", "roll"})
@@ -162,7 +194,7 @@ class UrdfReader {
             "at a pitch of pi/2",
             described.name));
       } else {
-        add(described, described.name, described.type != UrdfJointType::prismatic, false);
+        add(described, described.name, described.type != RobotJointType::prismatic, false);
       }
     }
   }
@@ -190,7 +222,8 @@ class UrdfReader {
       std::array<Exact, 10> figures;  // m, mx, my, mz, xx, yy, zz, xy, xz, yz
       const auto& inertial = link(n).inertial;
       if (!inertial) {
-        note(fmt::format("assumed: link '{}' has no inertial: massless", link(n).name));
+        if (!link(n).is_frame)
+          note(fmt::format("assumed: link '{}' has no inertial: massless", link(n).name));
       } else {
         figures = about_origin(*inertial, link(n).name);
       }
@@ -215,12 +248,12 @@ class UrdfReader {
     }
   }
 
-  std::array<Exact, 10> about_origin(const UrdfInertial& i, const std::string& name) {
+  std::array<Exact, 10> about_origin(const RobotInertial& i, const std::string& name) {
     const std::string what = fmt::format("the inertial of link '{}'", name);
-    const ExactMatrix R = rotation(i.origin.rpy, what);
+    const ExactMatrix& R = i.pose.R;
     const ExactMatrix central = {i.inertia[0], i.inertia[3], i.inertia[4], i.inertia[3], i.inertia[1],
                                  i.inertia[5], i.inertia[4], i.inertia[5], i.inertia[2]};
-    const ExactVector& c = i.origin.xyz;
+    const ExactVector& c = i.pose.p;
     const Exact half_trace = (central[0] + central[4] + central[8]) / Exact(2);
     for (std::size_t k = 0; k < 3; ++k) {
       if (half_trace - central[4 * k] < -half_trace * Exact::from_decimal("1e-9")) {
@@ -230,9 +263,8 @@ class UrdfReader {
         break;
       }
     }
-    bool turned =
-        false;  // a product with the identity would keep the values but not their exactness as zeros
-    for (const Exact& a : i.origin.rpy) turned = turned || !a.is_zero();
+    // a product with the identity would keep the values but not their exactness as zeros
+    const bool turned = R != identity_matrix();
     const ExactMatrix I = turned ? product(product(R, central), transposed(R)) : central;
     const Exact& m = i.mass;
     const Exact square = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
@@ -247,19 +279,6 @@ class UrdfReader {
             I[1] - m * c[0] * c[1],
             I[2] - m * c[0] * c[2],
             I[5] - m * c[1] * c[2]};
-  }
-
-  ExactMatrix rotation(const ExactVector& rpy, const std::string& of) {
-    if (!options_.as_written) {
-      constexpr std::array<const char*, 3> names = {"roll", "pitch", "yaw"};
-      for (std::size_t i = 0; i < 3; ++i) {
-        const auto turns = rpy[i].is_zero() ? std::nullopt : eighth_turns(rpy[i]);
-        if (turns)
-          note(fmt::format("snapped: {} {} of {} taken as {}", names[i], rpy[i].decimal(20), of,
-                           quarters_of_pi(*turns)));
-      }
-    }
-    return rotation_from_rpy(rpy, !options_.as_written);
   }
 
   /// The inputs of the model's tape, in the order that all models have.
@@ -281,22 +300,20 @@ class UrdfReader {
     body.name = names_[n];
     body.where = link(n).where;
     set_inertia(body, n);
-    const UrdfNode& node = tree_.nodes[n];
+    const RobotNode& node = tree_.nodes[n];
     if (node.joint < 0) {
       body_of_.push_back(static_cast<int>(model_.bodies.size()));
       model_.bodies.push_back(std::move(body));
       return;
     }
-    const UrdfJoint& j = joint(node.joint);
-    const std::string what = fmt::format("joint '{}'", j.name);
+    const RobotJoint& j = joint(node.joint);
     body.parent = body_of_[static_cast<std::size_t>(node.parent)];
-    const ExactMatrix R = rotation(j.origin.rpy, what);
-    for (std::size_t i = 0; i < 9; ++i) body.R[i] = constant(R[i]);
-    for (std::size_t i = 0; i < 3; ++i) body.p[i] = constant(j.origin.xyz[i]);
-    if (j.type == UrdfJointType::planar || j.type == UrdfJointType::floating) {
+    for (std::size_t i = 0; i < 9; ++i) body.R[i] = constant(j.pose.R[i]);
+    for (std::size_t i = 0; i < 3; ++i) body.p[i] = constant(j.pose.p[i]);
+    if (j.type == RobotJointType::planar || j.type == RobotJointType::floating) {
       add_chain(std::move(body), j, node.joint);
     } else {
-      if (j.type != UrdfJointType::fixed) add_joint(body, j, node.joint);
+      if (j.type != RobotJointType::fixed) add_joint(body, j, node.joint);
       model_.bodies.push_back(std::move(body));
     }
     body_of_.push_back(static_cast<int>(model_.bodies.size()) - 1);
@@ -314,7 +331,7 @@ class UrdfReader {
     body.inertia = {f[4], f[5], f[6], f[7], f[8], f[9]};
   }
 
-  std::array<Expr, 3> axis(const UrdfJoint& j) {
+  std::array<Expr, 3> axis(const RobotJoint& j) {
     const ExactVector a = unit_vector(j.axis, !options_.as_written);
     if (a != j.axis)
       note(fmt::format("snapped: axis of joint '{}' taken as ({}, {}, {})", j.name, a[0].decimal(8),
@@ -322,32 +339,37 @@ class UrdfReader {
     return {constant(a[0]), constant(a[1]), constant(a[2])};
   }
 
-  void add_joint(BodyDescription& body, const UrdfJoint& j, int index) {
-    const UrdfFollower& follower = tree_.followers[static_cast<std::size_t>(index)];
+  void add_joint(BodyDescription& body, const RobotJoint& j, int index) {
+    const RobotFollower& follower = tree_.followers[static_cast<std::size_t>(index)];
     const auto number =
         static_cast<std::size_t>(first_coordinate_[static_cast<std::size_t>(follower.leader)]);
-    body.joint.kind = j.type == UrdfJointType::prismatic ? JointKind::prismatic : JointKind::revolute;
+    body.joint.kind = j.type == RobotJointType::prismatic ? JointKind::prismatic : JointKind::revolute;
     body.joint.axis = axis(j);
     body.joint.coordinate = coordinate_names_[number];
     if (places_[number] < 0) {
-      if (j.mimic || !j.damping.is_zero() || !j.friction.is_zero())
-        throw ModelError(
-            j.where,
-            fmt::format("joint '{}' {}, and '{}' is coupled by a supplement", j.name,
-                        j.mimic ? "mimics another" : "has damping or friction", coordinate_names_[number]),
-            "say it in the supplement instead, as a coupling, damping or friction");
+      if (j.mimic || !j.damping.is_zero() || !j.friction.is_zero() || !j.stiffness.is_zero())
+        throw ModelError(j.where,
+                         fmt::format("joint '{}' {}, and '{}' is coupled by a supplement", j.name,
+                                     j.mimic ? "mimics another" : "has damping, friction or a spring",
+                                     coordinate_names_[number]),
+                         "say it in the supplement instead, as a coupling, damping, friction or stiffness");
       return;
     }
     const auto coordinate = static_cast<std::size_t>(places_[number]);
     const Expr factor = constant(follower.multiplier);
     const Expr turned = factor * Expr(*model_.tape, model_.symbols.r[coordinate]);
     body.joint.displacement = turned + constant(follower.offset);
+    if (!j.stiffness.is_zero()) {
+      const Expr stretch = turned + constant(follower.offset - j.rest);
+      const Expr square = stretch * stretch;
+      model_.potential += constant(j.stiffness / Exact(2)) * square;
+    }
     const Expr rate = factor * Expr(*model_.tape, model_.symbols.r_dot[coordinate]);
     add_resistance(j, coordinate, factor, rate);
   }
 
   /// Damping c: D = c/2 rate^2; dry friction: -f sign(rate).
-  void add_resistance(const UrdfJoint& j, std::size_t coordinate, const Expr& factor, const Expr& rate) {
+  void add_resistance(const RobotJoint& j, std::size_t coordinate, const Expr& factor, const Expr& rate) {
     if (!j.damping.is_zero()) {
       const Expr square = rate * rate;
       model_.dissipation += constant(j.damping / Exact(2)) * square;
@@ -359,8 +381,8 @@ class UrdfReader {
   }
 
   /// A joint of several displacements as a chain of massless bodies; the link is the last of them.
-  void add_chain(BodyDescription body, const UrdfJoint& j, int index) {
-    const bool planar = j.type == UrdfJointType::planar;
+  void add_chain(BodyDescription body, const RobotJoint& j, int index) {
+    const bool planar = j.type == RobotJointType::planar;
     std::vector<std::pair<JointKind, std::array<Expr, 3>>> steps;
     if (planar) {
       const ExactVector normal = unit_vector(j.axis, !options_.as_written);
@@ -408,11 +430,11 @@ class UrdfReader {
     }
   }
 
-  const UrdfOptions options_;
-  const UrdfSupplement& supplement_;
-  XmlSource source_;
-  UrdfFile file_;
-  UrdfTree tree_;
+  const RobotOptions options_;
+  const RobotSupplement& supplement_;
+  Location whole_file_;
+  RobotFile file_;
+  RobotTree tree_;
   Model model_;
   std::vector<int> first_coordinate_;                      // of each joint, in Model::coordinates
   std::vector<std::string> coordinate_names_;              // of all coordinates that the file has
@@ -423,20 +445,42 @@ class UrdfReader {
   std::vector<std::array<std::size_t, 10>> parameter_of_;  // where inertia is symbolic
 };
 
+Model read_text(std::string_view text, const std::string& file_name, const RobotOptions& options,
+                const RobotSupplement& supplement, std::optional<RobotFormat> expected) {
+  const XmlSource source(text, file_name);
+  const RobotFormat format = format_of(source);
+  if (expected && format != *expected)
+    throw ModelError(source.place(source.root()),
+                     fmt::format("the file is of the format {}, not {}", name_of(format), name_of(*expected)),
+                     "name it by the key of its format: urdf, sdf or mjcf");
+  Model model =
+      RobotBuilder(read_elements(source, format, !options.as_written), {file_name, 0, 0}, options, supplement)
+          .run();
+  model.file = std::filesystem::path(file_name).filename().string();
+  model.sha256 = sha256_of(text);
+  return model;
+}
+
 }  // namespace
 
-Model read_urdf_text(std::string_view text, const std::string& file_name, const UrdfOptions& options,
-                     const UrdfSupplement& supplement) {
-  return UrdfReader(text, file_name, options, supplement).run();
+std::string_view name_of(RobotFormat format) {
+  constexpr std::array<std::string_view, 3> names = {"URDF", "SDFormat", "MJCF"};
+  return names[static_cast<std::size_t>(format)];
 }
 
-bool is_urdf(const std::filesystem::path& path) {
-  return path.extension() == ".urdf" || path.extension() == ".xml";
+bool is_robot_file(const std::filesystem::path& path) {
+  const std::array<std::string_view, 4> endings = {".urdf", ".sdf", ".mjcf", ".xml"};
+  return std::ranges::find(endings, path.extension().string()) != endings.end();
 }
 
-Model read_urdf(const std::filesystem::path& path, const UrdfOptions& options,
-                const UrdfSupplement& supplement) {
-  return read_urdf_text(read_bytes(path), path.string(), options, supplement);
+Model read_robot_text(std::string_view text, const std::string& file_name, const RobotOptions& options,
+                      const RobotSupplement& supplement) {
+  return read_text(text, file_name, options, supplement, std::nullopt);
+}
+
+Model read_robot(const std::filesystem::path& path, const RobotOptions& options,
+                 const RobotSupplement& supplement, std::optional<RobotFormat> expected) {
+  return read_text(read_bytes(path), path.string(), options, supplement, expected);
 }
 
 }  // namespace anholon

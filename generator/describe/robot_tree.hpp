@@ -5,30 +5,30 @@
 
 #include <vector>
 
-#include "describe/urdf_elements.hpp"
+#include "describe/robot_file.hpp"
 
 namespace anholon {
 
 /// A link in the order of bodies, with the joint that carries it.
-struct UrdfNode {
+struct RobotNode {
   int link = 0;
   int joint = -1;   // -1: the root
   int parent = -1;  // index of the node of the parent link
 };
 
 /// Displacement of a joint as multiplier * (that of joint `leader`) + offset.
-struct UrdfFollower {
+struct RobotFollower {
   int leader = 0;
   Exact multiplier = 1;
   Exact offset = 0;
 };
 
-struct UrdfTree {
-  std::vector<UrdfNode> nodes;          // parents first, children in the order of the file
-  std::vector<UrdfFollower> followers;  // one for each joint; its own leader where it does not mimic
+struct RobotTree {
+  std::vector<RobotNode> nodes;          // parents first, children in the order of the file
+  std::vector<RobotFollower> followers;  // one for each joint; its own leader where it does not mimic
 };
 
 /// @throws ModelError where the file is no tree or mimics go round in a circle
-UrdfTree urdf_tree(const UrdfFile& file, const Location& whole_file);
+RobotTree robot_tree(const RobotFile& file, const Location& whole_file);
 
 }  // namespace anholon
