@@ -5,18 +5,17 @@
 
 #include <algorithm>
 
-#include "describe/mjcf_settings.hpp"
+#include "describe/mjcf_inertials.hpp"
 #include "describe/names.hpp"
 
 namespace anholon {
 namespace {
 
 constexpr const char* world = "world";
-constexpr const char* write_inertial = "write <inertial pos=\"...\" mass=\"...\" fullinertia=\"...\"/>";
 
-class MjcfElements : MjcfSettings {
+class MjcfElements : MjcfInertials {
  public:
-  MjcfElements(const XmlSource& source, bool snap) : MjcfSettings(source, snap) {}
+  MjcfElements(const XmlSource& source, bool snap) : MjcfInertials(source, snap) {}
 
   RobotFile run() {
     const XMLElement& root = source_.root();
@@ -49,7 +48,7 @@ class MjcfElements : MjcfSettings {
  private:
   // ---- bodies ---------------------------------------------------------------------------------------------
 
-  const std::vector<std::string> decorations_ = {"geom", "site", "camera", "light"};
+  const std::vector<std::string> decorations_ = {"site", "camera", "light"};
   Refused refused_parts() const {
     return {{"include", "write the parts into one file"},
             {"composite", "only rigid bodies are read"},
@@ -62,7 +61,8 @@ class MjcfElements : MjcfSettings {
 
   void read_worldbody(const XMLElement& e) {
     check_attributes(e, "the worldbody", {});
-    check_children(e, "the worldbody", {"body"}, decorations_, true, refused_parts());
+    check_children(e, "the worldbody", {"body", "geom"}, decorations_, true, refused_parts());
+    each(e, "geom", [&](const XMLElement&) { leave_out("<geom>"); });
     each(e, "body", [&](const XMLElement& body) { read_body(body, world, ""); });
   }
 
@@ -81,7 +81,8 @@ class MjcfElements : MjcfSettings {
         e, what,
         {"name", "childclass", "pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "mocap", "gravcomp"},
         {"user", "sleep"});
-    check_children(e, what, {"inertial", "joint", "freejoint", "body"}, decorations_, true, refused_parts());
+    check_children(e, what, {"inertial", "joint", "freejoint", "body", "geom"}, decorations_, true,
+                   refused_parts());
     const MjcfAttributes a = merged({}, e, source_);
     must_be(a, "mocap", "false", what, "only bodies that forces move are read");
     must_be_zero(a, "gravcomp", what, "remove it; a force against gravity is a [[force]] of a side-car file");
@@ -90,66 +91,12 @@ class MjcfElements : MjcfSettings {
       check_class(given->second);
     }
     const ExactPose pose = read_pose(a, what);
-    read_inertial(e, what, link);
+    link.inertial = read_inertial(e, what, childclass, file_.notes);
     const std::string name = link.name;
     const Location where = link.where;
     file_.links.push_back(std::move(link));
     read_joints(e, parent, name, childclass, pose, where);
     each(e, "body", [&](const XMLElement& body) { read_body(body, name, childclass); });
-  }
-
-  void check_class(const MjcfValue& value) {
-    if (!classes_.has(value.text))
-      error(value.where, fmt::format("there is no class '{}'", value.text),
-            did_you_mean(value.text, classes_.names(), "write a <default> of this class"));
-  }
-
-  void read_inertial(const XMLElement& body, const std::string& what, RobotLink& link) {
-    const XMLElement* e = body.FirstChildElement("inertial");
-    if (e == nullptr) {
-      if (const XMLElement* geom = body.FirstChildElement("geom"))
-        error(source_.place(*geom), fmt::format("{} has geoms and no <inertial>", what),
-              fmt::format("inertias are not taken from geoms; {}", write_inertial));
-      return;
-    }
-    if (const XMLElement* second = e->NextSiblingElement("inertial"))
-      error(source_.place(*second), fmt::format("{} has a second <inertial>", what), "remove one of them");
-    const std::string of = fmt::format("the inertial of {}", what);
-    check_attributes(
-        *e, of,
-        {"pos", "quat", "axisangle", "xyaxes", "zaxis", "euler", "mass", "diaginertia", "fullinertia"});
-    check_children(*e, of, {});
-    const MjcfAttributes a = merged({}, *e, source_);
-    RobotInertial result;
-    result.where = source_.place(*e);
-    if (!a.contains("pos")) error(result.where, fmt::format("{} has no 'pos'", of), write_inertial);
-    if (!a.contains("mass")) error(result.where, fmt::format("{} has no 'mass'", of), write_inertial);
-    result.pose = read_pose(a, of);
-    result.mass = number(a, "mass", of, 0);
-    check_mass(result.mass, source_.place(*e, "mass"), what);
-    const auto full = a.find("fullinertia"), diagonal = a.find("diaginertia");
-    if ((full == a.end()) == (diagonal == a.end())) {
-      error(result.where,
-            fmt::format("{} has {} 'diaginertia' {} 'fullinertia'", of, full == a.end() ? "neither" : "both",
-                        full == a.end() ? "nor" : "and"),
-            "write one of them");
-    } else if (full != a.end()) {
-      for (const char* turned : {"quat", "axisangle", "xyaxes", "zaxis", "euler"}) {
-        if (const auto given = a.find(turned); given != a.end())
-          error(given->second.where, fmt::format("{} has both 'fullinertia' and '{}'", of, turned),
-                "write fullinertia in the axes of the body");
-      }
-      if (const auto v = numbers_in(full->second.where, "fullinertia", full->second.text, of, 6))
-        for (std::size_t i = 0; i < 6; ++i) result.inertia[i] = (*v)[i];
-      check_definite(result.inertia, full->second.where, fmt::format("the inertia of {}", what),
-                     "xx yy zz xy xz yz");
-    } else {
-      if (const auto v = numbers_in(diagonal->second.where, "diaginertia", diagonal->second.text, of, 3))
-        for (std::size_t i = 0; i < 3; ++i) result.inertia[i] = (*v)[i];
-      check_definite(result.inertia, diagonal->second.where, fmt::format("the inertia of {}", what),
-                     "xx yy zz");
-    }
-    link.inertial = result;
   }
 
   // ---- joints ---------------------------------------------------------------------------------------------
@@ -201,13 +148,7 @@ class MjcfElements : MjcfSettings {
     RobotJoint& j = placed.joint;
     const std::string what = fmt::format("joint '{}'", j.name);
     check_joint_attributes(e, what);
-    std::string name = childclass;
-    if (const char* own = e.Attribute("class")) {
-      check_class({own, source_.place(e, "class")});
-      name = own;
-    }
-    if (!name.empty() && !classes_.has(name)) return;
-    const MjcfAttributes a = merged(classes_.defaults(name, "joint"), e, source_);
+    const MjcfAttributes a = with_defaults(e, childclass);
     const std::string type = word(a, "type", {"hinge", "slide", "free", "ball"}, what, "hinge");
     if (type == "ball")
       error(a.at("type").where, fmt::format("{} is a ball joint, which is not supported", what),

@@ -61,12 +61,11 @@ void MjcfSettings::must_be_zero(const MjcfAttributes& a, const std::string& name
 
 void MjcfSettings::read_compiler(const XMLElement& e) {
   const std::string what = "the compiler";
-  check_attributes(
-      e, what,
-      {"angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "balanceinertia", "boundmass",
-       "boundinertia", "settotalmass"},
-      {"strippath", "meshdir", "texturedir", "assetdir", "discardvisual", "usethread", "fusestatic",
-       "convexhull", "exactmeshinertia", "inertiagrouprange", "alignfree", "saveinertial", "fitaabb"});
+  check_attributes(e, what,
+                   {"angle", "eulerseq", "autolimits", "coordinate", "inertiafromgeom", "balanceinertia",
+                    "inertiagrouprange", "boundmass", "boundinertia", "settotalmass"},
+                   {"strippath", "meshdir", "texturedir", "assetdir", "discardvisual", "usethread",
+                    "fusestatic", "convexhull", "exactmeshinertia", "alignfree", "saveinertial", "fitaabb"});
   check_children(e, what, {}, {"lengthrange"});
   const MjcfAttributes a = merged({}, e, source_);
   degrees_ = word(a, "angle", {"degree", "radian"}, what, degrees_ ? "degree" : "radian") == "degree";
@@ -75,7 +74,9 @@ void MjcfSettings::read_compiler(const XMLElement& e) {
   must_be(a, "balanceinertia", "false", what, "write the figures that are meant");
   if (const auto given = a.find("inertiafromgeom"); given != a.end() && given->second.text == "true")
     error(given->second.where, "the compiler takes all inertias from geoms",
-          "write <inertial> for each body");
+          "remove it, and every <inertial> that is not meant");
+  must_be(a, "inertiagrouprange", "0 5", what,
+          "write <inertial> for the bodies that have geoms of other groups");
   for (const char* name : {"boundmass", "boundinertia"})
     must_be_zero(a, name, what, "write the figures that are meant");
   if (const auto given = a.find("settotalmass");
@@ -159,6 +160,22 @@ void MjcfSettings::check_default(const XMLElement& e) {
        [&](const XMLElement& joint) { check_joint_attributes(joint, "the <joint> of a <default>"); });
   each(e, "tendon", [&](const XMLElement& tendon) { check_tendon(tendon); });
   each(e, "default", [&](const XMLElement& inner) { check_default(inner); });
+}
+
+void MjcfSettings::check_class(const MjcfValue& value) {
+  if (!classes_.has(value.text))
+    error(value.where, fmt::format("there is no class '{}'", value.text),
+          did_you_mean(value.text, classes_.names(), "write a <default> of this class"));
+}
+
+MjcfAttributes MjcfSettings::with_defaults(const XMLElement& e, const std::string& childclass) {
+  std::string name = childclass;
+  if (const char* own = e.Attribute("class")) {
+    check_class({own, source_.place(e, "class")});
+    name = own;
+  }
+  const bool is_known = name.empty() || classes_.has(name);
+  return merged(is_known ? classes_.defaults(name, e.Name()) : MjcfAttributes{}, e, source_);
 }
 
 void MjcfSettings::check_joint_attributes(const XMLElement& e, const std::string& what) {

@@ -33,6 +33,10 @@ class MjcfSettings : protected XmlReader {
   void must_be_zero(const MjcfAttributes& a, const std::string& name, const std::string& what,
                     const std::string& way, std::size_t count = 1);
 
+  void check_class(const MjcfValue& value);
+  /// The attributes of an element that stands in a body, with the defaults of its class or the body's.
+  MjcfAttributes with_defaults(const XMLElement& e, const std::string& childclass);
+
   void check_joint_attributes(const XMLElement& e, const std::string& what);
   /// Tendons that have no spring and no damper of their own only carry the forces of actuators.
   void check_tendon(const XMLElement& e);

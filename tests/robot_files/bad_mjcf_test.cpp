@@ -51,8 +51,8 @@ INSTANTIATE_TEST_SUITE_P(
             "bad.xml:2:11: error: coordinate of the compiler is 'global', which is not supported; write "
             "poses in the frame of the parent"},
         Bad{"InertiaFromGeoms", file(body(""), "<compiler inertiafromgeom='true'/>"),
-            "bad.xml:2:11: error: the compiler takes all inertias from geoms; write <inertial> for each "
-            "body"},
+            "bad.xml:2:11: error: the compiler takes all inertias from geoms; remove it, and every "
+            "<inertial> that is not meant"},
         Bad{"TotalMass", file(body(""), "<compiler settotalmass='3'/>"),
             "bad.xml:2:11: error: the compiler scales all masses; write the figures that are meant"},
         Bad{"EulerSequence", file(body(""), "<compiler eulerseq='xYz'/>"),
@@ -77,9 +77,33 @@ INSTANTIATE_TEST_SUITE_P(
         Bad{"UnknownAttribute", file(body("<joint stifness='1'/>")),
             "bad.xml:4:75: error: joint 'a_joint' has an unknown attribute 'stifness'; did you mean "
             "'stiffness'?"},
-        Bad{"GeomsAlone", file("<body name='a'><geom size='1'/></body>"),
-            "bad.xml:4:16: error: body 'a' has geoms and no <inertial>; inertias are not taken from geoms; "
+        Bad{"MeshAlone", file("<body name='a'><geom type='mesh' mesh='m'/></body>"),
+            "bad.xml:4:16: error: a geom of body 'a' is a mesh, and the body has no <inertial>; write "
+            "<inertial pos=\"...\" mass=\"...\" fullinertia=\"...\"/>"},
+        Bad{"PlaneAlone", file("<body name='a'><geom type='plane' size='1 1 1'/></body>"),
+            "bad.xml:4:16: error: a geom of body 'a' is a plane, and the body has no <inertial>; write "
+            "<inertial pos=\"...\" mass=\"...\" fullinertia=\"...\"/>"},
+        Bad{"UnknownShape", file("<body name='a'><geom type='spher' size='1'/></body>"),
+            "bad.xml:4:22: error: type of a geom of body 'a' is 'spher'; did you mean 'sphere'?"},
+        Bad{"NoSize", file("<body name='a'><geom type='box'/></body>"),
+            "bad.xml:4:16: error: a geom of body 'a' has no 'size'; write its radius, or half its lengths"},
+        Bad{"TwoSizes", file("<body name='a'><geom type='box' size='1 2'/></body>"),
+            "bad.xml:4:33: error: size of a geom of body 'a' has 2 numbers; write three"},
+        Bad{"FlatBox", file("<body name='a'><geom type='box' size='1 2 0'/></body>"),
+            "bad.xml:4:33: error: size of a geom of body 'a' is 1 2 0; sizes are positive"},
+        Bad{"NoLength", file("<body name='a'><geom type='capsule' size='1' fromto='0 0 1 0 0 1'/></body>"),
+            "bad.xml:4:46: error: fromto of a geom of body 'a' has no length; write two different ends"},
+        Bad{"Shell", file("<body name='a'><geom size='1' shellinertia='true'/></body>"),
+            "bad.xml:4:31: error: shellinertia of a geom of body 'a' is 'true', which is not supported; "
             "write <inertial pos=\"...\" mass=\"...\" fullinertia=\"...\"/>"},
+        Bad{"NegativeDensity", file("<body name='a'><geom size='1' density='-1'/></body>"),
+            "bad.xml:4:31: error: density of a geom of body 'a' is -1; it must not be negative"},
+        Bad{"MistypedGeom", file("<body name='a'><geom size='1' densty='3'/></body>"),
+            "bad.xml:4:31: error: a geom of body 'a' has an unknown attribute 'densty'; did you mean "
+            "'density'?"},
+        Bad{"SomeGroups", file(body(""), "<compiler inertiagrouprange='2 3'/>"),
+            "bad.xml:2:11: error: inertiagrouprange of the compiler is '2 3', which is not supported; write "
+            "<inertial> for the bodies that have geoms of other groups"},
         Bad{"NoMass", inertial("pos='0 0 0' diaginertia='1 1 1'"),
             "bad.xml:4:16: error: the inertial of body 'a' has no 'mass'; write <inertial pos=\"...\" "
             "mass=\"...\" fullinertia=\"...\"/>"},

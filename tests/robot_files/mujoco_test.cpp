@@ -222,6 +222,27 @@ TEST(Mujoco, EveryWayToWriteABody) {
   compare(text, read_robot_text(text, "all.xml"), diagonal_inertias);
 }
 
+/// Bodies whose mass and inertia are those of their geoms. One geom alone has its own axes for principal
+/// ones.
+std::string of_geoms(const std::string& second) {
+  return R"(<mujoco><default><geom density="700" size="0.1 0.2 0.3"/><default class="light"><geom density="30"/></default></default>
+  <worldbody><geom type="plane" size="1 1 1"/>
+    <body name="a" pos="0 0 1"><freejoint/><geom type="box" pos="0.1 0 0.2" euler="10 20 30"/>
+      <body name="b" pos="0.2 0 0"><joint name="jb" axis="0 1 0"/><geom type="capsule" fromto="0 0.1 0 0.3 0.2 0.5" size="0.05"/>
+        <body name="c" pos="0.3 0.2 0.5"><joint name="jc" axis="1 0 0"/><geom type="cylinder" mass="2" quat="1 2 0 1"/>)" +
+         second + R"(</body></body>
+      <body name="d" pos="-0.2 0 0"><joint name="jd"/><geom pos="0 0 -0.3"/>
+        <body name="e" pos="0 0 -0.5"><joint name="je" axis="0 1 1"/><geom type="ellipsoid" class="light"/></body></body>
+    </body></worldbody></mujoco>)";
+}
+TEST(Mujoco, InertiasOfGeoms) {
+  const std::string alone = of_geoms(""),
+                    together =
+                        of_geoms(R"(<geom type="capsule" pos="0.1 0.2 0" zaxis="1 1 0"/><geom mass="0"/>)");
+  compare(alone, read_robot_text(alone, "geoms.xml"), diagonal_inertias);
+  compare(together, read_robot_text(together, "geoms.xml"), full_inertias);
+}
+
 TEST(Mujoco, FixedEulerAxes) {
   const std::string text = R"(<mujoco><compiler eulerseq="YZX" angle="radian"/><worldbody>
     <body name="a" euler="0.3 0.4 0.5"><freejoint/><inertial pos="0 0 0.1" mass="2" diaginertia="0.1 0.2 0.25"/>

@@ -136,6 +136,19 @@ TEST(ReadMjcf, GravityIsTheFiles) {
   EXPECT_EQ(value(model.gravity[2]), Exact(-3));
 }
 
+TEST(ReadMjcf, InertiasOfGeomsAreExact) {
+  const Model model = read(
+      "<body name='a'><geom type='box' size='0.1 0.2 0.3' pos='0 0 1' density='1250'/>"
+      "<geom type='box' size='0.1 0.2 0.3' pos='0 0 -1' mass='60'/></body>");
+  const BodyDescription& a = model.bodies[1];
+  EXPECT_EQ(value(a.mass), Exact(120));
+  EXPECT_TRUE(a.first_moment[2].is_zero());
+  EXPECT_EQ(value(a.inertia[0]), Exact::from_decimal("125.2"));  // 120 (0.13 / 3 + 1)
+  EXPECT_EQ(value(a.inertia[2]), Exact(2));                      // 120 (0.05 / 3)
+  EXPECT_TRUE(a.inertia[3].is_zero());
+  EXPECT_TRUE(notes_contain(model, "assumed: body 'a' has no inertial: that of 2 geoms"));
+}
+
 TEST(ReadMjcf, UnnamedPartsGetNames) {
   const Model model = read("<body>" + inertial + "<joint axis='1 0 0'/><joint/></body>");
   EXPECT_EQ(model.bodies.back().name, "body_1");
