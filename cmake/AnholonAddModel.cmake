@@ -9,7 +9,8 @@
 #
 # named after the files: board.toml with gait.scene.toml gives board_gait.hpp.
 #
-#   MODEL, SCENE   description and scene (TOML); relative to the current source folder
+#   MODEL, SCENE   description (TOML, or a robot file: URDF, SDFormat, MJCF) and scene (TOML); relative to the current
+#                  source folder
 #   FUNCTIONS      functions to generate; default: all that the model or the scene asks for
 #   INVERSE        generalised inverse where rows are redundant: pseudo (default) or leading:ROW[,ROW...]
 #   SINCOS         cmath (default): std::sin and std::cos; batch: those of double by one loop that compilers vectorise
@@ -17,8 +18,8 @@
 #   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math,
 #                  with g++ also -frename-registers
 #
-# Everything is written below the current build folder. The code is generated again when the model, the scene or the
-# program changes. Generated code needs C++17 and a standard library, nothing else.
+# Everything is written below the current build folder. The code is generated again when the model, the robot file
+# that it stands on, the scene or the program changes. Generated code needs C++17 and a standard library, nothing else.
 include_guard(GLOBAL)
 
 # A property, so that every folder of the project finds the script, wherever this file was included.
@@ -54,6 +55,16 @@ function(anholon_add_model target)
 
   get_filename_component(name "${arg_MODEL}" NAME_WLE)
   set(inputs "${arg_MODEL}")
+  # The robot file that the model stands on, if it names one.
+  file(STRINGS "${arg_MODEL}" lines REGEX "^(urdf|sdf|mjcf)[ \t]*=[ \t]*[\"'][^\"']+[\"']")
+  foreach(line IN LISTS lines)
+    string(REGEX REPLACE "^[a-z]+[ \t]*=[ \t]*[\"']([^\"']+).*$" "\\1" robot "${line}")
+    get_filename_component(model_folder "${arg_MODEL}" DIRECTORY)
+    get_filename_component(robot "${robot}" ABSOLUTE BASE_DIR "${model_folder}")
+    if(EXISTS "${robot}")  # else the program says what is wrong
+      list(APPEND inputs "${robot}")
+    endif()
+  endforeach()
   set(options "")
   if(arg_SCENE)
     get_filename_component(scene "${arg_SCENE}" NAME_WLE)

@@ -28,3 +28,7 @@ anholon_urdf_verb(GenerateSdf "" generate ${files}/walker.sdf --no-search -o ${C
 anholon_urdf_verb(VerifySdf "" verify ${files}/arm.sdf --samples 20)
 anholon_urdf_verb(VerifyMjcf "" verify ${files}/walker.xml --functions mass_matrix --samples 20)
 anholon_urdf_verb(FloatingIsTheFilesMatter "leave out --floating" check ${files}/arm.xml --floating)
+add_test(NAME RobotFile.IsADependency COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}"
+  "-DWORK=${CMAKE_CURRENT_BINARY_DIR}/robot_file_dependency" "-DPROGRAM=$<TARGET_FILE:anholon>"
+  "-DGENERATOR=${CMAKE_GENERATOR}" -P "${CMAKE_CURRENT_LIST_DIR}/dependency.cmake")
+set_tests_properties(RobotFile.IsADependency PROPERTIES LABELS quick TIMEOUT 120)
