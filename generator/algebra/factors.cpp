@@ -143,7 +143,8 @@ std::vector<Polynomial> coefficients(const Polynomial& p, std::size_t variable) 
     const unsigned exponent = variable < monomial.size() ? monomial[variable] : 0;
     Monomial rest = monomial;
     if (exponent > 0) rest[variable] = 0;
-    result[exponent] = result[exponent] + Polynomial::term(std::move(rest), coefficient);
+    while (!rest.empty() && rest.back() == 0) rest.pop_back();
+    result[exponent].add_term(rest, coefficient);
   }
   std::erase_if(result, [](const Polynomial& c) { return c.is_zero(); });
   return result;

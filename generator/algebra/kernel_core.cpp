@@ -290,15 +290,21 @@ KernelCore basis(Tape& tape, const Ring& ring, std::vector<Row> rows, std::size_
   const NodeId zero = tape.constant(0);
   KernelCore core{std::vector(columns, std::vector<NodeId>(k, zero)),
                   std::vector(columns, std::vector<NodeId>(inputs, zero))};
+  // Bounded before it is multiplied out: common denominators of many quotients know no other bound.
+  const auto product = [&limits](const Polynomial& p, const Polynomial& q) {
+    if (p.size() * q.size() > limits.terms) throw SizeLimitExceeded();
+    return p * q;
+  };
   for (std::size_t f = 0; f < k; ++f) {
     Polynomial denominator = 1;
     for (const auto& [column, value] : x) {
-      denominator = denominator * *divide(value[f].denominator, gcd(denominator, value[f].denominator));
+      denominator =
+          product(denominator, *divide(value[f].denominator, gcd(denominator, value[f].denominator)));
     }
     Row column(columns);
     column[sides[f]] = denominator;
     for (const auto& [j, value] : x)
-      column[j] = value[f].numerator * *divide(denominator, value[f].denominator);
+      column[j] = product(value[f].numerator, *divide(denominator, value[f].denominator));
     column = scaled(without_content(ring, std::move(column)), sides[f]);
     for (std::size_t j = 0; j < columns; ++j) core.H[j][f] = lowering.polynomial(column[j]);
   }

@@ -194,7 +194,8 @@ Polynomial replace_square(const Polynomial& p, std::size_t variable, std::size_t
     }
     Monomial rest = monomial;
     rest[variable] = static_cast<std::uint16_t>(exponent % 2);
-    result = result + Polynomial::term(rest, coefficient) * pow(square_of_other, exponent / 2);
+    const Polynomial replaced = Polynomial::term(rest, coefficient) * pow(square_of_other, exponent / 2);
+    for (const auto& [m, c] : replaced.terms()) result.add_term(m, c);
   }
   return result;
 }

@@ -105,7 +105,11 @@ Evaluated<S> evaluate_recursion(const Mechanism<S>& mechanism, const Partition& 
     for (std::size_t i = 0; i < active.size(); ++i)
       r_a_ddot(static_cast<Eigen::Index>(i)) =
           input.r_ddot[static_cast<std::size_t>(active[i] - partition.n)];
-    const DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
+    DynamicVector<S> force = pick(e.force, passive) - M_pa * r_a_ddot;
+    for (std::size_t i = 0; i < passive.size() && !input.tau.empty(); ++i) {
+      if (passive[i] >= partition.n)  // torque-driven joints that the partition counts with the passive ones
+        force(static_cast<Eigen::Index>(i)) += input.tau[static_cast<std::size_t>(passive[i] - partition.n)];
+    }
     auto solution = solve(M_pp, force, A, DynamicVector<S>(bias + B * r_a_ddot), sharing.locked);
     if (!input.lambda_stat.empty())
       solution.multipliers += static_loading<S>(A, sharing.locked, input.lambda_stat, threshold);

@@ -37,6 +37,7 @@ class Verifier {
         program_(derivation.program),
         derivation_(derivation),
         partition_(partition_of(model)),
+        reduced_(derivation.reduction.partition),
         description_(describe_mechanism(model)) {
     for (const Parameter& p : model.parameters) {
       const double rounded = p.value.to_double();  // double code is given these numbers
@@ -160,11 +161,22 @@ class Verifier {
         block(kinematics, "r_p_dot", static_cast<std::size_t>(partition_.s_p()));
     for (std::size_t i = 0; i < r_p_dot.size(); ++i)
       input.state.r_dot[static_cast<std::size_t>(partition_.passive[n + i]) - n] = r_p_dot[i];
+    std::vector<int> driven;  // joints that a scene drives by torque, behind the passive ones
+    driven.assign(reduced_.passive.begin() + static_cast<std::ptrdiff_t>(partition_.passive.size()),
+                  reduced_.passive.end());
+    const std::vector<Exact> r_d_dot = block(kinematics, "r_d_dot", driven.size());
+    const std::vector<Exact> torque = block(in, reduced_.active.empty() ? "tau_a" : "tau_d", driven.size());
     input.r_ddot.assign(model_.coordinates.size(), Exact(0));
-    const std::vector<Exact> r_a_dot = block(in, "r_a_dot", partition_.active.size());
-    const std::vector<Exact> r_a_ddot = block(in, "r_a_ddot", partition_.active.size());
-    for (std::size_t i = 0; i < partition_.active.size(); ++i) {
-      const std::size_t at = static_cast<std::size_t>(partition_.active[i]) - n;
+    input.tau.assign(model_.coordinates.size(), Exact(0));
+    for (std::size_t i = 0; i < driven.size(); ++i) {
+      const std::size_t at = static_cast<std::size_t>(driven[i]) - n;
+      input.state.r_dot[at] = r_d_dot[i];
+      input.tau[at] = torque[i];
+    }
+    const std::vector<Exact> r_a_dot = block(in, "r_a_dot", reduced_.active.size());
+    const std::vector<Exact> r_a_ddot = block(in, "r_a_ddot", reduced_.active.size());
+    for (std::size_t i = 0; i < reduced_.active.size(); ++i) {
+      const std::size_t at = static_cast<std::size_t>(reduced_.active[i]) - n;
       input.state.r_dot[at] = r_a_dot[i];
       input.r_ddot[at] = r_a_ddot[i];
     }
@@ -173,9 +185,9 @@ class Verifier {
     const ReductionReport& reduction = derivation_.reduction;
     const RowSharing sharing{reduction.inverse == Inverse::leading, reduction.ranks.leading_rows, {}};
     const Evaluated<Exact> expected =
-        evaluate_recursion(mechanism, partition_, input, Exact::from_decimal("1e-25"), sharing);
+        evaluate_recursion(mechanism, reduced_, input, Exact::from_decimal("1e-25"), sharing);
     const Evaluated<double> numeric =
-        evaluate_recursion(rounded, partition_, double_input(input), 1e-9, sharing);
+        evaluate_recursion(rounded, reduced_, double_input(input), 1e-9, sharing);
 
     NamedValues<Exact> at = in;
     const NamedValues<Exact> forward = run("forward_dynamics", at);
@@ -199,6 +211,9 @@ class Verifier {
     if (forward.contains("eta_dot"))
       agree("forward_dynamics", "eta_dot", forward.at("eta_dot"), pick(expected.acceleration, eta_at),
             pick(numeric.acceleration, eta_at));
+    if (forward.contains("r_d_ddot"))
+      agree("forward_dynamics", "r_d_ddot", forward.at("r_d_ddot"), pick(expected.acceleration, driven),
+            pick(numeric.acceleration, driven));
     if (forward.contains("r_p_ddot"))
       agree("forward_dynamics", "r_p_ddot", forward.at("r_p_ddot"), pick(expected.acceleration, r_p_at),
             pick(numeric.acceleration, r_p_at));
@@ -218,6 +233,7 @@ class Verifier {
     for (const Exact& x : e.state.r) d.state.r.push_back(x.to_double());
     for (const Exact& x : e.state.r_dot) d.state.r_dot.push_back(x.to_double());
     for (const Exact& x : e.r_ddot) d.r_ddot.push_back(x.to_double());
+    for (const Exact& x : e.tau) d.tau.push_back(x.to_double());
     d.has_acceleration = true;
     return d;
   }
@@ -255,6 +271,7 @@ class Verifier {
           i < components.size() ? input.state.eta[components[i]] : input.state.r_dot[i - components.size()];
       add(((e.force[i] - inertial[i]) * v).to_double());
     }
+    for (std::size_t i = 0; i < input.tau.size(); ++i) add((input.tau[i] * input.state.r_dot[i]).to_double());
     if (find_function(program_, chart_ + "inverse_torques") != nullptr) {
       const std::vector<double> tau = compiled_(chart_ + "inverse_torques", as_doubles(at)).at("tau_a");
       for (std::size_t i = 0; i < tau.size(); ++i) add(tau[i] * at.at("r_a_dot")[i].to_double());
@@ -323,7 +340,7 @@ class Verifier {
   const Model& model_;
   const Program& program_;
   const Derivation& derivation_;
-  Partition partition_;
+  Partition partition_, reduced_;  // all active joints apart; torque-driven ones with the passive
   MechanismDescription description_;
   std::vector<Exact> parameters_;
   std::vector<double> double_parameters_;

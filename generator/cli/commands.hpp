@@ -28,6 +28,7 @@ struct ModelOptions {
   std::string gravity;              // of a robot file, m/s^2 along -z; empty: its own or the default
   bool search = true;               // of a tree: try every formulation
   std::vector<std::string> counts;  // of a model file: "N=12"
+  std::string contacts;             // of a scene: its contact set; empty: the first phase's
 };
 
 struct CheckOptions : ModelOptions {
@@ -59,6 +60,7 @@ struct SimulateOptions {
   std::string output;
   bool work_precision = false;
   bool conditioning = false;
+  std::vector<double> stiffen;  // factors of the stiffness of elastic contacts
 };
 
 int check(const CheckOptions& options);

@@ -54,27 +54,35 @@ CountValues counts_of(const ModelOptions& options) {
 
 }  // namespace
 
+Scene load_scene(const ModelOptions& options) {
+  if (!options.counts.empty())
+    throw std::invalid_argument("--count is for a model file; a scene says it itself: counts = { N = 12 }");
+  Scene scene = read_scene(options.scene.empty() ? options.model : options.scene);
+  if (options.contacts.empty()) return scene;
+  if (std::ranges::find(scene.contact_sets, options.contacts, &ContactSet::name) == scene.contact_sets.end())
+    throw std::invalid_argument(
+        fmt::format("--contacts: the scene has no contact set '{}'", options.contacts));
+  scene.contact_set = options.contacts;
+  return scene;
+}
+
 Model load_model(const ModelOptions& options) {
   const bool has_robot_option = options.robot.floating || options.robot.as_written ||
                                 options.robot.symbolic_inertia || !options.gravity.empty();
-  if (is_robot_file(options.model) && options.scene.empty())
+  if (is_robot_file(options.model) && options.scene.empty()) {
+    if (!options.counts.empty()) throw std::invalid_argument("--count is for a model file");
     return read_robot(options.model, robot_options(options));
+  }
   if (has_robot_option)
     throw std::invalid_argument(
         "--floating, --as-written, --symbolic-inertia and --gravity are for a robot file (URDF, SDFormat, "
         "MJCF) "
         "without a scene; a model file says these things itself (docs/robot-files.md)");
-  if (!options.counts.empty() &&
-      (!options.scene.empty() || is_robot_file(options.model) || is_scene(options.model)))
-    throw std::invalid_argument("--count is for a model file; a scene says it itself: counts = { N = 12 }");
-  if (!options.scene.empty()) {
-    const Scene scene = read_scene(options.scene);
+  if (!options.scene.empty() || is_scene(options.model)) {
+    const Scene scene = load_scene(options);
     return specialise(scene.model, scene);
   }
-  if (is_scene(options.model)) {
-    const Scene scene = read_scene(options.model);
-    return specialise(scene.model, scene);
-  }
+  if (!options.contacts.empty()) throw std::invalid_argument("--contacts: contact sets are those of a scene");
   return read_model(options.model, {}, counts_of(options));
 }
 
@@ -110,12 +118,9 @@ AnyDerivation derive_any(const ModelOptions& options, const Model& model) {
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   DeriveRequest request;
   request.functions = options.functions;
-  const std::string scene_file = !options.scene.empty()    ? options.scene
-                                 : is_scene(options.model) ? options.model
-                                                           : "";
-  if (!scene_file.empty()) {
-    const Scene scene = read_scene(scene_file);
-    request.scene = scene.name;
+  if (!options.scene.empty() || is_scene(options.model)) {
+    const Scene scene = load_scene(options);
+    request.scene = program_name(scene);
     request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
     if (request.functions.empty()) request.functions = scene.functions;
   }

@@ -11,9 +11,12 @@
 #include "derive/derive.hpp"
 #include "derive/tree_functions.hpp"
 #include "describe/model.hpp"
+#include "describe/scene.hpp"
 
 namespace anholon::cli {
 
+/// The scene that the options name, with the contact set that they choose.
+Scene load_scene(const ModelOptions& options);
 /// The model, specialised to the scene if one is named.
 Model load_model(const ModelOptions& options);
 /// What the generator makes of a model: functions of the reduction, or those of a tree whose joints are all

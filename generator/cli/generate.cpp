@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,7 @@ int operations_of(const Program& program, const Function& f) {
 std::map<std::string, int> operations_without_scene(const GenerateOptions& options, const Program& program) {
   const std::string file = !options.scene.empty() ? options.scene : options.model;
   if (is_robot_file(file) || !is_scene(file)) return {};
-  const Scene scene = read_scene(file);
+  const Scene scene = load_scene(options);
   DeriveRequest request = derive_request(options, scene.model);
   request.functions.clear();
   for (const Function& f : program.functions) {  // those of further charts come along
@@ -95,9 +96,8 @@ void print_routes(const AnyDerivation& derivation) {
   }
 }
 
-}  // namespace
-
-int generate(const GenerateOptions& options) {
+/// One set of functions: of the model, or of a scene and one of its contact sets.
+int generate_one(const GenerateOptions& options) {
   const Stopwatch watch;
   const Model model = load_model(options);
   const AnyDerivation derivation = derive_any(options, model);
@@ -163,6 +163,24 @@ int generate(const GenerateOptions& options) {
     print_effort(program, style, seconds);
   }
   fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), seconds);
+  return ok;
+}
+
+}  // namespace
+
+int generate(const GenerateOptions& options) {
+  const std::string file = !options.scene.empty() ? options.scene : options.model;
+  if (!options.contacts.empty() || is_robot_file(file) || !is_scene(file)) return generate_one(options);
+  const std::vector<ContactSet> sets = load_scene(options).contact_sets;
+  if (sets.size() > 1 && std::filesystem::path(options.output).extension() == ".hpp")
+    throw std::invalid_argument(
+        "the scene has several contact sets: name a folder, or one set by --contacts");
+  if (sets.empty()) return generate_one(options);
+  for (const ContactSet& set : sets) {
+    GenerateOptions one = options;
+    one.contacts = set.name;
+    generate_one(one);
+  }
   return ok;
 }
 

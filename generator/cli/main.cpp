@@ -33,6 +33,7 @@ int main(int argc, char** argv) {
         "--inverse", o.inverse,
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
     verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")->delimiter(',');
+    verb->add_option("--contacts", o.contacts, "contact set of the scene; default: that of its first phase");
     if (functions)
       verb->add_option(
               "--functions", o.functions,
@@ -110,6 +111,10 @@ int main(int argc, char** argv) {
                  "error against CPU time over a ladder of tolerances");
   verb->add_flag("--conditioning", simulate.conditioning,
                  "conditioning and error of the accelerations along the path, as CSV and SVG");
+  verb->add_option("--stiffen", simulate.stiffen,
+                   "shares of elastic contacts at these factors of their stiffness, beside rigid ones")
+      ->delimiter(',')
+      ->check(CLI::PositiveNumber);
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
   try {

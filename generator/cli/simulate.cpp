@@ -11,6 +11,7 @@
 #include "cli/common.hpp"
 #include "simulate/path_conditioning.hpp"
 #include "simulate/simulation.hpp"
+#include "simulate/stiffness_ladder.hpp"
 #include "simulate/work_precision.hpp"
 
 namespace anholon::cli {
@@ -134,13 +135,67 @@ int print_conditioning(const Scene& scene, const std::filesystem::path& folder) 
   return path.motion.finished ? ok : check_failed;
 }
 
+/// Remark 7: a column a row, a line a stiffness.
+int print_stiffness_ladder(const Scene& scene, const std::vector<double>& factors) {
+  const StiffnessLadder ladder = stiffness_ladder(scene, factors);
+  fmt::print("{}, {}: multipliers at t = {:g} s, contacts elastic and rigid\n\n", scene.model.name,
+             scene.name, scene.duration);
+  std::size_t width = 12;
+  for (const std::string& row : ladder.rows) width = std::max(width, row.size() + 1);
+  fmt::print("{:>{}s}", "stiffness", width);
+  for (const StiffnessStep& step : ladder.steps) fmt::print(" {:>13.2g}", step.stiffness);
+  fmt::print(" {:>13s}\n", "rigid");
+  for (std::size_t i = 0; i < ladder.rows.size(); ++i) {
+    const auto row = static_cast<Eigen::Index>(i);
+    fmt::print("{:>{}s}", ladder.rows[i], width);
+    for (const StiffnessStep& step : ladder.steps) fmt::print(" {:>13.6f}", step.lambda(row));
+    fmt::print(" {:>13.6f}\n", ladder.rigid(row));
+  }
+  fmt::print("{:>{}s}", "distance", width);
+  for (const StiffnessStep& step : ladder.steps) fmt::print(" {:>13.2e}", step.distance);
+  fmt::print(
+      "\n\ndistance: the largest difference to the rigid contacts, relative to the largest multiplier\n");
+  const auto is_ok = [](const StiffnessStep& step) { return step.status == "ok"; };
+  return std::ranges::all_of(ladder.steps, is_ok) ? ok : check_failed;
+}
+
 std::string integrator_text(const Integrator& integrator) {
   return integrator.method == Integrator::Method::dopri5
              ? fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance)
              : fmt::format("Munthe-Kaas RK4, step {:g} s", integrator.step);
 }
 
+nlohmann::ordered_json json_of(const ContactHistory& contact) {
+  nlohmann::ordered_json j = {{"contact", contact.contact}};
+  if (!contact.has_normal) return j;
+  const auto time = [](const std::optional<double>& t) {
+    return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
+  };
+  j["least_normal_N"] = contact.least_normal, j["at_s"] = contact.least_normal_at;
+  j["lifts_at_s"] = time(contact.lifts_at);
+  if (!contact.has_friction) return j;
+  j["largest_utilisation"] = finite(contact.largest_utilisation),
+  j["utilisation_at_s"] = contact.utilisation_at;
+  j["slips_at_s"] = time(contact.slips_at);
+  return j;
+}
+
+nlohmann::ordered_json json_of(const ContactSwitch& at) {
+  nlohmann::ordered_json impulses;
+  for (const auto& [row, impulse] : at.impulses) impulses[row] = impulse;
+  return {{"t", at.t},
+          {"from", at.from},
+          {"to", at.to},
+          {"energy_lost_J", at.lost},
+          {"motor_work_J", at.work},
+          {"relative_jump", at.relative},
+          {"impulses", impulses}};
+}
+
 nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& result) {
+  nlohmann::ordered_json contacts = nlohmann::ordered_json::array(), switches = contacts;
+  for (const ContactHistory& contact : result.contacts) contacts.push_back(json_of(contact));
+  for (const ContactSwitch& at : result.switches) switches.push_back(json_of(at));
   return {{"schema", "anholon.simulation/1"},
           {"model", scene.model.name},
           {"scene", scene.name},
@@ -162,7 +217,26 @@ nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& resul
           {"energy_balance", finite(result.energy_balance)},
           {"constraint_residual", finite(result.constraint_residual)},
           {"position_residual_m", finite(result.position_residual)},
-          {"orthonormality", finite(result.orthonormality)}};
+          {"orthonormality", finite(result.orthonormality)},
+          {"switches", switches},
+          {"contacts", contacts}};
+}
+
+/// Switches, and what the contacts carried.
+void print_contacts(const SimulationResult& result) {
+  for (const ContactSwitch& at : result.switches)
+    fmt::print("  contacts at {:<8.6g}  {} -> {}: {:.3g} J lost, jump {:.2g}\n", at.t,
+               at.from.empty() ? "none" : at.from, at.to, at.lost, at.relative);
+  for (const ContactHistory& c : result.contacts) {
+    if (!c.has_normal) continue;
+    std::string text = fmt::format("least load {:.4g} N at {:.4g} s", c.least_normal, c.least_normal_at);
+    if (c.has_friction)
+      text +=
+          fmt::format(", friction used {:.0f} % at {:.4g} s", 100 * c.largest_utilisation, c.utilisation_at);
+    if (c.lifts_at) text += fmt::format("; WOULD LIFT at {:.4g} s", *c.lifts_at);
+    if (c.slips_at) text += fmt::format("; WOULD SLIP at {:.4g} s", *c.slips_at);
+    fmt::print("  {:<21s} {}\n", c.contact, text);
+  }
 }
 
 }  // namespace
@@ -175,6 +249,7 @@ int simulate(const SimulateOptions& options) {
                              : std::filesystem::path(options.output);
   if (options.work_precision) return print_work_precision(scene, folder);
   if (options.conditioning) return print_conditioning(scene, folder);
+  if (!options.stiffen.empty()) return print_stiffness_ladder(scene, options.stiffen);
 
   const SimulationResult result = [&] {
     ProgressLine line(scene.duration);
@@ -202,6 +277,7 @@ int simulate(const SimulateOptions& options) {
   if (result.position_residual > 0)
     fmt::print("  position residual     {:.2e} m\n", result.position_residual);
   fmt::print("  ||R^T R - 1||         {:.2e}\n", result.orthonormality);
+  print_contacts(result);
   fmt::print("  time                  {:.4f} s integration, {:.2f} s in all\n", result.cpu_seconds,
              watch.seconds());
   fmt::print("  files                 {}{}\n",

@@ -63,7 +63,10 @@ class AtlasChooser {
  private:
   /// A basis that divides by numbers alone needs no search, and one that the description asks for stays.
   [[nodiscard]] bool may_be_singular(const Kernel& kernel) const {
-    const bool asked_for = static_cast<int>(request_.preferred_free.size()) == kernel.H.cols();
+    const bool asked_for =
+        !request_.preferred_free.empty() && std::ranges::all_of(request_.preferred_free, [&](int velocity) {
+          return std::ranges::find(kernel.free, velocity) != kernel.free.end();
+        });
     return !request_.one_basis && kernel.H.cols() > 0 && request_.rows.A.rows() > 0 &&
            !kernel.divides_by_constants && !asked_for;
   }

@@ -27,7 +27,7 @@ struct AtlasRequest {
   ConstraintRows rows;
   const RankAnalysis* ranks = nullptr;
   Inverse inverse = Inverse::pseudo;
-  std::vector<int> preferred_free;  // the description's choice: one basis, as it wants
+  std::vector<int> preferred_free;  // the description's choice: one basis that has them
   std::vector<std::string> passive_names;
   std::vector<SampleState> samples;
   bool one_basis = false;  // whatever a search would find

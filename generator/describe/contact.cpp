@@ -102,7 +102,8 @@ ContactGeometry::Touch ContactGeometry::touch(const Wheel& wheel) const {
 
   Touch touch;
   const Vec3<Expr> world_normal = vector(wheel.ground.normal);
-  touch.normal = transposed_times(frame.R, world_normal);
+  const Frame& seen_from_reference = internal_[static_cast<std::size_t>(carried ? body.parent : wheel.body)];
+  touch.normal = transposed_times(wheel.upright ? seen_from_reference.R : frame.R, world_normal);
   Vec3<Expr> arm = -wheel.crown * touch.normal;  // from the centre to the point of contact
   if (!wheel.radius.is_zero()) {
     touch.along = cross(axle, touch.normal);
@@ -112,15 +113,30 @@ ContactGeometry::Touch ContactGeometry::touch(const Wheel& wheel) const {
         wheel.radius * cross(touch.along, axle);  // cross(along, axle): from the centre up, across the axle
   }
   touch.velocity = frame.v + cross(frame.w, centre) + cross(w, arm);
-  touch.gap = dot(world_normal, frame.p) + dot(touch.normal, centre + arm) - wheel.ground.height;
+  const Vec3<Expr> up = transposed_times(frame.R, world_normal);
+  touch.gap = dot(world_normal, frame.p) + dot(up, centre + arm) - wheel.ground.height;
   return touch;
 }
+
+namespace {
+
+/// Three rows of a force along the axes of a frame, in which `normal` and `along` are unit vectors.
+void add_force_rows(Contact& contact, const Vec3<Expr>& velocity, const Vec3<Expr>& normal,
+                    const Vec3<Expr>& along) {
+  const Vec3<Expr> lateral = cross(normal, along);
+  for (int i = 0; i < 3; ++i)
+    contact.rows.push_back(
+        {axis_names[static_cast<std::size_t>(i)], velocity[i], {normal[i], along[i], lateral[i]}, true});
+  contact.has_normal = true;
+}
+
+}  // namespace
 
 Contact ContactGeometry::rolling(const Wheel& wheel) const {
   const Touch at = touch(wheel);
   Contact contact;
-  for (int i = 0; i < 3; ++i)
-    contact.rows.push_back({axis_names[static_cast<std::size_t>(i)], at.velocity[i]});
+  add_force_rows(contact, at.velocity, at.normal, at.along);
+  contact.has_directions = !wheel.radius.is_zero();
   contact.positions.push_back({"", at.gap, false});
   return contact;
 }
@@ -140,7 +156,7 @@ Contact ContactGeometry::rolling(const Ellipsoid& ellipsoid) const {
   const Vec3<Expr> point = vector(ellipsoid.centre) - (Expr(1) / support) * scaled;
   const Vec3<Expr> velocity = frame.v + cross(frame.w, point);
   Contact contact;
-  for (int i = 0; i < 3; ++i) contact.rows.push_back({axis_names[static_cast<std::size_t>(i)], velocity[i]});
+  add_force_rows(contact, velocity, normal, {});
   contact.positions.push_back(
       {"",
        dot(world_normal, frame.p) + dot(normal, vector(ellipsoid.centre)) - support - ellipsoid.ground.height,
@@ -152,8 +168,10 @@ Contact ContactGeometry::rollers(const Wheel& wheel, const Expr& angle) const {
   const Touch at = touch(wheel);
   const Vec3<Expr> lateral = cross(at.normal, at.along);
   Contact contact;
-  contact.rows.push_back({"roller", dot(cos(angle) * at.along + sin(angle) * lateral, at.velocity)});
-  contact.rows.push_back({"normal", dot(at.normal, at.velocity)});
+  const Expr c = cos(angle), s = sin(angle);
+  contact.rows.push_back({"roller", dot(c * at.along + s * lateral, at.velocity), {0, c, s}, true});
+  contact.rows.push_back({"normal", dot(at.normal, at.velocity), {1, 0, 0}, true});
+  contact.has_normal = contact.has_directions = true;
   contact.positions.push_back({"", at.gap, false});
   return contact;
 }
@@ -166,14 +184,19 @@ Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const 
   if (!a.other) {
     const Frame& frame = world_[static_cast<std::size_t>(a.body)];
     const Vec3<Expr> v = frame.v + cross(frame.w, point);
-    for (int i = 0; i < 3; ++i) contact.rows.push_back({axis_names[static_cast<std::size_t>(i)], v[i]});
+    const Vec3<Expr> normal = vector(a.ground.normal);
+    const Vec3<Expr> forward = cross(world_[0].R * unit<Expr>(1), normal);  // of the reference body, level
+    add_force_rows(contact, v, transposed_times(frame.R, normal),
+                   transposed_times(frame.R, (Expr(1) / sqrt(dot(forward, forward))) * forward));
+    contact.has_directions = true;
     if (turns == FreeTurns::none) {
       for (int i = 0; i < 3; ++i)
-        contact.rows.push_back({std::string("turn_") + axis_names[static_cast<std::size_t>(i)], frame.w[i]});
+        contact.rows.push_back(
+            {std::string("turn_") + axis_names[static_cast<std::size_t>(i)], frame.w[i], {}, false});
     }
     if (turns == FreeTurns::about_axis) {
       for (std::size_t i = 0; i < 2; ++i)
-        contact.rows.push_back({"turn_" + std::to_string(i + 1), dot(sides[i], frame.w)});
+        contact.rows.push_back({"turn_" + std::to_string(i + 1), dot(sides[i], frame.w), {}, false});
     }
     // The turns are kept by the places of further points, a metre away.
     std::vector<Vec3<Expr>> points = {point};
@@ -191,7 +214,7 @@ Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const 
   const Frame& other = internal_[static_cast<std::size_t>(*a.other)];
   const Vec3<Expr> gap = frame.p + frame.R * point - other.p - other.R * vector(a.other_point);
   const auto keep = [&](const std::string& suffix, const Expr& condition, bool from_start) {
-    contact.rows.push_back({suffix, rate(condition)});
+    contact.rows.push_back({suffix, rate(condition), {}, false});
     contact.positions.push_back({"", condition, from_start});
   };
   for (int i = 0; i < 3; ++i) keep(axis_names[static_cast<std::size_t>(i)], gap[i], false);
@@ -214,7 +237,7 @@ Contact ContactGeometry::rod(const Attachment& a, const Expr& length) const {
   const Vec3<Expr> d = frame.p + frame.R * vector(a.point) - other.p - other.R * vector(a.other_point);
   const Expr condition = (dot(d, d) - length * length) / (Expr(2) * length);
   Contact contact;
-  contact.rows.push_back({"length", rate(condition)});
+  contact.rows.push_back({"length", rate(condition), {}, false});
   contact.positions.push_back({"", condition, false});
   return contact;
 }

@@ -15,13 +15,17 @@ namespace anholon {
 
 /// One row of a contact.
 struct ContactRow {
-  std::string suffix;  // of the row's name: "x", "turn_y", ...
-  Expr row = 0;        // linear in the velocities, vanishes where the contact holds
+  std::string suffix;                     // of the row's name: "x", "turn_y", ...
+  Expr row = 0;                           // linear in the velocities, vanishes where the contact holds
+  std::array<Expr, 3> share = {0, 0, 0};  // of its multiplier in the force (normal, longitudinal, lateral)
+  bool is_force = true;                   // else a moment
 };
 
 struct Contact {
   std::vector<ContactRow> rows;
   std::vector<PositionDescription> positions;
+  bool has_normal = false;      // a ground that pushes
+  bool has_directions = false;  // longitudinal and lateral ones
 };
 
 /// A plane that stands still in the world.
@@ -37,6 +41,7 @@ struct Wheel {
   std::array<Expr, 3> axle = {0, 1, 0};  // unit vector, wheel frame
   Expr radius = 0, crown = 0;            // m
   Ground ground;
+  bool upright = false;  // the reference body stays parallel to the ground
 };
 
 /// An ellipsoid that rolls without slip; equal semi-axes are a ball.
@@ -53,6 +58,7 @@ struct Attachment {
   std::array<Expr, 3> point = {0, 0, 0};  // body frame, m
   std::optional<int> other;
   std::array<Expr, 3> other_point = {0, 0, 0};  // frame of the other body, m
+  Ground ground;                                // that a foot stands on; says what is normal
 };
 
 /// Turns that an attachment leaves free.
@@ -66,7 +72,9 @@ class ContactGeometry {
 
   /// Three rows: the material velocity at the point of contact, in axes of the frame that carries the axle
   /// (of the wheel itself where it is the reference body), so that a kernel basis is regular at every heading
-  /// and lean. The condition of touching goes with it: the point of contact lies in the plane.
+  /// and lean. The condition of touching goes with it: the point of contact lies in the plane. Of an upright
+  /// wheel the rows do not depend on the pose: a car on four wheels then has, wherever it is evaluated, the
+  /// ranks that it has on the ground.
   [[nodiscard]] Contact rolling(const Wheel& wheel) const;
   /// Likewise for an ellipsoid, in axes of its body.
   [[nodiscard]] Contact rolling(const Ellipsoid& ellipsoid) const;

@@ -119,6 +119,22 @@ struct PositionDescription {
   bool from_start = false;  // keeps the value that it has where the contact begins; else zero
 };
 
+/// What a contact with the ground carries, in physical terms.
+struct ContactForceDescription {
+  /// Of the multiplier of one row in the force.
+  struct Share {
+    std::string row;
+    Expr normal = 0;  // away from the ground
+    Expr longitudinal = 0, lateral = 0;
+  };
+  std::string contact;
+  std::vector<Share> shares;     // of the rows that are forces, not moments
+  bool has_normal = true;        // a plane model has none
+  bool has_directions = true;    // longitudinal and lateral; else the rows are orthonormal components
+  std::optional<Expr> friction;  // coefficient, 1
+  bool unilateral = true;        // the ground only pushes
+};
+
 /// External wrench on a body: expressions of state, parameters and time.
 struct WrenchDescription {
   int body = 0;
@@ -165,6 +181,8 @@ struct Model {
   std::vector<std::string> free_velocities;  // user's choice of kernel coordinates; may be empty
   std::vector<std::string> notes;            // what reading assumed, for `check`
   std::vector<Count> counts;                 // how often parts of the description come
+  std::vector<ContactForceDescription> contact_forces;
+  std::size_t deflections = 0;  // of elastic contacts: the last coordinates
 };
 
 }  // namespace anholon

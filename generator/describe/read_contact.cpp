@@ -55,6 +55,8 @@ std::optional<Wheel> read_wheel(TableReader& table, Reading& reading) {
   const Value* axle = table.optional("axle");
   if (axle != nullptr) wheel.axle = reading.direction(*axle, fmt::format("the axle of {}", table.what()));
   wheel.ground = read_ground(table, reading);
+  if (const Value* upright = table.optional("upright", Value::Kind::boolean))
+    wheel.upright = upright->text == "true";
   if (!body || radius == nullptr) return std::nullopt;
   const BodyDescription& described = reading.model.bodies[static_cast<std::size_t>(*body)];
   wheel.body = *body;
@@ -112,6 +114,8 @@ std::optional<Attachment> read_attachment(TableReader& table, bool loop, Reading
       return std::nullopt;
     }
     if (!a.other) return std::nullopt;
+  } else {
+    a.ground = read_ground(table, reading);
   }
   if (!body) return std::nullopt;
   a.body = *body;
@@ -206,16 +210,46 @@ MakeContact read_kind(TableReader& table, ContactKind kind, Reading& reading) {
 
 }  // namespace
 
+namespace {
+
+/// friction = 0.8
+std::optional<Expr> read_friction(TableReader& table, Reading& reading) {
+  const Value* value = table.optional("friction");
+  if (value == nullptr) return std::nullopt;
+  const std::string what = fmt::format("the friction of {}", table.what());
+  const Expr friction = reading.number(*value, what, units::one);
+  if (!(reading.at_defaults(friction, value->where, what) > Exact(0)))
+    reading.findings.error(value->where, fmt::format("{} is not positive", what),
+                           "write the coefficient, for instance 0.8");
+  return friction;
+}
+
+}  // namespace
+
 std::vector<RowDescription> read_contact(TableReader& table, ContactKind kind, const std::string& name,
                                          Reading& reading) {
   const MakeContact make = read_kind(table, kind, reading);
+  const std::optional<Expr> friction =
+      kind == ContactKind::loop ? std::nullopt : read_friction(table, reading);
   if (!make || reading.findings.size() > 0) return {};
   Contact contact = make(ContactGeometry(reading.model));
   std::vector<RowDescription> rows;
+  ContactForceDescription force;
+  force.contact = name;
+  force.has_directions = contact.has_directions;
+  force.friction = friction;
+  // Wheels and stones stand on the ground; a foot grips it unless it is said to rub.
+  force.unilateral = friction || kind == ContactKind::wheel || kind == ContactKind::ellipsoid ||
+                     kind == ContactKind::rollers;
   for (ContactRow& row : contact.rows) {
-    if (row.row.is_zero()) continue;  // holds by itself: a plane motion has no velocity across the plane
+    if (row.row.is_zero()) {  // holds by itself: a plane motion has no velocity across the plane
+      force.has_normal = force.has_normal && !row.is_force;
+      continue;
+    }
     rows.push_back({fmt::format("{}_{}", name, row.suffix), name, {}, row.row, {}});
+    if (row.is_force) force.shares.push_back({rows.back().name, row.share[0], row.share[1], row.share[2]});
   }
+  if (contact.has_normal) reading.model.contact_forces.push_back(std::move(force));
   for (PositionDescription& position : contact.positions) {
     const NodeId root = position.value.id(*reading.model.tape);
     const std::vector<NodeId> reached = reading.model.tape->reachable({root});

@@ -23,6 +23,13 @@ void read_torques(TableReader& root, Scene& scene, Reading& reading);
 /// initial = { pose, coordinates, velocities }.
 void read_initial_state(TableReader& root, Scene& scene, Reading& reading);
 
+/// drive = { steer = "motion", r1 = "torque", r2 = "passive" }: in place of the description's. To be read
+/// first of all, since it says what the other parts may name.
+void read_drive(TableReader& root, Scene& scene, Reading& reading);
+
+/// contact_sets, [[phase]], continuous, contact_elasticity and lambda_stat.
+void read_phases(TableReader& root, Scene& scene, Reading& reading);
+
 /// Index of an independent coordinate; other names are errors.
 std::optional<int> read_coordinate_name(const std::string& name, const Location& where, Reading& reading);
 

@@ -100,6 +100,11 @@ void read_modes(TableReader& root, Scene& scene, Findings& findings) {
 void read_torque_driven(TableReader& root, Scene& scene, Findings& findings) {
   const Value* value = root.optional("torque_driven");
   if (value == nullptr) return;
+  if (root.table().find("drive") != nullptr) {
+    findings.error(value->where, "the scene has 'drive' and 'torque_driven'",
+                   "say it in one place: drive = { r1 = \"torque\" }");
+    return;
+  }
   std::vector<std::string> known;
   for (const Coordinate& coordinate : scene.model.coordinates) {
     if (coordinate.drive == Drive::active) known.push_back(coordinate.name);
@@ -276,6 +281,7 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& path) 
   name_symbols(reading);
   name_coupled_coordinates(reading);
   read_header(root, scene, reading);
+  read_drive(root, scene, reading);
   read_frozen(root, scene, findings);
   read_locked(root, scene, reading);
   read_modes(root, scene, findings);
@@ -287,10 +293,28 @@ Scene read_scene_text(std::string_view text, const std::filesystem::path& path) 
   read_initial_state(root, scene, reading);
   read_integrator(root, scene, reading);
   read_times(root, scene, reading);
+  read_phases(root, scene, reading);
   root.report_unknown_keys();
   if (findings.empty()) check_drives(root, scene, findings);
   findings.throw_if_any();
   return scene;
+}
+
+std::string program_name(const Scene& scene) {
+  return scene.contact_set.empty() ? scene.name : scene.name + "_" + scene.contact_set;
+}
+
+std::vector<std::string> Scene::open_contacts() const {
+  const auto in_force = std::ranges::find(contact_sets, contact_set, &ContactSet::name);
+  std::vector<std::string> open;
+  for (const ContactSet& set : contact_sets) {
+    for (const std::string& contact : set.contacts) {
+      if (std::ranges::find(in_force->contacts, contact) == in_force->contacts.end() &&
+          std::ranges::find(open, contact) == open.end())
+        open.push_back(contact);
+    }
+  }
+  return open;
 }
 
 Scene read_scene(const std::filesystem::path& path) { return read_scene_text(read_bytes(path), path); }

@@ -52,6 +52,29 @@ struct InitialState {
   std::vector<std::pair<int, Exact>> velocities;   // 0..5: component of eta; 6 + i: rate of coordinate i
 };
 
+/// Contacts that hold together: of those that any set of the scene names, these and no others.
+struct ContactSet {
+  std::string name;
+  std::vector<std::string> contacts;
+};
+
+/// A set of contacts that holds from a time on.
+struct ContactPhase {
+  double start = 0;  // s
+  std::string set;
+  double gap = 1e-9;  // m that a contact which closes may be off the ground
+  Location where;
+};
+
+/// How a scene shares what redundant rows leave open: lambda_stat of eq. (26).
+enum class LoadSharing { least_norm, equal_friction_utilisation };
+
+/// Gives every constraint row a spring and a damper, so that no share of a load is left open (remark 7).
+struct ContactElasticity {
+  Exact stiffness = 0;  // N/m, of a row that turns N m/rad
+  Exact damping = 0;    // N s/m, N m s/rad
+};
+
 struct Integrator {
   enum class Method { dopri5, rkmk4 };
   Method method = Method::dopri5;
@@ -80,10 +103,22 @@ struct Scene {
   std::vector<ImposedTorque> torques;
   InitialState initial;
   Integrator integrator;
+  std::vector<ContactSet> contact_sets;
+  std::string contact_set;           // the one in force; empty where there are none
+  std::vector<ContactPhase> phases;  // in the order of time; empty: one set all along
+  std::optional<double> continuous;  // largest jump of the velocities at a switch that is allowed, relative
+  LoadSharing sharing = LoadSharing::least_norm;
+  std::optional<ContactElasticity> elasticity;
   double duration = 0;               // s; 0: the scene is not to be simulated
   std::vector<double> output_times;  // s, increasing, within [0, duration]; empty: the integrator's own steps
   Location where, initial_where;     // of the scene and of its initial state, for messages
+
+  /// Contacts that some set names and the one in force does not.
+  [[nodiscard]] std::vector<std::string> open_contacts() const;
 };
+
+/// Name of the functions that a scene generates: its own, and that of the contact set in force.
+std::string program_name(const Scene& scene);
 
 /// Reads a scene and its model. @throws ModelError with everything that is wrong with either
 Scene read_scene(const std::filesystem::path& path);

@@ -53,6 +53,11 @@ void for_each_expression(Model& model, const Visitor& visit) {
     if (row.expression) visit(*row.expression);
   }
   for (PositionDescription& position : model.positions) visit(position.value);
+  for (ContactForceDescription& contact : model.contact_forces) {
+    for (ContactForceDescription::Share& share : contact.shares)
+      visit(share.normal), visit(share.longitudinal), visit(share.lateral);
+    if (contact.friction) visit(*contact.friction);
+  }
   for (WrenchDescription& wrench : model.wrenches) {
     visit_all(wrench.point, visit);
     visit_all(wrench.force, visit);
@@ -143,6 +148,7 @@ std::vector<Expr> new_inputs(const Model& old, Model& model, const Scene& scene,
       symbols.parameters.push_back(copied(old.symbols.parameters[i]));
     }
   }
+  const auto rows_in_force = [&] { return scene.elasticity ? model.rows : std::vector<RowDescription>{}; };
   symbols.t = copied(old.symbols.t);
   for (std::size_t i = 0; i < 9; ++i) symbols.R[i] = copied(old.symbols.R[i]);
   for (std::size_t i = 0; i < 3; ++i) symbols.p[i] = copied(old.symbols.p[i]);
@@ -152,10 +158,19 @@ std::vector<Expr> new_inputs(const Model& old, Model& model, const Scene& scene,
     model.coordinates.push_back(old.coordinates[i]);
     symbols.r.push_back(copied(old.symbols.r[i]));
   }
+  for (const RowDescription& row : rows_in_force()) {
+    Coordinate deflection;
+    deflection.name = "deflection_" + row.name;
+    deflection.lower = Exact::from_decimal("-1e-3"), deflection.upper = Exact::from_decimal("1e-3");
+    model.coordinates.push_back(deflection);
+    symbols.r.push_back(tape.input(deflection.name));
+  }
   for (std::size_t i = 0; i < 6; ++i) symbols.eta[i] = copied(old.symbols.eta[i]);
   for (std::size_t i = 0; i < old.coordinates.size(); ++i) {
     if (new_index[i] >= 0) symbols.r_dot.push_back(copied(old.symbols.r_dot[i]));
   }
+  for (const RowDescription& row : rows_in_force())
+    symbols.r_dot.push_back(tape.input("deflection_" + row.name + "_dot"));
   for (const LockedCoordinate& locked : scene.locked) {  // their places depend on parameters alone
     const NodeId root = locked.value.id(*scene.model.tape);
     const Expr place = interpret<Expr>(*scene.model.tape, {root}, image, FromExact<Expr>{&tape}).front();
@@ -177,6 +192,22 @@ bool has_velocity(const Model& model, const RowDescription& row) {
       return true;
   }
   return false;
+}
+
+/// Rows give way by a deflection each, which a spring and a damper hold: eq. (26) then has one solution.
+void make_elastic(Model& model, const ContactElasticity& elasticity) {
+  Tape& tape = *model.tape;
+  const Expr k(tape, tape.constant(elasticity.stiffness)), c(tape, tape.constant(elasticity.damping));
+  model.deflections = model.rows.size();
+  const std::size_t first = model.coordinates.size() - model.deflections;
+  for (std::size_t i = 0; i < model.rows.size(); ++i) {
+    const Expr e(tape, model.symbols.r[first + i]), rate(tape, model.symbols.r_dot[first + i]);
+    std::optional<Expr>& row = model.rows[i].expression;
+    row = row ? *row + rate : rate;
+    model.potential += k / Expr(2) * e * e;
+    model.dissipation += c / Expr(2) * rate * rate;
+  }
+  model.positions.clear();  // springs hold what they held
 }
 
 }  // namespace
@@ -202,6 +233,13 @@ Model specialise(const Model& old, const Scene& scene) {
   const std::vector<int> new_index = kept_coordinates(old, scene);
   Model model = old;
   model.tape = std::make_shared<Tape>();
+  const std::vector<std::string> open = scene.open_contacts();
+  const auto is_open = [&](const auto& part) {
+    return std::find(open.begin(), open.end(), part.contact) != open.end();
+  };
+  std::erase_if(model.rows, is_open);
+  std::erase_if(model.positions, is_open);
+  std::erase_if(model.contact_forces, is_open);
   drop_modes(model, scene, new_index);
   for (BodyDescription& body : model.bodies) body.deformation = scene.deformation.value_or(body.deformation);
   if (!scene.gravity) model.gravity = {0, 0, 0};
@@ -223,6 +261,7 @@ Model specialise(const Model& old, const Scene& scene) {
     const std::vector<Expr> copies =
         interpret<Expr>(*old.tape, roots, image, FromExact<Expr>{model.tape.get()});
     for (std::size_t i = 0; i < copies.size(); ++i) *expressions[i] = copies[i];
+    if (scene.elasticity) make_elastic(model, *scene.elasticity);
   } catch (const std::domain_error& error) {
     throw ModelError({scene.file, 0, 0},
                      fmt::format("frozen and locked values leave the model undefined: {}", error.what()),

@@ -281,12 +281,25 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
     return least;
   };
 
-  std::vector<std::vector<int>> free_sets;
-  if (static_cast<int>(preferred_free.size()) == k && k > 0) {
-    free_sets = {preferred_free};
-  } else if (A_1_.rows() == 0) {
+  // What the description names, and beside it what the elimination of the others leaves.
+  const auto as_asked_for = [&]() -> std::vector<std::vector<int>> {
+    const int asked = static_cast<int>(preferred_free.size());
+    if (asked == 0 || asked > k) return {};
+    if (asked == k) return {preferred_free};
+    const std::vector<int> others = complement(preferred_free, passive);
+    const bool others_can_hold_the_pivots = std::ranges::any_of(A, [&](const Eigen::MatrixXd& a) {
+      Eigen::MatrixXd p(a.rows(), std::ssize(others));
+      for (Eigen::Index j = 0; j < p.cols(); ++j) p.col(j) = a.col(others[static_cast<std::size_t>(j)]);
+      return p.allFinite() && smallest(p) > 1e-9;
+    });
+    if (!others_can_hold_the_pivots) return {};
+    return {complement(Elimination(tape_, A_1_, others, sampler_).pivot_columns(), passive)};
+  };
+
+  std::vector<std::vector<int>> free_sets = as_asked_for();
+  if (free_sets.empty() && A_1_.rows() == 0) {
     free_sets = {range(passive)};
-  } else {
+  } else if (free_sets.empty()) {
     std::vector<std::pair<double, std::vector<int>>> ranked;
     for (auto& set : combinations(passive, k)) {
       const double w = worth(set);
@@ -337,6 +350,10 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
         "no kernel basis is regular anywhere: the constraints tie the free velocities together");
   if (!kernel_.content_divided && A_1_.rows() > 0)
     kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
+  // Multipliers by the pivots of the basis, which is regular where it is of use, where their own vanish
+  // somewhere.
+  if (kernel_elimination_ && elimination_->smallest_pivot() < dependable_pivot)
+    elimination_ = kernel_elimination_;
 }
 
 void KinematicReduction::describe_kernel(const std::vector<std::string>& names) {

@@ -46,6 +46,11 @@ void initial_velocities(const Scene& scene, const SceneProgram& program, Runner<
     given(at - p.passive.begin()) = value.to_double();
     named[static_cast<std::size_t>(at - p.passive.begin())] = 1;
   }
+  // Contacts that give way rest at the start; else they would take what the named velocities leave open.
+  const std::size_t stiff = program.model.coordinates.size() - program.model.deflections;
+  for (std::size_t i = 0; i < p.passive.size(); ++i) {
+    if (p.passive[i] - p.n >= static_cast<int>(stiff)) named[i] = 1;
+  }
   const auto rows = static_cast<Eigen::Index>(program.model.rows.size());
   if (rows > 0) {
     run.constraints();

@@ -62,7 +62,7 @@ bool overestimated(const MotionSizes& used, const MotionSizes& seen);
 /// runner is left in the chart of `initial`.
 template <class G>
 MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const integrate::State<G>& initial,
-                         double duration) {
+                         double t_end) {
   constexpr double tolerance = 1e-3;
   constexpr int most_passes = 6;  // each may find the motion smaller than the tolerance of the one before
   MotionSizes sizes(program, run);
@@ -84,10 +84,10 @@ MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const
     observe(0.0, state.g, state.y);
     const std::vector<double> y_sizes = sizes.of_state();
     auto options = relative_tolerance(tolerance, sizes, y_sizes);
-    options.max_step = duration / 20;  // so that the run sees the motion
+    options.max_step = (t_end - initial.t) / 20;  // so that the run sees the motion
     options.max_steps = 100'000;
     const auto outcome = integrate_adaptive<G>(
-        field_with_corrections<G>(run.template charted_field<G>()), state, duration, options,
+        field_with_corrections<G>(run.template charted_field<G>()), state, t_end, options,
         [&](const auto& step) { observe(step.t_end(), step.g_end(), step.y_end()); });
     run.use_chart(chart);
     if (!outcome) return {program, run};

@@ -63,6 +63,7 @@ class Runner : public ChartCalls {
                          bound(code, chart + "projected_accelerations", b)});
     }
     use_chart(0);
+    contact_shares = bound(code, "contact_shares", b);
     if (scene.motion_table) table_.emplace(scene, program);
   }
 
@@ -233,7 +234,7 @@ class Runner : public ChartCalls {
   }
 
   Buffers<S> b;
-  Call imposed, constraints, energies, position_conditions, chart_quality, projected_rates;
+  Call imposed, constraints, energies, position_conditions, chart_quality, projected_rates, contact_shares;
   long evaluations = 0;
   double chart_number = 1;  // of the chart in use, for reports
 

@@ -79,12 +79,34 @@ void add_rates(SceneProgram& p, std::size_t chart) {
   if (!rates.outputs.empty()) program.functions.push_back(std::move(rates));
 }
 
+/// How the multipliers make up the force of each contact: by contact, by row, (normal, longitudinal,
+/// lateral).
+void add_contact_shares(const Scene& scene, SceneProgram& p) {
+  std::vector<Expr> shares, friction;
+  for (const ContactForceDescription& contact : scene.model.contact_forces) {
+    const auto is_it = [&](const auto& other) { return other.contact == contact.contact; };
+    if (std::ranges::none_of(p.model.contact_forces, is_it)) continue;
+    for (const ContactForceDescription::Share& share : contact.shares)
+      shares.insert(shares.end(), {share.normal, share.longitudinal, share.lateral});
+    friction.push_back(contact.friction.value_or(Expr(0)));
+  }
+  if (shares.empty()) return;
+  const int rows = static_cast<int>(shares.size()) / 3, contacts = static_cast<int>(friction.size());
+  p.derivation->program.functions.push_back(
+      {"contact_shares",
+       "Shares of the multipliers in the contact forces.",
+       {{"shares", "1", "rows of contacts x 3", rows, 3, scene_expressions(scene, p, shares)},
+        {"friction", "1", "coefficients, 0 where none is given", contacts, 1,
+         scene_expressions(scene, p, friction)}},
+       ""});
+}
+
 }  // namespace
 
 SceneProgram make_program(const Scene& scene) {
   SceneProgram p{specialise(scene.model, scene), nullptr, {}, {}, {}};
   DeriveRequest request;
-  request.scene = scene.name;
+  request.scene = program_name(scene);
   request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
   request.functions = {"kinematics",       "reduced_velocities", "constraints",
                        "forward_dynamics", "inverse_torques",    "multipliers",
@@ -100,6 +122,7 @@ SceneProgram make_program(const Scene& scene) {
   add_imposed_motion(scene, p);
   if (scene.project_motion) add_projection(p);
   for (std::size_t c = 0; c < p.derivation->reduction.charts.size(); ++c) add_rates(p, c);
+  add_contact_shares(scene, p);
   return p;
 }
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// The program of a scene: its wanted functions, and three more of its own: `imposed(t)` and `imposed_torque`,
-// the motions and torques that the scene gives, and `rates`, all that one evaluation of the field needs.
+// The program of a scene: its wanted functions, and some more of its own: `imposed(t)` and
+// `imposed_torque`, the motions and torques that the scene gives, `rates`, all that one evaluation of the
+// field needs, and `contact_shares`, of the multipliers in the contact forces.
 
 #include <memory>
 #include <vector>

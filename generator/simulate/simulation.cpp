@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
 
 #include "check/compile_cache.hpp"
+#include "simulate/contact_forces.hpp"
+#include "simulate/contact_switch.hpp"
 #include "simulate/cpu_time.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/initial_state.hpp"
@@ -38,46 +42,46 @@ std::optional<std::string> obstacle_ahead(const SceneProgram& program, Runner<do
   return monitor.passed(state.t + step, state.g, state.y);
 }
 
-/// Dormand-Prince over the whole duration: dense output at the wanted times, or rows at its own steps.
+/// Dormand-Prince to t_end: dense output at the wanted times, or rows at its own steps.
 template <class G>
-integrate::Result<double> integrate_with_step_control(const Scene& scene, const Field<G>& field,
+integrate::Result<double> integrate_with_step_control(const Scene& scene, double t_end, const Field<G>& field,
                                                       const MotionSizes& sizes, integrate::State<G>& state,
                                                       PositionKeeper<G>& keeper, Recorder& recorder,
                                                       const Progress& progress) {
   const std::vector<double> y_sizes = sizes.of_state();
   const auto options = relative_tolerance(scene.integrator.tolerance, sizes, y_sizes);
   const std::vector<double>& times = scene.output_times;
-  auto next = std::ranges::upper_bound(times, 0.0);
+  auto next = std::ranges::upper_bound(times, state.t);
   Eigen::VectorXd y(state.y.size());
   G g;
-  return integrate_adaptive<G>(field, state, scene.duration, options,
-                               [&](const integrate::DenseStep<G>& step) {
-                                 for (; next != times.end() && *next <= step.t_end(); ++next) {
-                                   step.evaluate(*next, g, y);
-                                   keeper(*next, g, y);
-                                   recorder.record(*next, g, y, keeper.residual(*next, g, y));
-                                 }
-                                 const double t = step.t_end();
-                                 g = step.g_end(), y = step.y_end();
-                                 keeper(t, g, y);
-                                 if (times.empty()) {
-                                   recorder.record(t, g, y, keeper.residual(t, g, y));
-                                 } else {
-                                   recorder.watch(t, g, y, keeper.residual(t, g, y));
-                                 }
-                                 progress("integrating", step.t_end());
-                               });
+  return integrate_adaptive<G>(field, state, t_end, options, [&](const integrate::DenseStep<G>& step) {
+    for (; next != times.end() && *next <= step.t_end(); ++next) {
+      step.evaluate(*next, g, y);
+      keeper(*next, g, y);
+      recorder.record(*next, g, y, keeper.residual(*next, g, y));
+    }
+    const double t = step.t_end();
+    g = step.g_end(), y = step.y_end();
+    keeper(t, g, y);
+    if (times.empty()) {
+      recorder.record(t, g, y, keeper.residual(t, g, y));
+    } else {
+      recorder.watch(t, g, y, keeper.residual(t, g, y));
+    }
+    progress("integrating", step.t_end());
+  });
 }
 
 /// The classical method from each output time to the next, with equal steps no longer than the scene's.
 template <class G>
-integrate::Result<double> integrate_with_fixed_step(const Scene& scene, const Field<G>& field,
+integrate::Result<double> integrate_with_fixed_step(const Scene& scene, double t_end, const Field<G>& field,
                                                     integrate::State<G>& state, PositionKeeper<G>& keeper,
                                                     Recorder& recorder, const Progress& progress) {
   integrate::Result<double> total;
   std::vector<double> times = scene.output_times;
-  if (times.empty() || times.back() < scene.duration) times.push_back(scene.duration);
-  for (auto t = std::ranges::upper_bound(times, 0.0); t != times.end(); ++t) {
+  std::erase_if(times, [t_end](double t) { return t > t_end; });
+  if (times.empty() || times.back() < t_end) times.push_back(t_end);
+  for (auto t = std::ranges::upper_bound(times, state.t); t != times.end(); ++t) {
     const long steps = std::max(1L, std::lround(std::ceil((*t - state.t) / scene.integrator.step - 1e-9)));
     const auto part =
         integrate_fixed<G>(field, state, *t, steps, [&](double now, const G& end, const auto& y_end) {
@@ -105,6 +109,184 @@ double nanoseconds_per_call(const Call& call) {
   return (cpu_now() - start) / static_cast<double>(repeats) * 1e9;
 }
 
+/// The functions of one set of contacts.
+struct SetOfContacts {
+  Scene scene;  // with this set in force
+  std::unique_ptr<SceneProgram> program;
+  std::shared_ptr<CompiledProgram> code;
+};
+
+std::map<std::string, SetOfContacts> sets_of_contacts(const Scene& scene,
+                                                      const std::vector<ContactPhase>& phases,
+                                                      const Progress& progress) {
+  std::map<std::string, SetOfContacts> sets;
+  for (const ContactPhase& phase : phases) {
+    if (sets.contains(phase.set)) continue;
+    SetOfContacts& set = sets[phase.set];
+    set.scene = scene;
+    set.scene.contact_set = phase.set;
+    progress("deriving", 0);
+    set.program = std::make_unique<SceneProgram>(make_program(set.scene));
+    progress("compiling", 0);
+    set.code = std::make_shared<CompiledProgram>(set.program->derivation->program);
+  }
+  return sets;
+}
+
+/// Adds what was seen of a phase: columns by name, rows, extremes.
+void add_phase(SimulationResult& whole, const SimulationResult& phase) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  std::vector<std::size_t> place;
+  for (const std::string& name : phase.columns) {
+    const auto at = std::ranges::find(whole.columns, name);
+    place.push_back(static_cast<std::size_t>(at - whole.columns.begin()));
+    if (at != whole.columns.end()) continue;
+    whole.columns.push_back(name);
+    for (auto& row : whole.rows) row.push_back(none);
+  }
+  for (const auto& row : phase.rows) {
+    whole.rows.emplace_back(whole.columns.size(), none);
+    for (std::size_t i = 0; i < row.size(); ++i) whole.rows.back()[place[i]] = row[i];
+  }
+  const auto raise = [](double& to, double by) { to = std::max(to, by); };
+  raise(whole.energy_balance, phase.energy_balance), raise(whole.largest_energy, phase.largest_energy);
+  raise(whole.constraint_residual, phase.constraint_residual);
+  raise(whole.position_residual, phase.position_residual), raise(whole.orthonormality, phase.orthonormality);
+  raise(whole.departure, phase.departure);
+  if (whole.violation.empty()) whole.violation = phase.violation;
+  for (const ContactHistory& seen : phase.contacts) {
+    const auto known = std::ranges::find(whole.contacts, seen.contact, &ContactHistory::contact);
+    if (known == whole.contacts.end()) {
+      whole.contacts.push_back(seen);
+      continue;
+    }
+    if (seen.least_normal < known->least_normal)
+      known->least_normal = seen.least_normal, known->least_normal_at = seen.least_normal_at;
+    if (seen.largest_utilisation > known->largest_utilisation)
+      known->largest_utilisation = seen.largest_utilisation, known->utilisation_at = seen.utilisation_at;
+    if (!known->lifts_at) known->lifts_at = seen.lifts_at;
+    if (!known->slips_at) known->slips_at = seen.slips_at;
+  }
+}
+
+/// Integrates one phase after the other; at a switch of contacts the velocities jump to admissible ones.
+template <class G>
+class PhaseRunner {
+ public:
+  PhaseRunner(SimulationResult& result, const Progress& progress, const RowObserver& observer)
+      : result_(result), progress_(progress), observer_(observer) {}
+
+  [[nodiscard]] bool goes_on() const { return last_ == nullptr || result_.finished; }
+
+  void run(const SetOfContacts& set, const ContactPhase& phase, double t_end) {
+    const Scene& scene = set.scene;
+    const SceneProgram& program = *set.program;
+    Runner<double> run(scene, program, set.code);
+    PositionKeeper<G> keeper(program, run);
+    if (last_ == nullptr) {
+      state_ = initial_state<G>(scene, program, run, 2);
+      keeper.start(0.0, state_.g, state_.y);
+    } else {
+      switch_contacts(set, phase, run, keeper);
+    }
+    last_ = &set;
+    Field<G> field{run.template field_of<G>(), {}};
+    result_.charts = std::max(result_.charts, run.charts());
+    result_.projected = program.projects_motion;
+    if (!keeper.empty() || run.charts() > 1) {
+      field.correction = [this, &keeper, charted = run.template charted_field<G>()](double t, G& g,
+                                                                                    Eigen::VectorXd& y) {
+        const bool moved = keeper(t, g, y);
+        const bool changed = charted.correct(t, g, y);
+        if (changed) result_.chart_changes.push_back(t);
+        return moved || changed;
+      };
+    }
+    SimulationResult seen;
+    const SharingRule sharing = sharing_rule(scene.sharing);
+    Recorder recorder(program, run, energy_, sharing, seen, observer_);
+    recorder.record(state_.t, state_.g, state_.y, keeper.residual(state_.t, state_.g, state_.y));
+    if (!seen.violation.empty()) {
+      seen.rows.clear();
+      add_phase(result_, seen);
+      result_.status = result_.violation, result_.finished = false;
+      return;
+    }
+    const double start = cpu_now();
+    integrate::Result<double> outcome;
+    if (scene.integrator.method == Integrator::Method::dopri5) {
+      const MotionSizes sizes = motion_sizes<G>(program, run, state_, t_end);
+      outcome = integrate_with_step_control(scene, t_end, field, sizes, state_, keeper, recorder, progress_);
+    } else {
+      outcome = integrate_with_fixed_step(scene, t_end, field, state_, keeper, recorder, progress_);
+    }
+    result_.cpu_seconds += cpu_now() - start;
+    add_phase(result_, seen);
+    result_.steps += outcome.accepted_steps, result_.rejected += outcome.rejected_steps,
+        result_.evaluations += outcome.evaluations;
+    result_.status = integrate::name(outcome.status);
+    if (!outcome) {
+      const auto obstacle = obstacle_ahead(program, run, state_, outcome.next_step);
+      result_.status = obstacle.value_or(fmt::format("{} at t = {:.6g} s", result_.status, state_.t));
+    }
+    if (!result_.violation.empty()) result_.status = result_.violation;
+    result_.finished = outcome && result_.violation.empty();
+    run.impose(state_.t), run.set(state_.g, state_.y);
+    result_.nanoseconds_per_evaluation = nanoseconds_per_call(run.rates);
+    if (run.kinematics) run.kinematics();
+    before_ = state_of(program, run);
+  }
+
+ private:
+  /// The state at which a phase ends becomes the one at which the next begins.
+  void switch_contacts(const SetOfContacts& set, const ContactPhase& phase, Runner<double>& run,
+                       PositionKeeper<G>& keeper) {
+    const SceneProgram& program = *set.program;
+    const Eigen::VectorXd y = state_.y;
+    const Eigen::Index shape = run.size() - static_cast<Eigen::Index>(run.b.nu.size());
+    state_.y.setZero(run.size() + 2);
+    state_.y.head(shape) = y.head(shape);
+    state_.y.tail(2) = y.tail(2);
+    keeper.start(state_.t, state_.g, state_.y);
+    const double gap = keeper.residual(state_.t, state_.g, state_.y);
+    if (gap > phase.gap)
+      throw ModelError(phase.where,
+                       fmt::format("at t = {:.6g} s a contact of '{}' closes {:.2g} m from where it holds",
+                                   state_.t, phase.set, gap),
+                       "choose the time at which it touches, or allow more: gap = 1e-6");
+    keeper(state_.t, state_.g, state_.y);
+    run.impose(state_.t);
+    run.set(state_.g, state_.y);
+    run.use_chart(run.best_chart_here());
+    const VelocityJump jump = velocity_jump(program.model, program.reduced, before_);
+    ContactSwitch seen{state_.t, last_->scene.contact_set, phase.set, jump.lost, jump.work, jump.relative,
+                       {}};
+    for (std::size_t i = 0; i < program.model.rows.size(); ++i)
+      seen.impulses.emplace_back(program.model.rows[i].name, jump.impulses(static_cast<Eigen::Index>(i)));
+    result_.switches.push_back(seen);
+    if (set.scene.continuous && jump.relative > *set.scene.continuous)
+      throw ModelError(
+          phase.where,
+          fmt::format("at t = {:.6g} s the velocities jump by {:.2g} of their size, in the kinetic "
+                      "metric; the scene allows {:.2g}",
+                      state_.t, jump.relative, *set.scene.continuous),
+          "make the motion arrive at rest in the new contacts, or remove 'continuous'");
+    take_velocities(program, run, jump.velocities);
+    for (std::size_t i = 0; i < run.b.nu.size(); ++i)
+      state_.y(shape + static_cast<Eigen::Index>(i)) = run.b.nu[i];
+    state_.y(state_.y.size() - 2) += jump.work;
+    state_.y(state_.y.size() - 1) += jump.lost;
+  }
+
+  SimulationResult& result_;
+  const Progress& progress_;
+  const RowObserver& observer_;
+  EnergyMonitor energy_;
+  integrate::State<G> state_;
+  State<double> before_;  // all velocities at the end of the last phase
+  const SetOfContacts* last_ = nullptr;
+};
+
 }  // namespace
 
 void require_duration(const Scene& scene) {
@@ -116,58 +298,21 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progr
                                 const RowObserver& observer) {
   require_duration(scene);
   const Progress progress = wanted_progress ? wanted_progress : [](const char*, double) {};
-  progress("deriving", 0);
-  const SceneProgram program = make_program(scene);
-  progress("compiling", 0);
-  const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
+  const std::vector<ContactPhase> phases =
+      scene.phases.empty() ? std::vector<ContactPhase>{{0, scene.contact_set, 0, {}}} : scene.phases;
+  const std::map<std::string, SetOfContacts> sets = sets_of_contacts(scene, phases, progress);
   SimulationResult result;
-  result.was_cached = code->was_cached();
-  result.operations = program.operations;
-  result.class_of_table_I = program.derivation->reduction.ranks.table_I_class(program.reduced);
-  with_group<double>(program.model.group, [&]<class G>(std::type_identity<G>) {
-    Runner<double> run(scene, program, code);
-    integrate::State<G> state = initial_state<G>(scene, program, run, 2);
-    PositionKeeper<G> keeper(program, run);
-    keeper.start(0.0, state.g, state.y);
-    Field<G> field{run.template field_of<G>(), {}};
-    result.charts = run.charts();
-    result.projected = program.projects_motion;
-    if (!keeper.empty() || run.charts() > 1) {
-      field.correction = [&keeper, &result, charted = run.template charted_field<G>()](double t, G& g,
-                                                                                       Eigen::VectorXd& y) {
-        const bool moved = keeper(t, g, y);
-        const bool changed = charted.correct(t, g, y);
-        if (changed) result.chart_changes.push_back(t);
-        return moved || changed;
-      };
+  result.was_cached =
+      std::ranges::all_of(sets, [](const auto& set) { return set.second.code->was_cached(); });
+  const SceneProgram& first = *sets.at(phases.front().set).program;
+  result.operations = first.operations;
+  result.class_of_table_I = first.derivation->reduction.ranks.table_I_class(first.reduced);
+  with_group<double>(first.model.group, [&]<class G>(std::type_identity<G>) {
+    PhaseRunner<G> runner(result, progress, observer);
+    for (std::size_t i = 0; i < phases.size() && runner.goes_on(); ++i) {
+      const double end = i + 1 < phases.size() ? phases[i + 1].start : scene.duration;
+      runner.run(sets.at(phases[i].set), phases[i], end);
     }
-    Recorder recorder(program, run, result, observer);
-    recorder.record(0.0, state.g, state.y, keeper.residual(0.0, state.g, state.y));
-    if (!result.violation.empty()) {
-      result.status = result.violation;
-      result.rows.clear();
-      return;
-    }
-    const double start = cpu_now();
-    integrate::Result<double> outcome;
-    if (scene.integrator.method == Integrator::Method::dopri5) {
-      const MotionSizes sizes = motion_sizes<G>(program, run, state, scene.duration);
-      outcome = integrate_with_step_control(scene, field, sizes, state, keeper, recorder, progress);
-    } else {
-      outcome = integrate_with_fixed_step(scene, field, state, keeper, recorder, progress);
-    }
-    result.cpu_seconds = cpu_now() - start;
-    result.steps = outcome.accepted_steps, result.rejected = outcome.rejected_steps,
-    result.evaluations = outcome.evaluations;
-    result.status = integrate::name(outcome.status);
-    if (!outcome) {
-      const auto obstacle = obstacle_ahead(program, run, state, outcome.next_step);
-      result.status = obstacle.value_or(fmt::format("{} at t = {:.6g} s", result.status, state.t));
-    }
-    if (!result.violation.empty()) result.status = result.violation;
-    result.finished = outcome && result.violation.empty();
-    run.impose(state.t), run.set(state.g, state.y);
-    result.nanoseconds_per_evaluation = nanoseconds_per_call(run.rates);
   });
   return result;
 }

@@ -4,12 +4,32 @@
 // A scene, generated, compiled and integrated: trajectory, torques, constraint forces, energies.
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "describe/scene.hpp"
 
 namespace anholon {
+
+/// A change of contacts on the way, and what it did.
+struct ContactSwitch {
+  double t = 0;
+  std::string from, to;       // contact sets
+  double lost = 0, work = 0;  // J: by the impact; by the motors' impulses
+  double relative = 0;        // jump of the velocities in the kinetic metric, 0 to 1
+  std::vector<std::pair<std::string, double>> impulses;  // by row, N s or N m s
+};
+
+/// What one contact with the ground carried.
+struct ContactHistory {
+  std::string contact;
+  bool has_normal = false, has_friction = false;
+  double least_normal = 0, least_normal_at = 0;        // N, s
+  double largest_utilisation = 0, utilisation_at = 0;  // |tangential|/(mu normal), s
+  std::optional<double> lifts_at, slips_at;            // first time that the ground would pull; give way
+};
 
 /// A trajectory and what was seen on the way.
 struct SimulationResult {
@@ -32,6 +52,8 @@ struct SimulationResult {
   bool projected = false;             // the imposed motion, to a compatible one
   double departure = 0;               // largest distance of r_a from what the scene wants [rad or m]
   std::vector<double> chart_changes;  // times at which the motion went on in another chart [s]
+  std::vector<ContactSwitch> switches;
+  std::vector<ContactHistory> contacts;
   std::string violation;  // the first compatibility condition that the imposed motion violates, and when
 };
 
@@ -51,7 +73,8 @@ SimulationResult simulate_scene(const Scene& scene, const Progress& progress = {
 /// @throws ModelError where the scene has no duration
 void require_duration(const Scene& scene);
 
-/// The trajectory as comma-separated values, one line of names with units first.
+/// The trajectory as comma-separated values, one line of names with units first; empty where a phase has no
+/// such quantity.
 std::string trajectory_csv(const SimulationResult& result);
 
 }  // namespace anholon

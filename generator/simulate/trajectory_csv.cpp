@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "simulate/simulation.hpp"
 
 namespace anholon {
@@ -10,7 +12,8 @@ std::string trajectory_csv(const SimulationResult& result) {
   for (const std::string& c : result.columns) text += (text.empty() ? "" : ",") + c;
   text += "\n";
   for (const auto& row : result.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) text += fmt::format("{}{}", i == 0 ? "" : ",", row[i]);
+    for (std::size_t i = 0; i < row.size(); ++i)
+      text += (i == 0 ? "" : ",") + (std::isnan(row[i]) ? "" : fmt::format("{}", row[i]));
     text += "\n";
   }
   return text;

@@ -64,15 +64,26 @@ std::vector<std::string> model_names() {
   return names;
 }
 
+/// Functions that a large model ships; of the others, all.
+std::vector<std::string> shipped_functions(const std::string& name) {
+  if (name == "humanoid") return {"inverse_dynamics", "gravity_forces"};
+  if (name == "quadruped_stance")
+    return {"torque_driven_kinematics", "torque_driven_velocities", "torque_driven_dynamics"};
+  return {};
+}
+
 /// What `generate` writes of a model, as scripts/regenerate calls it.
 std::string generated_text(const std::string& name) {
   const fs::path urdf = root / "models" / name / (name + ".urdf");
-  if (!fs::exists(urdf))
-    return emit_header(derive(read_model(root / "models" / name / (name + ".toml")))->program);
+  if (!fs::exists(urdf)) {
+    DeriveRequest request;
+    request.functions = shipped_functions(name);
+    return emit_header(derive(read_model(root / "models" / name / (name + ".toml")), request)->program);
+  }
   RobotOptions options;
   options.floating = name != "arm7";
   TreeRequest request;
-  if (name == "humanoid") request.functions = {"inverse_dynamics", "gravity_forces"};
+  request.functions = shipped_functions(name);
   return emit_header(derive_tree(read_robot(urdf, options), request)->program);
 }
 

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
 // Shipped models against equations of motion that do not come from the reduction: the momentum equation of a
-// nonholonomic system, the pole of an inverted pendulum.
+// nonholonomic system, the pole of an inverted pendulum, Newton's law for a whole car.
 #include <gtest/gtest.h>
 
+#include "contact/newtons_law.hpp"
 #include "contact/program_values.hpp"
+#include "describe/mechanise.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon::test {
@@ -75,6 +77,47 @@ TEST(RollerRacer, ObeysTheNonholonomicMomentumEquation) {
     const Exact left = (p(h) - p(-h)) / (h + h), right = pairing(racer.momentum(xi, s, rate), sum);
     EXPECT_LT(abs(left - right).to_double(), 1e-30);  // differences with h = 1e-20 leave h^2
     EXPECT_GT(abs(left).to_double(), 1e-3);
+  }
+}
+
+// Contact forces at any share of the load: their sum is the rate of momentum less the weight.
+TEST(AckermannCar, ContactForcesObeyNewtonsLawForTheWholeCar) {
+  const WorkingDigits digits(60);
+  const ProgramValues car("ackermann_car", {}, {"kinematics", "forward_dynamics", "multipliers"});
+  const Model& model = car.model();
+  std::vector<Exact> parameters;
+  for (const Parameter& p : model.parameters) parameters.push_back(p.value);
+  const Mechanism<Exact> mechanism = mechanise<Exact>(describe_mechanism(model), parameters);
+  SampleSource source(11);
+  for (int sample = 0; sample < 3; ++sample) {
+    const auto draw = [&] { return source.uniform(Exact(-1), Exact(1)); };
+    const Exact steer = draw() / Exact(2), rate = draw(), acceleration = draw();
+    Inputs in = {{"r_a", {steer}},
+                 {"r_a_dot", {rate}},
+                 {"r_a_ddot", {acceleration}},
+                 {"r_p", {draw(), draw(), draw(), draw()}},
+                 {"nu", {Exact(10) * draw()}}};
+    in["nu_dot"] = car("forward_dynamics", "nu_dot", in);
+    in["lambda_stat"] = {Exact(100) * draw(), Exact(100) * draw(), Exact(100) * draw()};
+    const Values eta = car("kinematics", "eta", in), spin = car("kinematics", "r_p_dot", in);
+    const Values eta_dot = car("forward_dynamics", "eta_dot", in),
+                 spin_dot = car("forward_dynamics", "r_p_ddot", in);
+    const Values lambda = car("multipliers", "lambda", in);
+    State<Exact> state;
+    state.R = Mat3<Exact>::identity();
+    for (int c = 0; c < 6; ++c) state.eta[c] = eta[static_cast<std::size_t>(c)];
+    state.r = {steer}, state.r_dot = {rate};
+    state.r.insert(state.r.end(), in["r_p"].begin(), in["r_p"].end());
+    state.r_dot.insert(state.r_dot.end(), spin.begin(), spin.end());
+    Values all = eta_dot;
+    all.push_back(acceleration);
+    all.insert(all.end(), spin_dot.begin(), spin_dot.end());
+    const Vec3<Exact> rest =
+        unbalanced_force(model, mechanism, state, all, lambda, [](const std::string& contact) {
+          return std::size_t(contact == "front_left" ? 2 : contact == "front_right" ? 3 : 0);
+        });
+    for (int i = 0; i < 3; ++i)  // of a weight of 12 kN
+      EXPECT_LT(abs(rest[i]).to_double(), 1e-12);
   }
 }
 

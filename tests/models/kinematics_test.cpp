@@ -52,6 +52,29 @@ TEST(MecanumBase, HasTheWheelSpeedsOfTheTextbook) {
   EXPECT_GT(abs(base("compatibility", "velocity_residual", skewed)[0]).to_double(), 1e-3);
 }
 
+TEST(AckermannCar, TurnsAboutTheCentreInWhichAllAxlesMeet) {
+  const WorkingDigits digits(60);
+  const ProgramValues car("ackermann_car", {}, {"kinematics"});
+  const ReductionReport& reduction = car.derivation().reduction;
+  EXPECT_EQ(reduction.ranks.rows, 12);
+  EXPECT_EQ(reduction.ranks.m, 9);
+  EXPECT_EQ(reduction.ranks.m_locked, 9);  // three loadings are left open: two axles, and one diagonal
+  const Exact L = number("2.6"), w = number("0.75"), R = number("0.3"), speed = number("8"), zero = 0;
+  for (const char* angle : {"0.4", "-0.55", "0.001"}) {
+    const Exact steer = number(angle);
+    const Exact radius = L * cos(steer) / sin(steer);  // from the centre to the middle of the rear axle
+    const Exact turn = speed / radius;
+    const Inputs in = {{"nu", {speed}}, {"r_a", {steer}}, {"r_p", Values(4, Exact(0))}};
+    expect_equal(car("kinematics", "eta", in), {speed, zero, zero, zero, zero, turn}, "twist");
+    const auto rate = [&](const Exact& x, const Exact& y) {  // speed of the wheel's centre over its radius
+      const Exact d = radius - y;
+      return sqrt(x * x + d * d) * abs(turn) / R;
+    };
+    expect_equal(car("kinematics", "r_p_dot", in), {rate(zero, w), rate(zero, -w), rate(L, w), rate(L, -w)},
+                 "spins");
+  }
+}
+
 // The ends of the cranks are known, the tip is where two circles meet.
 TEST(FiveBar, RodsFollowTheIntersectionOfTwoCircles) {
   const WorkingDigits digits(60);

@@ -100,6 +100,16 @@ TEST(FlexibleRobots, BalanceTheirEnergyToANinthDigit) {
   }
 }
 
+// Eight axles leave seven joints two freedoms; torques push them towards a wave.
+TEST(AcmSnake, BalancesItsEnergyWhileItsWheelsRoll) {
+  const Scene scene = scene_of("acm_snake/wave");
+  EXPECT_EQ(scene.model.rows.size(), 8U);
+  const SimulationResult result = simulate_scene(scene);
+  ASSERT_TRUE(result.finished) << result.status;
+  EXPECT_LT(result.energy_balance, 1e-8);  // of the tolerance 1e-9
+  EXPECT_LT(result.constraint_residual, 1e-13);
+}
+
 TEST(Tolerance, MeansTheSameForARobotAMillionTimesLighter) {
   const SimulationResult heavy = simulate_scene(with_masses_by(1)),
                          light = simulate_scene(with_masses_by(1e-6));

@@ -86,10 +86,8 @@ class FreeDynamics {
     bool declared = false;
     for (int i = 0; i < rows; ++i) {
       const ConstraintRow<S>& row = mechanism_.rows[static_cast<std::size_t>(i)];
-      if (!row.written) {
-        declared = true;
-        continue;
-      }
+      declared = declared || !row.terms.empty();
+      if (!row.written) continue;
       std::vector<S> values(7 + static_cast<std::size_t>(mechanism_.coordinates), S(0));
       row.written(state, values);
       const auto components = free_components(mechanism_.group);

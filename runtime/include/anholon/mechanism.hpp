@@ -94,7 +94,7 @@ struct RowTerm {
   Vec3<S> point, linear, angular;
 };
 
-/// One row of eq. (2): the sum of its terms, or coefficients that the user wrote.
+/// One row of eq. (2): the sum of its terms and of written coefficients.
 template <class S>
 struct ConstraintRow {
   std::string name;
