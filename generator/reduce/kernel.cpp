@@ -297,6 +297,7 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
   };
 
   std::vector<std::vector<int>> free_sets = as_asked_for();
+  const bool asked_for = !free_sets.empty();
   if (free_sets.empty() && A_1_.rows() == 0) {
     free_sets = {range(passive)};
   } else if (free_sets.empty()) {
@@ -350,9 +351,9 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
         "no kernel basis is regular anywhere: the constraints tie the free velocities together");
   if (!kernel_.content_divided && A_1_.rows() > 0)
     kernel_elimination_.emplace(tape_, A_1_, complement(kernel_.free, passive), sampler_);
-  // Multipliers by the pivots of the basis, which is regular where it is of use, where their own vanish
-  // somewhere.
-  if (kernel_elimination_ && elimination_->smallest_pivot() < dependable_pivot)
+  // Multipliers by the pivots of the basis, which is regular where it is of use, if the description wants it
+  // or their own vanish somewhere.
+  if (kernel_elimination_ && (asked_for || elimination_->smallest_pivot() < dependable_pivot))
     elimination_ = kernel_elimination_;
 }
 
