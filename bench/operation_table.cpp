@@ -22,7 +22,7 @@
 #include "derive/tree_functions.hpp"
 #include "describe/read_model.hpp"
 #include "describe/read_robot.hpp"
-#include "optimise/tape/count.hpp"
+#include "optimise/tree_loops.hpp"
 
 namespace {
 
@@ -32,9 +32,7 @@ using namespace anholon;
 int operations(const TreeDerivation& derivation, const std::string& name, int* angles = nullptr) {
   const auto function = std::ranges::find(derivation.program.functions, name, &Function::name);
   if (function == derivation.program.functions.end()) return -1;
-  std::vector<NodeId> roots;
-  for (const OutputBlock& b : function->outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-  const OperationCount count = operations_per_call(derivation.program, roots);
+  const OperationCount count = operations_per_call(derivation.program, *function);
   if (angles != nullptr) *angles = std::max(*angles, count.trigonometric());
   return count.total();
 }

@@ -23,6 +23,7 @@
 #include "describe/read_robot.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
+#include "optimise/tree_loops.hpp"
 #include "urdf/chain.hpp"
 
 namespace anholon {
@@ -40,12 +41,6 @@ long megabytes() {  // the most that the program held so far
   rusage used{};
   getrusage(RUSAGE_SELF, &used);
   return used.ru_maxrss / 1024;
-}
-
-std::vector<NodeId> roots_of(const Function& f) {
-  std::vector<NodeId> roots;
-  for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-  return roots;
 }
 
 /// Slope of log y over log x between the first and the last entry.
@@ -74,7 +69,7 @@ void chains(const std::vector<std::string>& functions, const std::vector<int>& l
     fmt::print("| {} |", n);
     for (const std::string& name : functions) {
       const auto f = std::ranges::find(derivation->program.functions, name, &Function::name);
-      operations[name][n] = operations_per_call(derivation->program, roots_of(*f)).total();
+      operations[name][n] = operations_per_call(derivation->program, *f).total();
       fmt::print(" {} |", operations[name][n]);
     }
     fmt::print(" {:.2f} | {} |\n", time[n], megabytes());
@@ -98,7 +93,7 @@ void robot(const std::filesystem::path& file, bool fixed) {
   const double emitted = seconds(RUSAGE_SELF) - start;
   fmt::print("| function | operations |\n|---|---:|\n");
   for (const Function& f : derivation->program.functions)
-    fmt::print("| {} | {} |\n", f.name, operations_per_call(derivation->program, roots_of(f)).total());
+    fmt::print("| {} | {} |\n", f.name, operations_per_call(derivation->program, f).total());
   fmt::print("\nderived in {:.2f} s, emitted in {:.2f} s: {} kB, at most {} MB of memory\n", derived, emitted,
              header.size() / 1000, megabytes());
   std::fflush(stdout);

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 #include <limits>
 #include <map>
 #include <span>
@@ -12,6 +13,7 @@
 #include "check/compiled_caller.hpp"
 #include "check/error_measure.hpp"
 #include "check/tree_reference.hpp"
+#include "derive/tree_functions.hpp"
 #include "describe/mechanise.hpp"
 #include "reduce/samples.hpp"
 
@@ -68,6 +70,10 @@ class TreeVerifier {
     in_double_ = mechanise<double>(description, numbers);
     exact_ = interpreting_caller<Exact>(program, parameters);
     compiled_ = compiled_caller(program, parameters);
+    for (const Function& f : program.functions) {  // others are steps of these
+      if (std::ranges::find(tree_function_names(), f.name) != tree_function_names().end())
+        checked_.emplace_back(f);
+    }
   }
 
   Verification run(int samples, const std::function<void(int)>& progress) {
@@ -103,7 +109,7 @@ class TreeVerifier {
   void compare(const TreePoint<Exact>& x) {
     const NamedValues<Exact> in = tree_inputs(mechanism_, x);
     const NamedValues<double> in_double = tree_inputs(in_double_, rounded(x));
-    for (const Function& f : program_.functions) {
+    for (const Function& f : checked_) {
       const NamedValues<Exact> expected = exact_(f.name, in);
       const NamedValues<double> got = compiled_(f.name, in_double);
       for (const OutputBlock& b : f.outputs) {
@@ -119,7 +125,7 @@ class TreeVerifier {
     x.state.R = nearest_rotation(at.state.R);
     ++formula_count_;
     const NamedValues<Exact> in = tree_inputs(mechanism_, x);
-    for (const Function& f : program_.functions) {
+    for (const Function& f : checked_) {
       const NamedValues<Exact> expected = tree_reference(mechanism_, f.name, x);
       const NamedValues<double> numeric = tree_reference(in_double_, f.name, rounded(x));
       const NamedValues<Exact> got = exact_(f.name, in);
@@ -192,7 +198,7 @@ class TreeVerifier {
     v.formula_worst = formula_worst_;
     v.formula_at = formula_at_;
     v.energy_balance = energy_balance_;
-    for (const Function& f : program_.functions) {
+    for (const Function& f : checked_) {
       for (const OutputBlock& b : f.outputs) {
         const Record& record = records_.at({f.name, b.name});
         std::vector<double> sizes = record.scale;
@@ -228,6 +234,7 @@ class TreeVerifier {
   const WorkingDigits precision_{digits};
   const Model& model_;
   const Program& program_;
+  std::vector<std::reference_wrapper<const Function>> checked_;  // functions that have a reference
   std::span<const int> components_;
   Mechanism<Exact> mechanism_;
   Mechanism<double> in_double_;

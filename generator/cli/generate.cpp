@@ -16,16 +16,10 @@
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
 #include "emit/write_file.hpp"
-#include "optimise/tape/count.hpp"
+#include "optimise/tree_loops.hpp"
 
 namespace anholon::cli {
 namespace {
-
-int operations_of(const Program& program, const Function& f) {
-  std::vector<NodeId> roots;
-  for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-  return operations_per_call(program, roots).total();
-}
 
 /// Operations of the same functions for the whole model, nothing frozen, locked or left out; empty without a
 /// scene.
@@ -42,7 +36,8 @@ std::map<std::string, int> operations_without_scene(const GenerateOptions& optio
   std::map<std::string, int> operations;
   try {
     const auto whole = derive(scene.model, request);
-    for (const Function& f : whole->program.functions) operations[f.name] = operations_of(whole->program, f);
+    for (const Function& f : whole->program.functions)
+      operations[f.name] = operations_per_call(whole->program, f).total();
   } catch (const UnsupportedError&) {  // the scene may leave out what cannot be derived
   }
   return operations;
@@ -131,9 +126,7 @@ int generate_one(const GenerateOptions& options) {
              "route");
   int operations = 0, operations_before = 0;
   for (const Function& f : program.functions) {
-    std::vector<NodeId> roots;
-    for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-    const OperationCount count = operations_per_call(program, roots);
+    const OperationCount count = operations_per_call(program, f);
     std::string dearest;
     std::string route;
     int most = 0;

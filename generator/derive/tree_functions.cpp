@@ -13,6 +13,7 @@
 #include "anholon/articulated.hpp"
 #include "anholon/composite.hpp"
 #include "anholon/factor.hpp"
+#include "derive/loop_tables.hpp"
 #include "derive/tree_inputs.hpp"
 #include "derive/tree_kinematics.hpp"
 #include "describe/mechanise.hpp"
@@ -27,6 +28,7 @@
 #include "optimise/tape/gather_parameters.hpp"
 #include "optimise/tape/hoist.hpp"
 #include "optimise/tape/opposite_differences.hpp"
+#include "optimise/tree_loops.hpp"
 
 namespace anholon {
 namespace {
@@ -172,6 +174,10 @@ class TreeDeriver {
       const auto report = [&](const std::string& pass, const std::vector<NodeId>& roots) {
         result_->trace.push_back({f.name, pass, cost_of(roots)});
       };
+      if (f.loops) {
+        result_->trace.push_back({f.name, loops_route, operations_per_call(program_, f).total()});
+        continue;
+      }
       const Kept& kept = kept_.at(f.name);
       for (const Frames& stage : stages_) {
         const Route r{"", kept.algorithm.outputs(stage.mechanism)};
@@ -201,8 +207,59 @@ class TreeDeriver {
     return roots;
   }
 
+  /// Loops whose straight line would take more operations than that are kept as loops: compilers take long
+  /// over such functions, and the instructions no longer fit the caches.
+  static constexpr int longest_straight_line = 6000;
+  static constexpr const char* loops_route = "loops over the tree";
+
+  /// Derives a function that is emitted as loops, and the one that they start from.
+  /// @return false where a straight line does
+  bool derive_loops(const std::string& name) {
+    RigidTree<Expr> tree(name == "regressor" ? merged_ : frames_[0].mechanism);
+    tree.position(in_.r);
+    const std::optional<TreeLoops> loops = tree_loops(name, tree);
+    if (!loops || count_operations(*loops).total() <= longest_straight_line) return false;
+    if (std::ranges::find(program_.functions, loops->from, &Function::name) == program_.functions.end())
+      derive(loops->from);
+    Function f{name, meaning(name), {}, fmt::format("route: {}", loops_route), loops};
+    std::vector<std::vector<Expr>> from;
+    for (const OutputBlock& b : straight_line(program_, f).outputs) {
+      from.emplace_back();
+      for (const NodeId id : b.nodes) from.back().emplace_back(tape_, id);
+    }
+    const std::vector<std::vector<Expr>> values = values_of(*loops, from);
+    f.outputs = blocks_of(name, values);
+    program_.functions.push_back(std::move(f));
+    result_->candidates.push_back(
+        {name, loops_route, operations_per_call(program_, program_.functions.back()).total(), true});
+    return true;
+  }
+
+  /// Output blocks of the functions that may be loops.
+  std::vector<OutputBlock> blocks_of(const std::string& name, const std::vector<std::vector<Expr>>& values) {
+    std::vector<OutputBlock> blocks;
+    if (name == "mass_factor") {
+      blocks = {block("L", "mixed", "unit lower triangular", values[0]),
+                block("D", "mixed", "diagonal", values[1])};
+      blocks[0].rows = blocks[0].cols = blocks[1].rows;
+    } else if (name == "inverse_mass_matrix") {
+      blocks = {block("M_inverse", "mixed", "(eta, r) x (eta, r)", values[0])};
+      blocks[0].rows = blocks[0].cols = n() + static_cast<int>(in_.r.size());
+    } else {
+      std::string names;
+      for (const Body<Expr>& b : merged_.bodies) names += (names.empty() ? "" : ", ") + b.name;
+      blocks = {
+          block("Y", "mixed", "columns m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of " + names, values[0])};
+      blocks[0].rows = n() + static_cast<int>(in_.r.size());
+      blocks[0].cols = 10 * static_cast<int>(merged_.bodies.size());
+    }
+    return blocks;
+  }
+
   /// Derives a function by every route and keeps the cheapest.
   void derive(const std::string& name) {
+    if (std::ranges::find(program_.functions, name, &Function::name) != program_.functions.end()) return;
+    if (derive_loops(name)) return;
     std::vector<Route> routes;
     std::vector<Algorithm> algorithms;
     std::vector<int> cost;
@@ -320,8 +377,7 @@ class TreeDeriver {
                  const LtdlFactor<Expr> f = ltdl(mass_matrix(m));
                  Matrix<Expr> L = f.L;
                  for (int i = 0; i < L.rows(); ++i) L(i, i) = 1;
-                 return std::vector{block("L", "mixed", "unit lower triangular", L),
-                                    block("D", "mixed", "diagonal", f.D)};
+                 return blocks_of("mass_factor", {L.entries(), f.D});
                }}};
     }
     if (name == "inverse_mass_matrix")
@@ -353,6 +409,8 @@ class TreeDeriver {
       return {{"", [this](M m) { return is_first(m) ? jacobians() : std::vector<OutputBlock>{}; }}};
     if (name == "regressor")
       return {{"", [this](M m) { return is_first(m) ? regressors() : std::vector<OutputBlock>{}; }}};
+    if (name == regressor_motion)
+      return {{"", [this](M m) { return is_first(m) ? regressor_motions() : std::vector<OutputBlock>{}; }}};
     throw std::logic_error("a function without a derivation");
   }
   /// Whether the LTDL factor may take less than the articulated bodies: it grows with the squares of the
@@ -398,6 +456,7 @@ class TreeDeriver {
     if (name == "regressor")
       return "Inverse dynamics without springs, dampers and friction as Y pi, linear in the inertial figures "
              "pi of the bodies.";
+    if (name == regressor_motion) return "Motion of bodies and joints, from which regressor() starts.";
     return "";
   }
 
@@ -502,7 +561,7 @@ class TreeDeriver {
       const std::vector<Expr> x = factor.solve(e);
       for (int i = 0; i <= c; ++i) inverse(i, c) = inverse(c, i) = x[static_cast<std::size_t>(i)];
     }
-    return {block("M_inverse", "mixed", "(eta, r) x (eta, r)", inverse)};
+    return blocks_of("inverse_mass_matrix", {inverse.entries()});
   }
 
   std::vector<OutputBlock> forward_kinematics() {
@@ -538,17 +597,37 @@ class TreeDeriver {
     return outputs;
   }
 
-  std::vector<OutputBlock> regressors() {
+  /// The tree without fixed joints in the described frames, moving as the inputs say.
+  RigidTree<Expr> moving_tree() {
     RigidTree<Expr> tree(merged_);
     tree.position(in_.r);
     tree.move_base(in_.eta.angular, in_.eta_dot.angular,
                    in_.eta_dot.linear + cross(in_.eta.angular, in_.eta.linear) -
                        transposed_times(in_.R, merged_.gravity));
     tree.move(in_.r_dot, in_.r_ddot);
-    std::string names;
-    for (const Body<Expr>& b : merged_.bodies) names += (names.empty() ? "" : ", ") + b.name;
-    return {block("Y", "mixed", "columns m, mx, my, mz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz of " + names,
-                  regressor(tree))};
+    return tree;
+  }
+
+  std::vector<OutputBlock> regressors() {
+    return blocks_of("regressor", {regressor(moving_tree()).entries()});
+  }
+
+  /// What the loops of the regressor start from.
+  std::vector<OutputBlock> regressor_motions() {
+    const RegressorMotion m = motion_for_regressor(moving_tree());
+    std::vector<OutputBlock> blocks = {
+        block("motion", "mixed",
+              "of each body: orientation and place in the reference body's frame, angular velocity, its "
+              "derivative, "
+              "acceleration minus gravity in its own",
+              m.motion),
+        block("axes", "mixed", "of each body's joint: twist at unit rate in the reference body's frame",
+              m.axes)};
+    for (OutputBlock& b : blocks) {
+      b.rows = static_cast<int>(merged_.bodies.size());
+      b.cols = static_cast<int>(b.nodes.size()) / b.rows;
+    }
+    return blocks;
   }
 
   /// With A = eta_dot.linear + Omega x V - R^T gravity as the unknown of a free reference body, gravity drops

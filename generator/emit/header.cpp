@@ -122,6 +122,9 @@ class HeaderWriter {
     write_charts(data);
     data["uses_sign"] = uses_sign();
     data["uses_batch"] = uses_batch_;
+    data["uses_loops"] = std::ranges::any_of(
+        plan_.functions, [](const PlannedFunction& f) { return f.function->loops.has_value(); });
+    data["tree_loops"] = without_last_newline(std::string(embedded::tree_loops));
     data["sines_cosines"] = without_last_newline(std::string(embedded::sines_cosines));
     return fill_template(embedded::header_template, data);
   }
@@ -270,7 +273,9 @@ class HeaderWriter {
       arguments.push_back(fmt::format("Real (&{}){}", output.name, extent(*output.block)));
     }
     const std::string doc = documentation(function);
-    const Body body = body_of(statements(results, given, names), function.name, arguments);
+    const Body body = function.function->loops
+                          ? body_of_loops(function, arguments)
+                          : body_of(statements(results, given, names), function.name, arguments);
     if (!body.arguments.contains(0)) arguments[0] = "const Prepared<Real>&";
     json data;
     data["name"] = function.unqualified;
@@ -342,6 +347,56 @@ class HeaderWriter {
     return body;
   }
 
+  /// The call of the function before the loops, and of the loops over its outputs.
+  Body body_of_loops(const PlannedFunction& function, const std::vector<std::string>& arguments) const {
+    const TreeLoops& loops = *function.function->loops;
+    const PlannedFunction& first = *std::ranges::find(
+        plan_.functions, loops.from, [](const PlannedFunction& f) { return f.function->name; });
+    Body body;
+    const auto table = [&](const std::string& name, const std::vector<int>& values) {
+      body.text += comment(
+          fmt::format("static constexpr int {}[{}] = {{{}}};", name, values.size(), fmt::join(values, ", ")),
+          "  ", 4);
+    };
+    const auto call = [&](const std::string& name, std::vector<std::string> passed) {
+      body.text += fmt::format("  {}({});\n", name, joined(passed, ", "));
+    };
+    std::vector<std::string> passed;
+    for (std::size_t i = 0; i + function.outputs.size() < arguments.size(); ++i) {
+      passed.push_back(argument_name(arguments[i]));
+      body.arguments.insert(i);
+    }
+    const std::string n = std::to_string(loops.parent.size());
+    const std::string& result = function.outputs[0].name;
+    table("parent", loops.parent);
+    if (loops.kind == TreeLoops::Kind::regressor) {
+      table("row", loops.row);
+      if (!loops.component.empty()) table("component", loops.component);
+      for (const PlannedOutput& o : first.outputs) {
+        body.text += fmt::format("  Real {}{};\n", o.name, extent(*o.block));
+        passed.push_back(o.name);
+      }
+      call(first.name, passed);
+      call("detail::regressor_rows",
+           {n, "parent", "row", std::to_string(loops.component.size()),
+            loops.component.empty() ? "nullptr" : "component", std::to_string(loops.rows),
+            first.outputs[0].name, first.outputs[1].name, result});
+    } else {
+      const bool inverts = loops.kind == TreeLoops::Kind::inverse_mass_matrix;
+      if (inverts) {
+        table("end", loops.end);
+        body.text += fmt::format("  Real D[{}];\n", n);
+      }
+      const std::string& D = inverts ? "D" : function.outputs[1].name;
+      passed.push_back(result);
+      call(first.name, passed);
+      call("detail::factor_mass_matrix", {n, "parent", result, D});
+      if (inverts) call("detail::invert_mass_factor", {n, "parent", "end", result, D});
+    }
+    body.text = without_last_newline(body.text);
+    return body;
+  }
+
   /// "const Real (&q)[2]" -> q, "const Prepared<Real>& par" -> par
   static std::string argument_name(const std::string& declaration) {
     const std::size_t begin = declaration.rfind('&') + 1;
@@ -387,6 +442,7 @@ class HeaderWriter {
   [[nodiscard]] bool uses_sign() const {
     std::vector<NodeId> roots;
     for (const PlannedFunction& function : plan_.functions) {
+      if (function.function->loops) continue;
       for (const PlannedOutput& output : function.outputs) {
         roots.insert(roots.end(), output.block->nodes.begin(), output.block->nodes.end());
       }

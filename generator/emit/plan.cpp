@@ -10,6 +10,7 @@
 
 #include "emit/names.hpp"
 #include "optimise/tape/dead_code.hpp"
+#include "optimise/tree_loops.hpp"
 
 namespace anholon {
 namespace {
@@ -70,7 +71,7 @@ EmissionPlan plan_emission(const Program& program) {
   std::vector<NodeId> all_roots;
   for (const Function& function : program.functions) {
     for (const OutputBlock& output : function.outputs) check_size(output);
-    const std::vector<NodeId> roots = roots_of(function);
+    const std::vector<NodeId> roots = roots_of(straight_line(program, function));
     all_roots.insert(all_roots.end(), roots.begin(), roots.end());
   }
   std::vector<NodeId> parameter_nodes;
@@ -93,7 +94,7 @@ EmissionPlan plan_emission(const Program& program) {
   for (const Function& function : program.functions) {
     PlannedFunction planned;
     planned.function = &function;
-    const std::vector<NodeId> roots = roots_of(function);
+    const std::vector<NodeId> roots = roots_of(straight_line(program, function));
     if (roots.empty()) continue;
     planned.name = planned.unqualified = functions.claim(function.name);
     if (const std::size_t at = function.name.find("::"); at != std::string::npos) {
@@ -102,6 +103,11 @@ EmissionPlan plan_emission(const Program& program) {
     }
     planned.operations = count_operations(program.tape, roots, plan.prepared_values);
     planned.unprepared = count_operations(program.tape, roots);
+    if (function.loops) {
+      const OperationCount loops = count_operations(*function.loops);
+      planned.operations += loops;
+      planned.unprepared += loops;
+    }
     const std::vector<NodeId> needed = needed_nodes(program.tape, roots, plan.prepared_values);
     const std::set<NodeId> is_needed(needed.begin(), needed.end());
     for (std::size_t i = 0; i < program.inputs.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <queue>
 #include <set>
 #include <stdexcept>
+#include <unordered_map>
 
 namespace anholon {
 namespace {
@@ -43,6 +44,7 @@ class Writer {
     for (std::size_t begin = 0; begin < order_.nodes.size(); begin += block_size) {
       const std::size_t end = std::min(begin + block_size, order_.nodes.size());
       start_text();
+      if (begin == 0) keep_inputs();
       write_batch(begin, std::min(end, order_.sincos));
       for (std::size_t i = begin; i < end; ++i) {
         if (!is_written_[i]) write_operation(i);
@@ -62,13 +64,18 @@ class Writer {
   }
 
  private:
-  /// Writes the results, in blocks of so many lines where that is not zero and they are arguments.
+  /// Writes the results that are still to come, in blocks of so many lines where that is not zero and they
+  /// are arguments.
   void write_results(Statements& out, std::size_t block_size) {
-    const bool in_blocks = block_size > 0 && !results_.empty() && results_[0].argument != Assignment::none;
+    std::vector<Assignment> late;
+    for (const Assignment& result : results_) {
+      if (!is_direct(result)) late.push_back(result);
+    }
+    const bool in_blocks = block_size > 0 && !late.empty() && late[0].argument != Assignment::none;
     const std::string index = in_blocks ? names_.claim("i") : "";
-    for (std::size_t i = 0, lines = 0; i < results_.size(); ++lines) {
-      i += write_result(i, index);
-      if (!in_blocks || ((lines + 1) % block_size != 0 && i < results_.size())) continue;
+    for (std::size_t i = 0, lines = 0; i < late.size(); ++lines) {
+      i += write_result(late, i, index);
+      if (!in_blocks || ((lines + 1) % block_size != 0 && i < late.size())) continue;
       finish_block(out);
       start_text();
     }
@@ -76,24 +83,37 @@ class Writer {
 
   /// Writes a result, or a run of equal constants where `index`, the variable of a loop, has a name.
   /// @return how many results that were
-  std::size_t write_result(std::size_t i, const std::string& index) {
-    const Assignment& first = results_[i];
-    const std::string value = operand(first.node);
-    if (first.argument != Assignment::none) arguments_.insert(first.argument);
+  std::size_t write_result(const std::vector<Assignment>& results, std::size_t i, const std::string& index) {
+    const Assignment& first = results[i];
     std::size_t run = 1;
     if (!index.empty() && first.entry != Assignment::none && tape_.node(first.node).op == Op::constant) {
-      while (i + run < results_.size() && results_[i + run].node == first.node &&
-             results_[i + run].target == first.target && results_[i + run].entry == first.entry + run)
+      while (i + run < results.size() && results[i + run].node == first.node &&
+             results[i + run].target == first.target && results[i + run].entry == first.entry + run)
         ++run;
     }
-    if (run >= shortest_run) {
-      lines_ += fmt::format("  for (int {0} = {1}; {0} < {2}; ++{0}) {3}[{0}] = {4};\n", index, first.entry,
-                            first.entry + run, first.target, value);
-      return run;
+    if (run < shortest_run) {
+      assign(first);
+      return 1;
     }
-    const std::string entry = first.entry == Assignment::none ? "" : fmt::format("[{}]", first.entry);
-    lines_ += fmt::format("  {}{} = {};\n", first.target, entry, value);
-    return 1;
+    const std::string value = operand(first.node);
+    arguments_.insert(first.argument);
+    lines_ += fmt::format("  for (int {0} = {1}; {0} < {2}; ++{0}) {3}[{0}] = {4};\n", index, first.entry,
+                          first.entry + run, first.target, value);
+    return run;
+  }
+
+  void assign(const Assignment& result) {
+    const std::string value = operand(result.node);
+    if (result.argument != Assignment::none) arguments_.insert(result.argument);
+    const std::string entry = result.entry == Assignment::none ? "" : fmt::format("[{}]", result.entry);
+    lines_ += fmt::format("  {}{} = {};\n", result.target, entry, value);
+  }
+
+  /// Whether a result of a split function is stored where it is made: behind the first block, which has kept
+  /// the inputs, so that an output may lie over an input.
+  [[nodiscard]] bool is_direct(const Assignment& result) const {
+    return !block_of_.empty() && result.argument != Assignment::none && !given_.contains(result.node) &&
+           block_of_[result.node] != nowhere && block_of_[result.node] > 0;
   }
 
   /// sin and cos of an input keep its name; other temporaries are numbered.
@@ -130,21 +150,35 @@ class Writer {
       use(tape_.node(id).a, i / block_size);
       if (info(tape_.node(id).op).arity == 2) use(tape_.node(id).b, i / block_size);
     }
-    for (const Assignment& result : results_) use(result.node, at_the_end);
+    for (const Assignment& result : results_) {
+      if (is_direct(result)) {
+        direct_[result.node].push_back(&result);
+      } else {
+        use(result.node, at_the_end);
+      }
+    }
     using Slots = std::priority_queue<std::size_t, std::vector<std::size_t>, std::greater<>>;
     Slots unused;
     std::vector<std::vector<std::size_t>> freed(at_the_end + 2);
+    const auto keep = [&](NodeId id) {
+      if (unused.empty()) unused.push(slot_count_++);
+      slot_[id] = unused.top();
+      unused.pop();
+      freed[last_use[id] + 1].push_back(slot_[id]);
+    };
+    for (NodeId id = 0; id < tape_.size(); ++id) {  // in an order that does not depend on the run
+      const auto given = given_.find(id);
+      if (given == given_.end() || given->second.argument == 0 || last_use[id] == 0) continue;
+      kept_inputs_.push_back(id);
+      keep(id);
+    }
     for (std::size_t i = 0; i < order_.nodes.size(); ++i) {
       const NodeId id = order_.nodes[i];
       const std::size_t block = block_of_[id];
       if (i % block_size == 0) {
         for (const std::size_t slot : freed[block]) unused.push(slot);
       }
-      if (last_use[id] == block) continue;
-      if (unused.empty()) unused.push(slot_count_++);
-      slot_[id] = unused.top();
-      unused.pop();
-      freed[last_use[id] + 1].push_back(slot_[id]);
+      if (last_use[id] > block) keep(id);
     }
   }
 
@@ -190,7 +224,7 @@ class Writer {
       const NodeId id = order_.nodes[i];
       const bool is_sine = tape_.node(id).op == Op::sin;
       lines_ += fmt::format("  const Real {} = {}[{}];\n", temporary_[id], is_sine ? sine_ : cosine_, angle);
-      carry(id);
+      store(id);
       is_written_[i] = true;
     }
   }
@@ -229,14 +263,28 @@ class Writer {
     const std::string a = operand(n.a);
     const std::string value = fmt::format(fmt::runtime(op.cpp), a, op.arity == 2 ? operand(n.b) : a);
     lines_ += fmt::format("  const Real {} = {};\n", temporary_[id], value);
-    carry(id);
+    store(id);
+  }
+
+  /// Hands the inputs that they read on to the blocks behind the first.
+  void keep_inputs() {
+    block_ = 0;
+    for (const NodeId id : kept_inputs_) carry(id, operand(id));
   }
 
   /// Hands a value on to the blocks behind.
-  void carry(NodeId id) {
+  void carry(NodeId id, const std::string& value) {
     if (slot_.empty() || slot_[id] == nowhere) return;
     uses_carried_ = true;
-    lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], temporary_[id]);
+    lines_ += fmt::format("  {}[{}] = {};\n", carried_, slot_[id], value);
+  }
+
+  /// Puts a value that was just made where it is needed later.
+  void store(NodeId id) {
+    carry(id, temporary_[id]);
+    if (const auto found = direct_.find(id); found != direct_.end()) {
+      for (const Assignment* result : found->second) assign(*result);
+    }
   }
 
   void write_title(std::size_t section) {
@@ -250,6 +298,7 @@ class Writer {
 
   std::string operand(NodeId id) {
     if (const auto found = given_.find(id); found != given_.end()) {
+      if (!slot_.empty() && slot_[id] != nowhere && block_ != 0) return carried_value(id);
       arguments_.insert(found->second.argument);
       return found->second.text;
     }
@@ -262,7 +311,10 @@ class Writer {
       throw std::logic_error(fmt::format(
           "an output needs '{}', which is neither a parameter nor in an input block", tape_.inputs()[n.a]));
     }
-    if (slot_.empty() || block_of_[id] == block_) return temporary_[id];
+    return slot_.empty() || block_of_[id] == block_ ? temporary_[id] : carried_value(id);
+  }
+
+  std::string carried_value(NodeId id) {
     uses_carried_ = true;
     return fmt::format("{}[{}]", carried_, slot_[id]);
   }
@@ -276,6 +328,8 @@ class Writer {
   EmissionOrder order_;
   std::vector<std::string> temporary_;
   std::vector<std::size_t> block_of_, slot_;  // empty where the function is not split
+  std::vector<NodeId> kept_inputs_;           // read behind the first block
+  std::unordered_map<NodeId, std::vector<const Assignment*>> direct_;  // results by the node that they are
   std::size_t slot_count_ = 0;
   std::string carried_;
 

@@ -40,11 +40,25 @@ struct OutputBlock {
   std::vector<NodeId> nodes;  // row-major
 };
 
+/// How a function whose straight line would be too long is written: the outputs of another function, and
+/// loops of templates/tree_loops.inl over them.
+struct TreeLoops {
+  enum class Kind { mass_factor, inverse_mass_matrix, regressor };
+  Kind kind = Kind::mass_factor;
+  std::string from;            // function that is called first
+  std::vector<int> parent;     // of coordinates of M, or of bodies; -1 at the base
+  std::vector<int> end;        // inverse_mass_matrix: one behind the subtree of each coordinate
+  std::vector<int> row;        // regressor: of Y, by body
+  std::vector<int> component;  // regressor: of the base wrench, by row
+  int rows = 0;                // regressor: of Y
+};
+
 struct Function {
   std::string name;
   std::string meaning;               // one sentence and the equation, becomes the docstring
   std::vector<OutputBlock> outputs;  // blocks of size 0 are left out before emission
   std::string remark;                // e.g. which candidate won, singular configurations
+  std::optional<TreeLoops> loops{};  // what is emitted instead of the nodes of outputs
 };
 
 struct Program {

@@ -306,5 +306,41 @@ TEST(EmittedHeader, RunsOnDualNumbersAndSimdPacks) {
   EXPECT_EQ(status, 0) << text;
 }
 
+/// A split function stores results as it goes; what it reads of its inputs by then it has kept.
+TEST(EmittedHeader, LetsAnOutputOfASplitFunctionLieOverAnInput) {
+  Program program = test::long_program(1000);
+  Tape& tape = program.tape;
+  const NodeId end = program.functions[0].outputs[0].nodes[0];
+  NodeId middle = end;
+  for (int i = 0; i < 500; ++i) {  // x = c x' - s y': of the factors of a product, the later node is x'
+    const Node& product = tape.node(tape.node(middle).a);
+    middle = std::max(product.a, product.b);
+  }
+  const NodeId late = tape.apply(Op::mul, end, program.inputs[1].nodes[0]);
+  program.functions[0].outputs.push_back({"middle", "", "", 1, 1, {middle}});
+  program.functions[0].outputs.push_back({"late", "", "", 1, 1, {late}});
+  const std::string header = emit_header(program);
+  // the case that is meant: the output is stored before the last use of the input
+  ASSERT_LT(header.find("  middle[0] = "), header.find("  late[0] = "));
+  const std::filesystem::path folder = test::test_folder();
+  test::write_text(folder / "program.hpp", header);
+  test::write_text(folder / "main.cpp", R"cpp(
+#include "program.hpp"
+    namespace g = rotations;
+    int main() {
+      const auto par = g::prepare(g::Parameters<double>{});
+      const double q[1] = {0.1}, u[1] = {0.7};
+      double both[1] = {0.7}, xy[2], middle[1], late[1], other_xy[2], other_late[1];
+      g::turn(par, q, u, xy, middle, late);
+      g::turn(par, q, both, other_xy, both, other_late);
+      return both[0] != middle[0] || other_late[0] != late[0] || other_xy[0] != xy[0] || late[0] != xy[0] * 0.7;
+    }
+  )cpp");
+  const auto [status, text] = test::run(
+      fmt::format("cd '{}' && g++ -std=c++17 -O2 -Wall -Wextra main.cpp -o main && ./main", folder.string()),
+      folder);
+  EXPECT_EQ(status, 0) << text;
+}
+
 }  // namespace
 }  // namespace anholon

@@ -26,4 +26,32 @@ inline std::string chain(int n) {
   return text + "</robot>";
 }
 
+/// A chain of `trunk` links on one that may float, which ends in so many limbs, each a chain.
+inline std::string branching(int trunk, int limbs, int links) {
+  const std::string stem = chain(trunk);
+  const std::string root = "<link name='l0'/>";
+  std::string text =
+      "<robot name='branching'><link name='l0'><inertial><origin xyz='0.01 0.02 0.03'/><mass value='3'/>"
+      "<inertia ixx='0.05' iyy='0.06' izz='0.04' ixy='0' ixz='0' iyz='0'/></inertial></link>" +
+      stem.substr(stem.find(root) + root.size());
+  text.erase(text.rfind("</robot>"));
+  constexpr const char* axes[] = {"1 0 0", "0 1 0", "0 0 1"};
+  for (int i = 0; i < limbs; ++i) {
+    std::string parent = fmt::format("l{}", trunk);
+    for (int k = 1; k <= links; ++k) {
+      const std::string name = fmt::format("limb{}_{}", i, k);
+      text += fmt::format(
+          "<link name='{0}'><inertial><origin xyz='0.01 0.0{1} -0.1'/><mass value='0.{2}'/>"
+          "<inertia ixx='0.011' iyy='0.012' izz='0.009' ixy='0.001' ixz='0.000{2}' "
+          "iyz='-0.0005'/></inertial></link>"
+          "<joint name='to_{0}' type='{3}'><parent link='{4}'/><child link='{0}'/>"
+          "<origin xyz='0.0{1} 0.1 -0.2' rpy='0.3 0 0.1'/><axis xyz='{5}'/>"
+          "<limit lower='-1' upper='1'/></joint>",
+          name, 1 + i, 1 + k % 3, k == 2 ? "prismatic" : "revolute", parent, axes[k % 3]);
+      parent = name;
+    }
+  }
+  return text + "</robot>";
+}
+
 }  // namespace anholon::testing
