@@ -9,20 +9,29 @@
 //   kernel: none, the constraints determine every passive velocity
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics                 10 add, 25 mul, 1 div, 4 neg, 4 sin, 4 cos
-//   constraints                20 add, 43 mul, 6 neg, 4 sin, 4 cos
-//   free_dynamics              26 add, 50 mul, 4 neg, 4 sin, 4 cos
-//   forward_dynamics           40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
-//   inverse_torques            70 add, 125 mul, 2 div, 4 sin, 4 cos
-//   multipliers                57 add, 115 mul, 4 div, 4 sin, 4 cos
-//   torque_driven_kinematics   15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
-//   torque_driven_velocities   none
-//   torque_driven_dynamics     104 add, 163 mul, 4 div, 1 neg, 4 sin, 4 cos
-//   torque_driven_multipliers  76 add, 120 mul, 2 div, 4 sin, 4 cos
-//   position_conditions        15 add, 16 mul, 4 neg, 4 sin, 4 cos
-//   energies                   19 add, 34 mul, 4 sin, 4 cos
-//   body_poses                 6 add, 12 mul, 4 neg, 4 sin, 4 cos
-//   prepare                    3 add, 12 mul, 1 neg, once per set of parameters
+//   kinematics                        10 add, 25 mul, 1 div, 4 neg, 4 sin, 4 cos
+//   constraints                       20 add, 43 mul, 6 neg, 4 sin, 4 cos
+//   free_dynamics                     26 add, 50 mul, 4 neg, 4 sin, 4 cos
+//   forward_dynamics                  40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
+//   inverse_torques                   70 add, 125 mul, 2 div, 4 sin, 4 cos
+//   multipliers                       57 add, 115 mul, 4 div, 4 sin, 4 cos
+//   torque_driven_kinematics          15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
+//   torque_driven_velocities          none
+//   torque_driven_dynamics            104 add, 163 mul, 4 div, 1 neg, 4 sin, 4 cos
+//   torque_driven_multipliers         76 add, 120 mul, 2 div, 4 sin, 4 cos
+//   chart2_torque_driven_kinematics   15 add, 30 mul, 2 div, 6 neg, 4 sin, 4 cos
+//   chart2_torque_driven_velocities   none
+//   chart2_torque_driven_dynamics     104 add, 163 mul, 4 div, 2 neg, 4 sin, 4 cos
+//   chart2_torque_driven_multipliers  67 add, 108 mul, 2 div, 4 sin, 4 cos
+//   chart3_torque_driven_kinematics   15 add, 30 mul, 2 div, 3 neg, 4 sin, 4 cos
+//   chart3_torque_driven_velocities   none
+//   chart3_torque_driven_dynamics     104 add, 164 mul, 4 div, 1 neg, 4 sin, 4 cos
+//   chart3_torque_driven_multipliers  71 add, 111 mul, 2 div, 4 sin, 4 cos
+//   torque_driven_chart_quality       38 add, 61 mul, 9 div, 3 sqrt, 4 sin, 4 cos
+//   position_conditions               15 add, 16 mul, 4 neg, 4 sin, 4 cos
+//   energies                          19 add, 34 mul, 4 sin, 4 cos
+//   body_poses                        6 add, 12 mul, 4 neg, 4 sin, 4 cos
+//   prepare                           3 add, 12 mul, 1 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   r_p (2) rad or m: left_elbow, right_elbow
@@ -30,7 +39,8 @@
 //   r_a_dot (2) rad/s or m/s: rates of r_a
 //   r_a_ddot (2) rad/s^2 or m/s^2: second derivatives of r_a
 //   r_p_dot (2) rad/s or m/s: rates of r_p
-//   w (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right)
+//   w (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+//     pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
 //   tau_a (2) N m or N: torques of the torque-driven coordinates
 //   w_dot (2) mixed: derivative of w
 //
@@ -69,6 +79,7 @@ inline constexpr int n_H_w = 8;
 inline constexpr int n_w_out = 2;
 inline constexpr int n_w_dot_out = 2;
 inline constexpr int n_r_a_ddot_out = 2;
+inline constexpr int n_quality = 3;
 inline constexpr int n_Phi = 2;
 inline constexpr int n_Phi_q = 8;
 inline constexpr int n_kinetic = 1;
@@ -1234,7 +1245,8 @@ inline void multipliers(const Prepared<Real>& par,
 /// @param[in]  r_p          (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a          (2) rad or m: left, right
 /// @param[in]  w
-///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right)
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
 /// @param[out] r_p_dot_out  (2) per r_p: passive coordinates
 /// @param[out] r_a_dot_out  (2) per r_a: torque-driven coordinates
 /// @param[out] H_w          (4x2) mixed: kernel of (A, B_p, B_a), rows (eta, r_p, r_a)
@@ -1350,7 +1362,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 /// @param[in]  r_p           (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a           (2) rad or m: left, right
 /// @param[in]  w
-///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right)
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
 /// @param[in]  tau_a         (2) N m or N: torques of the torque-driven coordinates
 /// @param[out] w_dot_out     (2) mixed: derivative of w
 /// @param[out] r_p_ddot      (2) per r_p: passive coordinates
@@ -1736,7 +1749,9 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 /// @param[in]  par     made by prepare()
 /// @param[in]  r_p     (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a     (2) rad or m: left, right
-/// @param[in]  w       (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right)
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
 /// @param[in]  tau_a   (2) N m or N: torques of the torque-driven coordinates
 /// @param[in]  w_dot   (2) mixed: derivative of w
 /// @param[out] lambda  (2) mixed: one for each row of eq. (2)
@@ -2006,6 +2021,1721 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   lambda[1] = t196;
 }
 
+namespace chart2 {
+
+/// All velocities from the reduced ones, active joints free.
+/// route: kernel
+/// operations: 15 add, 30 mul, 2 div, 6 neg, 4 sin, 4 cos
+/// @param[in]  par          made by prepare()
+/// @param[in]  r_p          (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a          (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[out] r_p_dot_out  (2) per r_p: passive coordinates
+/// @param[out] r_a_dot_out  (2) per r_a: torque-driven coordinates
+/// @param[out] H_w          (4x2) mixed: kernel of (A, B_p, B_a), rows (eta, r_p, r_a)
+template <class Real>
+inline void torque_driven_kinematics(const Prepared<Real>& par,
+                                     const Real (&r_p)[2],
+                                     const Real (&r_a)[2],
+                                     const Real (&w)[2],
+                                     Real (&r_p_dot_out)[2],
+                                     Real (&r_a_dot_out)[2],
+                                     Real (&H_w)[4 * 2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // kernel
+  const Real t25 = constant<Real>(1.0L) / t4;
+  const Real t26 = t25 * t11;
+  const Real t27 = t26 * t16;
+  const Real t28 = t23 - t27;
+  const Real t29 = constant<Real>(1.0L) / t28;
+  const Real t30 = t26 * t6;
+  const Real t31 = t30 - t12;
+  const Real t32 = t29 * t31;
+  const Real t33 = -t32;
+  const Real t34 = t26 * t18;
+  const Real t35 = t24 - t34;
+  const Real t36 = t35 * t29;
+  const Real t37 = t16 * t36;
+  const Real t38 = t37 - t18;
+  const Real t39 = t38 * t25;
+  const Real t40 = -t39;
+  const Real t41 = -t36;
+  const Real t42 = t16 * t32;
+  const Real t43 = t6 + t42;
+  const Real t44 = t43 * t25;
+  const Real t45 = -t44;
+
+  // multipliers
+  const Real t46 = w[1] * t44;
+  const Real t47 = t39 * w[0];
+  const Real t48 = t46 + t47;
+  const Real t49 = -t48;
+  const Real t50 = t36 * w[0];
+  const Real t51 = t32 * w[1];
+  const Real t52 = t50 + t51;
+  const Real t53 = -t52;
+
+  r_p_dot_out[0] = t53;
+  r_p_dot_out[1] = t49;
+  r_a_dot_out[0] = w[0];
+  r_a_dot_out[1] = w[1];
+  H_w[0] = t41;
+  H_w[1] = t33;
+  H_w[2] = t40;
+  H_w[3] = t45;
+  H_w[4] = constant<Real>(1.0L);
+  H_w[5] = constant<Real>(0.0L);
+  H_w[6] = constant<Real>(0.0L);
+  H_w[7] = constant<Real>(1.0L);
+}
+
+}  // namespace chart2
+
+namespace chart2 {
+
+/// Reduced velocities of admissible ones, active joints free.
+/// route: kernel
+/// operations: none
+/// @param[in]  par      made by prepare()
+/// @param[in]  r_a_dot  (2) rad/s or m/s: rates of r_a
+/// @param[out] w_out    (2) mixed: reduced velocities
+template <class Real>
+inline void torque_driven_velocities(const Prepared<Real>&,
+                                     const Real (&r_a_dot)[2],
+                                     Real (&w_out)[2]) noexcept {
+  w_out[0] = r_a_dot[0];
+  w_out[1] = r_a_dot[1];
+}
+
+}  // namespace chart2
+
+namespace chart2 {
+
+/// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
+/// route: all blocks, (66)-(68)
+/// operations: 104 add, 163 mul, 4 div, 2 neg, 4 sin, 4 cos
+/// @param[in]  par           made by prepare()
+/// @param[in]  r_p           (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a           (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[in]  tau_a         (2) N m or N: torques of the torque-driven coordinates
+/// @param[out] w_dot_out     (2) mixed: derivative of w
+/// @param[out] r_p_ddot      (2) per r_p: passive coordinates
+/// @param[out] r_a_ddot_out  (2) per r_a: torque-driven coordinates
+template <class Real>
+inline void torque_driven_dynamics(const Prepared<Real>& par,
+                                   const Real (&r_p)[2],
+                                   const Real (&r_a)[2],
+                                   const Real (&w)[2],
+                                   const Real (&tau_a)[2],
+                                   Real (&w_dot_out)[2],
+                                   Real (&r_p_ddot)[2],
+                                   Real (&r_a_ddot_out)[2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // kernel
+  const Real t25 = s_r_p_1_ * par.l_1;
+  const Real t26 = s_r_p_0_ * par.l_1;
+
+  // left_rod: acceleration
+  const Real t27 = c_r_p_0_ * par.l_1;
+
+  // left_rod: wrench
+  const Real t28 = par.m_2 * t26;
+  const Real t29 = t27 * par.k3;
+  const Real t30 = t29 + par.k4;
+  const Real t31 = t27 * par.m_2;
+  const Real t32 = par.k3 + t31;
+
+  // left_rod: joint force
+  const Real t33 = s_r_p_0_ * t28;
+  const Real t34 = c_r_p_0_ * t32;
+  const Real t35 = t33 + t34;
+  const Real t36 = par.l_1 * t35;
+  const Real t37 = t36 + t30;
+  const Real t38 = t37 + par.k1;
+
+  // right_rod: acceleration
+  const Real t39 = c_r_p_1_ * par.l_1;
+
+  // right_rod: wrench
+  const Real t40 = par.k3 * t39;
+  const Real t41 = t40 + par.k4;
+  const Real t42 = par.m_2 * t39;
+  const Real t43 = par.k3 + t42;
+  const Real t44 = par.m_2 * t25;
+
+  // right_rod: joint force
+  const Real t45 = s_r_p_1_ * t44;
+  const Real t46 = c_r_p_1_ * t43;
+  const Real t47 = t45 + t46;
+  const Real t48 = t47 * par.l_1;
+  const Real t49 = t41 + t48;
+  const Real t50 = par.k1 + t49;
+
+  // left_crank: acceleration
+  const Real t51 = par.g * c_r_a_0_;
+  const Real t52 = par.g * s_r_a_0_;
+
+  // left_rod: acceleration
+  const Real t53 = t51 * c_r_p_0_;
+  const Real t54 = t51 * s_r_p_0_;
+
+  // right_crank: acceleration
+  const Real t55 = par.g * s_r_a_1_;
+  const Real t56 = c_r_a_1_ * par.g;
+
+  // right_rod: acceleration
+  const Real t57 = t56 * c_r_p_1_;
+  const Real t58 = s_r_p_1_ * t56;
+
+  // left_crank: wrench
+  const Real t59 = t51 * par.k5;
+
+  // right_crank: wrench
+  const Real t60 = t56 * par.k5;
+
+  // kernel
+  const Real t61 = constant<Real>(1.0L) / t4;
+  const Real t62 = t61 * t11;
+  const Real t63 = t62 * t18;
+  const Real t64 = t24 - t63;
+  const Real t65 = t62 * t16;
+  const Real t66 = t23 - t65;
+  const Real t67 = constant<Real>(1.0L) / t66;
+  const Real t68 = t64 * t67;
+  const Real t69 = t16 * t68;
+  const Real t70 = t69 - t18;
+  const Real t71 = t70 * t61;
+  const Real t72 = t62 * t6;
+  const Real t73 = t72 - t12;
+  const Real t74 = t67 * t73;
+  const Real t75 = t16 * t74;
+  const Real t76 = t6 + t75;
+  const Real t77 = t76 * t61;
+
+  // joint angles
+  const Real t78 = c_r_a_1_ * w[1];
+  const Real t79 = t78 * w[1];
+  const Real t80 = s_r_p_1_ * t79;
+  const Real t81 = s_r_a_1_ * w[1];
+  const Real t82 = t81 * w[1];
+  const Real t83 = t82 * par.l_1;
+  const Real t84 = c_r_p_1_ * t82;
+  const Real t85 = s_r_p_1_ * t82;
+  const Real t86 = c_r_p_1_ * t79;
+  const Real t87 = par.l_1 * t79;
+
+  // right_crank: acceleration
+  const Real t88 = w[1] * w[1];
+
+  // right_rod: acceleration
+  const Real t89 = par.l_1 * t88;
+  const Real t90 = t55 - t89;
+  const Real t91 = t90 * s_r_p_1_;
+  const Real t92 = t57 - t91;
+  const Real t93 = t90 * c_r_p_1_;
+  const Real t94 = t93 + t58;
+
+  // right_rod: wrench
+  const Real t95 = par.m_2 * t94;
+  const Real t96 = par.k3 * t92;
+  const Real t97 = par.m_2 * t92;
+
+  // right_rod: joint force
+  const Real t98 = c_r_p_1_ * t97;
+
+  // multipliers
+  const Real t99 = w[1] * t77;
+  const Real t100 = t71 * w[0];
+  const Real t101 = t99 + t100;
+  const Real t102 = t68 * w[0];
+  const Real t103 = t74 * w[1];
+  const Real t104 = t102 + t103;
+
+  // joint angles
+  const Real t105 = s_r_p_1_ * t101;
+  const Real t106 = t81 * t105;
+  const Real t107 = t101 * c_r_p_1_;
+  const Real t108 = t107 * t101;
+  const Real t109 = c_r_a_1_ * t108;
+  const Real t110 = t106 + t109;
+  const Real t111 = t106 + t86;
+  const Real t112 = t110 + t111;
+  const Real t113 = t101 * t105;
+  const Real t114 = s_r_a_1_ * t113;
+  const Real t115 = t107 * t78;
+  const Real t116 = t114 + t115;
+  const Real t117 = t85 + t115;
+  const Real t118 = t116 + t117;
+  const Real t119 = t112 - t118;
+  const Real t120 = t119 * par.l_2;
+  const Real t121 = c_r_p_0_ * t104;
+  const Real t122 = t104 * t121;
+  const Real t123 = t122 * c_r_a_0_;
+  const Real t124 = s_r_p_0_ * t104;
+  const Real t125 = s_r_a_0_ * w[0];
+  const Real t126 = t124 * t125;
+  const Real t127 = t123 + t126;
+  const Real t128 = c_r_a_0_ * w[0];
+  const Real t129 = t128 * w[0];
+  const Real t130 = c_r_p_0_ * t129;
+  const Real t131 = t126 + t130;
+  const Real t132 = t127 + t131;
+  const Real t133 = t125 * w[0];
+  const Real t134 = s_r_p_0_ * t133;
+  const Real t135 = t128 * t121;
+  const Real t136 = t134 + t135;
+  const Real t137 = t104 * t124;
+  const Real t138 = s_r_a_0_ * t137;
+  const Real t139 = t138 + t135;
+  const Real t140 = t136 + t139;
+  const Real t141 = t132 - t140;
+  const Real t142 = par.l_2 * t141;
+  const Real t143 = t129 * par.l_1;
+  const Real t144 = t142 + t143;
+  const Real t145 = t87 - t144;
+  const Real t146 = t120 + t145;
+  const Real t147 = s_r_a_1_ * t108;
+  const Real t148 = t78 * t105;
+  const Real t149 = t147 - t148;
+  const Real t150 = t84 - t148;
+  const Real t151 = t149 + t150;
+  const Real t152 = c_r_a_1_ * t113;
+  const Real t153 = t107 * t81;
+  const Real t154 = t152 - t153;
+  const Real t155 = t80 - t153;
+  const Real t156 = t154 + t155;
+  const Real t157 = t151 + t156;
+  const Real t158 = t157 * par.l_2;
+  const Real t159 = t133 * par.l_1;
+  const Real t160 = s_r_a_0_ * t122;
+  const Real t161 = t124 * t128;
+  const Real t162 = t160 - t161;
+  const Real t163 = c_r_p_0_ * t133;
+  const Real t164 = t163 - t161;
+  const Real t165 = t162 + t164;
+  const Real t166 = c_r_a_0_ * t137;
+  const Real t167 = t125 * t121;
+  const Real t168 = t166 - t167;
+  const Real t169 = s_r_p_0_ * t129;
+  const Real t170 = t169 - t167;
+  const Real t171 = t168 + t170;
+  const Real t172 = t165 + t171;
+  const Real t173 = t172 * par.l_2;
+  const Real t174 = t159 + t173;
+  const Real t175 = t83 - t174;
+  const Real t176 = t158 + t175;
+
+  // drift of the kernel
+  const Real t177 = t62 * t146;
+  const Real t178 = t176 + t177;
+  const Real t179 = t67 * t178;
+  const Real t180 = t179 * t16;
+  const Real t181 = t180 + t146;
+  const Real t182 = t181 * t61;
+
+  // left_rod: twist
+  const Real t183 = w[0] - t104;
+
+  // right_rod: twist
+  const Real t184 = w[1] - t101;
+
+  // left_crank: acceleration
+  const Real t185 = w[0] * w[0];
+
+  // left_rod: acceleration
+  const Real t186 = par.l_1 * t185;
+  const Real t187 = t52 - t186;
+  const Real t188 = c_r_p_0_ * t187;
+  const Real t189 = t188 + t54;
+  const Real t190 = s_r_p_0_ * t187;
+  const Real t191 = t53 - t190;
+  const Real t192 = t183 * t183;
+
+  // right_rod: acceleration
+  const Real t193 = t184 * t184;
+
+  // left_rod: wrench
+  const Real t194 = t179 * par.k4;
+  const Real t195 = par.m_2 * t191;
+  const Real t196 = par.m_2 * t189;
+  const Real t197 = par.k3 * t192;
+  const Real t198 = t196 - t197;
+  const Real t199 = par.k3 * t191;
+
+  // right_rod: wrench
+  const Real t200 = par.k3 * t193;
+  const Real t201 = t95 - t200;
+  const Real t202 = t182 * par.k4;
+
+  // right_rod: joint force
+  const Real t203 = s_r_p_1_ * t201;
+
+  // left_rod: joint force
+  const Real t204 = s_r_p_0_ * t198;
+
+  // reduced forces
+  const Real t205 = t194 - t199;
+  const Real t206 = t205 * t68;
+  const Real t207 = t202 - t96;
+  const Real t208 = t71 * t207;
+  const Real t209 = t206 + t208;
+  const Real t210 = t205 * t74;
+  const Real t211 = t207 * t77;
+  const Real t212 = t210 + t211;
+
+  // right_rod: wrench
+  const Real t213 = t71 * par.k4;
+
+  // reduced mass matrix
+  const Real t214 = t213 * t77;
+  const Real t215 = t71 * t213;
+
+  // left_rod: wrench
+  const Real t216 = t74 * par.k4;
+
+  // reduced mass matrix
+  const Real t217 = t216 * t74;
+
+  // right_rod: joint force
+  const Real t218 = t203 + t98;
+  const Real t219 = t218 * par.l_1;
+  const Real t220 = t96 + t219;
+  const Real t221 = t60 + t220;
+
+  // left_rod: joint force
+  const Real t222 = c_r_p_0_ * t195;
+  const Real t223 = t204 + t222;
+  const Real t224 = par.l_1 * t223;
+  const Real t225 = t224 + t199;
+  const Real t226 = t59 + t225;
+
+  // reduced mass matrix
+  const Real t227 = t68 * t30;
+  const Real t228 = t38 - t227;
+  const Real t229 = t68 * par.k4;
+  const Real t230 = t30 - t229;
+  const Real t231 = t68 * t230;
+  const Real t232 = t215 - t231;
+  const Real t233 = t228 + t232;
+  const Real t234 = par.k4 * t77;
+  const Real t235 = t41 - t234;
+  const Real t236 = t235 * t77;
+  const Real t237 = t217 - t236;
+  const Real t238 = t41 * t77;
+  const Real t239 = t50 - t238;
+  const Real t240 = t237 + t239;
+  const Real t241 = t74 * t230;
+  const Real t242 = t214 - t241;
+  const Real t243 = t41 * t71;
+  const Real t244 = t242 - t243;
+
+  // reduced forces
+  const Real t245 = t179 * t30;
+  const Real t246 = t245 - t226;
+  const Real t247 = tau_a[0] + t246;
+  const Real t248 = t247 - t209;
+  const Real t249 = t182 * t41;
+  const Real t250 = t249 - t221;
+  const Real t251 = t250 + tau_a[1];
+  const Real t252 = t251 - t212;
+
+  // reduced accelerations
+  const Real t253 = constant<Real>(1.0L) / t233;
+  const Real t254 = t248 * t253;
+  const Real t255 = t244 * t253;
+  const Real t256 = t255 * t248;
+  const Real t257 = t252 - t256;
+  const Real t258 = t255 * t244;
+  const Real t259 = t240 - t258;
+  const Real t260 = constant<Real>(1.0L) / t259;
+  const Real t261 = t257 * t260;
+  const Real t262 = t255 * t261;
+  const Real t263 = t254 - t262;
+
+  // accelerations
+  const Real t264 = t68 * t263;
+  const Real t265 = t74 * t261;
+  const Real t266 = t264 + t265;
+  const Real t267 = t179 + t266;
+  const Real t268 = -t267;
+  const Real t269 = t261 * t77;
+  const Real t270 = t71 * t263;
+  const Real t271 = t269 + t270;
+  const Real t272 = t182 + t271;
+  const Real t273 = -t272;
+
+  w_dot_out[0] = t263;
+  w_dot_out[1] = t261;
+  r_p_ddot[0] = t268;
+  r_p_ddot[1] = t273;
+  r_a_ddot_out[0] = t263;
+  r_a_ddot_out[1] = t261;
+}
+
+}  // namespace chart2
+
+namespace chart2 {
+
+/// Constraint forces with the torques given, least norm.
+/// route: projected recursion
+/// operations: 67 add, 108 mul, 2 div, 4 sin, 4 cos
+/// @param[in]  par     made by prepare()
+/// @param[in]  r_p     (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a     (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[in]  w_dot   (2) mixed: derivative of w
+/// @param[out] lambda  (2) mixed: one for each row of eq. (2)
+template <class Real>
+inline void torque_driven_multipliers(const Prepared<Real>& par,
+                                      const Real (&r_p)[2],
+                                      const Real (&r_a)[2],
+                                      const Real (&w)[2],
+                                      const Real (&w_dot)[2],
+                                      Real (&lambda)[2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // left_crank: acceleration
+  const Real t25 = par.g * c_r_a_0_;
+  const Real t26 = par.g * s_r_a_0_;
+
+  // right_crank: acceleration
+  const Real t27 = par.g * s_r_a_1_;
+  const Real t28 = c_r_a_1_ * par.g;
+
+  // kernel
+  const Real t29 = constant<Real>(1.0L) / t4;
+  const Real t30 = t29 * t11;
+  const Real t31 = t30 * t18;
+  const Real t32 = t24 - t31;
+  const Real t33 = t30 * t16;
+  const Real t34 = t23 - t33;
+  const Real t35 = constant<Real>(1.0L) / t34;
+  const Real t36 = t32 * t35;
+  const Real t37 = t16 * t36;
+  const Real t38 = t37 - t18;
+  const Real t39 = t38 * t29;
+  const Real t40 = t30 * t6;
+  const Real t41 = t40 - t12;
+  const Real t42 = t35 * t41;
+  const Real t43 = t16 * t42;
+  const Real t44 = t6 + t43;
+  const Real t45 = t44 * t29;
+
+  // joint angles
+  const Real t46 = c_r_a_1_ * w[1];
+  const Real t47 = t46 * w[1];
+  const Real t48 = s_r_p_1_ * t47;
+  const Real t49 = s_r_a_1_ * w[1];
+  const Real t50 = t49 * w[1];
+  const Real t51 = t50 * par.l_1;
+  const Real t52 = c_r_p_1_ * t50;
+  const Real t53 = s_r_p_1_ * t50;
+  const Real t54 = c_r_p_1_ * t47;
+  const Real t55 = par.l_1 * t47;
+
+  // right_crank: acceleration
+  const Real t56 = w[1] * w[1];
+
+  // right_rod: acceleration
+  const Real t57 = par.l_1 * t56;
+  const Real t58 = t27 - t57;
+  const Real t59 = t58 * s_r_p_1_;
+
+  // right_rod: acceleration
+  const Real t60 = w_dot[1] * par.l_1;
+  const Real t61 = t28 + t60;
+  const Real t62 = c_r_p_1_ * t61;
+  const Real t63 = t62 - t59;
+
+  // right_rod: wrench
+  const Real t64 = par.k3 * t63;
+
+  // multipliers
+  const Real t65 = w[1] * t45;
+  const Real t66 = t39 * w[0];
+  const Real t67 = t65 + t66;
+  const Real t68 = t36 * w[0];
+  const Real t69 = t42 * w[1];
+  const Real t70 = t68 + t69;
+
+  // joint angles
+  const Real t71 = s_r_p_1_ * t67;
+  const Real t72 = t49 * t71;
+  const Real t73 = t67 * c_r_p_1_;
+  const Real t74 = t73 * t67;
+  const Real t75 = c_r_a_1_ * t74;
+  const Real t76 = t72 + t75;
+  const Real t77 = t72 + t54;
+  const Real t78 = t76 + t77;
+  const Real t79 = t67 * t71;
+  const Real t80 = s_r_a_1_ * t79;
+  const Real t81 = t73 * t46;
+  const Real t82 = t80 + t81;
+  const Real t83 = t53 + t81;
+  const Real t84 = t82 + t83;
+  const Real t85 = t78 - t84;
+  const Real t86 = t85 * par.l_2;
+  const Real t87 = c_r_p_0_ * t70;
+  const Real t88 = t70 * t87;
+  const Real t89 = t88 * c_r_a_0_;
+  const Real t90 = s_r_p_0_ * t70;
+  const Real t91 = s_r_a_0_ * w[0];
+  const Real t92 = t90 * t91;
+  const Real t93 = t89 + t92;
+  const Real t94 = c_r_a_0_ * w[0];
+  const Real t95 = t94 * w[0];
+  const Real t96 = c_r_p_0_ * t95;
+  const Real t97 = t92 + t96;
+  const Real t98 = t93 + t97;
+  const Real t99 = t91 * w[0];
+  const Real t100 = s_r_p_0_ * t99;
+  const Real t101 = t94 * t87;
+  const Real t102 = t100 + t101;
+  const Real t103 = t70 * t90;
+  const Real t104 = s_r_a_0_ * t103;
+  const Real t105 = t104 + t101;
+  const Real t106 = t102 + t105;
+  const Real t107 = t98 - t106;
+  const Real t108 = par.l_2 * t107;
+  const Real t109 = t95 * par.l_1;
+  const Real t110 = t108 + t109;
+  const Real t111 = t55 - t110;
+  const Real t112 = t86 + t111;
+  const Real t113 = s_r_a_1_ * t74;
+  const Real t114 = t46 * t71;
+  const Real t115 = t113 - t114;
+  const Real t116 = t52 - t114;
+  const Real t117 = t115 + t116;
+  const Real t118 = c_r_a_1_ * t79;
+  const Real t119 = t73 * t49;
+  const Real t120 = t118 - t119;
+  const Real t121 = t48 - t119;
+  const Real t122 = t120 + t121;
+  const Real t123 = t117 + t122;
+  const Real t124 = t123 * par.l_2;
+  const Real t125 = t99 * par.l_1;
+  const Real t126 = s_r_a_0_ * t88;
+  const Real t127 = t90 * t94;
+  const Real t128 = t126 - t127;
+  const Real t129 = c_r_p_0_ * t99;
+  const Real t130 = t129 - t127;
+  const Real t131 = t128 + t130;
+  const Real t132 = c_r_a_0_ * t103;
+  const Real t133 = t91 * t87;
+  const Real t134 = t132 - t133;
+  const Real t135 = s_r_p_0_ * t95;
+  const Real t136 = t135 - t133;
+  const Real t137 = t134 + t136;
+  const Real t138 = t131 + t137;
+  const Real t139 = t138 * par.l_2;
+  const Real t140 = t125 + t139;
+  const Real t141 = t51 - t140;
+  const Real t142 = t124 + t141;
+
+  // drift of the kernel
+  const Real t143 = t30 * t112;
+  const Real t144 = t142 + t143;
+  const Real t145 = t35 * t144;
+  const Real t146 = t145 * t16;
+  const Real t147 = t146 + t112;
+  const Real t148 = t147 * t29;
+
+  // left_crank: acceleration
+  const Real t149 = w[0] * w[0];
+
+  // left_rod: acceleration
+  const Real t150 = par.l_1 * t149;
+  const Real t151 = t26 - t150;
+  const Real t152 = s_r_p_0_ * t151;
+
+  // reduced mass matrix
+  const Real t153 = w_dot[1] * t42;
+  const Real t154 = t36 * w_dot[0];
+  const Real t155 = t153 + t154;
+  const Real t156 = t145 + t155;
+  const Real t157 = w_dot[1] * t45;
+  const Real t158 = t39 * w_dot[0];
+  const Real t159 = t157 + t158;
+  const Real t160 = t148 + t159;
+
+  // left_rod: acceleration
+  const Real t161 = w_dot[0] - t156;
+  const Real t162 = w_dot[0] * par.l_1;
+  const Real t163 = t25 + t162;
+  const Real t164 = t163 * c_r_p_0_;
+  const Real t165 = t164 - t152;
+
+  // right_rod: acceleration
+  const Real t166 = w_dot[1] - t160;
+
+  // left_rod: wrench
+  const Real t167 = t161 * par.k4;
+  const Real t168 = par.k3 * t165;
+  const Real t169 = t167 + t168;
+
+  // right_rod: wrench
+  const Real t170 = t166 * par.k4;
+  const Real t171 = t64 + t170;
+
+  // multipliers
+  const Real t172 = t171 * t29;
+  const Real t173 = t172 * t16;
+  const Real t174 = t173 + t169;
+  const Real t175 = t174 * t35;
+  const Real t176 = t30 * t175;
+  const Real t177 = t172 + t176;
+
+  lambda[0] = t177;
+  lambda[1] = t175;
+}
+
+}  // namespace chart2
+
+namespace chart3 {
+
+/// All velocities from the reduced ones, active joints free.
+/// route: kernel
+/// operations: 15 add, 30 mul, 2 div, 3 neg, 4 sin, 4 cos
+/// @param[in]  par          made by prepare()
+/// @param[in]  r_p          (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a          (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[out] r_p_dot_out  (2) per r_p: passive coordinates
+/// @param[out] r_a_dot_out  (2) per r_a: torque-driven coordinates
+/// @param[out] H_w          (4x2) mixed: kernel of (A, B_p, B_a), rows (eta, r_p, r_a)
+template <class Real>
+inline void torque_driven_kinematics(const Prepared<Real>& par,
+                                     const Real (&r_p)[2],
+                                     const Real (&r_a)[2],
+                                     const Real (&w)[2],
+                                     Real (&r_p_dot_out)[2],
+                                     Real (&r_a_dot_out)[2],
+                                     Real (&H_w)[4 * 2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // kernel
+  const Real t25 = constant<Real>(1.0L) / t6;
+  const Real t26 = t25 * t12;
+  const Real t27 = t26 * t16;
+  const Real t28 = t23 - t27;
+  const Real t29 = t26 * t4;
+  const Real t30 = t29 - t11;
+  const Real t31 = constant<Real>(1.0L) / t30;
+  const Real t32 = t28 * t31;
+  const Real t33 = t32 * t4;
+  const Real t34 = t16 + t33;
+  const Real t35 = t25 * t34;
+  const Real t36 = t26 * t18;
+  const Real t37 = t24 - t36;
+  const Real t38 = t31 * t37;
+  const Real t39 = -t38;
+  const Real t40 = -t32;
+  const Real t41 = t38 * t4;
+  const Real t42 = t18 + t41;
+  const Real t43 = t25 * t42;
+
+  // multipliers
+  const Real t44 = t32 * w[0];
+  const Real t45 = t38 * w[1];
+  const Real t46 = t44 + t45;
+  const Real t47 = -t46;
+  const Real t48 = t35 * w[0];
+  const Real t49 = w[1] * t43;
+  const Real t50 = t48 + t49;
+
+  r_p_dot_out[0] = w[0];
+  r_p_dot_out[1] = t47;
+  r_a_dot_out[0] = w[1];
+  r_a_dot_out[1] = t50;
+  H_w[0] = constant<Real>(1.0L);
+  H_w[1] = constant<Real>(0.0L);
+  H_w[2] = t40;
+  H_w[3] = t39;
+  H_w[4] = constant<Real>(0.0L);
+  H_w[5] = constant<Real>(1.0L);
+  H_w[6] = t35;
+  H_w[7] = t43;
+}
+
+}  // namespace chart3
+
+namespace chart3 {
+
+/// Reduced velocities of admissible ones, active joints free.
+/// route: kernel
+/// operations: none
+/// @param[in]  par      made by prepare()
+/// @param[in]  r_a_dot  (2) rad/s or m/s: rates of r_a
+/// @param[in]  r_p_dot  (2) rad/s or m/s: rates of r_p
+/// @param[out] w_out    (2) mixed: reduced velocities
+template <class Real>
+inline void torque_driven_velocities(const Prepared<Real>&,
+                                     const Real (&r_a_dot)[2],
+                                     const Real (&r_p_dot)[2],
+                                     Real (&w_out)[2]) noexcept {
+  w_out[0] = r_p_dot[0];
+  w_out[1] = r_a_dot[0];
+}
+
+}  // namespace chart3
+
+namespace chart3 {
+
+/// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
+/// route: all blocks, (66)-(68)
+/// operations: 104 add, 164 mul, 4 div, 1 neg, 4 sin, 4 cos
+/// @param[in]  par           made by prepare()
+/// @param[in]  r_p           (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a           (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[in]  tau_a         (2) N m or N: torques of the torque-driven coordinates
+/// @param[out] w_dot_out     (2) mixed: derivative of w
+/// @param[out] r_p_ddot      (2) per r_p: passive coordinates
+/// @param[out] r_a_ddot_out  (2) per r_a: torque-driven coordinates
+template <class Real>
+inline void torque_driven_dynamics(const Prepared<Real>& par,
+                                   const Real (&r_p)[2],
+                                   const Real (&r_a)[2],
+                                   const Real (&w)[2],
+                                   const Real (&tau_a)[2],
+                                   Real (&w_dot_out)[2],
+                                   Real (&r_p_ddot)[2],
+                                   Real (&r_a_ddot_out)[2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // kernel
+  const Real t25 = s_r_p_1_ * par.l_1;
+  const Real t26 = s_r_p_0_ * par.l_1;
+
+  // left_rod: acceleration
+  const Real t27 = c_r_p_0_ * par.l_1;
+
+  // left_rod: wrench
+  const Real t28 = par.m_2 * t26;
+  const Real t29 = t27 * par.k3;
+  const Real t30 = t29 + par.k4;
+  const Real t31 = t27 * par.m_2;
+  const Real t32 = par.k3 + t31;
+
+  // left_rod: joint force
+  const Real t33 = s_r_p_0_ * t28;
+  const Real t34 = c_r_p_0_ * t32;
+  const Real t35 = t33 + t34;
+  const Real t36 = par.l_1 * t35;
+  const Real t37 = t36 + t30;
+  const Real t38 = t37 + par.k1;
+
+  // right_rod: acceleration
+  const Real t39 = c_r_p_1_ * par.l_1;
+
+  // right_rod: wrench
+  const Real t40 = par.k3 * t39;
+  const Real t41 = t40 + par.k4;
+  const Real t42 = par.m_2 * t39;
+  const Real t43 = par.k3 + t42;
+  const Real t44 = par.m_2 * t25;
+
+  // right_rod: joint force
+  const Real t45 = s_r_p_1_ * t44;
+  const Real t46 = c_r_p_1_ * t43;
+  const Real t47 = t45 + t46;
+  const Real t48 = t47 * par.l_1;
+  const Real t49 = t41 + t48;
+  const Real t50 = par.k1 + t49;
+
+  // left_crank: acceleration
+  const Real t51 = par.g * c_r_a_0_;
+  const Real t52 = par.g * s_r_a_0_;
+
+  // left_rod: acceleration
+  const Real t53 = t51 * c_r_p_0_;
+  const Real t54 = t51 * s_r_p_0_;
+
+  // right_crank: acceleration
+  const Real t55 = par.g * s_r_a_1_;
+  const Real t56 = c_r_a_1_ * par.g;
+
+  // right_rod: acceleration
+  const Real t57 = t56 * c_r_p_1_;
+  const Real t58 = s_r_p_1_ * t56;
+
+  // left_crank: wrench
+  const Real t59 = t51 * par.k5;
+
+  // right_crank: wrench
+  const Real t60 = t56 * par.k5;
+
+  // kernel
+  const Real t61 = constant<Real>(1.0L) / t6;
+  const Real t62 = t61 * t12;
+  const Real t63 = t62 * t16;
+  const Real t64 = t23 - t63;
+  const Real t65 = t62 * t4;
+  const Real t66 = t65 - t11;
+  const Real t67 = constant<Real>(1.0L) / t66;
+  const Real t68 = t64 * t67;
+  const Real t69 = t68 * t4;
+  const Real t70 = t16 + t69;
+  const Real t71 = t61 * t70;
+  const Real t72 = t62 * t18;
+  const Real t73 = t24 - t72;
+  const Real t74 = t67 * t73;
+  const Real t75 = t74 * t4;
+  const Real t76 = t18 + t75;
+  const Real t77 = t61 * t76;
+
+  // joint angles
+  const Real t78 = c_r_p_0_ * w[0];
+  const Real t79 = t78 * w[0];
+  const Real t80 = c_r_a_0_ * t79;
+  const Real t81 = s_r_p_0_ * w[0];
+  const Real t82 = t81 * w[0];
+  const Real t83 = s_r_a_0_ * t82;
+  const Real t84 = s_r_a_0_ * t79;
+  const Real t85 = c_r_a_0_ * t82;
+
+  // right_crank: acceleration
+  const Real t86 = w[1] * w[1];
+
+  // right_rod: acceleration
+  const Real t87 = par.l_1 * t86;
+
+  // multipliers
+  const Real t88 = t71 * w[0];
+  const Real t89 = w[1] * t77;
+  const Real t90 = t88 + t89;
+  const Real t91 = t68 * w[0];
+  const Real t92 = t74 * w[1];
+  const Real t93 = t91 + t92;
+
+  // joint angles
+  const Real t94 = c_r_a_1_ * t90;
+  const Real t95 = t90 * t94;
+  const Real t96 = s_r_p_1_ * t95;
+  const Real t97 = s_r_a_1_ * t90;
+  const Real t98 = c_r_p_1_ * t93;
+  const Real t99 = t97 * t98;
+  const Real t100 = t96 - t99;
+  const Real t101 = s_r_p_1_ * t93;
+  const Real t102 = t101 * t93;
+  const Real t103 = c_r_a_1_ * t102;
+  const Real t104 = t103 - t99;
+  const Real t105 = t100 + t104;
+  const Real t106 = t98 * t93;
+  const Real t107 = t106 * s_r_a_1_;
+  const Real t108 = t94 * t101;
+  const Real t109 = t107 - t108;
+  const Real t110 = t90 * t97;
+  const Real t111 = c_r_p_1_ * t110;
+  const Real t112 = t111 - t108;
+  const Real t113 = t109 + t112;
+  const Real t114 = t105 + t113;
+  const Real t115 = t114 * par.l_2;
+  const Real t116 = par.l_1 * t110;
+  const Real t117 = s_r_a_0_ * w[1];
+  const Real t118 = t117 * w[1];
+  const Real t119 = t118 * par.l_1;
+  const Real t120 = c_r_a_0_ * w[1];
+  const Real t121 = t120 * w[1];
+  const Real t122 = s_r_p_0_ * t121;
+  const Real t123 = t117 * t78;
+  const Real t124 = t122 + t123;
+  const Real t125 = t123 + t85;
+  const Real t126 = t124 + t125;
+  const Real t127 = t81 * t120;
+  const Real t128 = t118 * c_r_p_0_;
+  const Real t129 = t127 + t128;
+  const Real t130 = t127 + t84;
+  const Real t131 = t129 + t130;
+  const Real t132 = t126 + t131;
+  const Real t133 = t132 * par.l_2;
+  const Real t134 = t119 + t133;
+  const Real t135 = t116 - t134;
+  const Real t136 = t115 + t135;
+  const Real t137 = t106 * c_r_a_1_;
+  const Real t138 = t97 * t101;
+  const Real t139 = t137 + t138;
+  const Real t140 = c_r_p_1_ * t95;
+  const Real t141 = t140 + t138;
+  const Real t142 = t139 + t141;
+  const Real t143 = t102 * s_r_a_1_;
+  const Real t144 = t94 * t98;
+  const Real t145 = t143 + t144;
+  const Real t146 = s_r_p_1_ * t110;
+  const Real t147 = t146 + t144;
+  const Real t148 = t145 + t147;
+  const Real t149 = t142 - t148;
+  const Real t150 = t149 * par.l_2;
+  const Real t151 = par.l_1 * t95;
+  const Real t152 = par.l_1 * t121;
+  const Real t153 = c_r_p_0_ * t121;
+  const Real t154 = t117 * t81;
+  const Real t155 = t153 - t154;
+  const Real t156 = t80 - t154;
+  const Real t157 = t155 + t156;
+  const Real t158 = t78 * t120;
+  const Real t159 = t118 * s_r_p_0_;
+  const Real t160 = t158 - t159;
+  const Real t161 = t158 - t83;
+  const Real t162 = t160 + t161;
+  const Real t163 = t157 + t162;
+  const Real t164 = t163 * par.l_2;
+  const Real t165 = t152 + t164;
+  const Real t166 = t151 - t165;
+  const Real t167 = t150 + t166;
+
+  // drift of the kernel
+  const Real t168 = t62 * t167;
+  const Real t169 = t136 + t168;
+  const Real t170 = t169 * t67;
+  const Real t171 = t170 * t4;
+  const Real t172 = t171 - t167;
+  const Real t173 = t61 * t172;
+
+  // left_rod: twist
+  const Real t174 = w[1] + w[0];
+
+  // right_rod: twist
+  const Real t175 = t90 - t93;
+
+  // left_rod: acceleration
+  const Real t176 = t52 - t87;
+  const Real t177 = t176 * c_r_p_0_;
+  const Real t178 = t177 + t54;
+  const Real t179 = t176 * s_r_p_0_;
+  const Real t180 = t53 - t179;
+  const Real t181 = t174 * t174;
+
+  // right_crank: acceleration
+  const Real t182 = t90 * t90;
+
+  // right_rod: acceleration
+  const Real t183 = t182 * par.l_1;
+  const Real t184 = t55 - t183;
+  const Real t185 = t184 * c_r_p_1_;
+  const Real t186 = t175 * t175;
+  const Real t187 = s_r_p_1_ * t184;
+
+  // left_rod: wrench
+  const Real t188 = t180 * par.k3;
+  const Real t189 = t178 * par.m_2;
+  const Real t190 = par.k3 * t181;
+  const Real t191 = t189 - t190;
+  const Real t192 = t180 * par.m_2;
+
+  // right_rod: wrench
+  const Real t193 = par.k3 * t186;
+
+  // left_rod: joint force
+  const Real t194 = s_r_p_0_ * t191;
+  const Real t195 = c_r_p_0_ * t192;
+  const Real t196 = t194 + t195;
+  const Real t197 = t196 * par.l_1;
+  const Real t198 = t188 + t197;
+  const Real t199 = t59 + t198;
+
+  // reduced forces
+  const Real t200 = tau_a[0] - t199;
+
+  // right_rod: acceleration
+  const Real t201 = t185 + t58;
+  const Real t202 = t57 - t187;
+
+  // right_rod: wrench
+  const Real t203 = par.k3 * t202;
+  const Real t204 = par.m_2 * t202;
+  const Real t205 = par.m_2 * t201;
+  const Real t206 = t205 - t193;
+
+  // right_rod: joint force
+  const Real t207 = c_r_p_1_ * t204;
+  const Real t208 = s_r_p_1_ * t206;
+  const Real t209 = t207 + t208;
+  const Real t210 = t209 * par.l_1;
+  const Real t211 = t210 + t203;
+  const Real t212 = t211 + t60;
+
+  // reduced mass matrix
+  const Real t213 = t50 * t77;
+  const Real t214 = t74 * t41;
+  const Real t215 = t213 - t214;
+  const Real t216 = t215 * t77;
+  const Real t217 = t41 * t77;
+  const Real t218 = t74 * par.k4;
+  const Real t219 = t217 - t218;
+  const Real t220 = t74 * t219;
+  const Real t221 = t38 - t220;
+  const Real t222 = t216 + t221;
+  const Real t223 = t41 * t71;
+  const Real t224 = t68 * par.k4;
+  const Real t225 = t223 - t224;
+  const Real t226 = t68 * t225;
+  const Real t227 = par.k4 - t226;
+  const Real t228 = t50 * t71;
+  const Real t229 = t68 * t41;
+  const Real t230 = t228 - t229;
+  const Real t231 = t71 * t230;
+  const Real t232 = t227 + t231;
+  const Real t233 = t74 * t225;
+  const Real t234 = t30 - t233;
+  const Real t235 = t230 * t77;
+  const Real t236 = t234 + t235;
+
+  // reduced forces
+  const Real t237 = t41 * t173;
+  const Real t238 = t170 * par.k4;
+  const Real t239 = t237 - t238;
+  const Real t240 = t203 + t239;
+  const Real t241 = t68 * t240;
+  const Real t242 = t241 - t188;
+  const Real t243 = t50 * t173;
+  const Real t244 = t170 * t41;
+  const Real t245 = t243 - t244;
+  const Real t246 = t212 + t245;
+  const Real t247 = tau_a[1] - t246;
+  const Real t248 = t247 * t71;
+  const Real t249 = t242 + t248;
+  const Real t250 = t74 * t240;
+  const Real t251 = t200 + t250;
+  const Real t252 = t247 * t77;
+  const Real t253 = t251 + t252;
+
+  // reduced accelerations
+  const Real t254 = constant<Real>(1.0L) / t232;
+  const Real t255 = t249 * t254;
+  const Real t256 = t254 * t236;
+  const Real t257 = t256 * t249;
+  const Real t258 = t253 - t257;
+  const Real t259 = t256 * t236;
+  const Real t260 = t222 - t259;
+  const Real t261 = constant<Real>(1.0L) / t260;
+  const Real t262 = t258 * t261;
+  const Real t263 = t256 * t262;
+  const Real t264 = t255 - t263;
+
+  // accelerations
+  const Real t265 = t71 * t264;
+  const Real t266 = t262 * t77;
+  const Real t267 = t265 + t266;
+  const Real t268 = t267 + t173;
+  const Real t269 = t74 * t262;
+  const Real t270 = t68 * t264;
+  const Real t271 = t269 + t270;
+  const Real t272 = t170 + t271;
+  const Real t273 = -t272;
+
+  w_dot_out[0] = t264;
+  w_dot_out[1] = t262;
+  r_p_ddot[0] = t264;
+  r_p_ddot[1] = t273;
+  r_a_ddot_out[0] = t262;
+  r_a_ddot_out[1] = t268;
+}
+
+}  // namespace chart3
+
+namespace chart3 {
+
+/// Constraint forces with the torques given, least norm.
+/// route: projected recursion
+/// operations: 71 add, 111 mul, 2 div, 4 sin, 4 cos
+/// @param[in]  par     made by prepare()
+/// @param[in]  r_p     (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a     (2) rad or m: left, right
+/// @param[in]  w
+///     (2) mixed: reduced velocities with r_a free: pivoted basis, nu = (left_elbow, right); in chart 2:
+///         pivoted basis, nu = (left, right); in chart 3: pivoted basis, nu = (left_elbow, left)
+/// @param[in]  tau_a   (2) N m or N: torques of the torque-driven coordinates
+/// @param[in]  w_dot   (2) mixed: derivative of w
+/// @param[out] lambda  (2) mixed: one for each row of eq. (2)
+template <class Real>
+inline void torque_driven_multipliers(const Prepared<Real>& par,
+                                      const Real (&r_p)[2],
+                                      const Real (&r_a)[2],
+                                      const Real (&w)[2],
+                                      const Real (&tau_a)[2],
+                                      const Real (&w_dot)[2],
+                                      Real (&lambda)[2]) noexcept {
+  using std::cos;
+  using std::sin;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // right_crank: acceleration
+  const Real t25 = par.g * s_r_a_1_;
+  const Real t26 = c_r_a_1_ * par.g;
+
+  // right_crank: wrench
+  const Real t27 = t26 * par.k5;
+
+  // kernel
+  const Real t28 = constant<Real>(1.0L) / t6;
+  const Real t29 = t28 * t12;
+  const Real t30 = t29 * t16;
+  const Real t31 = t23 - t30;
+  const Real t32 = t29 * t4;
+  const Real t33 = t32 - t11;
+  const Real t34 = constant<Real>(1.0L) / t33;
+  const Real t35 = t31 * t34;
+  const Real t36 = t35 * t4;
+  const Real t37 = t16 + t36;
+  const Real t38 = t28 * t37;
+  const Real t39 = t29 * t18;
+  const Real t40 = t24 - t39;
+  const Real t41 = t34 * t40;
+  const Real t42 = t41 * t4;
+  const Real t43 = t18 + t42;
+  const Real t44 = t28 * t43;
+
+  // joint angles
+  const Real t45 = c_r_p_0_ * w[0];
+  const Real t46 = t45 * w[0];
+  const Real t47 = c_r_a_0_ * t46;
+  const Real t48 = s_r_p_0_ * w[0];
+  const Real t49 = t48 * w[0];
+  const Real t50 = s_r_a_0_ * t49;
+  const Real t51 = s_r_a_0_ * t46;
+  const Real t52 = c_r_a_0_ * t49;
+
+  // multipliers
+  const Real t53 = t38 * w[0];
+  const Real t54 = w[1] * t44;
+  const Real t55 = t53 + t54;
+  const Real t56 = t35 * w[0];
+  const Real t57 = t41 * w[1];
+  const Real t58 = t56 + t57;
+
+  // joint angles
+  const Real t59 = c_r_a_1_ * t55;
+  const Real t60 = t55 * t59;
+  const Real t61 = s_r_p_1_ * t60;
+  const Real t62 = s_r_a_1_ * t55;
+  const Real t63 = c_r_p_1_ * t58;
+  const Real t64 = t62 * t63;
+  const Real t65 = t61 - t64;
+  const Real t66 = s_r_p_1_ * t58;
+  const Real t67 = t66 * t58;
+  const Real t68 = c_r_a_1_ * t67;
+  const Real t69 = t68 - t64;
+  const Real t70 = t65 + t69;
+  const Real t71 = t63 * t58;
+  const Real t72 = t71 * s_r_a_1_;
+  const Real t73 = t59 * t66;
+  const Real t74 = t72 - t73;
+  const Real t75 = t55 * t62;
+  const Real t76 = c_r_p_1_ * t75;
+  const Real t77 = t76 - t73;
+  const Real t78 = t74 + t77;
+  const Real t79 = t70 + t78;
+  const Real t80 = t79 * par.l_2;
+  const Real t81 = par.l_1 * t75;
+  const Real t82 = s_r_a_0_ * w[1];
+  const Real t83 = t82 * w[1];
+  const Real t84 = t83 * par.l_1;
+  const Real t85 = c_r_a_0_ * w[1];
+  const Real t86 = t85 * w[1];
+  const Real t87 = s_r_p_0_ * t86;
+  const Real t88 = t82 * t45;
+  const Real t89 = t87 + t88;
+  const Real t90 = t88 + t52;
+  const Real t91 = t89 + t90;
+  const Real t92 = t48 * t85;
+  const Real t93 = t83 * c_r_p_0_;
+  const Real t94 = t92 + t93;
+  const Real t95 = t92 + t51;
+  const Real t96 = t94 + t95;
+  const Real t97 = t91 + t96;
+  const Real t98 = t97 * par.l_2;
+  const Real t99 = t84 + t98;
+  const Real t100 = t81 - t99;
+  const Real t101 = t80 + t100;
+  const Real t102 = t71 * c_r_a_1_;
+  const Real t103 = t62 * t66;
+  const Real t104 = t102 + t103;
+  const Real t105 = c_r_p_1_ * t60;
+  const Real t106 = t105 + t103;
+  const Real t107 = t104 + t106;
+  const Real t108 = t67 * s_r_a_1_;
+  const Real t109 = t59 * t63;
+  const Real t110 = t108 + t109;
+  const Real t111 = s_r_p_1_ * t75;
+  const Real t112 = t111 + t109;
+  const Real t113 = t110 + t112;
+  const Real t114 = t107 - t113;
+  const Real t115 = t114 * par.l_2;
+  const Real t116 = par.l_1 * t60;
+  const Real t117 = par.l_1 * t86;
+  const Real t118 = c_r_p_0_ * t86;
+  const Real t119 = t82 * t48;
+  const Real t120 = t118 - t119;
+  const Real t121 = t47 - t119;
+  const Real t122 = t120 + t121;
+  const Real t123 = t45 * t85;
+  const Real t124 = t83 * s_r_p_0_;
+  const Real t125 = t123 - t124;
+  const Real t126 = t123 - t50;
+  const Real t127 = t125 + t126;
+  const Real t128 = t122 + t127;
+  const Real t129 = t128 * par.l_2;
+  const Real t130 = t117 + t129;
+  const Real t131 = t116 - t130;
+  const Real t132 = t115 + t131;
+
+  // drift of the kernel
+  const Real t133 = t29 * t132;
+  const Real t134 = t101 + t133;
+  const Real t135 = t134 * t34;
+  const Real t136 = t135 * t4;
+  const Real t137 = t136 - t132;
+  const Real t138 = t28 * t137;
+
+  // right_rod: twist
+  const Real t139 = t55 - t58;
+
+  // right_crank: acceleration
+  const Real t140 = t55 * t55;
+
+  // right_rod: acceleration
+  const Real t141 = t140 * par.l_1;
+  const Real t142 = t25 - t141;
+  const Real t143 = t142 * c_r_p_1_;
+  const Real t144 = t139 * t139;
+  const Real t145 = s_r_p_1_ * t142;
+
+  // right_rod: wrench
+  const Real t146 = par.k3 * t144;
+
+  // reduced mass matrix
+  const Real t147 = t38 * w_dot[0];
+  const Real t148 = w_dot[1] * t44;
+  const Real t149 = t147 + t148;
+  const Real t150 = t149 + t138;
+  const Real t151 = t35 * w_dot[0];
+  const Real t152 = t41 * w_dot[1];
+  const Real t153 = t151 + t152;
+  const Real t154 = t135 + t153;
+
+  // right_rod: acceleration
+  const Real t155 = t150 * par.l_1;
+  const Real t156 = t26 + t155;
+  const Real t157 = s_r_p_1_ * t156;
+  const Real t158 = t143 + t157;
+  const Real t159 = t150 - t154;
+  const Real t160 = c_r_p_1_ * t156;
+  const Real t161 = t160 - t145;
+
+  // right_crank: wrench
+  const Real t162 = par.k1 * t150;
+  const Real t163 = t27 + t162;
+
+  // right_rod: wrench
+  const Real t164 = par.m_2 * t158;
+  const Real t165 = t164 - t146;
+  const Real t166 = par.m_2 * t161;
+  const Real t167 = t159 * par.k3;
+  const Real t168 = t166 + t167;
+  const Real t169 = par.k3 * t161;
+  const Real t170 = t159 * par.k4;
+  const Real t171 = t169 + t170;
+
+  // right_rod: joint force
+  const Real t172 = t165 * s_r_p_1_;
+  const Real t173 = c_r_p_1_ * t168;
+  const Real t174 = t172 + t173;
+  const Real t175 = par.l_1 * t174;
+  const Real t176 = t175 + t171;
+  const Real t177 = t176 + t163;
+
+  // left_crank: joint force
+  const Real t178 = t177 - tau_a[1];
+
+  // multipliers
+  const Real t179 = t28 * t178;
+  const Real t180 = t179 * t4;
+  const Real t181 = t171 - t180;
+  const Real t182 = t34 * t181;
+  const Real t183 = t29 * t182;
+  const Real t184 = t179 + t183;
+
+  lambda[0] = t184;
+  lambda[1] = t182;
+}
+
+}  // namespace chart3
+
+/// How good each chart is here, from 1 down to 0 where it is singular. Change where that in use falls below a
+/// quarter of the best: w is then what torque_driven_velocities of the new chart makes of what
+/// torque_driven_kinematics of the old one gives.
+/// route: elimination
+/// operations: 38 add, 61 mul, 9 div, 3 sqrt, 4 sin, 4 cos
+/// @param[in]  par      made by prepare()
+/// @param[in]  r_p      (2) rad or m: left_elbow, right_elbow
+/// @param[in]  r_a      (2) rad or m: left, right
+/// @param[out] quality  (3) 1: one for each chart
+template <class Real>
+inline void torque_driven_chart_quality(const Prepared<Real>& par,
+                                        const Real (&r_p)[2],
+                                        const Real (&r_a)[2],
+                                        Real (&quality)[3]) noexcept {
+  using std::cos;
+  using std::sin;
+  using std::sqrt;
+  using detail::constant;
+  const Real s_r_p_0_ = sin(r_p[0]);
+  const Real c_r_p_0_ = cos(r_p[0]);
+  const Real s_r_p_1_ = sin(r_p[1]);
+  const Real c_r_p_1_ = cos(r_p[1]);
+  const Real s_r_a_0_ = sin(r_a[0]);
+  const Real c_r_a_0_ = cos(r_a[0]);
+  const Real s_r_a_1_ = sin(r_a[1]);
+  const Real c_r_a_1_ = cos(r_a[1]);
+
+  // joint angles
+  const Real t1 = s_r_a_1_ * c_r_p_1_;
+  const Real t2 = c_r_a_1_ * s_r_p_1_;
+  const Real t3 = t1 + t2;
+  const Real t4 = par.l_2 * t3;
+  const Real t5 = s_r_a_1_ * par.l_1;
+  const Real t6 = t4 + t5;
+  const Real t7 = c_r_a_1_ * par.l_1;
+  const Real t8 = c_r_a_1_ * c_r_p_1_;
+  const Real t9 = s_r_p_1_ * s_r_a_1_;
+  const Real t10 = t8 - t9;
+  const Real t11 = t10 * par.l_2;
+  const Real t12 = t7 + t11;
+  const Real t13 = s_r_p_0_ * c_r_a_0_;
+  const Real t14 = c_r_p_0_ * s_r_a_0_;
+  const Real t15 = t13 + t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = s_r_a_0_ * par.l_1;
+  const Real t18 = t16 + t17;
+  const Real t19 = c_r_a_0_ * par.l_1;
+  const Real t20 = c_r_p_0_ * c_r_a_0_;
+  const Real t21 = s_r_p_0_ * s_r_a_0_;
+  const Real t22 = t20 - t21;
+  const Real t23 = par.l_2 * t22;
+  const Real t24 = t19 + t23;
+
+  // kernel
+  const Real t25 = constant<Real>(1.0L) / t6;
+  const Real t26 = t25 * t12;
+  const Real t27 = t26 * t26;
+  const Real t28 = t26 * t16;
+  const Real t29 = t23 - t28;
+  const Real t30 = t26 * t4;
+  const Real t31 = t30 - t11;
+  const Real t32 = constant<Real>(1.0L) / t31;
+  const Real t33 = t29 * t32;
+  const Real t34 = t33 * t4;
+  const Real t35 = t16 + t34;
+  const Real t36 = t25 * t35;
+  const Real t37 = t36 * t36;
+  const Real t38 = t33 * t33;
+  const Real t39 = constant<Real>(1.0L) + t38;
+  const Real t40 = t37 + t39;
+  const Real t41 = t26 * t18;
+  const Real t42 = t24 - t41;
+  const Real t43 = t32 * t42;
+  const Real t44 = t43 * t43;
+  const Real t45 = t40 + t44;
+  const Real t46 = t43 * t4;
+  const Real t47 = t18 + t46;
+  const Real t48 = t25 * t47;
+  const Real t49 = t48 * t48;
+  const Real t50 = t45 + t49;
+  const Real t51 = t27 + t50;
+  const Real t52 = sqrt(t51);
+  const Real t53 = constant<Real>(1.0L) / t52;
+  const Real t54 = constant<Real>(1.0L) / t4;
+  const Real t55 = t54 * t11;
+  const Real t56 = t55 * t55;
+  const Real t57 = t55 * t16;
+  const Real t58 = t23 - t57;
+  const Real t59 = constant<Real>(1.0L) / t58;
+  const Real t60 = t55 * t6;
+  const Real t61 = t60 - t12;
+  const Real t62 = t59 * t61;
+  const Real t63 = t62 * t62;
+  const Real t64 = t55 * t18;
+  const Real t65 = t24 - t64;
+  const Real t66 = t65 * t59;
+  const Real t67 = t16 * t66;
+  const Real t68 = t67 - t18;
+  const Real t69 = t68 * t54;
+  const Real t70 = t69 * t69;
+  const Real t71 = t66 * t66;
+  const Real t72 = constant<Real>(1.0L) + t71;
+  const Real t73 = t70 + t72;
+  const Real t74 = t63 + t73;
+  const Real t75 = t16 * t62;
+  const Real t76 = t6 + t75;
+  const Real t77 = t76 * t54;
+  const Real t78 = t77 * t77;
+  const Real t79 = t74 + t78;
+  const Real t80 = t56 + t79;
+  const Real t81 = sqrt(t80);
+  const Real t82 = constant<Real>(1.0L) / t81;
+  const Real t83 = constant<Real>(1.0L) / t18;
+  const Real t84 = t83 * t24;
+  const Real t85 = t84 * t84;
+  const Real t86 = t16 * t84;
+  const Real t87 = t23 - t86;
+  const Real t88 = t84 * t4;
+  const Real t89 = t88 - t11;
+  const Real t90 = constant<Real>(1.0L) / t89;
+  const Real t91 = t87 * t90;
+  const Real t92 = t91 * t91;
+  const Real t93 = constant<Real>(1.0L) + t92;
+  const Real t94 = t4 * t91;
+  const Real t95 = t16 + t94;
+  const Real t96 = t83 * t95;
+  const Real t97 = t96 * t96;
+  const Real t98 = t93 + t97;
+  const Real t99 = t6 * t84;
+  const Real t100 = t99 - t12;
+  const Real t101 = t90 * t100;
+  const Real t102 = t101 * t101;
+  const Real t103 = t98 + t102;
+  const Real t104 = t101 * t4;
+  const Real t105 = t6 - t104;
+  const Real t106 = t83 * t105;
+  const Real t107 = t106 * t106;
+  const Real t108 = t103 + t107;
+  const Real t109 = t85 + t108;
+  const Real t110 = sqrt(t109);
+  const Real t111 = constant<Real>(1.0L) / t110;
+
+  quality[0] = t111;
+  quality[1] = t82;
+  quality[2] = t53;
+}
+
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.
 /// route: recursion
 /// operations: 15 add, 16 mul, 4 neg, 4 sin, 4 cos
@@ -2251,15 +3981,15 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t15 = s_r_a_1_ * par.l_1;
   const Real t16 = s_r_a_0_ * par.l_1;
 
+  // multipliers
+  const Real t17 = -t3;
+
   // conditions on the position
-  const Real t17 = t7 - par.b;
-  const Real t18 = par.b + t8;
+  const Real t18 = t7 - par.b;
+  const Real t19 = par.b + t8;
 
   // left_crank: pose
-  const Real t19 = -s_r_a_0_;
-
-  // left_rod: pose
-  const Real t20 = -t3;
+  const Real t20 = -s_r_a_0_;
 
   // right_crank: pose
   const Real t21 = -s_r_a_1_;
@@ -2280,7 +4010,7 @@ inline void body_poses(const Prepared<Real>& par,
   p_ground[1] = constant<Real>(0.0L);
   p_ground[2] = constant<Real>(0.0L);
   R_left_crank[0] = c_r_a_0_;
-  R_left_crank[1] = t19;
+  R_left_crank[1] = t20;
   R_left_crank[2] = constant<Real>(0.0L);
   R_left_crank[3] = s_r_a_0_;
   R_left_crank[4] = c_r_a_0_;
@@ -2292,7 +4022,7 @@ inline void body_poses(const Prepared<Real>& par,
   p_left_crank[1] = constant<Real>(0.0L);
   p_left_crank[2] = constant<Real>(0.0L);
   R_left_rod[0] = t14;
-  R_left_rod[1] = t20;
+  R_left_rod[1] = t17;
   R_left_rod[2] = constant<Real>(0.0L);
   R_left_rod[3] = t3;
   R_left_rod[4] = t14;
@@ -2300,7 +4030,7 @@ inline void body_poses(const Prepared<Real>& par,
   R_left_rod[6] = constant<Real>(0.0L);
   R_left_rod[7] = constant<Real>(0.0L);
   R_left_rod[8] = constant<Real>(1.0L);
-  p_left_rod[0] = t17;
+  p_left_rod[0] = t18;
   p_left_rod[1] = t16;
   p_left_rod[2] = constant<Real>(0.0L);
   R_right_crank[0] = c_r_a_1_;
@@ -2324,9 +4054,31 @@ inline void body_poses(const Prepared<Real>& par,
   R_right_rod[6] = constant<Real>(0.0L);
   R_right_rod[7] = constant<Real>(0.0L);
   R_right_rod[8] = constant<Real>(1.0L);
-  p_right_rod[0] = t18;
+  p_right_rod[0] = t19;
   p_right_rod[1] = t15;
   p_right_rod[2] = constant<Real>(0.0L);
+}
+
+namespace chart1 {
+
+using five_bar::standard::torque_driven_kinematics;
+using five_bar::standard::torque_driven_velocities;
+using five_bar::standard::torque_driven_dynamics;
+using five_bar::standard::torque_driven_multipliers;
+
+}  // namespace chart1
+
+/// Number of the chart to go on in, from 1: the current one while its quality is at least a quarter of the best.
+/// @param[in]  quality  of chart_quality()
+/// @param[in]  current  number of the chart in use; 0 where there is none yet
+template <class Real, int charts>
+inline int choose_chart(const Real (&quality)[charts], int current) noexcept {
+  int best = 0;
+  for (int i = 1; i < charts; ++i) {
+    if (quality[i] > quality[best] || quality[best] != quality[best]) best = i;
+  }
+  const bool stays = current > 0 && quality[current - 1] >= detail::constant<Real>(0.25L) * quality[best];
+  return stays ? current : best + 1;
 }
 
 }  // namespace five_bar::standard

@@ -26,8 +26,10 @@ Evaluated<S> evaluate_program(const Model& model, const Derivation& derivation, 
     in["tau_a"].push_back(input.has_torque ? input.tau[a] : S(0));
   }
   const std::size_t chart = chart_finder<S>(derivation)(in);
+  const std::size_t torque_driven_chart = chart_finder<S>(derivation, "torque_driven_")(in);
   const auto run = [&](const std::string& name) {
-    const std::string of_chart = chart_prefix(chart) + name;
+    const std::string of_chart =
+        chart_prefix(name.starts_with("torque_driven_") ? torque_driven_chart : chart) + name;
     if (find_function(program, of_chart) != nullptr) return call(of_chart, in);
     return find_function(program, name) != nullptr ? call(name, in) : NamedValues<S>{};
   };

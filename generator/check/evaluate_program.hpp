@@ -94,31 +94,34 @@ NamedValues<S> position_inputs(const Model& model, const Partition& partition, c
 }
 
 /// Which chart of the kernel is best at a position; 0 where there is one. By double arithmetic, in which a
-/// chart that divides by zero is no fault, and at the default parameters.
+/// chart that divides by zero is no fault, and at the default parameters. `family` stands before the name of
+/// the function that tells: "torque_driven_" for the functions of that name.
 template <class S>
 using ChartFinder = std::function<std::size_t(const NamedValues<S>& position)>;
 template <class S>
-ChartFinder<S> chart_finder(const Derivation& derivation) {
-  if (derivation.reduction.charts.size() < 2) return [](const NamedValues<S>&) { return std::size_t{0}; };
+ChartFinder<S> chart_finder(const Derivation& derivation, const std::string& family = "") {
+  const std::string name = family + "chart_quality";
+  if (find_function(derivation.program, name) == nullptr)
+    return [](const NamedValues<S>&) { return std::size_t{0}; };
   std::vector<double> parameters;
   for (const ParameterInfo& p : derivation.program.parameters) parameters.push_back(p.value.to_double());
-  return
-      [call = interpreting_caller<double>(derivation.program, parameters)](const NamedValues<S>& position) {
-        NamedValues<double> rounded;
-        for (const char* name : {"t", "g", "R", "p", "r_p", "r_a"}) {
-          const auto block = position.find(name);
-          if (block == position.end()) continue;
-          for (const S& x : block->second) {
-            if constexpr (std::is_same_v<S, double>) {
-              rounded[name].push_back(x);
-            } else {
-              rounded[name].push_back(x.to_double());
-            }
-          }
+  return [name, call = interpreting_caller<double>(derivation.program, parameters)](
+             const NamedValues<S>& position) {
+    NamedValues<double> rounded;
+    for (const char* name : {"t", "g", "R", "p", "r_p", "r_a"}) {
+      const auto block = position.find(name);
+      if (block == position.end()) continue;
+      for (const S& x : block->second) {
+        if constexpr (std::is_same_v<S, double>) {
+          rounded[name].push_back(x);
+        } else {
+          rounded[name].push_back(x.to_double());
         }
-        const std::vector<double> quality = call("chart_quality", rounded).at("quality");
-        return best_chart(std::span<const double>(quality));
-      };
+      }
+    }
+    const std::vector<double> quality = call(name, rounded).at("quality");
+    return best_chart(std::span<const double>(quality));
+  };
 }
 
 /// Every function that the program has, those of the best chart where there are several.

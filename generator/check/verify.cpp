@@ -45,6 +45,7 @@ class Verifier {
       double_parameters_.push_back(rounded);
     }
     chart_at_ = chart_finder<Exact>(derivation);
+    torque_driven_chart_at_ = chart_finder<Exact>(derivation, "torque_driven_");
     exact_ = interpreting_caller<Exact>(program_, parameters_);
     compiled_ = compiled_caller(program_, parameters_);
   }
@@ -70,6 +71,7 @@ class Verifier {
     state_ = random_state(model_, source);
     NamedValues<Exact> in = position_inputs(model_, partition_, state_);
     chart_ = chart_prefix(chart_at_(in));
+    torque_driven_chart_ = chart_prefix(torque_driven_chart_at_(in));
     in["g"] = {state_.p.x, state_.p.y, Exact::from_double(atan2(state_.R(1, 0), state_.R(0, 0)).to_double())};
     if (model_.group == GroupKind::SE2)
       state_.R = AxisRotation<Exact>{2, cos(in["g"][2]), sin(in["g"][2])}.matrix();
@@ -115,10 +117,11 @@ class Verifier {
   /// Functions of a chart are compared where it is the best. Quality alone is compared everywhere but where a
   /// chart divides by zero.
   [[nodiscard]] bool is_of_another_chart(const std::string& function) const {
-    if (derivation_.reduction.charts.size() < 2) return false;
     const std::size_t at = function.find("::");
-    if (at != std::string::npos) return function.substr(0, at + 2) != chart_;
-    return !chart_.empty() && find_function(program_, chart_prefix(1) + function) != nullptr;
+    const std::string name = at == std::string::npos ? function : function.substr(at + 2);
+    const std::string& best = name.starts_with("torque_driven_") ? torque_driven_chart_ : chart_;
+    if (at != std::string::npos) return function.substr(0, at + 2) != best;
+    return !best.empty() && find_function(program_, best + name) != nullptr;
   }
 
   void compare(const NamedValues<Exact>& in) {
@@ -347,8 +350,8 @@ class Verifier {
   ProgramCaller<Exact> exact_;
   ProgramCaller<double> compiled_;
   State<Exact> state_;
-  ChartFinder<Exact> chart_at_;
-  std::string chart_;  // prefix of the functions of the best chart at the state
+  ChartFinder<Exact> chart_at_, torque_driven_chart_at_;
+  std::string chart_, torque_driven_chart_;  // prefixes of the functions of the best chart at the state
   std::string label_;
   std::map<std::string, double>
       residual_scale_;  // natural scale of the compatibility residuals, which vanish

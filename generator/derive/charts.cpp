@@ -67,8 +67,7 @@ class AtlasChooser {
         !request_.preferred_free.empty() && std::ranges::all_of(request_.preferred_free, [&](int velocity) {
           return std::ranges::find(kernel.free, velocity) != kernel.free.end();
         });
-    return !request_.one_basis && kernel.H.cols() > 0 && request_.rows.A.rows() > 0 &&
-           !kernel.divides_by_constants && !asked_for;
+    return kernel.H.cols() > 0 && request_.rows.A.rows() > 0 && !kernel.divides_by_constants && !asked_for;
   }
 
   void start_search() {

@@ -30,7 +30,6 @@ struct AtlasRequest {
   std::vector<int> preferred_free;  // the description's choice: one basis that has them
   std::vector<std::string> passive_names;
   std::vector<SampleState> samples;
-  bool one_basis = false;  // whatever a search would find
 };
 
 KernelAtlas choose_atlas(Tape& tape, const ProgramSymbols& symbols, const AtlasRequest& request);

@@ -78,7 +78,7 @@ class Deriver {
       }
     }
     motion_ = reduce(motion_partition_);
-    nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + meaning_of_nu());
+    nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + meaning_of_nu(motion_));
     r_a_dot_ = symbols_.block("r_a_dot", motion_partition_.s_a(), "rad/s or m/s", "rates of r_a");
     r_a_ddot_ =
         symbols_.block("r_a_ddot", motion_partition_.s_a(), "rad/s^2 or m/s^2", "second derivatives of r_a");
@@ -94,15 +94,8 @@ class Deriver {
     derive_energies();
     derive_poses();
     derive_further_charts();
-    result_->reduction = {motion_.partition,
-                          motion_.ranks,
-                          motion_.reduction->kernel(),
-                          request_.inverse,
-                          {},
-                          motion_.atlas.first_basis_singular_at,
-                          motion_.atlas.singular_at};
+    result_->reduction = report(motion_);
     for (const auto& chart : motion_.atlas.charts) {
-      result_->reduction.charts.push_back(chart->kernel());
       if (request_.rates)
         result_->rates.push_back(
             symbols_.motion(merged(motion_partition_, chart->velocities(r_a_dot_, nu_), r_a_dot_)));
@@ -169,7 +162,7 @@ class Deriver {
 
   // ---- reduction
   // -----------------------------------------------------------------------------------------------
-  Reduced reduce(const Partition& partition, bool one_basis = false) {
+  Reduced reduce(const Partition& partition) {
     Reduced r;
     r.partition = partition;
     r.ranks = analyse_ranks(description_, defaults_, partition, samples_, request_.leading_rows);
@@ -193,8 +186,7 @@ class Deriver {
                             request_.inverse,
                             preferred,
                             passive_names,
-                            samples_,
-                            one_basis});
+                            samples_});
     r.reduction = r.atlas.charts.front().get();
     return r;
   }
@@ -230,9 +222,17 @@ class Deriver {
             block(driven + (acceleration ? "_ddot" : "_dot"), "per r_a", "torque-driven coordinates", r_a)};
   }
 
-  [[nodiscard]] std::string meaning_of_nu() const {
-    const auto& charts = motion_.atlas.charts;
-    std::string text = motion_.reduction->kernel().description;
+  [[nodiscard]] ReductionReport report(const Reduced& of) const {
+    ReductionReport r{of.partition,        of.ranks, of.atlas.charts.front()->kernel(),
+                      request_.inverse,    {},       of.atlas.first_basis_singular_at,
+                      of.atlas.singular_at};
+    for (const auto& chart : of.atlas.charts) r.charts.push_back(chart->kernel());
+    return r;
+  }
+
+  [[nodiscard]] static std::string meaning_of_nu(const Reduced& of) {
+    const auto& charts = of.atlas.charts;
+    std::string text = charts.front()->kernel().description;
     for (std::size_t c = 1; c < charts.size(); ++c)
       text += fmt::format("; in chart {}: {}", c + 1, charts[c]->kernel().description);
     return text;
@@ -252,10 +252,16 @@ class Deriver {
     }
     prefix_.clear();
     motion_.reduction = atlas.charts.front().get();
-    emit("chart_quality",
-         "How good each chart is here, from 1 down to 0 where it is singular. Change where that in use falls "
-         "below a quarter of the best: nu is then what reduced_velocities of the new chart makes of what "
-         "kinematics of the old one gives.",
+    emit_quality(atlas, "chart_quality", "nu", "reduced_velocities", "kinematics");
+  }
+  void emit_quality(const KernelAtlas& atlas, const std::string& name, const std::string& nu,
+                    const std::string& to, const std::string& from) {
+    emit(name,
+         fmt::format(
+             "How good each chart is here, from 1 down to 0 where it is singular. Change where that in use "
+             "falls below a quarter of the best: {} is then what {} of the new chart makes of what {} of the "
+             "old one gives.",
+             nu, to, from),
          {{"elimination", {block("quality", "1", "one for each chart", atlas.quality)}}});
   }
 
@@ -578,16 +584,30 @@ class Deriver {
             block("acceleration_residual", "mixed", "N^T (B_a r_a_ddot + bias)", Nt * sum)}}});
   }
 
+  /// Eq. (9): every active joint by torque, in charts of its own.
   void derive_torque_driven() {
     const std::vector<std::string> family = {"torque_driven_dynamics", "torque_driven_kinematics",
                                              "torque_driven_velocities", "torque_driven_multipliers"};
     if (std::ranges::none_of(family, [this](const std::string& f) { return wanted(f); }) ||
         partition_of(model_).s_a() == 0 || !request_.torque_driven.empty())
       return;
-    Reduced all = reduce(partition_of(model_, {"*"}), true);
-    const KinematicReduction& k = *all.reduction;
+    Reduced all = reduce(partition_of(model_, {"*"}));
     const auto w =
-        symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + k.kernel().description);
+        symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + meaning_of_nu(all));
+    for (std::size_t c = 0; c < all.atlas.charts.size(); ++c) {
+      prefix_ = chart_prefix(c);
+      all.reduction = all.atlas.charts[c].get();
+      derive_torque_driven(all, w, family);
+    }
+    prefix_.clear();
+    if (all.atlas.charts.size() > 1)
+      emit_quality(all.atlas, "torque_driven_chart_quality", "w", family[2], family[1]);
+    result_->torque_driven = report(all);
+  }
+
+  void derive_torque_driven(const Reduced& all, const std::vector<Expr>& w,
+                            const std::vector<std::string>& family) {
+    const KinematicReduction& k = *all.reduction;
     if (wanted(family[1])) {
       std::vector<OutputBlock> outputs = split_passive(all.partition, k.velocities({}, w), "");
       outputs.push_back(block("H_w", "mixed", "kernel of (A, B_p, B_a), rows (eta, r_p, r_a)", k.kernel().H));
@@ -634,7 +654,6 @@ class Deriver {
                  k.multipliers(residual, std::vector<Expr>(static_cast<std::size_t>(k.static_basis().cols()),
                                                            Expr(0))))}}});
     }
-    result_->torque_driven = ReductionReport{all.partition, all.ranks, k.kernel(), request_.inverse, {}};
   }
 
   void derive_position_conditions() {

@@ -6,6 +6,8 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <fstream>
+#include <sstream>
 
 #include "anholon/charts.hpp"
 #include "singular/exact_inputs.hpp"
@@ -60,6 +62,62 @@ TEST(LevelBody, MovesStraightOnAndTurnsByEulersEquationsInEveryChart) {
     }
   }
   EXPECT_GT(changes, 45);  // most attitudes have two charts of use
+}
+
+// The same body with a driven wheel. The functions torque_driven_* have charts of their own; in each they
+// give the accelerations of the program that counts the wheel with the passive joints.
+TEST(LevelBody, WithADrivenWheelHasChartsOfItsTorqueDrivenFunctions) {
+  std::ifstream file(std::string(ANHOLON_SOURCE_DIR) + "/tests/singular/level_body.toml");
+  std::ostringstream text;
+  text << file.rdbuf() << R"(
+[[body]]
+name    = "wheel"
+parent  = "body"
+inertia = { mass = 0.3, about_com = { xx = 0.001, yy = 0.001, zz = 0.002 } }
+joint   = { kind = "revolute", axis = [0, 0, 1], coordinate = "r1", drive = "active" }
+)";
+  const Model model = read_model_text(text.str(), "level_body.toml");
+  DeriveRequest by_torque;
+  by_torque.torque_driven = {"*"};
+  const auto derivation = derive(model), witness = derive(model, by_torque);
+  ASSERT_TRUE(derivation->torque_driven.has_value());
+  ASSERT_EQ(derivation->torque_driven->charts.size(), 3U);
+  const std::vector<Exact> parameters = test::rounded_parameters(model);
+  const auto generated = compiled_caller(derivation->program, parameters),
+             expected = compiled_caller(witness->program, parameters);
+  const auto chart_at = chart_finder<double>(*witness);
+  int compared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double small : {0.0, 1e-300, 1e-9, 1e-3, 0.3, -1.0}) {
+      Eigen::Vector3d up(small, -small, small / 2);
+      up(axis) = 1;
+      const Eigen::Matrix3d R =
+          Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+      SCOPED_TRACE(testing::Message() << up.transpose());
+      BothInputs in;
+      std::vector<double> rotation;
+      for (int i = 0; i < 9; ++i) rotation.push_back(R(i / 3, i % 3));
+      in.set("R", rotation), in.set("p", {0, 0, 0}), in.set("r_a", {0.4});
+      const Eigen::Vector3d v = R.transpose() * Eigen::Vector3d(1.3, -0.8, 0);
+      const std::vector<double> eta = {v(0), v(1), v(2), 0.7, -1.1, 2.3};
+      in.set("eta", eta), in.set("r_a_dot", {5.0}), in.set("r_d_dot", {5.0}), in.set("tau_a", {0.2});
+      const std::string best = chart_prefix(chart_at(in.rounded));
+      in.set("nu", expected(best + "reduced_velocities", in.rounded).at("nu"));
+      const auto want = expected(best + "forward_dynamics", in.rounded);
+      const auto quality = generated("torque_driven_chart_quality", in.rounded).at("quality");
+      for (std::size_t chart = 0; chart < quality.size(); ++chart) {
+        if (!(quality[chart] > 0.05)) continue;  // of about 0.6 at best
+        ++compared;
+        const std::string of = chart_prefix(chart) + "torque_driven_";
+        in.set("w", generated(of + "velocities", in.rounded).at("w"));
+        EXPECT_LT(distance(generated(of + "kinematics", in.rounded).at("eta"), eta), 1e-14);
+        const auto got = generated(of + "dynamics", in.rounded);
+        EXPECT_LT(distance(got.at("eta_dot"), want.at("eta_dot")), 1e-12);  // the bound of a change of chart
+        EXPECT_LT(distance(got.at("r_a_ddot"), want.at("r_d_ddot")), 1e-12);
+      }
+    }
+  }
+  EXPECT_GT(compared, 18);
 }
 
 }  // namespace
