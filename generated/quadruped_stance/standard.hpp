@@ -1065,68 +1065,91 @@ inline void torque_driven_velocities(const Prepared<Real>&, const Real (&eta)[6]
 namespace detail {
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_1(const Real (&r_a)[12],
+[[gnu::noinline]] inline void torque_driven_dynamics_block_1(const Real (&R)[9],
+                                                             const Real (&r_a)[12],
                                                              const Real (&w)[6],
+                                                             const Real (&tau_a)[12],
                                                              Real (&__restrict carried)[658]) noexcept {
   using std::cos;
   using std::sin;
   using detail::constant;
+  carried[0] = R[6];
+  carried[1] = R[7];
+  carried[2] = R[8];
+  carried[3] = w[0];
+  carried[4] = w[1];
+  carried[5] = w[2];
+  carried[6] = w[3];
+  carried[7] = w[4];
+  carried[8] = w[5];
+  carried[9] = tau_a[0];
+  carried[10] = tau_a[1];
+  carried[11] = tau_a[2];
+  carried[12] = tau_a[3];
+  carried[13] = tau_a[4];
+  carried[14] = tau_a[5];
+  carried[15] = tau_a[6];
+  carried[16] = tau_a[7];
+  carried[17] = tau_a[8];
+  carried[18] = tau_a[9];
+  carried[19] = tau_a[10];
+  carried[20] = tau_a[11];
   const Real s_r_a_0_ = sin(r_a[0]);
-  carried[0] = s_r_a_0_;
+  carried[21] = s_r_a_0_;
   const Real c_r_a_0_ = cos(r_a[0]);
-  carried[1] = c_r_a_0_;
+  carried[22] = c_r_a_0_;
   const Real s_r_a_1_ = sin(r_a[1]);
-  carried[2] = s_r_a_1_;
+  carried[23] = s_r_a_1_;
   const Real c_r_a_1_ = cos(r_a[1]);
-  carried[3] = c_r_a_1_;
+  carried[24] = c_r_a_1_;
   const Real s_r_a_2_ = sin(r_a[2]);
-  carried[4] = s_r_a_2_;
+  carried[25] = s_r_a_2_;
   const Real c_r_a_2_ = cos(r_a[2]);
-  carried[5] = c_r_a_2_;
+  carried[26] = c_r_a_2_;
   const Real s_r_a_3_ = sin(r_a[3]);
-  carried[6] = s_r_a_3_;
+  carried[27] = s_r_a_3_;
   const Real c_r_a_3_ = cos(r_a[3]);
-  carried[7] = c_r_a_3_;
+  carried[28] = c_r_a_3_;
   const Real s_r_a_4_ = sin(r_a[4]);
-  carried[8] = s_r_a_4_;
+  carried[29] = s_r_a_4_;
   const Real c_r_a_4_ = cos(r_a[4]);
-  carried[9] = c_r_a_4_;
+  carried[30] = c_r_a_4_;
   const Real s_r_a_5_ = sin(r_a[5]);
-  carried[10] = s_r_a_5_;
+  carried[31] = s_r_a_5_;
   const Real c_r_a_5_ = cos(r_a[5]);
-  carried[11] = c_r_a_5_;
+  carried[32] = c_r_a_5_;
   const Real s_r_a_6_ = sin(r_a[6]);
-  carried[12] = s_r_a_6_;
+  carried[33] = s_r_a_6_;
   const Real c_r_a_6_ = cos(r_a[6]);
-  carried[13] = c_r_a_6_;
+  carried[34] = c_r_a_6_;
   const Real s_r_a_7_ = sin(r_a[7]);
-  carried[14] = s_r_a_7_;
+  carried[35] = s_r_a_7_;
   const Real c_r_a_7_ = cos(r_a[7]);
-  carried[15] = c_r_a_7_;
+  carried[36] = c_r_a_7_;
   const Real s_r_a_8_ = sin(r_a[8]);
-  carried[16] = s_r_a_8_;
+  carried[37] = s_r_a_8_;
   const Real c_r_a_8_ = cos(r_a[8]);
-  carried[17] = c_r_a_8_;
+  carried[38] = c_r_a_8_;
   const Real s_r_a_9_ = sin(r_a[9]);
-  carried[18] = s_r_a_9_;
+  carried[39] = s_r_a_9_;
   const Real c_r_a_9_ = cos(r_a[9]);
-  carried[19] = c_r_a_9_;
+  carried[40] = c_r_a_9_;
   const Real s_r_a_10_ = sin(r_a[10]);
-  carried[20] = s_r_a_10_;
+  carried[41] = s_r_a_10_;
   const Real c_r_a_10_ = cos(r_a[10]);
-  carried[21] = c_r_a_10_;
+  carried[42] = c_r_a_10_;
   const Real s_r_a_11_ = sin(r_a[11]);
-  carried[22] = s_r_a_11_;
+  carried[43] = s_r_a_11_;
   const Real c_r_a_11_ = cos(r_a[11]);
-  carried[23] = c_r_a_11_;
+  carried[44] = c_r_a_11_;
 
   // joint angles
   const Real t1 = c_r_a_1_ * c_r_a_2_;
-  carried[24] = t1;
+  carried[45] = t1;
   const Real t2 = s_r_a_2_ * s_r_a_1_;
-  carried[25] = t2;
+  carried[46] = t2;
   const Real t3 = t1 - t2;
-  carried[26] = t3;
+  carried[47] = t3;
   const Real t4 = t3 * constant<Real>(0.25L);
   const Real t5 = c_r_a_1_ * constant<Real>(0.24L);
   const Real t6 = t5 + t4;
@@ -1134,7 +1157,7 @@ template <class Real>
   // kernel
   const Real t7 = constant<Real>(1.0L) / t6;
   const Real t8 = t7 * c_r_a_0_;
-  carried[27] = t8;
+  carried[48] = t8;
 
   // joint angles
   const Real t9 = c_r_a_1_ * constant<Real>(0.087L);
@@ -1142,22 +1165,22 @@ template <class Real>
   const Real t11 = constant<Real>(0.087L) * s_r_a_1_;
   const Real t12 = t11 * s_r_a_2_;
   const Real t13 = t10 - t12;
-  carried[28] = t13;
+  carried[49] = t13;
 
   // kernel
   const Real t14 = t13 * t8;
 
   // joint angles
   const Real t15 = s_r_a_1_ * s_r_a_0_;
-  carried[29] = t15;
+  carried[50] = t15;
   const Real t16 = s_r_a_2_ * t15;
-  carried[30] = t16;
+  carried[51] = t16;
   const Real t17 = c_r_a_1_ * s_r_a_0_;
-  carried[31] = t17;
+  carried[52] = t17;
   const Real t18 = c_r_a_2_ * t17;
-  carried[32] = t18;
+  carried[53] = t18;
   const Real t19 = t16 - t18;
-  carried[33] = t19;
+  carried[54] = t19;
 
   // kernel
   const Real t20 = t19 - t14;
@@ -1167,14 +1190,14 @@ template <class Real>
 
   // kernel
   const Real t22 = constant<Real>(1.0L) / t21;
-  carried[34] = t22;
+  carried[55] = t22;
   const Real t23 = t22 * t20;
-  carried[35] = t23;
+  carried[56] = t23;
 
   // joint angles
   const Real t24 = constant<Real>(0.24L) * c_r_a_2_;
   const Real t25 = t24 + constant<Real>(0.25L);
-  carried[36] = t25;
+  carried[57] = t25;
 
   // kernel
   const Real t26 = t25 * t23;
@@ -1183,7 +1206,7 @@ template <class Real>
   const Real t27 = t15 * c_r_a_2_;
   const Real t28 = s_r_a_2_ * t17;
   const Real t29 = t27 + t28;
-  carried[37] = t29;
+  carried[58] = t29;
 
   // kernel
   const Real t30 = t29 - t26;
@@ -1192,116 +1215,116 @@ template <class Real>
   const Real t31 = t9 * s_r_a_2_;
   const Real t32 = t11 * c_r_a_2_;
   const Real t33 = t31 + t32;
-  carried[38] = t33;
+  carried[59] = t33;
 
   // kernel
   const Real t34 = t33 * t8;
   const Real t35 = t30 + t34;
-  carried[39] = t35;
+  carried[60] = t35;
   const Real t36 = t35 * constant<Real>(4.0L);
-  carried[40] = t36;
+  carried[61] = t36;
   const Real t37 = t36 * w[1];
 
   // joint angles
   const Real t38 = s_r_a_1_ * c_r_a_2_;
   const Real t39 = c_r_a_1_ * s_r_a_2_;
   const Real t40 = t38 + t39;
-  carried[41] = t40;
+  carried[62] = t40;
 
   // kernel
   const Real t41 = t40 * t22;
-  carried[42] = t41;
+  carried[63] = t41;
   const Real t42 = t25 * t41;
   const Real t43 = t3 - t42;
-  carried[43] = t43;
+  carried[64] = t43;
   const Real t44 = constant<Real>(4.0L) * t43;
-  carried[44] = t44;
+  carried[65] = t44;
   const Real t45 = w[0] * t44;
   const Real t46 = t45 + t37;
   const Real t47 = t7 * s_r_a_0_;
-  carried[45] = t47;
+  carried[66] = t47;
   const Real t48 = t47 * t13;
 
   // joint angles
   const Real t49 = c_r_a_1_ * c_r_a_0_;
-  carried[46] = t49;
+  carried[67] = t49;
   const Real t50 = t49 * c_r_a_2_;
-  carried[47] = t50;
+  carried[68] = t50;
   const Real t51 = s_r_a_1_ * c_r_a_0_;
-  carried[48] = t51;
+  carried[69] = t51;
   const Real t52 = s_r_a_2_ * t51;
-  carried[49] = t52;
+  carried[70] = t52;
   const Real t53 = t50 - t52;
-  carried[50] = t53;
+  carried[71] = t53;
 
   // kernel
   const Real t54 = t53 - t48;
   const Real t55 = t54 * t22;
-  carried[51] = t55;
+  carried[72] = t55;
   const Real t56 = t25 * t55;
 
   // joint angles
   const Real t57 = s_r_a_2_ * t49;
   const Real t58 = t51 * c_r_a_2_;
   const Real t59 = t57 + t58;
-  carried[52] = t59;
+  carried[73] = t59;
 
   // kernel
   const Real t60 = t56 + t59;
   const Real t61 = t47 * t33;
   const Real t62 = t61 - t60;
-  carried[53] = t62;
+  carried[74] = t62;
   const Real t63 = constant<Real>(4.0L) * t62;
-  carried[54] = t63;
+  carried[75] = t63;
   const Real t64 = t63 * w[2];
   const Real t65 = t46 + t64;
 
   // joint angles
   const Real t66 = constant<Real>(0.06L) * s_r_a_0_;
   const Real t67 = t5 + t66;
-  carried[55] = t67;
+  carried[76] = t67;
   const Real t68 = t4 + t67;
 
   // kernel
   const Real t69 = t68 * t7;
-  carried[56] = t69;
+  carried[77] = t69;
   const Real t70 = t69 * t13;
 
   // joint angles
   const Real t71 = constant<Real>(0.06L) * c_r_a_0_;
   const Real t72 = constant<Real>(0.075L) + t71;
   const Real t73 = c_r_a_1_ * t72;
-  carried[57] = t73;
+  carried[78] = t73;
   const Real t74 = c_r_a_1_ * constant<Real>(0.012L);
   const Real t75 = t73 + t74;
   const Real t76 = t75 * c_r_a_2_;
   const Real t77 = s_r_a_1_ * t72;
-  carried[58] = t77;
+  carried[79] = t77;
   const Real t78 = s_r_a_1_ * constant<Real>(0.012L);
   const Real t79 = t78 + t77;
   const Real t80 = s_r_a_2_ * t79;
   const Real t81 = t76 - t80;
-  carried[59] = t81;
+  carried[80] = t81;
 
   // kernel
   const Real t82 = t81 - t70;
   const Real t83 = t82 * t22;
-  carried[60] = t83;
+  carried[81] = t83;
   const Real t84 = t25 * t83;
 
   // joint angles
   const Real t85 = t79 * c_r_a_2_;
   const Real t86 = t75 * s_r_a_2_;
   const Real t87 = t85 + t86;
-  carried[61] = t87;
+  carried[82] = t87;
 
   // kernel
   const Real t88 = t84 + t87;
   const Real t89 = t69 * t33;
   const Real t90 = t89 - t88;
-  carried[62] = t90;
+  carried[83] = t90;
   const Real t91 = constant<Real>(4.0L) * t90;
-  carried[63] = t91;
+  carried[84] = t91;
   const Real t92 = w[3] * t91;
   const Real t93 = t65 + t92;
 
@@ -1310,12 +1333,12 @@ template <class Real>
   const Real t95 = constant<Real>(0.24L) * t15;
   const Real t96 = constant<Real>(0.21L) * s_r_a_0_;
   const Real t97 = t95 - t96;
-  carried[64] = t97;
+  carried[85] = t97;
   const Real t98 = t94 + t97;
 
   // kernel
   const Real t99 = t7 * t98;
-  carried[65] = t99;
+  carried[86] = t99;
   const Real t100 = t13 * t99;
 
   // joint angles
@@ -1324,19 +1347,19 @@ template <class Real>
   const Real t103 = constant<Real>(0.21L) * c_r_a_0_;
   const Real t104 = c_r_a_1_ * t103;
   const Real t105 = t102 - t104;
-  carried[66] = t105;
+  carried[87] = t105;
   const Real t106 = t15 * constant<Real>(0.012L);
   const Real t107 = t105 + t106;
   const Real t108 = c_r_a_2_ * t107;
-  carried[67] = t108;
+  carried[88] = t108;
   const Real t109 = t103 * s_r_a_1_;
   const Real t110 = t101 * c_r_a_1_;
   const Real t111 = t109 + t110;
-  carried[68] = t111;
+  carried[89] = t111;
   const Real t112 = constant<Real>(0.012L) * t17;
-  carried[69] = t112;
+  carried[90] = t112;
   const Real t113 = constant<Real>(0.24L) * c_r_a_0_;
-  carried[70] = t113;
+  carried[91] = t113;
   const Real t114 = t113 - t112;
   const Real t115 = t111 - t114;
   const Real t116 = s_r_a_2_ * t115;
@@ -1345,13 +1368,13 @@ template <class Real>
   // kernel
   const Real t118 = t117 - t100;
   const Real t119 = t22 * t118;
-  carried[71] = t119;
+  carried[92] = t119;
   const Real t120 = t25 * t119;
 
   // joint angles
   const Real t121 = t115 * c_r_a_2_;
   const Real t122 = s_r_a_2_ * t107;
-  carried[72] = t122;
+  carried[93] = t122;
   const Real t123 = t121 - t122;
   const Real t124 = constant<Real>(0.25L) * c_r_a_0_;
   const Real t125 = t123 - t124;
@@ -1360,9 +1383,9 @@ template <class Real>
   const Real t126 = t125 - t120;
   const Real t127 = t33 * t99;
   const Real t128 = t126 + t127;
-  carried[73] = t128;
+  carried[94] = t128;
   const Real t129 = t128 * constant<Real>(4.0L);
-  carried[74] = t129;
+  carried[95] = t129;
   const Real t130 = w[4] * t129;
   const Real t131 = t130 + t93;
 
@@ -1372,7 +1395,7 @@ template <class Real>
   const Real t134 = c_r_a_1_ * t133;
   const Real t135 = t96 * s_r_a_1_;
   const Real t136 = t134 + t135;
-  carried[75] = t136;
+  carried[96] = t136;
   const Real t137 = t49 * constant<Real>(0.012L);
   const Real t138 = constant<Real>(0.24L) * s_r_a_0_;
   const Real t139 = t137 + t138;
@@ -1381,32 +1404,32 @@ template <class Real>
   const Real t142 = t133 * s_r_a_1_;
   const Real t143 = t96 * c_r_a_1_;
   const Real t144 = t142 - t143;
-  carried[76] = t144;
+  carried[97] = t144;
   const Real t145 = t51 * constant<Real>(0.012L);
   const Real t146 = t144 - t145;
   const Real t147 = t146 * c_r_a_2_;
   const Real t148 = t141 + t147;
-  carried[77] = t148;
+  carried[98] = t148;
   const Real t149 = constant<Real>(0.25L) * t59;
   const Real t150 = constant<Real>(0.24L) * t51;
   const Real t151 = t103 - t150;
-  carried[78] = t151;
+  carried[99] = t151;
   const Real t152 = t151 - t149;
 
   // kernel
   const Real t153 = t7 * t152;
-  carried[79] = t153;
+  carried[100] = t153;
   const Real t154 = t153 * t13;
   const Real t155 = t148 - t154;
   const Real t156 = t22 * t155;
-  carried[80] = t156;
+  carried[101] = t156;
   const Real t157 = t156 * t25;
 
   // joint angles
   const Real t158 = c_r_a_2_ * t140;
   const Real t159 = t146 * s_r_a_2_;
   const Real t160 = t158 - t159;
-  carried[81] = t160;
+  carried[102] = t160;
   const Real t161 = constant<Real>(0.25L) * s_r_a_0_;
   const Real t162 = t160 - t161;
 
@@ -1414,16 +1437,16 @@ template <class Real>
   const Real t163 = t162 - t157;
   const Real t164 = t153 * t33;
   const Real t165 = t164 + t163;
-  carried[82] = t165;
+  carried[103] = t165;
   const Real t166 = constant<Real>(4.0L) * t165;
-  carried[83] = t166;
+  carried[104] = t166;
   const Real t167 = w[5] * t166;
   const Real t168 = t167 + t131;
-  carried[84] = t168;
+  carried[105] = t168;
 
   // joint angles
   const Real t169 = t168 * s_r_a_2_;
-  carried[85] = t169;
+  carried[106] = t169;
 
   // kernel
   const Real t170 = w[1] * t8;
@@ -1435,19 +1458,19 @@ template <class Real>
   const Real t176 = t174 + t175;
   const Real t177 = t153 * w[5];
   const Real t178 = t176 + t177;
-  carried[86] = t178;
+  carried[107] = t178;
 
   // joint angles
   const Real t179 = w[3] - t178;
-  carried[87] = t179;
+  carried[108] = t179;
   const Real t180 = c_r_a_1_ * t179;
   const Real t181 = w[5] * c_r_a_0_;
   const Real t182 = w[4] * s_r_a_0_;
   const Real t183 = t181 - t182;
-  carried[88] = t183;
+  carried[109] = t183;
   const Real t184 = t183 * s_r_a_1_;
   const Real t185 = t180 - t184;
-  carried[89] = t185;
+  carried[110] = t185;
   const Real t186 = t185 * t169;
 
   // kernel
@@ -1462,11 +1485,11 @@ template <class Real>
   const Real t195 = t193 + t194;
   const Real t196 = w[5] * t156;
   const Real t197 = t195 + t196;
-  carried[90] = t197;
+  carried[111] = t197;
 
   // joint angles
   const Real t198 = c_r_a_1_ * t197;
-  carried[91] = t198;
+  carried[112] = t198;
   const Real t199 = t183 * t198;
   const Real t200 = t178 * s_r_a_0_;
   const Real t201 = w[5] * t200;
@@ -1476,18 +1499,18 @@ template <class Real>
   const Real t205 = t204 * s_r_a_1_;
   const Real t206 = t205 + t199;
   const Real t207 = s_r_a_1_ * t197;
-  carried[92] = t207;
+  carried[113] = t207;
   const Real t208 = t179 * t207;
   const Real t209 = t208 + t206;
-  carried[93] = t209;
+  carried[114] = t209;
   const Real t210 = t209 * c_r_a_2_;
   const Real t211 = t210 + t186;
   const Real t212 = t168 * c_r_a_2_;
-  carried[94] = t212;
+  carried[115] = t212;
   const Real t213 = t179 * s_r_a_1_;
   const Real t214 = t183 * c_r_a_1_;
   const Real t215 = t213 + t214;
-  carried[95] = t215;
+  carried[116] = t215;
   const Real t216 = t215 * t212;
   const Real t217 = t183 * t207;
   const Real t218 = c_r_a_1_ * t204;
@@ -1500,14 +1523,14 @@ template <class Real>
   const Real t225 = t224 * constant<Real>(0.25L);
   const Real t226 = t209 * constant<Real>(0.24L);
   const Real t227 = w[5] * constant<Real>(0.21L);
-  carried[96] = t227;
+  carried[117] = t227;
   const Real t228 = t227 + w[1];
-  carried[97] = t228;
+  carried[118] = t228;
   const Real t229 = t228 * t200;
   const Real t230 = w[3] * constant<Real>(0.06L);
-  carried[98] = t230;
+  carried[119] = t230;
   const Real t231 = w[4] * constant<Real>(0.21L);
-  carried[99] = t231;
+  carried[120] = t231;
   const Real t232 = t230 - t231;
   const Real t233 = t232 + w[2];
   const Real t234 = t233 * t202;
@@ -1517,16 +1540,16 @@ template <class Real>
   // drift of the kernel
   const Real t237 = t225 - t236;
   const Real t238 = t237 * t7;
-  carried[100] = t238;
+  carried[121] = t238;
   const Real t239 = t238 * t13;
-  carried[101] = t239;
+  carried[122] = t239;
 
   // joint angles
   const Real t240 = t221 * constant<Real>(0.012L);
   const Real t241 = w[4] * t200;
   const Real t242 = w[5] * t202;
   const Real t243 = t241 - t242;
-  carried[102] = t243;
+  carried[123] = t243;
   const Real t244 = t243 * constant<Real>(0.24L);
   const Real t245 = t240 + t244;
   const Real t246 = constant<Real>(0.075L) * t179;
@@ -1534,824 +1557,822 @@ template <class Real>
   const Real t248 = t228 * s_r_a_0_;
   const Real t249 = t247 - t248;
   const Real t250 = t246 + t249;
-  carried[103] = t250;
+  carried[124] = t250;
   const Real t251 = t250 * t198;
   const Real t252 = t233 * t200;
   const Real t253 = t228 * t202;
   const Real t254 = t252 + t253;
-  carried[104] = t254;
+  carried[125] = t254;
   const Real t255 = t254 * s_r_a_1_;
   const Real t256 = t251 + t255;
   const Real t257 = constant<Real>(0.075L) * t183;
   const Real t258 = w[5] * constant<Real>(0.06L);
-  carried[105] = t258;
+  carried[126] = t258;
   const Real t259 = w[0] - t258;
-  carried[106] = t259;
+  carried[127] = t259;
   const Real t260 = t259 - t257;
-  carried[107] = t260;
+  carried[128] = t260;
   const Real t261 = t260 * t207;
   const Real t262 = constant<Real>(0.075L) * t204;
-  carried[108] = t262;
+  carried[129] = t262;
   const Real t263 = c_r_a_1_ * t262;
   const Real t264 = t261 + t263;
   const Real t265 = t256 + t264;
   const Real t266 = t265 + t245;
-  carried[109] = t266;
+  carried[130] = t266;
   const Real t267 = t266 * s_r_a_2_;
-  carried[110] = t267;
+  carried[131] = t267;
   const Real t268 = w[5] * s_r_a_0_;
   const Real t269 = w[4] * c_r_a_0_;
   const Real t270 = t268 + t269;
-  carried[111] = t270;
+  carried[132] = t270;
   const Real t271 = t270 + t197;
-  carried[112] = t271;
+  carried[133] = t271;
   const Real t272 = constant<Real>(0.24L) * t271;
   const Real t273 = t215 * constant<Real>(0.012L);
   const Real t274 = t273 + t272;
-  carried[113] = t274;
+  carried[134] = t274;
   const Real t275 = s_r_a_1_ * t250;
-  carried[114] = t275;
+  carried[135] = t275;
   const Real t276 = t260 * c_r_a_1_;
-  carried[115] = t276;
+  carried[136] = t276;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_2(const Real (&w)[6],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_2(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // joint angles
-  const Real t277 = carried[115] - carried[114];
-  const Real t278 = t277 - carried[113];
-  const Real t279 = carried[94] * t278;
-  const Real t280 = t279 - carried[110];
-  const Real t281 = carried[93] * constant<Real>(0.012L);
-  const Real t282 = carried[107] * carried[91];
-  const Real t283 = carried[108] * carried[2];
+  const Real t277 = carried[136] - carried[135];
+  const Real t278 = t277 - carried[134];
+  const Real t279 = carried[115] * t278;
+  const Real t280 = t279 - carried[131];
+  const Real t281 = carried[114] * constant<Real>(0.012L);
+  const Real t282 = carried[128] * carried[112];
+  const Real t283 = carried[129] * carried[23];
   const Real t284 = t282 - t283;
-  const Real t285 = carried[92] * carried[103];
-  const Real t286 = carried[104] * carried[3];
+  const Real t285 = carried[113] * carried[124];
+  const Real t286 = carried[125] * carried[24];
   const Real t287 = t285 - t286;
   const Real t288 = t284 - t287;
   const Real t289 = t288 - t281;
-  const Real t290 = t289 * carried[5];
-  const Real t291 = carried[3] * carried[103];
-  const Real t292 = carried[107] * carried[2];
+  const Real t290 = t289 * carried[26];
+  const Real t291 = carried[24] * carried[124];
+  const Real t292 = carried[128] * carried[23];
   const Real t293 = t291 + t292;
-  const Real t294 = carried[89] * constant<Real>(0.012L);
+  const Real t294 = carried[110] * constant<Real>(0.012L);
   const Real t295 = t294 + t293;
-  const Real t296 = t295 * carried[85];
+  const Real t296 = t295 * carried[106];
   const Real t297 = t290 - t296;
   const Real t298 = t280 + t297;
 
   // drift of the kernel
-  const Real t299 = t298 + carried[101];
-  const Real t300 = t299 * carried[34];
-  carried[116] = t300;
-  const Real t301 = t300 * carried[36];
+  const Real t299 = t298 + carried[122];
+  const Real t300 = t299 * carried[55];
+  carried[137] = t300;
+  const Real t301 = t300 * carried[57];
 
   // joint angles
-  const Real t302 = carried[109] * carried[5];
-  const Real t303 = carried[85] * t278;
+  const Real t302 = carried[130] * carried[26];
+  const Real t303 = carried[106] * t278;
   const Real t304 = t303 + t302;
-  const Real t305 = t289 * carried[4];
-  const Real t306 = t295 * carried[94];
+  const Real t305 = t289 * carried[25];
+  const Real t306 = t295 * carried[115];
   const Real t307 = t306 + t305;
   const Real t308 = t304 + t307;
-  const Real t309 = carried[102] * constant<Real>(0.25L);
+  const Real t309 = carried[123] * constant<Real>(0.25L);
   const Real t310 = t309 + t308;
 
   // drift of the kernel
   const Real t311 = t301 + t310;
-  const Real t312 = carried[38] * carried[100];
+  const Real t312 = carried[59] * carried[121];
   const Real t313 = t312 + t311;
-  carried[117] = t313;
+  carried[138] = t313;
   const Real t314 = constant<Real>(4.0L) * t313;
-  carried[118] = t314;
+  carried[139] = t314;
 
   // front_left_shank: wrench
-  const Real t315 = carried[37] * constant<Real>(0.0687L);
-  const Real t316 = carried[33] * constant<Real>(0.00252L);
+  const Real t315 = carried[58] * constant<Real>(0.0687L);
+  const Real t316 = carried[54] * constant<Real>(0.00252L);
   const Real t317 = t315 + t316;
-  carried[119] = t317;
+  carried[140] = t317;
 
   // reduced forces
   const Real t318 = t317 * t314;
 
   // front_left_shank: wrench
-  const Real t319 = constant<Real>(0.51L) * carried[37];
+  const Real t319 = constant<Real>(0.51L) * carried[58];
 
   // front_left_shank: joint force
-  const Real t320 = t319 * carried[5];
+  const Real t320 = t319 * carried[26];
 
   // front_left_shank: wrench
-  const Real t321 = constant<Real>(0.51L) * carried[33];
+  const Real t321 = constant<Real>(0.51L) * carried[54];
 
   // front_left_shank: joint force
-  const Real t322 = carried[4] * t321;
+  const Real t322 = carried[25] * t321;
   const Real t323 = t320 + t322;
   const Real t324 = constant<Real>(0.24L) * t323;
   const Real t325 = t324 + t317;
 
   // front_left_thigh: wrench
-  const Real t326 = constant<Real>(0.0884L) * carried[29];
-  const Real t327 = constant<Real>(0.0051L) * carried[31];
+  const Real t326 = constant<Real>(0.0884L) * carried[50];
+  const Real t327 = constant<Real>(0.0051L) * carried[52];
   const Real t328 = t326 + t327;
-  carried[120] = t328;
+  carried[141] = t328;
 
   // front_left_shank: joint force
   const Real t329 = t325 + t328;
-  carried[121] = t329;
+  carried[142] = t329;
 
   // reduced forces
   const Real t330 = t300 * t329;
 
   // front_left_shank: joint force
-  const Real t331 = t321 * carried[5];
-  const Real t332 = carried[4] * t319;
+  const Real t331 = t321 * carried[26];
+  const Real t332 = carried[25] * t319;
   const Real t333 = t331 - t332;
   const Real t334 = t333 * constant<Real>(0.012L);
-  const Real t335 = constant<Real>(0.1224L) * carried[1];
+  const Real t335 = constant<Real>(0.1224L) * carried[22];
   const Real t336 = t335 + t334;
 
   // front_left_shank: wrench
-  const Real t337 = carried[37] * constant<Real>(0.00042L);
-  carried[122] = t337;
-  const Real t338 = constant<Real>(0.00252L) * carried[1];
-  carried[123] = t338;
+  const Real t337 = carried[58] * constant<Real>(0.00042L);
+  carried[143] = t337;
+  const Real t338 = constant<Real>(0.00252L) * carried[22];
+  carried[144] = t338;
   const Real t339 = t338 - t337;
 
   // front_left_shank: joint force
-  const Real t340 = carried[4] * t339;
+  const Real t340 = carried[25] * t339;
 
   // front_left_shank: wrench
-  const Real t341 = carried[33] * constant<Real>(0.00042L);
-  const Real t342 = carried[1] * constant<Real>(0.0687L);
-  carried[124] = t342;
+  const Real t341 = carried[54] * constant<Real>(0.00042L);
+  const Real t342 = carried[22] * constant<Real>(0.0687L);
+  carried[145] = t342;
   const Real t343 = t341 + t342;
 
   // front_left_shank: joint force
-  const Real t344 = t343 * carried[5];
+  const Real t344 = t343 * carried[26];
   const Real t345 = t340 + t344;
   const Real t346 = t336 + t345;
 
   // front_left_thigh: wrench
-  const Real t347 = constant<Real>(0.0272L) * carried[31];
+  const Real t347 = constant<Real>(0.0272L) * carried[52];
 
   // front_left_thigh: wrench
-  const Real t348 = constant<Real>(0.0884L) * carried[1];
+  const Real t348 = constant<Real>(0.0884L) * carried[22];
 
   // front_left_thigh: wrench
   const Real t349 = t348 + t347;
-  carried[125] = t349;
+  carried[146] = t349;
 
   // front_left_shank: joint force
   const Real t350 = t349 + t346;
-  carried[126] = t350;
+  carried[147] = t350;
 
   // front_left_thigh: joint force
-  const Real t351 = t350 * carried[3];
+  const Real t351 = t350 * carried[24];
 
   // front_left_shank: joint force
-  const Real t352 = carried[5] * t339;
-  const Real t353 = t343 * carried[4];
+  const Real t352 = carried[26] * t339;
+  const Real t353 = t343 * carried[25];
   const Real t354 = t352 - t353;
   const Real t355 = constant<Real>(0.012L) * t323;
   const Real t356 = t354 - t355;
 
   // front_left_thigh: wrench
-  const Real t357 = constant<Real>(0.0272L) * carried[29];
-  carried[127] = t357;
+  const Real t357 = constant<Real>(0.0272L) * carried[50];
+  carried[148] = t357;
 
   // front_left_thigh: wrench
-  const Real t358 = constant<Real>(0.0051L) * carried[1];
-  carried[128] = t358;
+  const Real t358 = constant<Real>(0.0051L) * carried[22];
+  carried[149] = t358;
 
   // front_left_thigh: wrench
   const Real t359 = t357 - t358;
 
   // front_left_shank: joint force
   const Real t360 = t359 + t356;
-  carried[129] = t360;
+  carried[150] = t360;
 
   // front_left_thigh: joint force
-  const Real t361 = t360 * carried[2];
+  const Real t361 = t360 * carried[23];
   const Real t362 = t361 + t351;
 
   // front_left_thigh: wrench
-  const Real t363 = constant<Real>(1.7L) * carried[31];
+  const Real t363 = constant<Real>(1.7L) * carried[52];
 
   // front_left_shank: joint force
   const Real t364 = t333 - t363;
-  carried[130] = t364;
+  carried[151] = t364;
 
   // front_left_thigh: joint force
-  const Real t365 = carried[3] * t364;
+  const Real t365 = carried[24] * t364;
 
   // front_left_thigh: wrench
-  const Real t366 = constant<Real>(1.7L) * carried[29];
+  const Real t366 = constant<Real>(1.7L) * carried[50];
 
   // front_left_shank: joint force
   const Real t367 = t366 + t323;
-  carried[131] = t367;
+  carried[152] = t367;
 
   // front_left_thigh: joint force
-  const Real t368 = carried[2] * t367;
+  const Real t368 = carried[23] * t367;
   const Real t369 = t365 - t368;
-  carried[132] = t369;
+  carried[153] = t369;
   const Real t370 = constant<Real>(0.075L) * t369;
   const Real t371 = t362 + t370;
 
   // front_left_hip: wrench
-  const Real t372 = constant<Real>(0.0013L) * carried[1];
-  const Real t373 = constant<Real>(0.0273L) * carried[0];
+  const Real t372 = constant<Real>(0.0013L) * carried[22];
+  const Real t373 = constant<Real>(0.0273L) * carried[21];
   const Real t374 = t372 + t373;
-  carried[133] = t374;
+  carried[154] = t374;
 
   // front_left_thigh: joint force
   const Real t375 = t371 - t374;
-  carried[134] = t375;
+  carried[155] = t375;
 
   // reduced forces
-  const Real t376 = carried[100] * t375;
+  const Real t376 = carried[121] * t375;
   const Real t377 = t376 - t330;
   const Real t378 = t377 + t318;
-  carried[135] = t378;
+  carried[156] = t378;
 
   // joint angles
-  const Real t379 = carried[11] * carried[9];
-  carried[136] = t379;
-  const Real t380 = carried[10] * carried[8];
-  carried[137] = t380;
+  const Real t379 = carried[32] * carried[30];
+  carried[157] = t379;
+  const Real t380 = carried[31] * carried[29];
+  carried[158] = t380;
   const Real t381 = t379 - t380;
-  carried[138] = t381;
+  carried[159] = t381;
   const Real t382 = constant<Real>(0.25L) * t381;
-  const Real t383 = constant<Real>(0.24L) * carried[9];
+  const Real t383 = constant<Real>(0.24L) * carried[30];
   const Real t384 = t382 + t383;
 
   // kernel
   const Real t385 = constant<Real>(1.0L) / t384;
-  carried[139] = t385;
-  const Real t386 = t385 * carried[7];
-  carried[140] = t386;
+  carried[160] = t385;
+  const Real t386 = t385 * carried[28];
+  carried[161] = t386;
 
   // joint angles
-  const Real t387 = constant<Real>(0.087L) * carried[8];
-  const Real t388 = t387 * carried[10];
-  const Real t389 = constant<Real>(0.087L) * carried[9];
-  const Real t390 = carried[11] * t389;
+  const Real t387 = constant<Real>(0.087L) * carried[29];
+  const Real t388 = t387 * carried[31];
+  const Real t389 = constant<Real>(0.087L) * carried[30];
+  const Real t390 = carried[32] * t389;
   const Real t391 = t388 - t390;
-  carried[141] = t391;
+  carried[162] = t391;
 
   // kernel
   const Real t392 = t391 * t386;
 
   // joint angles
-  const Real t393 = carried[6] * carried[8];
-  carried[142] = t393;
-  const Real t394 = carried[10] * t393;
-  carried[143] = t394;
-  const Real t395 = carried[6] * carried[9];
-  carried[144] = t395;
-  const Real t396 = t395 * carried[11];
-  carried[145] = t396;
+  const Real t393 = carried[27] * carried[29];
+  carried[163] = t393;
+  const Real t394 = carried[31] * t393;
+  carried[164] = t394;
+  const Real t395 = carried[27] * carried[30];
+  carried[165] = t395;
+  const Real t396 = t395 * carried[32];
+  carried[166] = t396;
   const Real t397 = t394 - t396;
-  carried[146] = t397;
+  carried[167] = t397;
 
   // kernel
   const Real t398 = t397 - t392;
 
   // joint angles
-  const Real t399 = carried[10] * constant<Real>(0.24L);
+  const Real t399 = carried[31] * constant<Real>(0.24L);
 
   // kernel
   const Real t400 = constant<Real>(1.0L) / t399;
-  carried[147] = t400;
+  carried[168] = t400;
   const Real t401 = t400 * t398;
-  carried[148] = t401;
+  carried[169] = t401;
 
   // joint angles
-  const Real t402 = carried[11] * constant<Real>(0.24L);
+  const Real t402 = carried[32] * constant<Real>(0.24L);
   const Real t403 = constant<Real>(0.25L) + t402;
-  carried[149] = t403;
+  carried[170] = t403;
 
   // kernel
   const Real t404 = t401 * t403;
 
   // joint angles
-  const Real t405 = t395 * carried[10];
-  const Real t406 = carried[11] * t393;
+  const Real t405 = t395 * carried[31];
+  const Real t406 = carried[32] * t393;
   const Real t407 = t405 + t406;
-  carried[150] = t407;
+  carried[171] = t407;
 
   // kernel
   const Real t408 = t407 - t404;
 
   // joint angles
-  const Real t409 = carried[10] * t389;
-  const Real t410 = t387 * carried[11];
+  const Real t409 = carried[31] * t389;
+  const Real t410 = t387 * carried[32];
   const Real t411 = t409 + t410;
-  carried[151] = t411;
+  carried[172] = t411;
 
   // kernel
   const Real t412 = t411 * t386;
   const Real t413 = t408 - t412;
-  carried[152] = t413;
+  carried[173] = t413;
   const Real t414 = constant<Real>(4.0L) * t413;
-  carried[153] = t414;
-  const Real t415 = t414 * w[1];
+  carried[174] = t414;
+  const Real t415 = t414 * carried[4];
 
   // joint angles
-  const Real t416 = carried[11] * carried[8];
-  const Real t417 = carried[10] * carried[9];
+  const Real t416 = carried[32] * carried[29];
+  const Real t417 = carried[31] * carried[30];
   const Real t418 = t416 + t417;
-  carried[154] = t418;
+  carried[175] = t418;
 
   // kernel
   const Real t419 = t400 * t418;
-  carried[155] = t419;
+  carried[176] = t419;
   const Real t420 = t419 * t403;
   const Real t421 = t381 - t420;
-  carried[156] = t421;
+  carried[177] = t421;
   const Real t422 = constant<Real>(4.0L) * t421;
-  carried[157] = t422;
-  const Real t423 = w[0] * t422;
+  carried[178] = t422;
+  const Real t423 = carried[3] * t422;
   const Real t424 = t423 + t415;
-  const Real t425 = carried[6] * t385;
-  carried[158] = t425;
+  const Real t425 = carried[27] * t385;
+  carried[179] = t425;
   const Real t426 = t425 * t391;
 
   // joint angles
-  const Real t427 = carried[9] * carried[7];
-  carried[159] = t427;
-  const Real t428 = t427 * carried[11];
-  carried[160] = t428;
-  const Real t429 = carried[8] * carried[7];
-  carried[161] = t429;
-  const Real t430 = carried[10] * t429;
-  carried[162] = t430;
+  const Real t427 = carried[30] * carried[28];
+  carried[180] = t427;
+  const Real t428 = t427 * carried[32];
+  carried[181] = t428;
+  const Real t429 = carried[29] * carried[28];
+  carried[182] = t429;
+  const Real t430 = carried[31] * t429;
+  carried[183] = t430;
   const Real t431 = t428 - t430;
-  carried[163] = t431;
+  carried[184] = t431;
 
   // kernel
   const Real t432 = t431 - t426;
   const Real t433 = t400 * t432;
-  carried[164] = t433;
+  carried[185] = t433;
   const Real t434 = t403 * t433;
 
   // joint angles
-  const Real t435 = carried[11] * t429;
-  const Real t436 = t427 * carried[10];
+  const Real t435 = carried[32] * t429;
+  const Real t436 = t427 * carried[31];
   const Real t437 = t435 + t436;
-  carried[165] = t437;
+  carried[186] = t437;
 
   // kernel
   const Real t438 = t434 + t437;
   const Real t439 = t411 * t425;
   const Real t440 = t438 + t439;
-  carried[166] = t440;
+  carried[187] = t440;
   const Real t441 = constant<Real>(4.0L) * t440;
-  carried[167] = t441;
-  const Real t442 = w[2] * t441;
+  carried[188] = t441;
+  const Real t442 = carried[5] * t441;
   const Real t443 = t424 - t442;
 
   // joint angles
-  const Real t444 = carried[6] * constant<Real>(0.06L);
+  const Real t444 = carried[27] * constant<Real>(0.06L);
   const Real t445 = t383 - t444;
-  carried[168] = t445;
+  carried[189] = t445;
   const Real t446 = t382 + t445;
 
   // kernel
   const Real t447 = t446 * t385;
-  carried[169] = t447;
+  carried[190] = t447;
   const Real t448 = t447 * t391;
 
   // joint angles
-  const Real t449 = constant<Real>(0.06L) * carried[7];
-  carried[170] = t449;
+  const Real t449 = constant<Real>(0.06L) * carried[28];
+  carried[191] = t449;
   const Real t450 = constant<Real>(0.075L) + t449;
-  const Real t451 = carried[8] * t450;
-  const Real t452 = constant<Real>(0.012L) * carried[8];
-  carried[171] = t452;
+  const Real t451 = carried[29] * t450;
+  const Real t452 = constant<Real>(0.012L) * carried[29];
+  carried[192] = t452;
   const Real t453 = t451 + t452;
-  const Real t454 = carried[10] * t453;
-  const Real t455 = t450 * carried[9];
-  const Real t456 = constant<Real>(0.012L) * carried[9];
-  carried[172] = t456;
+  const Real t454 = carried[31] * t453;
+  const Real t455 = t450 * carried[30];
+  const Real t456 = constant<Real>(0.012L) * carried[30];
+  carried[193] = t456;
   const Real t457 = t456 + t455;
-  const Real t458 = t457 * carried[11];
+  const Real t458 = t457 * carried[32];
   const Real t459 = t454 - t458;
 
   // kernel
   const Real t460 = t459 - t448;
   const Real t461 = t400 * t460;
-  carried[173] = t461;
+  carried[194] = t461;
   const Real t462 = t403 * t461;
 
   // joint angles
-  const Real t463 = carried[11] * t453;
-  const Real t464 = t457 * carried[10];
+  const Real t463 = carried[32] * t453;
+  const Real t464 = t457 * carried[31];
   const Real t465 = t463 + t464;
 
   // kernel
   const Real t466 = t465 - t462;
   const Real t467 = t411 * t447;
   const Real t468 = t466 - t467;
-  carried[174] = t468;
+  carried[195] = t468;
   const Real t469 = t468 * constant<Real>(4.0L);
-  carried[175] = t469;
-  const Real t470 = w[3] * t469;
+  carried[196] = t469;
+  const Real t470 = carried[6] * t469;
   const Real t471 = t470 + t443;
 
   // joint angles
   const Real t472 = constant<Real>(0.25L) * t407;
   const Real t473 = constant<Real>(0.24L) * t393;
-  const Real t474 = carried[6] * constant<Real>(0.21L);
+  const Real t474 = carried[27] * constant<Real>(0.21L);
   const Real t475 = t473 - t474;
-  carried[176] = t475;
+  carried[197] = t475;
   const Real t476 = t475 + t472;
 
   // kernel
   const Real t477 = t476 * t385;
-  carried[177] = t477;
+  carried[198] = t477;
   const Real t478 = t477 * t391;
 
   // joint angles
-  const Real t479 = constant<Real>(0.21L) * carried[7];
-  const Real t480 = t479 * carried[8];
-  const Real t481 = constant<Real>(0.075L) * carried[6];
-  const Real t482 = t481 * carried[9];
+  const Real t479 = constant<Real>(0.21L) * carried[28];
+  const Real t480 = t479 * carried[29];
+  const Real t481 = constant<Real>(0.075L) * carried[27];
+  const Real t482 = t481 * carried[30];
   const Real t483 = t480 - t482;
-  carried[178] = t483;
+  carried[199] = t483;
   const Real t484 = t395 * constant<Real>(0.012L);
-  const Real t485 = constant<Real>(0.24L) * carried[7];
+  const Real t485 = constant<Real>(0.24L) * carried[28];
   const Real t486 = t485 + t484;
   const Real t487 = t483 - t486;
-  const Real t488 = carried[10] * t487;
-  const Real t489 = t481 * carried[8];
-  const Real t490 = t479 * carried[9];
+  const Real t488 = carried[31] * t487;
+  const Real t489 = t481 * carried[29];
+  const Real t490 = t479 * carried[30];
   const Real t491 = t489 + t490;
-  carried[179] = t491;
+  carried[200] = t491;
   const Real t492 = t393 * constant<Real>(0.012L);
   const Real t493 = t491 + t492;
-  const Real t494 = carried[11] * t493;
+  const Real t494 = carried[32] * t493;
   const Real t495 = t488 - t494;
-  carried[180] = t495;
+  carried[201] = t495;
 
   // kernel
   const Real t496 = t495 - t478;
   const Real t497 = t400 * t496;
-  carried[181] = t497;
+  carried[202] = t497;
   const Real t498 = t403 * t497;
 
   // joint angles
-  const Real t499 = carried[11] * t487;
-  const Real t500 = carried[10] * t493;
+  const Real t499 = carried[32] * t487;
+  const Real t500 = carried[31] * t493;
   const Real t501 = t499 + t500;
-  carried[182] = t501;
-  const Real t502 = constant<Real>(0.25L) * carried[7];
+  carried[203] = t501;
+  const Real t502 = constant<Real>(0.25L) * carried[28];
   const Real t503 = t501 - t502;
 
   // kernel
   const Real t504 = t503 - t498;
   const Real t505 = t411 * t477;
   const Real t506 = t504 - t505;
-  carried[183] = t506;
+  carried[204] = t506;
   const Real t507 = constant<Real>(4.0L) * t506;
-  carried[184] = t507;
-  const Real t508 = w[4] * t507;
+  carried[205] = t507;
+  const Real t508 = carried[7] * t507;
   const Real t509 = t471 + t508;
 
   // joint angles
-  const Real t510 = constant<Real>(0.075L) * carried[7];
+  const Real t510 = constant<Real>(0.075L) * carried[28];
   const Real t511 = t510 + constant<Real>(0.06L);
-  const Real t512 = t511 * carried[8];
-  const Real t513 = t474 * carried[9];
+  const Real t512 = t511 * carried[29];
+  const Real t513 = t474 * carried[30];
   const Real t514 = t512 - t513;
-  carried[185] = t514;
+  carried[206] = t514;
   const Real t515 = constant<Real>(0.012L) * t429;
   const Real t516 = t515 + t514;
-  const Real t517 = carried[11] * t516;
-  const Real t518 = t511 * carried[9];
-  const Real t519 = t474 * carried[8];
+  const Real t517 = carried[32] * t516;
+  const Real t518 = t511 * carried[30];
+  const Real t519 = t474 * carried[29];
   const Real t520 = t518 + t519;
-  carried[186] = t520;
+  carried[207] = t520;
   const Real t521 = t427 * constant<Real>(0.012L);
-  const Real t522 = carried[6] * constant<Real>(0.24L);
+  const Real t522 = carried[27] * constant<Real>(0.24L);
   const Real t523 = t521 - t522;
   const Real t524 = t520 + t523;
-  const Real t525 = t524 * carried[10];
+  const Real t525 = t524 * carried[31];
   const Real t526 = t517 + t525;
-  carried[187] = t526;
+  carried[208] = t526;
   const Real t527 = constant<Real>(0.25L) * t437;
   const Real t528 = constant<Real>(0.24L) * t429;
   const Real t529 = t479 - t528;
-  carried[188] = t529;
+  carried[209] = t529;
   const Real t530 = t529 - t527;
 
   // kernel
   const Real t531 = t530 * t385;
-  carried[189] = t531;
+  carried[210] = t531;
   const Real t532 = t531 * t391;
   const Real t533 = t526 - t532;
   const Real t534 = t400 * t533;
-  carried[190] = t534;
+  carried[211] = t534;
   const Real t535 = t534 * t403;
 
   // joint angles
-  const Real t536 = t524 * carried[11];
-  const Real t537 = carried[10] * t516;
+  const Real t536 = t524 * carried[32];
+  const Real t537 = carried[31] * t516;
   const Real t538 = t536 - t537;
-  carried[191] = t538;
-  const Real t539 = constant<Real>(0.25L) * carried[6];
+  carried[212] = t538;
+  const Real t539 = constant<Real>(0.25L) * carried[27];
   const Real t540 = t538 - t539;
 
   // kernel
   const Real t541 = t540 - t535;
   const Real t542 = t411 * t531;
   const Real t543 = t541 - t542;
-  carried[192] = t543;
+  carried[213] = t543;
   const Real t544 = t543 * constant<Real>(4.0L);
-  carried[193] = t544;
-  const Real t545 = w[5] * t544;
+  carried[214] = t544;
+  const Real t545 = carried[8] * t544;
   const Real t546 = t509 + t545;
-  carried[194] = t546;
+  carried[215] = t546;
 
   // joint angles
-  const Real t547 = carried[11] * t546;
-  carried[195] = t547;
+  const Real t547 = carried[32] * t546;
+  carried[216] = t547;
 
   // kernel
-  const Real t548 = w[1] * t386;
-  const Real t549 = t425 * w[2];
+  const Real t548 = carried[4] * t386;
+  const Real t549 = t425 * carried[5];
   const Real t550 = t548 + t549;
-  const Real t551 = t447 * w[3];
+  const Real t551 = t447 * carried[6];
   const Real t552 = t551 + t550;
-  const Real t553 = t477 * w[4];
+  const Real t553 = t477 * carried[7];
   const Real t554 = t552 + t553;
-  const Real t555 = w[5] * t531;
+  const Real t555 = carried[8] * t531;
   const Real t556 = t554 + t555;
-  carried[196] = t556;
+  carried[217] = t556;
 
   // joint angles
-  const Real t557 = w[3] - t556;
-  carried[197] = t557;
-  const Real t558 = carried[8] * t557;
-  const Real t559 = w[5] * carried[7];
-  const Real t560 = carried[6] * w[4];
+  const Real t557 = carried[6] - t556;
+  carried[218] = t557;
+  const Real t558 = carried[29] * t557;
+  const Real t559 = carried[8] * carried[28];
+  const Real t560 = carried[27] * carried[7];
   const Real t561 = t559 - t560;
-  carried[198] = t561;
-  const Real t562 = carried[9] * t561;
+  carried[219] = t561;
+  const Real t562 = carried[30] * t561;
   const Real t563 = t558 + t562;
-  carried[199] = t563;
+  carried[220] = t563;
   const Real t564 = t547 * t563;
-  carried[200] = t564;
+  carried[221] = t564;
 
   // kernel
-  const Real t565 = t401 * w[1];
-  const Real t566 = w[0] * t419;
+  const Real t565 = t401 * carried[4];
+  const Real t566 = carried[3] * t419;
   const Real t567 = t566 + t565;
-  const Real t568 = t433 * w[2];
+  const Real t568 = t433 * carried[5];
   const Real t569 = t568 + t567;
-  const Real t570 = w[3] * t461;
+  const Real t570 = carried[6] * t461;
   const Real t571 = t569 + t570;
-  const Real t572 = w[4] * t497;
+  const Real t572 = carried[7] * t497;
   const Real t573 = t572 + t571;
-  const Real t574 = t534 * w[5];
+  const Real t574 = t534 * carried[8];
   const Real t575 = t574 + t573;
-  carried[201] = t575;
+  carried[222] = t575;
 
   // joint angles
-  const Real t576 = t575 * carried[8];
-  carried[202] = t576;
+  const Real t576 = t575 * carried[29];
+  carried[223] = t576;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_3(const Real (&w)[6],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_3(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // joint angles
-  const Real t577 = carried[202] * carried[198];
-  const Real t578 = carried[6] * carried[196];
-  const Real t579 = w[5] * t578;
-  const Real t580 = carried[196] * carried[7];
-  const Real t581 = t580 * w[4];
+  const Real t577 = carried[223] * carried[219];
+  const Real t578 = carried[27] * carried[217];
+  const Real t579 = carried[8] * t578;
+  const Real t580 = carried[217] * carried[28];
+  const Real t581 = t580 * carried[7];
   const Real t582 = t579 + t581;
-  const Real t583 = t582 * carried[9];
+  const Real t583 = t582 * carried[30];
   const Real t584 = t577 - t583;
-  const Real t585 = carried[201] * carried[9];
-  const Real t586 = t585 * carried[197];
+  const Real t585 = carried[222] * carried[30];
+  const Real t586 = t585 * carried[218];
   const Real t587 = t586 - t584;
-  const Real t588 = t587 * carried[10];
-  const Real t589 = carried[200] + t588;
-  const Real t590 = carried[10] * carried[194];
-  const Real t591 = carried[9] * carried[197];
-  const Real t592 = carried[8] * carried[198];
+  const Real t588 = t587 * carried[31];
+  const Real t589 = carried[221] + t588;
+  const Real t590 = carried[31] * carried[215];
+  const Real t591 = carried[30] * carried[218];
+  const Real t592 = carried[29] * carried[219];
   const Real t593 = t591 - t592;
-  carried[34] = t593;
+  carried[55] = t593;
   const Real t594 = t590 * t593;
-  const Real t595 = t585 * carried[198];
-  const Real t596 = t582 * carried[8];
+  const Real t595 = t585 * carried[219];
+  const Real t596 = t582 * carried[29];
   const Real t597 = t595 + t596;
-  const Real t598 = carried[202] * carried[197];
+  const Real t598 = carried[223] * carried[218];
   const Real t599 = t597 + t598;
-  const Real t600 = carried[11] * t599;
+  const Real t600 = carried[32] * t599;
   const Real t601 = t594 + t600;
   const Real t602 = t589 + t601;
   const Real t603 = constant<Real>(0.25L) * t602;
   const Real t604 = constant<Real>(0.24L) * t599;
-  const Real t605 = carried[97] * t578;
-  const Real t606 = carried[98] + carried[99];
-  carried[36] = t606;
-  const Real t607 = w[2] - t606;
+  const Real t605 = carried[118] * t578;
+  const Real t606 = carried[119] + carried[120];
+  carried[57] = t606;
+  const Real t607 = carried[5] - t606;
   const Real t608 = t580 * t607;
   const Real t609 = t605 - t608;
   const Real t610 = t609 - t604;
 
   // drift of the kernel
   const Real t611 = t603 - t610;
-  const Real t612 = carried[139] * t611;
-  carried[85] = t612;
+  const Real t612 = carried[160] * t611;
+  carried[106] = t612;
 
   // front_right_shank: wrench
-  const Real t613 = constant<Real>(0.51L) * carried[146];
+  const Real t613 = constant<Real>(0.51L) * carried[167];
 
   // front_right_shank: joint force
-  const Real t614 = t613 * carried[11];
+  const Real t614 = t613 * carried[32];
 
   // front_right_shank: wrench
-  const Real t615 = constant<Real>(0.51L) * carried[150];
+  const Real t615 = constant<Real>(0.51L) * carried[171];
 
   // front_right_shank: joint force
-  const Real t616 = t615 * carried[10];
+  const Real t616 = t615 * carried[31];
   const Real t617 = t614 - t616;
   const Real t618 = t617 * constant<Real>(0.012L);
-  const Real t619 = constant<Real>(0.1224L) * carried[7];
+  const Real t619 = constant<Real>(0.1224L) * carried[28];
   const Real t620 = t619 - t618;
 
   // front_right_shank: wrench
-  const Real t621 = carried[146] * constant<Real>(0.00042L);
-  const Real t622 = carried[7] * constant<Real>(0.0687L);
-  carried[91] = t622;
+  const Real t621 = carried[167] * constant<Real>(0.00042L);
+  const Real t622 = carried[28] * constant<Real>(0.0687L);
+  carried[112] = t622;
   const Real t623 = t622 - t621;
 
   // front_right_shank: joint force
-  const Real t624 = t623 * carried[11];
+  const Real t624 = t623 * carried[32];
 
   // front_right_shank: wrench
-  const Real t625 = carried[150] * constant<Real>(0.00042L);
-  const Real t626 = constant<Real>(0.00252L) * carried[7];
+  const Real t625 = carried[171] * constant<Real>(0.00042L);
+  const Real t626 = constant<Real>(0.00252L) * carried[28];
   const Real t627 = t626 + t625;
-  carried[92] = t627;
+  carried[113] = t627;
 
   // front_right_shank: joint force
-  const Real t628 = carried[10] * t627;
+  const Real t628 = carried[31] * t627;
   const Real t629 = t624 + t628;
   const Real t630 = t629 + t620;
 
   // front_right_thigh: wrench
-  const Real t631 = carried[144] * constant<Real>(0.0272L);
-  carried[93] = t631;
+  const Real t631 = carried[165] * constant<Real>(0.0272L);
+  carried[114] = t631;
 
   // front_right_thigh: wrench
-  const Real t632 = constant<Real>(0.0884L) * carried[7];
-  carried[94] = t632;
+  const Real t632 = constant<Real>(0.0884L) * carried[28];
+  carried[115] = t632;
 
   // front_right_thigh: wrench
   const Real t633 = t632 - t631;
 
   // front_right_shank: joint force
   const Real t634 = t630 + t633;
-  carried[101] = t634;
+  carried[122] = t634;
 
   // front_right_thigh: joint force
-  const Real t635 = t634 * carried[9];
+  const Real t635 = t634 * carried[30];
 
   // front_right_shank: joint force
-  const Real t636 = t615 * carried[11];
-  const Real t637 = t613 * carried[10];
+  const Real t636 = t615 * carried[32];
+  const Real t637 = t613 * carried[31];
   const Real t638 = t636 + t637;
   const Real t639 = constant<Real>(0.012L) * t638;
-  const Real t640 = carried[11] * t627;
-  const Real t641 = t623 * carried[10];
+  const Real t640 = carried[32] * t627;
+  const Real t641 = t623 * carried[31];
   const Real t642 = t640 - t641;
   const Real t643 = t639 + t642;
 
   // front_right_thigh: wrench
-  const Real t644 = constant<Real>(0.0272L) * carried[142];
+  const Real t644 = constant<Real>(0.0272L) * carried[163];
 
   // front_right_thigh: wrench
-  const Real t645 = constant<Real>(0.0051L) * carried[7];
+  const Real t645 = constant<Real>(0.0051L) * carried[28];
 
   // front_right_thigh: wrench
   const Real t646 = t645 + t644;
-  carried[102] = t646;
+  carried[123] = t646;
 
   // front_right_shank: joint force
   const Real t647 = t643 - t646;
-  carried[103] = t647;
+  carried[124] = t647;
 
   // front_right_thigh: joint force
-  const Real t648 = t647 * carried[8];
+  const Real t648 = t647 * carried[29];
   const Real t649 = t635 + t648;
 
   // front_right_thigh: wrench
-  const Real t650 = carried[144] * constant<Real>(1.7L);
+  const Real t650 = carried[165] * constant<Real>(1.7L);
 
   // front_right_shank: joint force
   const Real t651 = t617 - t650;
-  carried[104] = t651;
+  carried[125] = t651;
 
   // front_right_thigh: joint force
-  const Real t652 = t651 * carried[9];
+  const Real t652 = t651 * carried[30];
 
   // front_right_thigh: wrench
-  const Real t653 = constant<Real>(1.7L) * carried[142];
+  const Real t653 = constant<Real>(1.7L) * carried[163];
 
   // front_right_shank: joint force
   const Real t654 = t653 + t638;
-  carried[107] = t654;
+  carried[128] = t654;
 
   // front_right_thigh: joint force
-  const Real t655 = carried[8] * t654;
+  const Real t655 = carried[29] * t654;
   const Real t656 = t652 - t655;
-  carried[108] = t656;
+  carried[129] = t656;
   const Real t657 = constant<Real>(0.075L) * t656;
   const Real t658 = t649 - t657;
 
   // front_right_hip: wrench
-  const Real t659 = carried[6] * constant<Real>(0.0273L);
-  carried[109] = t659;
-  const Real t660 = constant<Real>(0.0013L) * carried[7];
-  carried[110] = t660;
+  const Real t659 = carried[27] * constant<Real>(0.0273L);
+  carried[130] = t659;
+  const Real t660 = constant<Real>(0.0013L) * carried[28];
+  carried[131] = t660;
   const Real t661 = t659 - t660;
 
   // front_right_thigh: joint force
   const Real t662 = t661 + t658;
-  carried[113] = t662;
+  carried[134] = t662;
 
   // reduced forces
   const Real t663 = t612 * t662;
-  const Real t664 = t663 + carried[135];
+  const Real t664 = t663 + carried[156];
 
   // drift of the kernel
-  const Real t665 = t612 * carried[141];
+  const Real t665 = t612 * carried[162];
 
   // joint angles
   const Real t666 = t587 * constant<Real>(0.012L);
-  const Real t667 = w[4] * t578;
-  const Real t668 = t580 * w[5];
+  const Real t667 = carried[7] * t578;
+  const Real t668 = t580 * carried[8];
   const Real t669 = t667 - t668;
   const Real t670 = t669 * constant<Real>(0.24L);
   const Real t671 = t666 - t670;
-  const Real t672 = constant<Real>(0.075L) * carried[198];
-  const Real t673 = w[0] + carried[105];
-  carried[114] = t673;
+  const Real t672 = constant<Real>(0.075L) * carried[219];
+  const Real t673 = carried[3] + carried[126];
+  carried[135] = t673;
   const Real t674 = t672 + t673;
-  const Real t675 = t674 * carried[202];
+  const Real t675 = t674 * carried[223];
   const Real t676 = constant<Real>(0.075L) * t582;
-  const Real t677 = t676 * carried[9];
+  const Real t677 = t676 * carried[30];
   const Real t678 = t675 - t677;
-  const Real t679 = constant<Real>(0.075L) * carried[197];
-  const Real t680 = t607 * carried[7];
-  const Real t681 = carried[6] * carried[97];
+  const Real t679 = constant<Real>(0.075L) * carried[218];
+  const Real t680 = t607 * carried[28];
+  const Real t681 = carried[27] * carried[118];
   const Real t682 = t680 - t681;
   const Real t683 = t682 - t679;
   const Real t684 = t585 * t683;
-  const Real t685 = t580 * carried[97];
+  const Real t685 = t580 * carried[118];
   const Real t686 = t578 * t607;
   const Real t687 = t685 + t686;
-  const Real t688 = t687 * carried[8];
+  const Real t688 = t687 * carried[29];
   const Real t689 = t688 + t684;
   const Real t690 = t678 + t689;
   const Real t691 = t671 - t690;
-  const Real t692 = t691 * carried[10];
-  const Real t693 = carried[6] * w[5];
-  const Real t694 = w[4] * carried[7];
+  const Real t692 = t691 * carried[31];
+  const Real t693 = carried[27] * carried[8];
+  const Real t694 = carried[7] * carried[28];
   const Real t695 = t693 + t694;
-  carried[115] = t695;
-  const Real t696 = carried[201] + t695;
-  carried[203] = t696;
+  carried[136] = t695;
+  const Real t696 = carried[222] + t695;
+  carried[224] = t696;
   const Real t697 = constant<Real>(0.24L) * t696;
-  const Real t698 = constant<Real>(0.012L) * carried[199];
+  const Real t698 = constant<Real>(0.012L) * carried[220];
   const Real t699 = t698 - t697;
-  const Real t700 = t683 * carried[8];
-  const Real t701 = t674 * carried[9];
+  const Real t700 = t683 * carried[29];
+  const Real t701 = t674 * carried[30];
   const Real t702 = t701 - t700;
   const Real t703 = t702 + t699;
-  const Real t704 = t703 * carried[195];
+  const Real t704 = t703 * carried[216];
   const Real t705 = t692 + t704;
   const Real t706 = constant<Real>(0.012L) * t599;
   const Real t707 = t674 * t585;
-  const Real t708 = t676 * carried[8];
+  const Real t708 = t676 * carried[29];
   const Real t709 = t707 + t708;
-  const Real t710 = carried[202] * t683;
-  const Real t711 = t687 * carried[9];
+  const Real t710 = carried[223] * t683;
+  const Real t711 = t687 * carried[30];
   const Real t712 = t710 - t711;
   const Real t713 = t709 - t712;
   const Real t714 = t706 + t713;
-  const Real t715 = t714 * carried[11];
-  const Real t716 = t683 * carried[9];
-  const Real t717 = t674 * carried[8];
+  const Real t715 = t714 * carried[32];
+  const Real t716 = t683 * carried[30];
+  const Real t717 = t674 * carried[29];
   const Real t718 = t716 + t717;
   const Real t719 = t593 * constant<Real>(0.012L);
   const Real t720 = t718 - t719;
@@ -2361,44 +2382,44 @@ template <class Real>
 
   // drift of the kernel
   const Real t724 = t665 + t723;
-  const Real t725 = carried[147] * t724;
-  carried[204] = t725;
+  const Real t725 = carried[168] * t724;
+  carried[225] = t725;
 
   // front_right_shank: joint force
   const Real t726 = constant<Real>(0.24L) * t638;
 
   // front_right_shank: wrench
-  const Real t727 = constant<Real>(0.00252L) * carried[146];
-  const Real t728 = carried[150] * constant<Real>(0.0687L);
+  const Real t727 = constant<Real>(0.00252L) * carried[167];
+  const Real t728 = carried[171] * constant<Real>(0.0687L);
   const Real t729 = t727 + t728;
-  carried[205] = t729;
+  carried[226] = t729;
 
   // front_right_shank: joint force
   const Real t730 = t726 + t729;
 
   // front_right_thigh: wrench
-  const Real t731 = constant<Real>(0.0051L) * carried[144];
-  const Real t732 = constant<Real>(0.0884L) * carried[142];
+  const Real t731 = constant<Real>(0.0051L) * carried[165];
+  const Real t732 = constant<Real>(0.0884L) * carried[163];
   const Real t733 = t731 + t732;
-  carried[206] = t733;
+  carried[227] = t733;
 
   // front_right_shank: joint force
   const Real t734 = t733 + t730;
-  carried[207] = t734;
+  carried[228] = t734;
 
   // reduced forces
   const Real t735 = t725 * t734;
   const Real t736 = t664 - t735;
 
   // drift of the kernel
-  const Real t737 = t725 * carried[149];
+  const Real t737 = t725 * carried[170];
 
   // joint angles
-  const Real t738 = t691 * carried[11];
+  const Real t738 = t691 * carried[32];
   const Real t739 = t590 * t703;
   const Real t740 = t738 - t739;
-  const Real t741 = t714 * carried[10];
-  const Real t742 = t720 * carried[195];
+  const Real t741 = t714 * carried[31];
+  const Real t742 = t720 * carried[216];
   const Real t743 = t741 + t742;
   const Real t744 = t740 - t743;
   const Real t745 = constant<Real>(0.25L) * t669;
@@ -2406,596 +2427,595 @@ template <class Real>
   // drift of the kernel
   const Real t746 = t745 - t744;
   const Real t747 = t737 + t746;
-  const Real t748 = carried[151] * t612;
+  const Real t748 = carried[172] * t612;
   const Real t749 = t747 - t748;
-  carried[208] = t749;
+  carried[229] = t749;
   const Real t750 = t749 * constant<Real>(4.0L);
-  carried[209] = t750;
+  carried[230] = t750;
 
   // reduced forces
   const Real t751 = t750 * t729;
   const Real t752 = t736 + t751;
-  carried[210] = t752;
+  carried[231] = t752;
 
   // joint angles
-  const Real t753 = carried[15] * carried[17];
-  carried[211] = t753;
-  const Real t754 = carried[14] * carried[16];
-  carried[212] = t754;
+  const Real t753 = carried[36] * carried[38];
+  carried[232] = t753;
+  const Real t754 = carried[35] * carried[37];
+  carried[233] = t754;
   const Real t755 = t753 - t754;
-  carried[213] = t755;
+  carried[234] = t755;
   const Real t756 = constant<Real>(0.25L) * t755;
-  const Real t757 = carried[15] * constant<Real>(0.24L);
+  const Real t757 = carried[36] * constant<Real>(0.24L);
   const Real t758 = t757 + t756;
 
   // kernel
   const Real t759 = constant<Real>(1.0L) / t758;
-  carried[214] = t759;
-  const Real t760 = t759 * carried[13];
-  carried[215] = t760;
+  carried[235] = t759;
+  const Real t760 = t759 * carried[34];
+  carried[236] = t760;
 
   // joint angles
-  const Real t761 = carried[15] * constant<Real>(0.087L);
-  const Real t762 = t761 * carried[17];
-  const Real t763 = carried[14] * constant<Real>(0.087L);
-  const Real t764 = t763 * carried[16];
+  const Real t761 = carried[36] * constant<Real>(0.087L);
+  const Real t762 = t761 * carried[38];
+  const Real t763 = carried[35] * constant<Real>(0.087L);
+  const Real t764 = t763 * carried[37];
   const Real t765 = t762 - t764;
-  carried[216] = t765;
+  carried[237] = t765;
 
   // kernel
   const Real t766 = t765 * t760;
 
   // joint angles
-  const Real t767 = carried[14] * carried[12];
-  carried[217] = t767;
-  const Real t768 = t767 * carried[16];
-  carried[218] = t768;
-  const Real t769 = carried[15] * carried[12];
-  carried[219] = t769;
-  const Real t770 = carried[17] * t769;
-  carried[220] = t770;
+  const Real t767 = carried[35] * carried[33];
+  carried[238] = t767;
+  const Real t768 = t767 * carried[37];
+  carried[239] = t768;
+  const Real t769 = carried[36] * carried[33];
+  carried[240] = t769;
+  const Real t770 = carried[38] * t769;
+  carried[241] = t770;
   const Real t771 = t768 - t770;
-  carried[221] = t771;
+  carried[242] = t771;
 
   // kernel
   const Real t772 = t771 - t766;
 
   // joint angles
-  const Real t773 = constant<Real>(0.24L) * carried[16];
+  const Real t773 = constant<Real>(0.24L) * carried[37];
 
   // kernel
   const Real t774 = constant<Real>(1.0L) / t773;
-  carried[222] = t774;
+  carried[243] = t774;
   const Real t775 = t772 * t774;
-  carried[223] = t775;
+  carried[244] = t775;
 
   // joint angles
-  const Real t776 = constant<Real>(0.24L) * carried[17];
+  const Real t776 = constant<Real>(0.24L) * carried[38];
   const Real t777 = constant<Real>(0.25L) + t776;
-  carried[224] = t777;
+  carried[245] = t777;
 
   // kernel
   const Real t778 = t777 * t775;
 
   // joint angles
-  const Real t779 = t767 * carried[17];
-  const Real t780 = t769 * carried[16];
+  const Real t779 = t767 * carried[38];
+  const Real t780 = t769 * carried[37];
   const Real t781 = t779 + t780;
-  carried[225] = t781;
+  carried[246] = t781;
 
   // kernel
   const Real t782 = t781 - t778;
 
   // joint angles
-  const Real t783 = carried[17] * t763;
-  const Real t784 = t761 * carried[16];
+  const Real t783 = carried[38] * t763;
+  const Real t784 = t761 * carried[37];
   const Real t785 = t783 + t784;
-  carried[226] = t785;
+  carried[247] = t785;
 
   // kernel
   const Real t786 = t785 * t760;
   const Real t787 = t782 + t786;
-  carried[227] = t787;
+  carried[248] = t787;
   const Real t788 = t787 * constant<Real>(4.0L);
-  carried[228] = t788;
-  const Real t789 = t788 * w[1];
+  carried[249] = t788;
+  const Real t789 = t788 * carried[4];
 
   // joint angles
-  const Real t790 = carried[15] * carried[16];
-  const Real t791 = carried[14] * carried[17];
+  const Real t790 = carried[36] * carried[37];
+  const Real t791 = carried[35] * carried[38];
   const Real t792 = t790 + t791;
-  carried[229] = t792;
+  carried[250] = t792;
 
   // kernel
   const Real t793 = t774 * t792;
-  carried[230] = t793;
+  carried[251] = t793;
   const Real t794 = t793 * t777;
   const Real t795 = t755 - t794;
-  carried[231] = t795;
+  carried[252] = t795;
   const Real t796 = t795 * constant<Real>(4.0L);
-  carried[232] = t796;
-  const Real t797 = w[0] * t796;
+  carried[253] = t796;
+  const Real t797 = carried[3] * t796;
   const Real t798 = t797 + t789;
-  const Real t799 = t759 * carried[12];
-  carried[233] = t799;
+  const Real t799 = t759 * carried[33];
+  carried[254] = t799;
   const Real t800 = t799 * t765;
 
   // joint angles
-  const Real t801 = carried[15] * carried[13];
-  carried[234] = t801;
-  const Real t802 = t801 * carried[17];
-  carried[235] = t802;
-  const Real t803 = carried[14] * carried[13];
-  carried[236] = t803;
-  const Real t804 = t803 * carried[16];
-  carried[237] = t804;
+  const Real t801 = carried[36] * carried[34];
+  carried[255] = t801;
+  const Real t802 = t801 * carried[38];
+  carried[256] = t802;
+  const Real t803 = carried[35] * carried[34];
+  carried[257] = t803;
+  const Real t804 = t803 * carried[37];
+  carried[258] = t804;
   const Real t805 = t802 - t804;
-  carried[238] = t805;
+  carried[259] = t805;
 
   // kernel
   const Real t806 = t805 - t800;
   const Real t807 = t806 * t774;
-  carried[239] = t807;
+  carried[260] = t807;
   const Real t808 = t807 * t777;
 
   // joint angles
-  const Real t809 = t801 * carried[16];
-  const Real t810 = t803 * carried[17];
+  const Real t809 = t801 * carried[37];
+  const Real t810 = t803 * carried[38];
   const Real t811 = t809 + t810;
-  carried[240] = t811;
+  carried[261] = t811;
 
   // kernel
   const Real t812 = t811 + t808;
   const Real t813 = t799 * t785;
   const Real t814 = t813 - t812;
-  carried[241] = t814;
+  carried[262] = t814;
   const Real t815 = t814 * constant<Real>(4.0L);
-  carried[242] = t815;
-  const Real t816 = t815 * w[2];
+  carried[263] = t815;
+  const Real t816 = t815 * carried[5];
   const Real t817 = t798 + t816;
 
   // joint angles
-  const Real t818 = constant<Real>(0.06L) * carried[12];
+  const Real t818 = constant<Real>(0.06L) * carried[33];
   const Real t819 = t818 + t757;
-  carried[243] = t819;
+  carried[264] = t819;
   const Real t820 = t756 + t819;
 
   // kernel
   const Real t821 = t759 * t820;
-  carried[244] = t821;
+  carried[265] = t821;
   const Real t822 = t765 * t821;
 
   // joint angles
-  const Real t823 = carried[13] * constant<Real>(0.06L);
+  const Real t823 = carried[34] * constant<Real>(0.06L);
   const Real t824 = constant<Real>(0.075L) + t823;
-  const Real t825 = t824 * carried[15];
-  carried[245] = t825;
-  const Real t826 = carried[15] * constant<Real>(0.012L);
+  const Real t825 = t824 * carried[36];
+  carried[266] = t825;
+  const Real t826 = carried[36] * constant<Real>(0.012L);
   const Real t827 = t825 + t826;
-  const Real t828 = t827 * carried[17];
-  const Real t829 = t824 * carried[14];
-  carried[246] = t829;
-  const Real t830 = carried[14] * constant<Real>(0.012L);
+  const Real t828 = t827 * carried[38];
+  const Real t829 = t824 * carried[35];
+  carried[267] = t829;
+  const Real t830 = carried[35] * constant<Real>(0.012L);
   const Real t831 = t830 + t829;
-  const Real t832 = t831 * carried[16];
+  const Real t832 = t831 * carried[37];
   const Real t833 = t828 - t832;
-  carried[247] = t833;
+  carried[268] = t833;
 
   // kernel
   const Real t834 = t833 - t822;
   const Real t835 = t774 * t834;
-  carried[248] = t835;
+  carried[269] = t835;
   const Real t836 = t835 * t777;
 
   // joint angles
-  const Real t837 = t827 * carried[16];
-  const Real t838 = carried[17] * t831;
+  const Real t837 = t827 * carried[37];
+  const Real t838 = carried[38] * t831;
   const Real t839 = t837 + t838;
-  carried[249] = t839;
+  carried[270] = t839;
 
   // kernel
   const Real t840 = t836 + t839;
   const Real t841 = t785 * t821;
   const Real t842 = t841 - t840;
-  carried[250] = t842;
+  carried[271] = t842;
   const Real t843 = constant<Real>(4.0L) * t842;
-  carried[251] = t843;
-  const Real t844 = t843 * w[3];
+  carried[272] = t843;
+  const Real t844 = t843 * carried[6];
   const Real t845 = t844 + t817;
-  carried[252] = t845;
+  carried[273] = t845;
 
   // joint angles
   const Real t846 = constant<Real>(0.25L) * t781;
   const Real t847 = t767 * constant<Real>(0.24L);
-  const Real t848 = constant<Real>(0.21L) * carried[12];
-  carried[253] = t848;
+  const Real t848 = constant<Real>(0.21L) * carried[33];
+  carried[274] = t848;
   const Real t849 = t847 + t848;
-  carried[254] = t849;
+  carried[275] = t849;
   const Real t850 = t846 + t849;
 
   // kernel
   const Real t851 = t759 * t850;
-  carried[255] = t851;
+  carried[276] = t851;
   const Real t852 = t765 * t851;
 
   // joint angles
-  const Real t853 = constant<Real>(0.075L) * carried[12];
-  const Real t854 = carried[14] * t853;
-  const Real t855 = carried[13] * constant<Real>(0.21L);
-  carried[256] = t855;
-  const Real t856 = carried[15] * t855;
+  const Real t853 = constant<Real>(0.075L) * carried[33];
+  const Real t854 = carried[35] * t853;
+  const Real t855 = carried[34] * constant<Real>(0.21L);
+  carried[277] = t855;
+  const Real t856 = carried[36] * t855;
   const Real t857 = t854 + t856;
-  carried[257] = t857;
+  carried[278] = t857;
   const Real t858 = t767 * constant<Real>(0.012L);
   const Real t859 = t857 + t858;
-  const Real t860 = t859 * carried[17];
-  carried[258] = t860;
-  const Real t861 = carried[15] * t853;
-  const Real t862 = carried[14] * t855;
+  const Real t860 = t859 * carried[38];
+  carried[279] = t860;
+  const Real t861 = carried[36] * t853;
+  const Real t862 = carried[35] * t855;
   const Real t863 = t861 - t862;
-  carried[259] = t863;
+  carried[280] = t863;
   const Real t864 = constant<Real>(0.012L) * t769;
-  carried[260] = t864;
-  const Real t865 = carried[13] * constant<Real>(0.24L);
-  carried[261] = t865;
+  carried[281] = t864;
+  const Real t865 = carried[34] * constant<Real>(0.24L);
+  carried[282] = t865;
   const Real t866 = t865 - t864;
   const Real t867 = t863 - t866;
-  const Real t868 = t867 * carried[16];
+  const Real t868 = t867 * carried[37];
   const Real t869 = t860 + t868;
 
   // kernel
   const Real t870 = t869 - t852;
   const Real t871 = t870 * t774;
-  carried[262] = t871;
+  carried[283] = t871;
   const Real t872 = t871 * t777;
-  carried[263] = t872;
+  carried[284] = t872;
 
   // joint angles
-  const Real t873 = t867 * carried[17];
-  const Real t874 = t859 * carried[16];
-  carried[264] = t874;
+  const Real t873 = t867 * carried[38];
+  const Real t874 = t859 * carried[37];
+  carried[285] = t874;
   const Real t875 = t873 - t874;
-  carried[265] = t875;
-  const Real t876 = constant<Real>(0.25L) * carried[13];
-  carried[266] = t876;
+  carried[286] = t875;
+  const Real t876 = constant<Real>(0.25L) * carried[34];
+  carried[287] = t876;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_4(const Real (&w)[6],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_4(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // joint angles
-  const Real t877 = carried[265] - carried[266];
+  const Real t877 = carried[286] - carried[287];
 
   // kernel
-  const Real t878 = t877 - carried[263];
-  const Real t879 = carried[226] * carried[255];
+  const Real t878 = t877 - carried[284];
+  const Real t879 = carried[247] * carried[276];
   const Real t880 = t879 + t878;
-  carried[97] = t880;
+  carried[118] = t880;
   const Real t881 = constant<Real>(4.0L) * t880;
-  carried[105] = t881;
-  const Real t882 = w[4] * t881;
-  const Real t883 = carried[252] + t882;
+  carried[126] = t881;
+  const Real t882 = carried[7] * t881;
+  const Real t883 = carried[273] + t882;
 
   // joint angles
-  const Real t884 = constant<Real>(0.075L) * carried[13];
+  const Real t884 = constant<Real>(0.075L) * carried[34];
   const Real t885 = constant<Real>(-0.06L) - t884;
-  const Real t886 = carried[15] * t885;
-  const Real t887 = carried[14] * carried[253];
+  const Real t886 = carried[36] * t885;
+  const Real t887 = carried[35] * carried[274];
   const Real t888 = t886 - t887;
-  carried[135] = t888;
-  const Real t889 = carried[234] * constant<Real>(0.012L);
-  const Real t890 = constant<Real>(0.24L) * carried[12];
+  carried[156] = t888;
+  const Real t889 = carried[255] * constant<Real>(0.012L);
+  const Real t890 = constant<Real>(0.24L) * carried[33];
   const Real t891 = t890 + t889;
   const Real t892 = t888 - t891;
-  const Real t893 = t892 * carried[16];
-  const Real t894 = carried[14] * t885;
-  const Real t895 = carried[15] * carried[253];
+  const Real t893 = t892 * carried[37];
+  const Real t894 = carried[35] * t885;
+  const Real t895 = carried[36] * carried[274];
   const Real t896 = t895 + t894;
-  carried[139] = t896;
-  const Real t897 = constant<Real>(0.012L) * carried[236];
+  carried[160] = t896;
+  const Real t897 = constant<Real>(0.012L) * carried[257];
   const Real t898 = t896 - t897;
-  const Real t899 = t898 * carried[17];
+  const Real t899 = t898 * carried[38];
   const Real t900 = t893 + t899;
-  carried[147] = t900;
-  const Real t901 = carried[240] * constant<Real>(0.25L);
-  const Real t902 = constant<Real>(0.24L) * carried[236];
-  const Real t903 = t902 + carried[256];
-  carried[149] = t903;
+  carried[168] = t900;
+  const Real t901 = carried[261] * constant<Real>(0.25L);
+  const Real t902 = constant<Real>(0.24L) * carried[257];
+  const Real t903 = t902 + carried[277];
+  carried[170] = t903;
   const Real t904 = t901 + t903;
 
   // kernel
-  const Real t905 = carried[214] * t904;
-  carried[195] = t905;
-  const Real t906 = t905 * carried[216];
+  const Real t905 = carried[235] * t904;
+  carried[216] = t905;
+  const Real t906 = t905 * carried[237];
   const Real t907 = t900 + t906;
-  const Real t908 = t907 * carried[222];
-  carried[200] = t908;
-  const Real t909 = t908 * carried[224];
+  const Real t908 = t907 * carried[243];
+  carried[221] = t908;
+  const Real t909 = t908 * carried[245];
 
   // joint angles
-  const Real t910 = carried[17] * t892;
-  const Real t911 = t898 * carried[16];
+  const Real t910 = carried[38] * t892;
+  const Real t911 = t898 * carried[37];
   const Real t912 = t910 - t911;
-  carried[202] = t912;
-  const Real t913 = constant<Real>(0.25L) * carried[12];
+  carried[223] = t912;
+  const Real t913 = constant<Real>(0.25L) * carried[33];
   const Real t914 = t912 - t913;
 
   // kernel
   const Real t915 = t914 - t909;
-  const Real t916 = t905 * carried[226];
+  const Real t916 = t905 * carried[247];
   const Real t917 = t915 - t916;
-  carried[267] = t917;
+  carried[288] = t917;
   const Real t918 = constant<Real>(4.0L) * t917;
-  carried[268] = t918;
-  const Real t919 = w[5] * t918;
+  carried[289] = t918;
+  const Real t919 = carried[8] * t918;
   const Real t920 = t919 + t883;
-  carried[269] = t920;
+  carried[290] = t920;
 
   // joint angles
-  const Real t921 = t920 * carried[16];
+  const Real t921 = t920 * carried[37];
 
   // kernel
-  const Real t922 = carried[233] * w[2];
-  const Real t923 = w[1] * carried[215];
+  const Real t922 = carried[254] * carried[5];
+  const Real t923 = carried[4] * carried[236];
   const Real t924 = t922 + t923;
-  const Real t925 = w[3] * carried[244];
+  const Real t925 = carried[6] * carried[265];
   const Real t926 = t925 + t924;
-  const Real t927 = w[4] * carried[255];
+  const Real t927 = carried[7] * carried[276];
   const Real t928 = t927 + t926;
-  const Real t929 = w[5] * t905;
+  const Real t929 = carried[8] * t905;
   const Real t930 = t929 - t928;
-  carried[270] = t930;
+  carried[291] = t930;
 
   // joint angles
-  const Real t931 = t930 + w[3];
-  carried[271] = t931;
-  const Real t932 = t931 * carried[15];
-  const Real t933 = w[5] * carried[13];
-  const Real t934 = w[4] * carried[12];
+  const Real t931 = t930 + carried[6];
+  carried[292] = t931;
+  const Real t932 = t931 * carried[36];
+  const Real t933 = carried[8] * carried[34];
+  const Real t934 = carried[7] * carried[33];
   const Real t935 = t933 - t934;
-  carried[272] = t935;
-  const Real t936 = carried[14] * t935;
+  carried[293] = t935;
+  const Real t936 = carried[35] * t935;
   const Real t937 = t932 - t936;
-  carried[273] = t937;
+  carried[294] = t937;
   const Real t938 = t937 * t921;
 
   // kernel
-  const Real t939 = carried[223] * w[1];
-  const Real t940 = w[0] * carried[230];
+  const Real t939 = carried[244] * carried[4];
+  const Real t940 = carried[3] * carried[251];
   const Real t941 = t939 + t940;
-  const Real t942 = carried[239] * w[2];
+  const Real t942 = carried[260] * carried[5];
   const Real t943 = t942 + t941;
-  const Real t944 = w[3] * carried[248];
+  const Real t944 = carried[6] * carried[269];
   const Real t945 = t944 + t943;
-  const Real t946 = w[4] * carried[262];
+  const Real t946 = carried[7] * carried[283];
   const Real t947 = t946 + t945;
-  const Real t948 = w[5] * t908;
+  const Real t948 = carried[8] * t908;
   const Real t949 = t948 + t947;
-  carried[274] = t949;
+  carried[295] = t949;
 
   // joint angles
-  const Real t950 = carried[15] * t949;
+  const Real t950 = carried[36] * t949;
   const Real t951 = t950 * t935;
-  const Real t952 = t930 * carried[13];
-  const Real t953 = t952 * w[4];
-  const Real t954 = t930 * carried[12];
-  const Real t955 = w[5] * t954;
+  const Real t952 = t930 * carried[34];
+  const Real t953 = t952 * carried[7];
+  const Real t954 = t930 * carried[33];
+  const Real t955 = carried[8] * t954;
   const Real t956 = t953 + t955;
-  const Real t957 = carried[14] * t956;
+  const Real t957 = carried[35] * t956;
   const Real t958 = t951 - t957;
-  const Real t959 = carried[14] * t949;
+  const Real t959 = carried[35] * t949;
   const Real t960 = t931 * t959;
   const Real t961 = t958 + t960;
-  const Real t962 = t961 * carried[17];
+  const Real t962 = t961 * carried[38];
   const Real t963 = t962 + t938;
-  const Real t964 = t920 * carried[17];
-  const Real t965 = t931 * carried[14];
-  const Real t966 = carried[15] * t935;
+  const Real t964 = t920 * carried[38];
+  const Real t965 = t931 * carried[35];
+  const Real t966 = carried[36] * t935;
   const Real t967 = t965 + t966;
-  carried[275] = t967;
+  carried[296] = t967;
   const Real t968 = t967 * t964;
   const Real t969 = t959 * t935;
-  const Real t970 = carried[15] * t956;
+  const Real t970 = carried[36] * t956;
   const Real t971 = t969 + t970;
   const Real t972 = t931 * t950;
   const Real t973 = t972 - t971;
-  const Real t974 = t973 * carried[16];
+  const Real t974 = t973 * carried[37];
   const Real t975 = t974 + t968;
   const Real t976 = t963 + t975;
   const Real t977 = constant<Real>(0.25L) * t976;
   const Real t978 = t961 * constant<Real>(0.24L);
-  const Real t979 = w[2] + carried[36];
+  const Real t979 = carried[5] + carried[57];
   const Real t980 = t952 * t979;
-  const Real t981 = w[1] - carried[96];
-  carried[276] = t981;
+  const Real t981 = carried[4] - carried[117];
+  carried[297] = t981;
   const Real t982 = t981 * t954;
   const Real t983 = t980 - t982;
   const Real t984 = t983 - t978;
 
   // drift of the kernel
   const Real t985 = t977 - t984;
-  const Real t986 = carried[214] * t985;
-  carried[277] = t986;
+  const Real t986 = carried[235] * t985;
+  carried[298] = t986;
 
   // hind_left_shank: wrench
-  const Real t987 = constant<Real>(0.51L) * carried[221];
+  const Real t987 = constant<Real>(0.51L) * carried[242];
 
   // hind_left_shank: joint force
-  const Real t988 = t987 * carried[17];
+  const Real t988 = t987 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t989 = constant<Real>(0.51L) * carried[225];
+  const Real t989 = constant<Real>(0.51L) * carried[246];
 
   // hind_left_shank: joint force
-  const Real t990 = t989 * carried[16];
+  const Real t990 = t989 * carried[37];
   const Real t991 = t988 - t990;
   const Real t992 = t991 * constant<Real>(0.012L);
-  const Real t993 = constant<Real>(0.1224L) * carried[13];
+  const Real t993 = constant<Real>(0.1224L) * carried[34];
   const Real t994 = t993 + t992;
 
   // hind_left_shank: wrench
-  const Real t995 = carried[225] * constant<Real>(0.00042L);
-  carried[278] = t995;
-  const Real t996 = constant<Real>(0.00252L) * carried[13];
-  carried[279] = t996;
+  const Real t995 = carried[246] * constant<Real>(0.00042L);
+  carried[299] = t995;
+  const Real t996 = constant<Real>(0.00252L) * carried[34];
+  carried[300] = t996;
   const Real t997 = t996 - t995;
 
   // hind_left_shank: joint force
-  const Real t998 = t997 * carried[16];
+  const Real t998 = t997 * carried[37];
 
   // hind_left_shank: wrench
-  const Real t999 = carried[221] * constant<Real>(0.00042L);
-  const Real t1000 = carried[13] * constant<Real>(0.0687L);
-  carried[280] = t1000;
+  const Real t999 = carried[242] * constant<Real>(0.00042L);
+  const Real t1000 = carried[34] * constant<Real>(0.0687L);
+  carried[301] = t1000;
   const Real t1001 = t1000 + t999;
 
   // hind_left_shank: joint force
-  const Real t1002 = t1001 * carried[17];
+  const Real t1002 = t1001 * carried[38];
   const Real t1003 = t998 + t1002;
   const Real t1004 = t1003 + t994;
 
   // hind_left_thigh: wrench
-  const Real t1005 = constant<Real>(0.0272L) * carried[219];
+  const Real t1005 = constant<Real>(0.0272L) * carried[240];
 
   // hind_left_thigh: wrench
-  const Real t1006 = carried[13] * constant<Real>(0.0884L);
+  const Real t1006 = carried[34] * constant<Real>(0.0884L);
 
   // hind_left_thigh: wrench
   const Real t1007 = t1005 + t1006;
-  carried[281] = t1007;
+  carried[302] = t1007;
 
   // hind_left_shank: joint force
   const Real t1008 = t1004 + t1007;
-  carried[282] = t1008;
+  carried[303] = t1008;
 
   // hind_left_thigh: joint force
-  const Real t1009 = carried[15] * t1008;
+  const Real t1009 = carried[36] * t1008;
 
   // hind_left_shank: joint force
-  const Real t1010 = t997 * carried[17];
-  const Real t1011 = t1001 * carried[16];
+  const Real t1010 = t997 * carried[38];
+  const Real t1011 = t1001 * carried[37];
   const Real t1012 = t1010 - t1011;
-  const Real t1013 = t987 * carried[16];
-  const Real t1014 = t989 * carried[17];
+  const Real t1013 = t987 * carried[37];
+  const Real t1014 = t989 * carried[38];
   const Real t1015 = t1013 + t1014;
   const Real t1016 = t1015 * constant<Real>(0.012L);
   const Real t1017 = t1012 - t1016;
 
   // hind_left_thigh: wrench
-  const Real t1018 = constant<Real>(0.0272L) * carried[217];
-  carried[283] = t1018;
+  const Real t1018 = constant<Real>(0.0272L) * carried[238];
+  carried[304] = t1018;
 
   // hind_left_thigh: wrench
-  const Real t1019 = constant<Real>(0.0051L) * carried[13];
-  carried[284] = t1019;
+  const Real t1019 = constant<Real>(0.0051L) * carried[34];
+  carried[305] = t1019;
 
   // hind_left_thigh: wrench
   const Real t1020 = t1018 - t1019;
 
   // hind_left_shank: joint force
   const Real t1021 = t1017 + t1020;
-  carried[285] = t1021;
+  carried[306] = t1021;
 
   // hind_left_thigh: joint force
-  const Real t1022 = carried[14] * t1021;
+  const Real t1022 = carried[35] * t1021;
   const Real t1023 = t1009 + t1022;
 
   // hind_left_thigh: wrench
-  const Real t1024 = constant<Real>(1.7L) * carried[219];
+  const Real t1024 = constant<Real>(1.7L) * carried[240];
 
   // hind_left_shank: joint force
   const Real t1025 = t991 - t1024;
-  carried[286] = t1025;
+  carried[307] = t1025;
 
   // hind_left_thigh: joint force
-  const Real t1026 = carried[15] * t1025;
+  const Real t1026 = carried[36] * t1025;
 
   // hind_left_thigh: wrench
-  const Real t1027 = constant<Real>(1.7L) * carried[217];
+  const Real t1027 = constant<Real>(1.7L) * carried[238];
 
   // hind_left_shank: joint force
   const Real t1028 = t1015 + t1027;
-  carried[287] = t1028;
+  carried[308] = t1028;
 
   // hind_left_thigh: joint force
-  const Real t1029 = carried[14] * t1028;
+  const Real t1029 = carried[35] * t1028;
   const Real t1030 = t1026 - t1029;
-  carried[288] = t1030;
+  carried[309] = t1030;
   const Real t1031 = constant<Real>(0.075L) * t1030;
   const Real t1032 = t1031 + t1023;
 
   // hind_left_hip: wrench
-  const Real t1033 = constant<Real>(0.0273L) * carried[12];
-  const Real t1034 = constant<Real>(0.0013L) * carried[13];
+  const Real t1033 = constant<Real>(0.0273L) * carried[33];
+  const Real t1034 = constant<Real>(0.0013L) * carried[34];
   const Real t1035 = t1033 + t1034;
-  carried[289] = t1035;
+  carried[310] = t1035;
 
   // hind_left_thigh: joint force
   const Real t1036 = t1032 - t1035;
-  carried[290] = t1036;
+  carried[311] = t1036;
 
   // reduced forces
   const Real t1037 = t986 * t1036;
-  const Real t1038 = t1037 + carried[210];
+  const Real t1038 = t1037 + carried[231];
 
   // drift of the kernel
-  const Real t1039 = t986 * carried[216];
+  const Real t1039 = t986 * carried[237];
 
   // joint angles
   const Real t1040 = constant<Real>(0.012L) * t973;
-  const Real t1041 = w[5] * t952;
-  const Real t1042 = t954 * w[4];
+  const Real t1041 = carried[8] * t952;
+  const Real t1042 = t954 * carried[7];
   const Real t1043 = t1041 - t1042;
   const Real t1044 = constant<Real>(0.24L) * t1043;
   const Real t1045 = t1044 + t1040;
   const Real t1046 = constant<Real>(0.075L) * t935;
-  const Real t1047 = carried[106] - t1046;
+  const Real t1047 = carried[127] - t1046;
   const Real t1048 = t959 * t1047;
   const Real t1049 = constant<Real>(0.075L) * t956;
-  const Real t1050 = carried[15] * t1049;
+  const Real t1050 = carried[36] * t1049;
   const Real t1051 = t1050 - t1048;
   const Real t1052 = t931 * constant<Real>(0.075L);
-  const Real t1053 = carried[13] * t979;
-  const Real t1054 = t981 * carried[12];
+  const Real t1053 = carried[34] * t979;
+  const Real t1054 = t981 * carried[33];
   const Real t1055 = t1053 - t1054;
   const Real t1056 = t1055 + t1052;
   const Real t1057 = t950 * t1056;
   const Real t1058 = t954 * t979;
   const Real t1059 = t981 * t952;
   const Real t1060 = t1058 + t1059;
-  const Real t1061 = carried[14] * t1060;
+  const Real t1061 = carried[35] * t1060;
   const Real t1062 = t1057 - t1061;
   const Real t1063 = t1051 - t1062;
   const Real t1064 = t1063 - t1045;
-  const Real t1065 = t1064 * carried[16];
-  const Real t1066 = w[5] * carried[12];
-  const Real t1067 = w[4] * carried[13];
+  const Real t1065 = t1064 * carried[37];
+  const Real t1066 = carried[8] * carried[33];
+  const Real t1067 = carried[7] * carried[34];
   const Real t1068 = t1066 + t1067;
-  carried[291] = t1068;
+  carried[312] = t1068;
   const Real t1069 = t1068 + t949;
-  carried[292] = t1069;
+  carried[313] = t1069;
   const Real t1070 = t1069 * constant<Real>(0.24L);
   const Real t1071 = t967 * constant<Real>(0.012L);
   const Real t1072 = t1071 + t1070;
-  const Real t1073 = carried[14] * t1056;
-  const Real t1074 = carried[15] * t1047;
+  const Real t1073 = carried[35] * t1056;
+  const Real t1074 = carried[36] * t1047;
   const Real t1075 = t1074 - t1073;
   const Real t1076 = t1075 - t1072;
   const Real t1077 = t964 * t1076;
   const Real t1078 = t1077 + t1065;
   const Real t1079 = t961 * constant<Real>(0.012L);
   const Real t1080 = t950 * t1047;
-  const Real t1081 = carried[14] * t1049;
+  const Real t1081 = carried[35] * t1049;
   const Real t1082 = t1081 + t1080;
   const Real t1083 = t1056 * t959;
-  const Real t1084 = carried[15] * t1060;
+  const Real t1084 = carried[36] * t1060;
   const Real t1085 = t1084 + t1083;
   const Real t1086 = t1082 - t1085;
   const Real t1087 = t1086 - t1079;
-  const Real t1088 = t1087 * carried[17];
-  const Real t1089 = carried[15] * t1056;
-  const Real t1090 = carried[14] * t1047;
+  const Real t1088 = t1087 * carried[38];
+  const Real t1089 = carried[36] * t1056;
+  const Real t1090 = carried[35] * t1047;
   const Real t1091 = t1089 + t1090;
   const Real t1092 = t937 * constant<Real>(0.012L);
   const Real t1093 = t1092 + t1091;
@@ -3005,43 +3025,43 @@ template <class Real>
 
   // drift of the kernel
   const Real t1097 = t1096 + t1039;
-  const Real t1098 = carried[222] * t1097;
-  carried[293] = t1098;
+  const Real t1098 = carried[243] * t1097;
+  carried[314] = t1098;
 
   // hind_left_shank: joint force
   const Real t1099 = t1015 * constant<Real>(0.24L);
 
   // hind_left_shank: wrench
-  const Real t1100 = carried[225] * constant<Real>(0.0687L);
-  const Real t1101 = constant<Real>(0.00252L) * carried[221];
+  const Real t1100 = carried[246] * constant<Real>(0.0687L);
+  const Real t1101 = constant<Real>(0.00252L) * carried[242];
   const Real t1102 = t1100 + t1101;
-  carried[294] = t1102;
+  carried[315] = t1102;
 
   // hind_left_shank: joint force
   const Real t1103 = t1102 + t1099;
 
   // hind_left_thigh: wrench
-  const Real t1104 = constant<Real>(0.0051L) * carried[219];
-  const Real t1105 = carried[217] * constant<Real>(0.0884L);
+  const Real t1104 = constant<Real>(0.0051L) * carried[240];
+  const Real t1105 = carried[238] * constant<Real>(0.0884L);
   const Real t1106 = t1104 + t1105;
-  carried[295] = t1106;
+  carried[316] = t1106;
 
   // hind_left_shank: joint force
   const Real t1107 = t1103 + t1106;
-  carried[296] = t1107;
+  carried[317] = t1107;
 
   // reduced forces
   const Real t1108 = t1098 * t1107;
   const Real t1109 = t1038 - t1108;
 
   // drift of the kernel
-  const Real t1110 = t1098 * carried[224];
+  const Real t1110 = t1098 * carried[245];
 
   // joint angles
-  const Real t1111 = t1064 * carried[17];
+  const Real t1111 = t1064 * carried[38];
   const Real t1112 = t1076 * t921;
   const Real t1113 = t1111 - t1112;
-  const Real t1114 = t1087 * carried[16];
+  const Real t1114 = t1087 * carried[37];
   const Real t1115 = t964 * t1093;
   const Real t1116 = t1115 + t1114;
   const Real t1117 = t1113 - t1116;
@@ -3050,739 +3070,736 @@ template <class Real>
   // drift of the kernel
   const Real t1119 = t1118 - t1117;
   const Real t1120 = t1119 + t1110;
-  const Real t1121 = t986 * carried[226];
+  const Real t1121 = t986 * carried[247];
   const Real t1122 = t1120 + t1121;
-  carried[297] = t1122;
+  carried[318] = t1122;
   const Real t1123 = constant<Real>(4.0L) * t1122;
-  carried[298] = t1123;
+  carried[319] = t1123;
 
   // reduced forces
   const Real t1124 = t1102 * t1123;
   const Real t1125 = t1109 + t1124;
-  carried[299] = t1125;
+  carried[320] = t1125;
 
   // joint angles
-  const Real t1126 = carried[23] * carried[21];
-  carried[300] = t1126;
-  const Real t1127 = carried[20] * carried[22];
-  carried[301] = t1127;
+  const Real t1126 = carried[44] * carried[42];
+  carried[321] = t1126;
+  const Real t1127 = carried[41] * carried[43];
+  carried[322] = t1127;
   const Real t1128 = t1126 - t1127;
-  carried[302] = t1128;
+  carried[323] = t1128;
   const Real t1129 = constant<Real>(0.25L) * t1128;
-  carried[303] = t1129;
-  const Real t1130 = constant<Real>(0.24L) * carried[21];
-  carried[304] = t1130;
+  carried[324] = t1129;
+  const Real t1130 = constant<Real>(0.24L) * carried[42];
+  carried[325] = t1130;
   const Real t1131 = t1130 + t1129;
 
   // kernel
   const Real t1132 = constant<Real>(1.0L) / t1131;
-  carried[305] = t1132;
-  const Real t1133 = carried[19] * t1132;
-  carried[306] = t1133;
+  carried[326] = t1132;
+  const Real t1133 = carried[40] * t1132;
+  carried[327] = t1133;
 
   // joint angles
-  const Real t1134 = carried[20] * constant<Real>(0.087L);
-  const Real t1135 = t1134 * carried[22];
-  const Real t1136 = constant<Real>(0.087L) * carried[21];
-  const Real t1137 = carried[23] * t1136;
+  const Real t1134 = carried[41] * constant<Real>(0.087L);
+  const Real t1135 = t1134 * carried[43];
+  const Real t1136 = constant<Real>(0.087L) * carried[42];
+  const Real t1137 = carried[44] * t1136;
   const Real t1138 = t1135 - t1137;
-  carried[307] = t1138;
+  carried[328] = t1138;
 
   // kernel
   const Real t1139 = t1133 * t1138;
 
   // joint angles
-  const Real t1140 = carried[20] * carried[18];
-  carried[308] = t1140;
-  const Real t1141 = t1140 * carried[22];
-  carried[309] = t1141;
-  const Real t1142 = carried[21] * carried[18];
-  carried[310] = t1142;
-  const Real t1143 = carried[23] * t1142;
-  carried[311] = t1143;
+  const Real t1140 = carried[41] * carried[39];
+  carried[329] = t1140;
+  const Real t1141 = t1140 * carried[43];
+  carried[330] = t1141;
+  const Real t1142 = carried[42] * carried[39];
+  carried[331] = t1142;
+  const Real t1143 = carried[44] * t1142;
+  carried[332] = t1143;
   const Real t1144 = t1141 - t1143;
-  carried[312] = t1144;
+  carried[333] = t1144;
 
   // kernel
   const Real t1145 = t1144 - t1139;
 
   // joint angles
-  const Real t1146 = constant<Real>(0.24L) * carried[22];
+  const Real t1146 = constant<Real>(0.24L) * carried[43];
 
   // kernel
   const Real t1147 = constant<Real>(1.0L) / t1146;
-  carried[313] = t1147;
+  carried[334] = t1147;
   const Real t1148 = t1145 * t1147;
-  carried[314] = t1148;
+  carried[335] = t1148;
 
   // joint angles
-  const Real t1149 = carried[23] * constant<Real>(0.24L);
+  const Real t1149 = carried[44] * constant<Real>(0.24L);
   const Real t1150 = constant<Real>(0.25L) + t1149;
-  carried[315] = t1150;
+  carried[336] = t1150;
 
   // kernel
   const Real t1151 = t1148 * t1150;
 
   // joint angles
-  const Real t1152 = t1140 * carried[23];
-  const Real t1153 = carried[22] * t1142;
+  const Real t1152 = t1140 * carried[44];
+  const Real t1153 = carried[43] * t1142;
   const Real t1154 = t1152 + t1153;
-  carried[316] = t1154;
+  carried[337] = t1154;
 
   // kernel
   const Real t1155 = t1154 - t1151;
 
   // joint angles
-  const Real t1156 = t1136 * carried[22];
-  const Real t1157 = t1134 * carried[23];
+  const Real t1156 = t1136 * carried[43];
+  const Real t1157 = t1134 * carried[44];
   const Real t1158 = t1156 + t1157;
-  carried[317] = t1158;
+  carried[338] = t1158;
 
   // kernel
   const Real t1159 = t1158 * t1133;
   const Real t1160 = t1155 - t1159;
-  carried[318] = t1160;
+  carried[339] = t1160;
   const Real t1161 = constant<Real>(4.0L) * t1160;
-  carried[319] = t1161;
-  const Real t1162 = w[1] * t1161;
+  carried[340] = t1161;
+  const Real t1162 = carried[4] * t1161;
 
   // joint angles
-  const Real t1163 = carried[22] * carried[21];
-  const Real t1164 = carried[23] * carried[20];
+  const Real t1163 = carried[43] * carried[42];
+  const Real t1164 = carried[44] * carried[41];
   const Real t1165 = t1163 + t1164;
-  carried[320] = t1165;
+  carried[341] = t1165;
 
   // kernel
   const Real t1166 = t1147 * t1165;
-  carried[321] = t1166;
+  carried[342] = t1166;
   const Real t1167 = t1166 * t1150;
   const Real t1168 = t1128 - t1167;
-  carried[322] = t1168;
+  carried[343] = t1168;
   const Real t1169 = constant<Real>(4.0L) * t1168;
-  carried[323] = t1169;
-  const Real t1170 = w[0] * t1169;
+  carried[344] = t1169;
+  const Real t1170 = carried[3] * t1169;
   const Real t1171 = t1162 + t1170;
-  carried[324] = t1171;
-  const Real t1172 = t1132 * carried[18];
-  carried[325] = t1172;
+  carried[345] = t1171;
+  const Real t1172 = t1132 * carried[39];
+  carried[346] = t1172;
   const Real t1173 = t1172 * t1138;
-  carried[326] = t1173;
+  carried[347] = t1173;
 
   // joint angles
-  const Real t1174 = carried[19] * carried[21];
-  carried[327] = t1174;
-  const Real t1175 = carried[23] * t1174;
-  carried[328] = t1175;
-  const Real t1176 = carried[20] * carried[19];
-  carried[329] = t1176;
+  const Real t1174 = carried[40] * carried[42];
+  carried[348] = t1174;
+  const Real t1175 = carried[44] * t1174;
+  carried[349] = t1175;
+  const Real t1176 = carried[41] * carried[40];
+  carried[350] = t1176;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_5(const Real (&w)[6],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_5(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // joint angles
-  const Real t1177 = carried[22] * carried[329];
-  carried[36] = t1177;
-  const Real t1178 = carried[328] - t1177;
-  carried[96] = t1178;
+  const Real t1177 = carried[43] * carried[350];
+  carried[57] = t1177;
+  const Real t1178 = carried[349] - t1177;
+  carried[117] = t1178;
 
   // kernel
-  const Real t1179 = t1178 - carried[326];
-  const Real t1180 = carried[313] * t1179;
-  carried[106] = t1180;
-  const Real t1181 = t1180 * carried[315];
+  const Real t1179 = t1178 - carried[347];
+  const Real t1180 = carried[334] * t1179;
+  carried[127] = t1180;
+  const Real t1181 = t1180 * carried[336];
 
   // joint angles
-  const Real t1182 = carried[23] * carried[329];
-  const Real t1183 = carried[327] * carried[22];
+  const Real t1182 = carried[44] * carried[350];
+  const Real t1183 = carried[348] * carried[43];
   const Real t1184 = t1182 + t1183;
-  carried[210] = t1184;
+  carried[231] = t1184;
 
   // kernel
   const Real t1185 = t1184 + t1181;
-  const Real t1186 = carried[325] * carried[317];
+  const Real t1186 = carried[346] * carried[338];
   const Real t1187 = t1185 + t1186;
-  carried[214] = t1187;
+  carried[235] = t1187;
   const Real t1188 = constant<Real>(4.0L) * t1187;
-  carried[222] = t1188;
-  const Real t1189 = t1188 * w[2];
-  const Real t1190 = carried[324] - t1189;
+  carried[243] = t1188;
+  const Real t1189 = t1188 * carried[5];
+  const Real t1190 = carried[345] - t1189;
 
   // joint angles
-  const Real t1191 = constant<Real>(0.06L) * carried[18];
-  const Real t1192 = carried[304] - t1191;
-  carried[224] = t1192;
-  const Real t1193 = t1192 + carried[303];
+  const Real t1191 = constant<Real>(0.06L) * carried[39];
+  const Real t1192 = carried[325] - t1191;
+  carried[245] = t1192;
+  const Real t1193 = t1192 + carried[324];
 
   // kernel
-  const Real t1194 = t1193 * carried[305];
-  carried[252] = t1194;
-  const Real t1195 = t1194 * carried[307];
+  const Real t1194 = t1193 * carried[326];
+  carried[273] = t1194;
+  const Real t1195 = t1194 * carried[328];
 
   // joint angles
-  const Real t1196 = carried[19] * constant<Real>(0.06L);
-  carried[253] = t1196;
+  const Real t1196 = carried[40] * constant<Real>(0.06L);
+  carried[274] = t1196;
   const Real t1197 = t1196 + constant<Real>(0.075L);
-  const Real t1198 = t1197 * carried[20];
-  const Real t1199 = carried[20] * constant<Real>(0.012L);
-  carried[256] = t1199;
+  const Real t1198 = t1197 * carried[41];
+  const Real t1199 = carried[41] * constant<Real>(0.012L);
+  carried[277] = t1199;
   const Real t1200 = t1199 + t1198;
-  const Real t1201 = carried[22] * t1200;
-  const Real t1202 = t1197 * carried[21];
-  const Real t1203 = constant<Real>(0.012L) * carried[21];
-  carried[263] = t1203;
+  const Real t1201 = carried[43] * t1200;
+  const Real t1202 = t1197 * carried[42];
+  const Real t1203 = constant<Real>(0.012L) * carried[42];
+  carried[284] = t1203;
   const Real t1204 = t1203 + t1202;
-  const Real t1205 = carried[23] * t1204;
+  const Real t1205 = carried[44] * t1204;
   const Real t1206 = t1201 - t1205;
 
   // kernel
   const Real t1207 = t1206 - t1195;
-  const Real t1208 = carried[313] * t1207;
-  carried[265] = t1208;
-  const Real t1209 = carried[315] * t1208;
+  const Real t1208 = carried[334] * t1207;
+  carried[286] = t1208;
+  const Real t1209 = carried[336] * t1208;
 
   // joint angles
-  const Real t1210 = t1204 * carried[22];
-  const Real t1211 = carried[23] * t1200;
+  const Real t1210 = t1204 * carried[43];
+  const Real t1211 = carried[44] * t1200;
   const Real t1212 = t1210 + t1211;
 
   // kernel
   const Real t1213 = t1212 - t1209;
-  const Real t1214 = carried[317] * t1194;
+  const Real t1214 = carried[338] * t1194;
   const Real t1215 = t1213 - t1214;
-  carried[266] = t1215;
+  carried[287] = t1215;
   const Real t1216 = constant<Real>(4.0L) * t1215;
-  carried[330] = t1216;
-  const Real t1217 = t1216 * w[3];
+  carried[351] = t1216;
+  const Real t1217 = t1216 * carried[6];
   const Real t1218 = t1217 + t1190;
 
   // joint angles
-  const Real t1219 = constant<Real>(0.25L) * carried[316];
-  const Real t1220 = carried[308] * constant<Real>(0.24L);
-  const Real t1221 = constant<Real>(0.21L) * carried[18];
+  const Real t1219 = constant<Real>(0.25L) * carried[337];
+  const Real t1220 = carried[329] * constant<Real>(0.24L);
+  const Real t1221 = constant<Real>(0.21L) * carried[39];
   const Real t1222 = t1220 + t1221;
-  carried[331] = t1222;
+  carried[352] = t1222;
   const Real t1223 = t1222 + t1219;
 
   // kernel
-  const Real t1224 = t1223 * carried[305];
-  carried[332] = t1224;
-  const Real t1225 = t1224 * carried[307];
+  const Real t1224 = t1223 * carried[326];
+  carried[353] = t1224;
+  const Real t1225 = t1224 * carried[328];
 
   // joint angles
-  const Real t1226 = constant<Real>(0.21L) * carried[19];
-  const Real t1227 = t1226 * carried[21];
-  const Real t1228 = constant<Real>(0.075L) * carried[18];
-  const Real t1229 = t1228 * carried[20];
+  const Real t1226 = constant<Real>(0.21L) * carried[40];
+  const Real t1227 = t1226 * carried[42];
+  const Real t1228 = constant<Real>(0.075L) * carried[39];
+  const Real t1229 = t1228 * carried[41];
   const Real t1230 = t1227 - t1229;
-  carried[333] = t1230;
-  const Real t1231 = carried[308] * constant<Real>(0.012L);
+  carried[354] = t1230;
+  const Real t1231 = carried[329] * constant<Real>(0.012L);
   const Real t1232 = t1230 - t1231;
-  const Real t1233 = carried[23] * t1232;
-  const Real t1234 = t1226 * carried[20];
-  const Real t1235 = t1228 * carried[21];
+  const Real t1233 = carried[44] * t1232;
+  const Real t1234 = t1226 * carried[41];
+  const Real t1235 = t1228 * carried[42];
   const Real t1236 = t1234 + t1235;
-  carried[334] = t1236;
-  const Real t1237 = constant<Real>(0.012L) * carried[310];
-  const Real t1238 = constant<Real>(0.24L) * carried[19];
+  carried[355] = t1236;
+  const Real t1237 = constant<Real>(0.012L) * carried[331];
+  const Real t1238 = constant<Real>(0.24L) * carried[40];
   const Real t1239 = t1238 + t1237;
   const Real t1240 = t1236 + t1239;
-  const Real t1241 = t1240 * carried[22];
+  const Real t1241 = t1240 * carried[43];
   const Real t1242 = t1233 - t1241;
-  carried[335] = t1242;
+  carried[356] = t1242;
 
   // kernel
   const Real t1243 = t1242 - t1225;
-  const Real t1244 = t1243 * carried[313];
-  carried[336] = t1244;
-  const Real t1245 = t1244 * carried[315];
+  const Real t1244 = t1243 * carried[334];
+  carried[357] = t1244;
+  const Real t1245 = t1244 * carried[336];
 
   // joint angles
-  const Real t1246 = t1232 * carried[22];
-  const Real t1247 = carried[23] * t1240;
+  const Real t1246 = t1232 * carried[43];
+  const Real t1247 = carried[44] * t1240;
   const Real t1248 = t1246 + t1247;
-  carried[337] = t1248;
-  const Real t1249 = constant<Real>(0.25L) * carried[19];
+  carried[358] = t1248;
+  const Real t1249 = constant<Real>(0.25L) * carried[40];
   const Real t1250 = t1248 + t1249;
 
   // kernel
   const Real t1251 = t1245 + t1250;
-  const Real t1252 = t1224 * carried[317];
+  const Real t1252 = t1224 * carried[338];
   const Real t1253 = t1251 + t1252;
-  carried[338] = t1253;
+  carried[359] = t1253;
   const Real t1254 = t1253 * constant<Real>(4.0L);
-  carried[339] = t1254;
-  const Real t1255 = t1254 * w[4];
+  carried[360] = t1254;
+  const Real t1255 = t1254 * carried[7];
   const Real t1256 = t1218 - t1255;
 
   // joint angles
-  const Real t1257 = constant<Real>(0.075L) * carried[19];
+  const Real t1257 = constant<Real>(0.075L) * carried[40];
   const Real t1258 = t1257 + constant<Real>(0.06L);
-  const Real t1259 = t1258 * carried[20];
-  const Real t1260 = t1221 * carried[21];
+  const Real t1259 = t1258 * carried[41];
+  const Real t1260 = t1221 * carried[42];
   const Real t1261 = t1260 + t1259;
-  carried[340] = t1261;
-  const Real t1262 = constant<Real>(0.012L) * carried[329];
+  carried[361] = t1261;
+  const Real t1262 = constant<Real>(0.012L) * carried[350];
   const Real t1263 = t1261 + t1262;
-  const Real t1264 = carried[23] * t1263;
-  const Real t1265 = t1258 * carried[21];
-  const Real t1266 = carried[20] * t1221;
+  const Real t1264 = carried[44] * t1263;
+  const Real t1265 = t1258 * carried[42];
+  const Real t1266 = carried[41] * t1221;
   const Real t1267 = t1265 - t1266;
-  carried[341] = t1267;
-  const Real t1268 = carried[327] * constant<Real>(0.012L);
-  const Real t1269 = constant<Real>(0.24L) * carried[18];
+  carried[362] = t1267;
+  const Real t1268 = carried[348] * constant<Real>(0.012L);
+  const Real t1269 = constant<Real>(0.24L) * carried[39];
   const Real t1270 = t1268 - t1269;
   const Real t1271 = t1270 + t1267;
-  const Real t1272 = t1271 * carried[22];
+  const Real t1272 = t1271 * carried[43];
   const Real t1273 = t1264 + t1272;
-  carried[342] = t1273;
+  carried[363] = t1273;
   const Real t1274 = t1184 * constant<Real>(0.25L);
-  const Real t1275 = constant<Real>(0.24L) * carried[329];
+  const Real t1275 = constant<Real>(0.24L) * carried[350];
   const Real t1276 = t1226 + t1275;
-  carried[343] = t1276;
+  carried[364] = t1276;
   const Real t1277 = t1274 + t1276;
 
   // kernel
-  const Real t1278 = t1277 * carried[305];
-  carried[344] = t1278;
-  const Real t1279 = t1278 * carried[307];
+  const Real t1278 = t1277 * carried[326];
+  carried[365] = t1278;
+  const Real t1279 = t1278 * carried[328];
   const Real t1280 = t1273 + t1279;
-  const Real t1281 = t1280 * carried[313];
-  carried[345] = t1281;
-  const Real t1282 = carried[315] * t1281;
+  const Real t1281 = t1280 * carried[334];
+  carried[366] = t1281;
+  const Real t1282 = carried[336] * t1281;
 
   // joint angles
-  const Real t1283 = carried[23] * t1271;
-  const Real t1284 = t1263 * carried[22];
+  const Real t1283 = carried[44] * t1271;
+  const Real t1284 = t1263 * carried[43];
   const Real t1285 = t1283 - t1284;
-  carried[346] = t1285;
-  const Real t1286 = constant<Real>(0.25L) * carried[18];
+  carried[367] = t1285;
+  const Real t1286 = constant<Real>(0.25L) * carried[39];
   const Real t1287 = t1285 - t1286;
 
   // kernel
   const Real t1288 = t1287 - t1282;
-  const Real t1289 = carried[317] * t1278;
+  const Real t1289 = carried[338] * t1278;
   const Real t1290 = t1288 + t1289;
-  carried[347] = t1290;
+  carried[368] = t1290;
   const Real t1291 = constant<Real>(4.0L) * t1290;
-  carried[348] = t1291;
-  const Real t1292 = w[5] * t1291;
+  carried[369] = t1291;
+  const Real t1292 = carried[8] * t1291;
   const Real t1293 = t1256 + t1292;
-  carried[349] = t1293;
+  carried[370] = t1293;
 
   // joint angles
-  const Real t1294 = t1293 * carried[23];
-  carried[350] = t1294;
+  const Real t1294 = t1293 * carried[44];
+  carried[371] = t1294;
 
   // kernel
-  const Real t1295 = carried[306] * w[1];
-  const Real t1296 = carried[325] * w[2];
+  const Real t1295 = carried[327] * carried[4];
+  const Real t1296 = carried[346] * carried[5];
   const Real t1297 = t1295 + t1296;
-  const Real t1298 = w[3] * t1194;
+  const Real t1298 = carried[6] * t1194;
   const Real t1299 = t1297 + t1298;
-  const Real t1300 = t1224 * w[4];
+  const Real t1300 = t1224 * carried[7];
   const Real t1301 = t1299 + t1300;
-  const Real t1302 = w[5] * t1278;
+  const Real t1302 = carried[8] * t1278;
   const Real t1303 = t1302 - t1301;
-  carried[351] = t1303;
+  carried[372] = t1303;
 
   // joint angles
-  const Real t1304 = w[3] + t1303;
-  carried[352] = t1304;
-  const Real t1305 = carried[20] * t1304;
-  const Real t1306 = w[5] * carried[19];
-  const Real t1307 = w[4] * carried[18];
+  const Real t1304 = carried[6] + t1303;
+  carried[373] = t1304;
+  const Real t1305 = carried[41] * t1304;
+  const Real t1306 = carried[8] * carried[40];
+  const Real t1307 = carried[7] * carried[39];
   const Real t1308 = t1306 - t1307;
-  carried[353] = t1308;
-  const Real t1309 = t1308 * carried[21];
+  carried[374] = t1308;
+  const Real t1309 = t1308 * carried[42];
   const Real t1310 = t1305 + t1309;
-  carried[354] = t1310;
+  carried[375] = t1310;
   const Real t1311 = t1310 * t1294;
 
   // kernel
-  const Real t1312 = carried[314] * w[1];
-  const Real t1313 = w[0] * carried[321];
+  const Real t1312 = carried[335] * carried[4];
+  const Real t1313 = carried[3] * carried[342];
   const Real t1314 = t1312 + t1313;
-  const Real t1315 = t1180 * w[2];
+  const Real t1315 = t1180 * carried[5];
   const Real t1316 = t1315 + t1314;
-  const Real t1317 = w[3] * t1208;
+  const Real t1317 = carried[6] * t1208;
   const Real t1318 = t1316 + t1317;
-  const Real t1319 = t1244 * w[4];
+  const Real t1319 = t1244 * carried[7];
   const Real t1320 = t1319 + t1318;
-  const Real t1321 = w[5] * t1281;
+  const Real t1321 = carried[8] * t1281;
   const Real t1322 = t1321 + t1320;
-  carried[355] = t1322;
+  carried[376] = t1322;
 
   // joint angles
-  const Real t1323 = t1322 * carried[20];
+  const Real t1323 = t1322 * carried[41];
   const Real t1324 = t1308 * t1323;
-  const Real t1325 = carried[19] * t1303;
-  const Real t1326 = w[4] * t1325;
-  const Real t1327 = carried[18] * t1303;
-  const Real t1328 = t1327 * w[5];
+  const Real t1325 = carried[40] * t1303;
+  const Real t1326 = carried[7] * t1325;
+  const Real t1327 = carried[39] * t1303;
+  const Real t1328 = t1327 * carried[8];
   const Real t1329 = t1326 + t1328;
-  const Real t1330 = t1329 * carried[21];
+  const Real t1330 = t1329 * carried[42];
   const Real t1331 = t1330 + t1324;
-  const Real t1332 = t1322 * carried[21];
+  const Real t1332 = t1322 * carried[42];
   const Real t1333 = t1304 * t1332;
   const Real t1334 = t1333 - t1331;
-  const Real t1335 = t1334 * carried[22];
+  const Real t1335 = t1334 * carried[43];
   const Real t1336 = t1311 + t1335;
-  const Real t1337 = t1293 * carried[22];
-  carried[356] = t1337;
-  const Real t1338 = t1304 * carried[21];
-  const Real t1339 = t1308 * carried[20];
+  const Real t1337 = t1293 * carried[43];
+  carried[377] = t1337;
+  const Real t1338 = t1304 * carried[42];
+  const Real t1339 = t1308 * carried[41];
   const Real t1340 = t1338 - t1339;
-  carried[357] = t1340;
+  carried[378] = t1340;
   const Real t1341 = t1340 * t1337;
   const Real t1342 = t1308 * t1332;
-  const Real t1343 = carried[20] * t1329;
+  const Real t1343 = carried[41] * t1329;
   const Real t1344 = t1342 - t1343;
   const Real t1345 = t1304 * t1323;
   const Real t1346 = t1344 + t1345;
-  const Real t1347 = carried[23] * t1346;
+  const Real t1347 = carried[44] * t1346;
   const Real t1348 = t1341 + t1347;
   const Real t1349 = t1336 + t1348;
   const Real t1350 = constant<Real>(0.25L) * t1349;
   const Real t1351 = constant<Real>(0.24L) * t1346;
-  const Real t1352 = carried[99] - carried[98];
-  const Real t1353 = t1352 + w[2];
+  const Real t1352 = carried[120] - carried[119];
+  const Real t1353 = t1352 + carried[5];
   const Real t1354 = t1325 * t1353;
-  const Real t1355 = t1327 * carried[276];
+  const Real t1355 = t1327 * carried[297];
   const Real t1356 = t1354 - t1355;
   const Real t1357 = t1356 - t1351;
 
   // drift of the kernel
   const Real t1358 = t1350 - t1357;
-  const Real t1359 = carried[305] * t1358;
-  carried[358] = t1359;
+  const Real t1359 = carried[326] * t1358;
+  carried[379] = t1359;
 
   // hind_right_shank: wrench
-  const Real t1360 = constant<Real>(0.51L) * carried[312];
+  const Real t1360 = constant<Real>(0.51L) * carried[333];
 
   // hind_right_shank: joint force
-  const Real t1361 = t1360 * carried[23];
+  const Real t1361 = t1360 * carried[44];
 
   // hind_right_shank: wrench
-  const Real t1362 = constant<Real>(0.51L) * carried[316];
+  const Real t1362 = constant<Real>(0.51L) * carried[337];
 
   // hind_right_shank: joint force
-  const Real t1363 = t1362 * carried[22];
+  const Real t1363 = t1362 * carried[43];
   const Real t1364 = t1361 - t1363;
   const Real t1365 = t1364 * constant<Real>(0.012L);
-  const Real t1366 = constant<Real>(0.1224L) * carried[19];
+  const Real t1366 = constant<Real>(0.1224L) * carried[40];
   const Real t1367 = t1366 - t1365;
 
   // hind_right_shank: wrench
-  const Real t1368 = carried[316] * constant<Real>(0.00042L);
-  const Real t1369 = constant<Real>(0.00252L) * carried[19];
+  const Real t1368 = carried[337] * constant<Real>(0.00042L);
+  const Real t1369 = constant<Real>(0.00252L) * carried[40];
   const Real t1370 = t1368 + t1369;
-  carried[359] = t1370;
+  carried[380] = t1370;
 
   // hind_right_shank: joint force
-  const Real t1371 = t1370 * carried[22];
+  const Real t1371 = t1370 * carried[43];
 
   // hind_right_shank: wrench
-  const Real t1372 = carried[312] * constant<Real>(0.00042L);
-  const Real t1373 = carried[19] * constant<Real>(0.0687L);
-  carried[360] = t1373;
+  const Real t1372 = carried[333] * constant<Real>(0.00042L);
+  const Real t1373 = carried[40] * constant<Real>(0.0687L);
+  carried[381] = t1373;
   const Real t1374 = t1373 - t1372;
 
   // hind_right_shank: joint force
-  const Real t1375 = carried[23] * t1374;
+  const Real t1375 = carried[44] * t1374;
   const Real t1376 = t1371 + t1375;
   const Real t1377 = t1376 + t1367;
 
   // hind_right_thigh: wrench
-  const Real t1378 = constant<Real>(0.0272L) * carried[310];
-  carried[361] = t1378;
+  const Real t1378 = constant<Real>(0.0272L) * carried[331];
+  carried[382] = t1378;
 
   // hind_right_thigh: wrench
-  const Real t1379 = constant<Real>(0.0884L) * carried[19];
-  carried[362] = t1379;
+  const Real t1379 = constant<Real>(0.0884L) * carried[40];
+  carried[383] = t1379;
 
   // hind_right_thigh: wrench
   const Real t1380 = t1379 - t1378;
 
   // hind_right_shank: joint force
   const Real t1381 = t1380 + t1377;
-  carried[363] = t1381;
+  carried[384] = t1381;
 
   // hind_right_thigh: joint force
-  const Real t1382 = t1381 * carried[21];
+  const Real t1382 = t1381 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t1383 = carried[23] * t1362;
-  const Real t1384 = t1360 * carried[22];
+  const Real t1383 = carried[44] * t1362;
+  const Real t1384 = t1360 * carried[43];
   const Real t1385 = t1383 + t1384;
   const Real t1386 = t1385 * constant<Real>(0.012L);
-  const Real t1387 = carried[23] * t1370;
-  const Real t1388 = carried[22] * t1374;
+  const Real t1387 = carried[44] * t1370;
+  const Real t1388 = carried[43] * t1374;
   const Real t1389 = t1387 - t1388;
   const Real t1390 = t1386 + t1389;
 
   // hind_right_thigh: wrench
-  const Real t1391 = carried[308] * constant<Real>(0.0272L);
+  const Real t1391 = carried[329] * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t1392 = constant<Real>(0.0051L) * carried[19];
+  const Real t1392 = constant<Real>(0.0051L) * carried[40];
 
   // hind_right_thigh: wrench
   const Real t1393 = t1391 + t1392;
-  carried[364] = t1393;
+  carried[385] = t1393;
 
   // hind_right_shank: joint force
   const Real t1394 = t1390 - t1393;
-  carried[365] = t1394;
+  carried[386] = t1394;
 
   // hind_right_thigh: joint force
-  const Real t1395 = carried[20] * t1394;
+  const Real t1395 = carried[41] * t1394;
   const Real t1396 = t1382 + t1395;
 
   // hind_right_thigh: wrench
-  const Real t1397 = constant<Real>(1.7L) * carried[310];
+  const Real t1397 = constant<Real>(1.7L) * carried[331];
 
   // hind_right_shank: joint force
   const Real t1398 = t1364 - t1397;
-  carried[366] = t1398;
+  carried[387] = t1398;
 
   // hind_right_thigh: joint force
-  const Real t1399 = t1398 * carried[21];
+  const Real t1399 = t1398 * carried[42];
 
   // hind_right_thigh: wrench
-  const Real t1400 = carried[308] * constant<Real>(1.7L);
+  const Real t1400 = carried[329] * constant<Real>(1.7L);
 
   // hind_right_shank: joint force
   const Real t1401 = t1400 + t1385;
-  carried[367] = t1401;
+  carried[388] = t1401;
 
   // hind_right_thigh: joint force
-  const Real t1402 = carried[20] * t1401;
+  const Real t1402 = carried[41] * t1401;
   const Real t1403 = t1399 - t1402;
-  carried[368] = t1403;
+  carried[389] = t1403;
   const Real t1404 = constant<Real>(0.075L) * t1403;
   const Real t1405 = t1396 - t1404;
 
   // hind_right_hip: wrench
-  const Real t1406 = carried[18] * constant<Real>(0.0273L);
-  carried[369] = t1406;
-  const Real t1407 = constant<Real>(0.0013L) * carried[19];
-  carried[370] = t1407;
+  const Real t1406 = carried[39] * constant<Real>(0.0273L);
+  carried[390] = t1406;
+  const Real t1407 = constant<Real>(0.0013L) * carried[40];
+  carried[391] = t1407;
   const Real t1408 = t1406 - t1407;
 
   // hind_right_thigh: joint force
   const Real t1409 = t1408 + t1405;
-  carried[371] = t1409;
+  carried[392] = t1409;
 
   // reduced forces
   const Real t1410 = t1409 * t1359;
-  const Real t1411 = t1410 + carried[299];
-  carried[372] = t1411;
+  const Real t1411 = t1410 + carried[320];
+  carried[393] = t1411;
 
   // drift of the kernel
-  const Real t1412 = t1359 * carried[307];
+  const Real t1412 = t1359 * carried[328];
 
   // joint angles
   const Real t1413 = t1334 * constant<Real>(0.012L);
-  const Real t1414 = w[5] * t1325;
-  const Real t1415 = t1327 * w[4];
+  const Real t1414 = carried[8] * t1325;
+  const Real t1415 = t1327 * carried[7];
   const Real t1416 = t1414 - t1415;
-  carried[373] = t1416;
+  carried[394] = t1416;
   const Real t1417 = t1416 * constant<Real>(0.24L);
   const Real t1418 = t1413 - t1417;
   const Real t1419 = t1308 * constant<Real>(0.075L);
-  const Real t1420 = t1419 + carried[114];
+  const Real t1420 = t1419 + carried[135];
   const Real t1421 = t1323 * t1420;
   const Real t1422 = constant<Real>(0.075L) * t1329;
-  const Real t1423 = t1422 * carried[21];
+  const Real t1423 = t1422 * carried[42];
   const Real t1424 = t1421 + t1423;
   const Real t1425 = constant<Real>(0.075L) * t1304;
-  const Real t1426 = carried[19] * t1353;
-  const Real t1427 = carried[276] * carried[18];
+  const Real t1426 = carried[40] * t1353;
+  const Real t1427 = carried[297] * carried[39];
   const Real t1428 = t1426 - t1427;
   const Real t1429 = t1428 - t1425;
   const Real t1430 = t1332 * t1429;
   const Real t1431 = t1327 * t1353;
-  const Real t1432 = carried[276] * t1325;
+  const Real t1432 = carried[297] * t1325;
   const Real t1433 = t1431 + t1432;
-  const Real t1434 = carried[20] * t1433;
+  const Real t1434 = carried[41] * t1433;
   const Real t1435 = t1430 - t1434;
   const Real t1436 = t1424 + t1435;
   const Real t1437 = t1418 - t1436;
-  carried[374] = t1437;
-  const Real t1438 = t1437 * carried[22];
-  const Real t1439 = w[4] * carried[19];
-  const Real t1440 = w[5] * carried[18];
+  carried[395] = t1437;
+  const Real t1438 = t1437 * carried[43];
+  const Real t1439 = carried[7] * carried[40];
+  const Real t1440 = carried[8] * carried[39];
   const Real t1441 = t1439 + t1440;
-  carried[375] = t1441;
+  carried[396] = t1441;
   const Real t1442 = t1322 + t1441;
-  carried[376] = t1442;
+  carried[397] = t1442;
   const Real t1443 = t1442 * constant<Real>(0.24L);
   const Real t1444 = t1310 * constant<Real>(0.012L);
   const Real t1445 = t1444 - t1443;
-  const Real t1446 = carried[20] * t1429;
-  const Real t1447 = carried[21] * t1420;
+  const Real t1446 = carried[41] * t1429;
+  const Real t1447 = carried[42] * t1420;
   const Real t1448 = t1447 - t1446;
   const Real t1449 = t1445 + t1448;
-  carried[377] = t1449;
+  carried[398] = t1449;
   const Real t1450 = t1449 * t1294;
   const Real t1451 = t1438 + t1450;
   const Real t1452 = constant<Real>(0.012L) * t1346;
   const Real t1453 = t1332 * t1420;
-  const Real t1454 = carried[20] * t1422;
+  const Real t1454 = carried[41] * t1422;
   const Real t1455 = t1453 - t1454;
   const Real t1456 = t1323 * t1429;
-  const Real t1457 = t1433 * carried[21];
+  const Real t1457 = t1433 * carried[42];
   const Real t1458 = t1457 + t1456;
   const Real t1459 = t1455 - t1458;
   const Real t1460 = t1459 + t1452;
-  carried[378] = t1460;
-  const Real t1461 = carried[23] * t1460;
-  const Real t1462 = carried[21] * t1429;
-  const Real t1463 = carried[20] * t1420;
+  carried[399] = t1460;
+  const Real t1461 = carried[44] * t1460;
+  const Real t1462 = carried[42] * t1429;
+  const Real t1463 = carried[41] * t1420;
   const Real t1464 = t1462 + t1463;
   const Real t1465 = t1340 * constant<Real>(0.012L);
   const Real t1466 = t1464 - t1465;
-  carried[379] = t1466;
+  carried[400] = t1466;
   const Real t1467 = t1337 * t1466;
   const Real t1468 = t1461 - t1467;
   const Real t1469 = t1451 + t1468;
 
   // drift of the kernel
   const Real t1470 = t1412 + t1469;
-  const Real t1471 = carried[313] * t1470;
-  carried[380] = t1471;
+  const Real t1471 = carried[334] * t1470;
+  carried[401] = t1471;
 
   // hind_right_shank: joint force
   const Real t1472 = constant<Real>(0.24L) * t1385;
 
   // hind_right_shank: wrench
-  const Real t1473 = carried[316] * constant<Real>(0.0687L);
-  const Real t1474 = carried[312] * constant<Real>(0.00252L);
+  const Real t1473 = carried[337] * constant<Real>(0.0687L);
+  const Real t1474 = carried[333] * constant<Real>(0.00252L);
   const Real t1475 = t1473 + t1474;
-  carried[381] = t1475;
+  carried[402] = t1475;
 
   // hind_right_shank: joint force
   const Real t1476 = t1472 + t1475;
-  carried[382] = t1476;
+  carried[403] = t1476;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_6(const Real (&R)[9],
-                                                             const Real (&w)[6],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_6(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_right_thigh: wrench
-  const Real t1477 = constant<Real>(0.0051L) * carried[310];
-  const Real t1478 = carried[308] * constant<Real>(0.0884L);
+  const Real t1477 = constant<Real>(0.0051L) * carried[331];
+  const Real t1478 = carried[329] * constant<Real>(0.0884L);
   const Real t1479 = t1477 + t1478;
-  carried[98] = t1479;
+  carried[119] = t1479;
 
   // hind_right_shank: joint force
-  const Real t1480 = t1479 + carried[382];
-  carried[99] = t1480;
+  const Real t1480 = t1479 + carried[403];
+  carried[120] = t1480;
 
   // reduced forces
-  const Real t1481 = carried[380] * t1480;
-  const Real t1482 = carried[372] - t1481;
+  const Real t1481 = carried[401] * t1480;
+  const Real t1482 = carried[393] - t1481;
 
   // drift of the kernel
-  const Real t1483 = carried[380] * carried[315];
+  const Real t1483 = carried[401] * carried[336];
 
   // joint angles
-  const Real t1484 = carried[23] * carried[374];
-  const Real t1485 = carried[377] * carried[356];
+  const Real t1484 = carried[44] * carried[395];
+  const Real t1485 = carried[398] * carried[377];
   const Real t1486 = t1484 - t1485;
-  const Real t1487 = carried[378] * carried[22];
-  const Real t1488 = carried[350] * carried[379];
+  const Real t1487 = carried[399] * carried[43];
+  const Real t1488 = carried[371] * carried[400];
   const Real t1489 = t1488 + t1487;
   const Real t1490 = t1486 - t1489;
-  const Real t1491 = constant<Real>(0.25L) * carried[373];
+  const Real t1491 = constant<Real>(0.25L) * carried[394];
 
   // drift of the kernel
   const Real t1492 = t1491 - t1490;
   const Real t1493 = t1492 + t1483;
-  const Real t1494 = carried[317] * carried[358];
+  const Real t1494 = carried[338] * carried[379];
   const Real t1495 = t1493 - t1494;
-  carried[114] = t1495;
+  carried[135] = t1495;
   const Real t1496 = constant<Real>(4.0L) * t1495;
-  carried[276] = t1496;
+  carried[297] = t1496;
 
   // reduced forces
-  const Real t1497 = t1496 * carried[381];
+  const Real t1497 = t1496 * carried[402];
   const Real t1498 = t1497 + t1482;
-  carried[299] = t1498;
+  carried[320] = t1498;
 
   // hind_right_shank: twist
-  const Real t1499 = carried[357] * carried[22];
-  const Real t1500 = carried[23] * carried[354];
+  const Real t1499 = carried[378] * carried[43];
+  const Real t1500 = carried[44] * carried[375];
   const Real t1501 = t1499 + t1500;
 
   // hind_right_shank: acceleration
-  const Real t1502 = carried[349] * t1501;
+  const Real t1502 = carried[370] * t1501;
 
   // hind_right_thigh: acceleration
-  const Real t1503 = carried[355] * carried[354];
+  const Real t1503 = carried[376] * carried[375];
 
   // hind_right_hip: acceleration
-  const Real t1504 = carried[375] * carried[351];
-  carried[303] = t1504;
+  const Real t1504 = carried[396] * carried[372];
+  carried[324] = t1504;
 
   // hind_right_thigh: acceleration
-  const Real t1505 = carried[20] * t1504;
+  const Real t1505 = carried[41] * t1504;
 
   // hind_right_thigh: acceleration
   const Real t1506 = t1505 - t1503;
-  carried[304] = t1506;
+  carried[325] = t1506;
 
   // hind_right_shank: acceleration
-  const Real t1507 = carried[23] * t1506;
+  const Real t1507 = carried[44] * t1506;
 
   // hind_right_thigh: acceleration
-  const Real t1508 = carried[355] * carried[357];
-  const Real t1509 = t1504 * carried[21];
+  const Real t1508 = carried[376] * carried[378];
+  const Real t1509 = t1504 * carried[42];
 
   // hind_right_thigh: acceleration
   const Real t1510 = t1508 - t1509;
-  carried[305] = t1510;
+  carried[326] = t1510;
 
   // hind_right_shank: acceleration
-  const Real t1511 = carried[22] * t1510;
+  const Real t1511 = carried[43] * t1510;
   const Real t1512 = t1507 - t1511;
   const Real t1513 = t1512 - t1502;
-  carried[313] = t1513;
+  carried[334] = t1513;
 
   // hind_right_shank: twist
-  const Real t1514 = carried[349] + carried[376];
+  const Real t1514 = carried[370] + carried[397];
 
   // hind_right_shank: acceleration
   const Real t1515 = t1501 * t1514;
-  carried[324] = t1515;
+  carried[345] = t1515;
 
   // hind_right_shank: acceleration
   const Real t1516 = t1513 + t1515;
-  carried[326] = t1516;
+  carried[347] = t1516;
 
   // hind_right_shank: wrench
   const Real t1517 = t1516 * constant<Real>(0.00042L);
 
   // hind_right_shank: twist
-  const Real t1518 = carried[23] * carried[357];
-  const Real t1519 = carried[354] * carried[22];
+  const Real t1518 = carried[44] * carried[378];
+  const Real t1519 = carried[375] * carried[43];
   const Real t1520 = t1518 - t1519;
 
   // hind_right_shank: acceleration
   const Real t1521 = t1520 * t1501;
-  carried[383] = t1521;
+  carried[404] = t1521;
 
   // hind_right_hip: acceleration
-  const Real t1522 = carried[353] * carried[351];
-  carried[384] = t1522;
+  const Real t1522 = carried[374] * carried[372];
+  carried[405] = t1522;
 
   // hind_right_shank: acceleration
   const Real t1523 = t1521 - t1522;
-  carried[385] = t1523;
+  carried[406] = t1523;
 
   // hind_right_shank: wrench
   const Real t1524 = t1523 * constant<Real>(0.00252L);
@@ -3790,9 +3807,9 @@ template <class Real>
 
   // hind_right_shank: acceleration
   const Real t1526 = t1514 * t1514;
-  carried[386] = t1526;
+  carried[407] = t1526;
   const Real t1527 = t1520 * t1520;
-  carried[387] = t1527;
+  carried[408] = t1527;
   const Real t1528 = t1526 + t1527;
 
   // hind_right_shank: wrench
@@ -3802,191 +3819,191 @@ template <class Real>
   const Real t1530 = t1525 + t1529;
 
   // hind_right_thigh: acceleration
-  const Real t1531 = carried[376] * carried[376];
-  carried[388] = t1531;
-  const Real t1532 = carried[357] * carried[357];
-  carried[389] = t1532;
+  const Real t1531 = carried[397] * carried[397];
+  carried[409] = t1531;
+  const Real t1532 = carried[378] * carried[378];
+  carried[410] = t1532;
   const Real t1533 = t1531 + t1532;
 
   // hind_right_shank: acceleration
   const Real t1534 = constant<Real>(0.24L) * t1533;
 
   // hind_right_thigh: acceleration
-  const Real t1535 = carried[376] * carried[354];
-  carried[390] = t1535;
+  const Real t1535 = carried[397] * carried[375];
+  carried[411] = t1535;
 
   // hind_right_thigh: acceleration
   const Real t1536 = t1506 + t1535;
-  carried[391] = t1536;
+  carried[412] = t1536;
 
   // hind_right_shank: acceleration
   const Real t1537 = t1536 * constant<Real>(0.012L);
   const Real t1538 = t1534 - t1537;
 
   // hind_right_hip: acceleration
-  const Real t1539 = carried[375] * carried[352];
-  carried[392] = t1539;
+  const Real t1539 = carried[396] * carried[373];
+  carried[413] = t1539;
   const Real t1540 = t1504 + t1539;
-  carried[393] = t1540;
+  carried[414] = t1540;
 
   // hind_right_thigh: acceleration
   const Real t1541 = constant<Real>(0.075L) * t1540;
 
   // trunk: acceleration
-  const Real t1542 = w[5] * w[5];
-  carried[394] = t1542;
-  const Real t1543 = w[4] * w[4];
-  carried[395] = t1543;
+  const Real t1542 = carried[8] * carried[8];
+  carried[415] = t1542;
+  const Real t1543 = carried[7] * carried[7];
+  carried[416] = t1543;
   const Real t1544 = t1542 + t1543;
-  carried[396] = t1544;
+  carried[417] = t1544;
 
   // front_left_hip: acceleration
   const Real t1545 = constant<Real>(0.21L) * t1544;
-  carried[397] = t1545;
+  carried[418] = t1545;
 
   // trunk: acceleration
-  const Real t1546 = w[3] * w[4];
-  carried[398] = t1546;
+  const Real t1546 = carried[6] * carried[7];
+  carried[419] = t1546;
 
   // front_left_hip: acceleration
   const Real t1547 = t1546 * constant<Real>(0.06L);
-  carried[399] = t1547;
+  carried[420] = t1547;
 
   // hind_right_hip: acceleration
   const Real t1548 = t1545 - t1547;
 
   // trunk: acceleration
-  const Real t1549 = w[4] * w[2];
-  const Real t1550 = w[5] * w[1];
+  const Real t1549 = carried[7] * carried[5];
+  const Real t1550 = carried[8] * carried[4];
   const Real t1551 = t1549 - t1550;
-  const Real t1552 = constant<Real>(9.81L) * R[6];
+  const Real t1552 = constant<Real>(9.81L) * carried[0];
   const Real t1553 = t1551 + t1552;
-  carried[400] = t1553;
+  carried[421] = t1553;
 
   // hind_right_hip: acceleration
   const Real t1554 = t1548 + t1553;
-  carried[401] = t1554;
+  carried[422] = t1554;
 
   // hind_right_thigh: acceleration
   const Real t1555 = t1554 - t1541;
-  const Real t1556 = carried[20] * t1555;
+  const Real t1556 = carried[41] * t1555;
 
   // trunk: acceleration
-  const Real t1557 = w[3] * w[3];
-  carried[402] = t1557;
+  const Real t1557 = carried[6] * carried[6];
+  carried[423] = t1557;
   const Real t1558 = t1557 + t1542;
 
   // front_left_hip: acceleration
   const Real t1559 = t1558 * constant<Real>(0.06L);
-  carried[403] = t1559;
+  carried[424] = t1559;
   const Real t1560 = constant<Real>(0.21L) * t1546;
-  carried[404] = t1560;
+  carried[425] = t1560;
 
   // hind_right_hip: acceleration
   const Real t1561 = t1559 - t1560;
 
   // trunk: acceleration
-  const Real t1562 = w[0] * w[5];
-  const Real t1563 = w[3] * w[2];
+  const Real t1562 = carried[3] * carried[8];
+  const Real t1563 = carried[6] * carried[5];
   const Real t1564 = t1562 - t1563;
-  const Real t1565 = R[7] * constant<Real>(9.81L);
+  const Real t1565 = carried[1] * constant<Real>(9.81L);
   const Real t1566 = t1564 + t1565;
-  carried[405] = t1566;
+  carried[426] = t1566;
 
   // hind_right_hip: acceleration
   const Real t1567 = t1561 + t1566;
-  const Real t1568 = t1567 * carried[18];
+  const Real t1568 = t1567 * carried[39];
 
   // trunk: acceleration
-  const Real t1569 = w[3] * w[1];
-  const Real t1570 = w[0] * w[4];
+  const Real t1569 = carried[6] * carried[4];
+  const Real t1570 = carried[3] * carried[7];
   const Real t1571 = t1569 - t1570;
-  const Real t1572 = constant<Real>(9.81L) * R[8];
+  const Real t1572 = constant<Real>(9.81L) * carried[2];
   const Real t1573 = t1571 + t1572;
-  carried[406] = t1573;
-  const Real t1574 = w[5] * w[4];
-  carried[407] = t1574;
+  carried[427] = t1573;
+  const Real t1574 = carried[8] * carried[7];
+  carried[428] = t1574;
 
   // front_left_hip: acceleration
   const Real t1575 = t1574 * constant<Real>(0.06L);
-  carried[408] = t1575;
+  carried[429] = t1575;
 
   // trunk: acceleration
-  const Real t1576 = w[5] * w[3];
-  carried[409] = t1576;
+  const Real t1576 = carried[8] * carried[6];
+  carried[430] = t1576;
 
   // front_left_hip: acceleration
   const Real t1577 = t1576 * constant<Real>(0.21L);
-  carried[410] = t1577;
+  carried[431] = t1577;
   const Real t1578 = t1575 + t1577;
-  carried[411] = t1578;
+  carried[432] = t1578;
 
   // hind_right_hip: acceleration
   const Real t1579 = t1573 - t1578;
-  const Real t1580 = t1579 * carried[19];
+  const Real t1580 = t1579 * carried[40];
   const Real t1581 = t1580 - t1568;
-  carried[412] = t1581;
-  const Real t1582 = carried[353] * carried[375];
-  carried[413] = t1582;
+  carried[433] = t1581;
+  const Real t1582 = carried[374] * carried[396];
+  carried[434] = t1582;
 
   // hind_right_thigh: acceleration
   const Real t1583 = t1582 * constant<Real>(0.075L);
   const Real t1584 = t1581 - t1583;
-  const Real t1585 = t1584 * carried[21];
+  const Real t1585 = t1584 * carried[42];
   const Real t1586 = t1585 + t1556;
-  carried[414] = t1586;
+  carried[435] = t1586;
 
   // hind_right_shank: acceleration
   const Real t1587 = t1586 + t1538;
-  const Real t1588 = carried[23] * t1587;
+  const Real t1588 = carried[44] * t1587;
 
   // hind_right_thigh: acceleration
-  const Real t1589 = carried[376] * carried[357];
-  carried[415] = t1589;
+  const Real t1589 = carried[397] * carried[378];
+  carried[436] = t1589;
 
   // hind_right_thigh: acceleration
   const Real t1590 = t1589 - t1510;
-  carried[416] = t1590;
+  carried[437] = t1590;
 
   // hind_right_shank: acceleration
   const Real t1591 = constant<Real>(0.012L) * t1590;
 
   // hind_right_thigh: acceleration
-  const Real t1592 = carried[357] * carried[354];
-  carried[417] = t1592;
+  const Real t1592 = carried[378] * carried[375];
+  carried[438] = t1592;
 
   // hind_right_thigh: acceleration
   const Real t1593 = t1522 + t1592;
-  carried[418] = t1593;
+  carried[439] = t1593;
 
   // hind_right_shank: acceleration
   const Real t1594 = t1593 * constant<Real>(0.24L);
   const Real t1595 = t1594 + t1591;
 
   // hind_right_thigh: acceleration
-  const Real t1596 = t1555 * carried[21];
+  const Real t1596 = t1555 * carried[42];
 
   // hind_right_thigh: acceleration
-  const Real t1597 = t1584 * carried[20];
+  const Real t1597 = t1584 * carried[41];
   const Real t1598 = t1596 - t1597;
-  carried[419] = t1598;
+  carried[440] = t1598;
 
   // hind_right_shank: acceleration
   const Real t1599 = t1598 - t1595;
-  const Real t1600 = carried[22] * t1599;
+  const Real t1600 = carried[43] * t1599;
   const Real t1601 = t1588 + t1600;
-  carried[420] = t1601;
+  carried[441] = t1601;
 
   // hind_right_shank: wrench
   const Real t1602 = constant<Real>(0.51L) * t1601;
   const Real t1603 = t1530 + t1602;
 
   // hind_right_shank: joint force
-  const Real t1604 = carried[23] * t1603;
+  const Real t1604 = carried[44] * t1603;
 
   // hind_right_shank: acceleration
   const Real t1605 = t1501 * t1501;
-  carried[421] = t1605;
+  carried[442] = t1605;
   const Real t1606 = t1526 + t1605;
 
   // hind_right_shank: wrench
@@ -3994,17 +4011,17 @@ template <class Real>
 
   // hind_right_shank: acceleration
   const Real t1608 = t1520 * t1514;
-  carried[422] = t1608;
-  const Real t1609 = carried[349] * t1520;
+  carried[443] = t1608;
+  const Real t1609 = carried[370] * t1520;
 
   // hind_right_shank: acceleration
-  const Real t1610 = carried[23] * t1510;
-  const Real t1611 = t1506 * carried[22];
+  const Real t1610 = carried[44] * t1510;
+  const Real t1611 = t1506 * carried[43];
   const Real t1612 = t1610 + t1611;
   const Real t1613 = t1609 + t1612;
-  carried[423] = t1613;
+  carried[444] = t1613;
   const Real t1614 = t1608 - t1613;
-  carried[424] = t1614;
+  carried[445] = t1614;
 
   // hind_right_shank: wrench
   const Real t1615 = t1614 * constant<Real>(0.00042L);
@@ -4012,33 +4029,33 @@ template <class Real>
 
   // hind_right_shank: acceleration
   const Real t1617 = t1521 + t1522;
-  carried[425] = t1617;
+  carried[446] = t1617;
 
   // hind_right_shank: wrench
   const Real t1618 = t1617 * constant<Real>(0.0687L);
   const Real t1619 = t1618 + t1616;
 
   // hind_right_shank: acceleration
-  const Real t1620 = carried[23] * t1599;
-  const Real t1621 = t1587 * carried[22];
+  const Real t1620 = carried[44] * t1599;
+  const Real t1621 = t1587 * carried[43];
   const Real t1622 = t1620 - t1621;
-  carried[426] = t1622;
+  carried[447] = t1622;
 
   // hind_right_shank: wrench
   const Real t1623 = constant<Real>(0.51L) * t1622;
   const Real t1624 = t1623 - t1619;
 
   // hind_right_shank: joint force
-  const Real t1625 = carried[22] * t1624;
+  const Real t1625 = carried[43] * t1624;
   const Real t1626 = t1604 - t1625;
-  carried[427] = t1626;
+  carried[448] = t1626;
 
   // hind_right_thigh: wrench
   const Real t1627 = t1536 * constant<Real>(0.0272L);
 
   // hind_right_thigh: acceleration
   const Real t1628 = t1592 - t1522;
-  carried[428] = t1628;
+  carried[449] = t1628;
 
   // hind_right_thigh: wrench
   const Real t1629 = constant<Real>(0.0051L) * t1628;
@@ -4054,20 +4071,20 @@ template <class Real>
 
   // hind_right_shank: joint force
   const Real t1635 = t1634 + t1626;
-  carried[429] = t1635;
+  carried[450] = t1635;
 
   // hind_right_thigh: joint force
-  const Real t1636 = t1635 * carried[21];
+  const Real t1636 = t1635 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t1637 = carried[23] * t1624;
-  const Real t1638 = carried[22] * t1603;
+  const Real t1637 = carried[44] * t1624;
+  const Real t1638 = carried[43] * t1603;
   const Real t1639 = t1637 + t1638;
-  carried[430] = t1639;
+  carried[451] = t1639;
 
   // hind_right_thigh: acceleration
-  const Real t1640 = carried[354] * carried[354];
-  carried[431] = t1640;
+  const Real t1640 = carried[375] * carried[375];
+  carried[452] = t1640;
   const Real t1641 = t1531 + t1640;
 
   // hind_right_thigh: wrench
@@ -4083,18 +4100,18 @@ template <class Real>
 
   // hind_right_shank: joint force
   const Real t1649 = t1648 + t1639;
-  carried[432] = t1649;
+  carried[453] = t1649;
 
   // hind_right_thigh: joint force
-  const Real t1650 = carried[20] * t1649;
+  const Real t1650 = carried[41] * t1649;
   const Real t1651 = t1636 - t1650;
-  carried[433] = t1651;
+  carried[454] = t1651;
 
   // hind_right_hip: acceleration
-  const Real t1652 = carried[353] * carried[352];
-  carried[434] = t1652;
+  const Real t1652 = carried[374] * carried[373];
+  carried[455] = t1652;
   const Real t1653 = t1652 - t1522;
-  carried[435] = t1653;
+  carried[456] = t1653;
 
   // hind_right_hip: wrench
   const Real t1654 = t1653 * constant<Real>(0.0052L);
@@ -4104,10 +4121,10 @@ template <class Real>
   const Real t1656 = t1654 - t1655;
 
   // hind_right_hip: acceleration
-  const Real t1657 = carried[352] * carried[352];
-  carried[436] = t1657;
-  const Real t1658 = carried[375] * carried[375];
-  carried[437] = t1658;
+  const Real t1657 = carried[373] * carried[373];
+  carried[457] = t1657;
+  const Real t1658 = carried[396] * carried[396];
+  carried[458] = t1658;
   const Real t1659 = t1658 + t1657;
 
   // hind_right_hip: wrench
@@ -4124,14 +4141,14 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t1664 = t1651 + t1663;
-  carried[438] = t1664;
+  carried[459] = t1664;
 
   // hind_right_hip: joint force
-  const Real t1665 = t1664 * carried[18];
+  const Real t1665 = t1664 * carried[39];
 
   // hind_right_shank: acceleration
   const Real t1666 = t1608 + t1613;
-  carried[439] = t1666;
+  carried[460] = t1666;
 
   // hind_right_shank: wrench
   const Real t1667 = constant<Real>(0.00252L) * t1666;
@@ -4147,7 +4164,7 @@ template <class Real>
 
   // hind_right_shank: acceleration
   const Real t1671 = t1515 - t1513;
-  carried[440] = t1671;
+  carried[461] = t1671;
 
   // hind_right_shank: wrench
   const Real t1672 = t1671 * constant<Real>(0.0687L);
@@ -4155,7 +4172,7 @@ template <class Real>
 
   // hind_right_thigh: acceleration
   const Real t1674 = t1535 - t1506;
-  carried[441] = t1674;
+  carried[462] = t1674;
 
   // hind_right_shank: acceleration
   const Real t1675 = t1674 * constant<Real>(0.24L);
@@ -4170,35 +4187,35 @@ template <class Real>
   const Real t1678 = t1677 - t1675;
 
   // hind_right_hip: acceleration
-  const Real t1679 = carried[353] * carried[353];
-  carried[442] = t1679;
+  const Real t1679 = carried[374] * carried[374];
+  carried[463] = t1679;
   const Real t1680 = t1679 + t1657;
 
   // hind_right_thigh: acceleration
   const Real t1681 = constant<Real>(0.075L) * t1680;
 
   // hind_right_hip: acceleration
-  const Real t1682 = t1567 * carried[19];
-  const Real t1683 = t1579 * carried[18];
+  const Real t1682 = t1567 * carried[40];
+  const Real t1683 = t1579 * carried[39];
   const Real t1684 = t1683 + t1682;
-  carried[443] = t1684;
+  carried[464] = t1684;
 
   // hind_right_thigh: acceleration
   const Real t1685 = t1681 + t1684;
-  carried[444] = t1685;
+  carried[465] = t1685;
 
   // hind_right_shank: acceleration
   const Real t1686 = t1685 + t1678;
-  carried[445] = t1686;
+  carried[466] = t1686;
 
   // hind_right_shank: wrench
   const Real t1687 = constant<Real>(0.51L) * t1686;
   const Real t1688 = t1687 + t1673;
-  carried[446] = t1688;
+  carried[467] = t1688;
 
   // hind_right_thigh: acceleration
   const Real t1689 = t1589 + t1510;
-  carried[447] = t1689;
+  carried[468] = t1689;
 
   // hind_right_thigh: wrench
   const Real t1690 = constant<Real>(0.0051L) * t1689;
@@ -4225,7 +4242,7 @@ template <class Real>
 
   // hind_right_hip: acceleration
   const Real t1699 = t1539 - t1504;
-  carried[448] = t1699;
+  carried[469] = t1699;
 
   // hind_right_hip: wrench
   const Real t1700 = constant<Real>(0.0052L) * t1699;
@@ -4243,12 +4260,12 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t1706 = t1697 + t1705;
-  carried[449] = t1706;
+  carried[470] = t1706;
 
   // hind_right_hip: joint force
-  const Real t1707 = t1706 * carried[19];
+  const Real t1707 = t1706 * carried[40];
   const Real t1708 = t1707 - t1665;
-  carried[450] = t1708;
+  carried[471] = t1708;
 
   // trunk: wrench
   const Real t1709 = constant<Real>(0.011L) * t1558;
@@ -4261,74 +4278,74 @@ template <class Real>
 
   // hind_right_hip: joint force
   const Real t1716 = t1715 + t1708;
-  carried[451] = t1716;
+  carried[472] = t1716;
 
   // hind_left_shank: twist
-  const Real t1717 = carried[269] + carried[292];
-  carried[452] = t1717;
-  const Real t1718 = carried[275] * carried[17];
-  const Real t1719 = carried[273] * carried[16];
+  const Real t1717 = carried[290] + carried[313];
+  carried[473] = t1717;
+  const Real t1718 = carried[296] * carried[38];
+  const Real t1719 = carried[294] * carried[37];
   const Real t1720 = t1718 + t1719;
-  carried[453] = t1720;
+  carried[474] = t1720;
 
   // hind_left_shank: acceleration
   const Real t1721 = t1717 * t1720;
-  carried[454] = t1721;
-  const Real t1722 = carried[269] * t1720;
+  carried[475] = t1721;
+  const Real t1722 = carried[290] * t1720;
 
   // hind_left_thigh: acceleration
-  const Real t1723 = carried[275] * carried[274];
+  const Real t1723 = carried[296] * carried[295];
 
   // hind_left_hip: acceleration
-  const Real t1724 = carried[291] * carried[270];
-  carried[455] = t1724;
+  const Real t1724 = carried[312] * carried[291];
+  carried[476] = t1724;
 
   // hind_left_thigh: acceleration
-  const Real t1725 = carried[14] * t1724;
+  const Real t1725 = carried[35] * t1724;
 
   // hind_left_thigh: acceleration
   const Real t1726 = t1725 - t1723;
-  carried[456] = t1726;
+  carried[477] = t1726;
 
   // hind_left_shank: acceleration
-  const Real t1727 = t1726 * carried[17];
+  const Real t1727 = t1726 * carried[38];
 
   // hind_left_thigh: acceleration
-  const Real t1728 = carried[274] * carried[273];
-  const Real t1729 = carried[15] * t1724;
+  const Real t1728 = carried[295] * carried[294];
+  const Real t1729 = carried[36] * t1724;
 
   // hind_left_thigh: acceleration
   const Real t1730 = t1728 - t1729;
-  carried[457] = t1730;
+  carried[478] = t1730;
 
   // hind_left_shank: acceleration
-  const Real t1731 = t1730 * carried[16];
+  const Real t1731 = t1730 * carried[37];
   const Real t1732 = t1727 - t1731;
   const Real t1733 = t1732 - t1722;
-  carried[458] = t1733;
+  carried[479] = t1733;
   const Real t1734 = t1721 + t1733;
-  carried[459] = t1734;
+  carried[480] = t1734;
 
   // hind_left_shank: wrench
   const Real t1735 = constant<Real>(0.00042L) * t1734;
 
   // hind_left_shank: twist
-  const Real t1736 = carried[273] * carried[17];
-  const Real t1737 = carried[275] * carried[16];
+  const Real t1736 = carried[294] * carried[38];
+  const Real t1737 = carried[296] * carried[37];
   const Real t1738 = t1736 - t1737;
-  carried[460] = t1738;
+  carried[481] = t1738;
 
   // hind_left_shank: acceleration
   const Real t1739 = t1720 * t1738;
-  carried[461] = t1739;
+  carried[482] = t1739;
 
   // hind_left_hip: acceleration
-  const Real t1740 = carried[270] * carried[272];
-  carried[462] = t1740;
+  const Real t1740 = carried[291] * carried[293];
+  carried[483] = t1740;
 
   // hind_left_shank: acceleration
   const Real t1741 = t1739 - t1740;
-  carried[463] = t1741;
+  carried[484] = t1741;
 
   // hind_left_shank: wrench
   const Real t1742 = t1741 * constant<Real>(0.00252L);
@@ -4336,9 +4353,9 @@ template <class Real>
 
   // hind_left_shank: acceleration
   const Real t1744 = t1717 * t1717;
-  carried[464] = t1744;
+  carried[485] = t1744;
   const Real t1745 = t1738 * t1738;
-  carried[465] = t1745;
+  carried[486] = t1745;
   const Real t1746 = t1744 + t1745;
 
   // hind_left_shank: wrench
@@ -4346,152 +4363,152 @@ template <class Real>
 
   // hind_left_shank: wrench
   const Real t1748 = t1747 + t1743;
-  carried[466] = t1748;
+  carried[487] = t1748;
 
   // hind_left_thigh: acceleration
-  const Real t1749 = carried[292] * carried[273];
-  carried[467] = t1749;
+  const Real t1749 = carried[313] * carried[294];
+  carried[488] = t1749;
 
   // hind_left_thigh: acceleration
   const Real t1750 = t1749 - t1730;
-  carried[468] = t1750;
+  carried[489] = t1750;
 
   // hind_left_shank: acceleration
   const Real t1751 = constant<Real>(0.012L) * t1750;
 
   // hind_left_thigh: acceleration
-  const Real t1752 = carried[275] * carried[273];
-  carried[469] = t1752;
+  const Real t1752 = carried[296] * carried[294];
+  carried[490] = t1752;
 
   // hind_left_thigh: acceleration
   const Real t1753 = t1752 + t1740;
-  carried[470] = t1753;
+  carried[491] = t1753;
 
   // hind_left_shank: acceleration
   const Real t1754 = constant<Real>(0.24L) * t1753;
   const Real t1755 = t1751 - t1754;
 
   // hind_left_hip: acceleration
-  const Real t1756 = carried[271] * carried[291];
-  carried[471] = t1756;
+  const Real t1756 = carried[292] * carried[312];
+  carried[492] = t1756;
   const Real t1757 = t1756 + t1724;
-  carried[472] = t1757;
+  carried[493] = t1757;
 
   // hind_left_thigh: acceleration
   const Real t1758 = constant<Real>(0.075L) * t1757;
 
   // front_right_hip: acceleration
   const Real t1759 = t1547 + t1545;
-  carried[473] = t1759;
+  carried[494] = t1759;
 
   // hind_left_hip: acceleration
   const Real t1760 = t1759 + t1553;
-  carried[474] = t1760;
+  carried[495] = t1760;
 
   // hind_left_thigh: acceleration
   const Real t1761 = t1760 + t1758;
-  carried[475] = t1761;
-  const Real t1762 = carried[15] * t1761;
+  carried[496] = t1761;
+  const Real t1762 = carried[36] * t1761;
 
   // front_right_hip: acceleration
   const Real t1763 = t1559 + t1560;
-  carried[476] = t1763;
+  carried[497] = t1763;
 
   // hind_left_hip: acceleration
   const Real t1764 = t1566 - t1763;
-  carried[477] = t1764;
-  const Real t1765 = carried[12] * t1764;
+  carried[498] = t1764;
+  const Real t1765 = carried[33] * t1764;
   const Real t1766 = t1575 - t1577;
   const Real t1767 = t1766 + t1573;
-  carried[478] = t1767;
-  const Real t1768 = t1767 * carried[13];
+  carried[499] = t1767;
+  const Real t1768 = t1767 * carried[34];
   const Real t1769 = t1768 - t1765;
-  carried[479] = t1769;
-  const Real t1770 = carried[291] * carried[272];
-  carried[480] = t1770;
+  carried[500] = t1769;
+  const Real t1770 = carried[312] * carried[293];
+  carried[501] = t1770;
 
   // hind_left_thigh: acceleration
   const Real t1771 = constant<Real>(0.075L) * t1770;
   const Real t1772 = t1771 + t1769;
-  carried[481] = t1772;
-  const Real t1773 = carried[14] * t1772;
+  carried[502] = t1772;
+  const Real t1773 = carried[35] * t1772;
   const Real t1774 = t1762 - t1773;
-  carried[482] = t1774;
+  carried[503] = t1774;
 
   // hind_left_shank: acceleration
   const Real t1775 = t1755 + t1774;
-  carried[483] = t1775;
-  const Real t1776 = t1775 * carried[16];
-  carried[484] = t1776;
+  carried[504] = t1775;
+  const Real t1776 = t1775 * carried[37];
+  carried[505] = t1776;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_7(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_left_thigh: acceleration
-  const Real t1777 = carried[292] * carried[292];
-  carried[270] = t1777;
-  const Real t1778 = carried[273] * carried[273];
-  carried[274] = t1778;
+  const Real t1777 = carried[313] * carried[313];
+  carried[0] = t1777;
+  const Real t1778 = carried[294] * carried[294];
+  carried[1] = t1778;
   const Real t1779 = t1777 + t1778;
 
   // hind_left_shank: acceleration
   const Real t1780 = constant<Real>(0.24L) * t1779;
 
   // hind_left_thigh: acceleration
-  const Real t1781 = carried[275] * carried[292];
-  carried[315] = t1781;
+  const Real t1781 = carried[296] * carried[313];
+  carried[2] = t1781;
 
   // hind_left_thigh: acceleration
-  const Real t1782 = carried[456] + t1781;
-  carried[349] = t1782;
+  const Real t1782 = carried[477] + t1781;
+  carried[3] = t1782;
 
   // hind_left_shank: acceleration
   const Real t1783 = constant<Real>(0.012L) * t1782;
   const Real t1784 = t1780 + t1783;
 
   // hind_left_thigh: acceleration
-  const Real t1785 = carried[14] * carried[475];
+  const Real t1785 = carried[35] * carried[496];
 
   // hind_left_thigh: acceleration
-  const Real t1786 = carried[15] * carried[481];
+  const Real t1786 = carried[36] * carried[502];
   const Real t1787 = t1785 + t1786;
-  carried[350] = t1787;
+  carried[4] = t1787;
 
   // hind_left_shank: acceleration
   const Real t1788 = t1784 + t1787;
-  const Real t1789 = t1788 * carried[17];
-  const Real t1790 = carried[484] + t1789;
-  carried[351] = t1790;
+  const Real t1789 = t1788 * carried[38];
+  const Real t1790 = carried[505] + t1789;
+  carried[5] = t1790;
 
   // hind_left_shank: wrench
   const Real t1791 = constant<Real>(0.51L) * t1790;
-  const Real t1792 = carried[466] + t1791;
+  const Real t1792 = carried[487] + t1791;
 
   // hind_left_shank: joint force
-  const Real t1793 = t1792 * carried[17];
+  const Real t1793 = t1792 * carried[38];
 
   // hind_left_shank: acceleration
-  const Real t1794 = carried[452] * carried[460];
-  carried[352] = t1794;
-  const Real t1795 = carried[269] * carried[460];
+  const Real t1794 = carried[473] * carried[481];
+  carried[6] = t1794;
+  const Real t1795 = carried[290] * carried[481];
 
   // hind_left_shank: acceleration
-  const Real t1796 = carried[457] * carried[17];
-  const Real t1797 = carried[456] * carried[16];
+  const Real t1796 = carried[478] * carried[38];
+  const Real t1797 = carried[477] * carried[37];
   const Real t1798 = t1796 + t1797;
   const Real t1799 = t1795 + t1798;
-  carried[353] = t1799;
+  carried[7] = t1799;
   const Real t1800 = t1794 - t1799;
-  carried[354] = t1800;
+  carried[8] = t1800;
 
   // hind_left_shank: wrench
   const Real t1801 = t1800 * constant<Real>(0.00042L);
 
   // hind_left_shank: acceleration
-  const Real t1802 = carried[453] * carried[453];
-  carried[355] = t1802;
-  const Real t1803 = carried[464] + t1802;
+  const Real t1802 = carried[474] * carried[474];
+  carried[291] = t1802;
+  const Real t1803 = carried[485] + t1802;
 
   // hind_left_shank: wrench
   const Real t1804 = t1803 * constant<Real>(0.00252L);
@@ -4500,34 +4517,34 @@ template <class Real>
   const Real t1805 = t1801 - t1804;
 
   // hind_left_shank: acceleration
-  const Real t1806 = carried[462] + carried[461];
-  carried[356] = t1806;
+  const Real t1806 = carried[483] + carried[482];
+  carried[295] = t1806;
 
   // hind_left_shank: wrench
   const Real t1807 = t1806 * constant<Real>(0.0687L);
   const Real t1808 = t1805 - t1807;
 
   // hind_left_shank: acceleration
-  const Real t1809 = carried[483] * carried[17];
-  const Real t1810 = t1788 * carried[16];
+  const Real t1809 = carried[504] * carried[38];
+  const Real t1810 = t1788 * carried[37];
   const Real t1811 = t1809 - t1810;
-  carried[357] = t1811;
+  carried[336] = t1811;
 
   // hind_left_shank: wrench
   const Real t1812 = constant<Real>(0.51L) * t1811;
   const Real t1813 = t1812 + t1808;
 
   // hind_left_shank: joint force
-  const Real t1814 = t1813 * carried[16];
+  const Real t1814 = t1813 * carried[37];
   const Real t1815 = t1793 - t1814;
-  carried[372] = t1815;
+  carried[370] = t1815;
 
   // hind_left_thigh: wrench
   const Real t1816 = constant<Real>(0.0272L) * t1782;
 
   // hind_left_thigh: acceleration
-  const Real t1817 = carried[469] - carried[462];
-  carried[373] = t1817;
+  const Real t1817 = carried[490] - carried[483];
+  carried[371] = t1817;
 
   // hind_left_thigh: wrench
   const Real t1818 = constant<Real>(0.0051L) * t1817;
@@ -4543,60 +4560,60 @@ template <class Real>
 
   // hind_left_shank: joint force
   const Real t1824 = t1815 + t1823;
-  carried[374] = t1824;
+  carried[372] = t1824;
 
   // hind_left_thigh: joint force
-  const Real t1825 = carried[15] * t1824;
+  const Real t1825 = carried[36] * t1824;
 
   // hind_left_shank: joint force
-  const Real t1826 = carried[17] * t1813;
-  const Real t1827 = t1792 * carried[16];
+  const Real t1826 = carried[38] * t1813;
+  const Real t1827 = t1792 * carried[37];
   const Real t1828 = t1826 + t1827;
-  carried[375] = t1828;
+  carried[373] = t1828;
 
   // hind_left_thigh: acceleration
-  const Real t1829 = carried[275] * carried[275];
-  carried[376] = t1829;
+  const Real t1829 = carried[296] * carried[296];
+  carried[374] = t1829;
   const Real t1830 = t1777 + t1829;
 
   // hind_left_thigh: wrench
   const Real t1831 = constant<Real>(0.0051L) * t1830;
 
   // hind_left_thigh: wrench
-  const Real t1832 = constant<Real>(0.0272L) * carried[468];
+  const Real t1832 = constant<Real>(0.0272L) * carried[489];
   const Real t1833 = t1831 - t1832;
-  const Real t1834 = carried[470] * constant<Real>(0.0884L);
+  const Real t1834 = carried[491] * constant<Real>(0.0884L);
   const Real t1835 = t1833 - t1834;
-  const Real t1836 = constant<Real>(1.7L) * carried[482];
+  const Real t1836 = constant<Real>(1.7L) * carried[503];
   const Real t1837 = t1835 + t1836;
 
   // hind_left_shank: joint force
   const Real t1838 = t1837 + t1828;
-  carried[377] = t1838;
+  carried[375] = t1838;
 
   // hind_left_thigh: joint force
-  const Real t1839 = carried[14] * t1838;
+  const Real t1839 = carried[35] * t1838;
   const Real t1840 = t1825 - t1839;
-  carried[378] = t1840;
+  carried[376] = t1840;
 
   // hind_left_hip: acceleration
-  const Real t1841 = carried[271] * carried[272];
-  carried[379] = t1841;
-  const Real t1842 = t1841 - carried[462];
-  carried[382] = t1842;
+  const Real t1841 = carried[292] * carried[293];
+  carried[377] = t1841;
+  const Real t1842 = t1841 - carried[483];
+  carried[378] = t1842;
 
   // hind_left_hip: wrench
   const Real t1843 = constant<Real>(0.0052L) * t1842;
 
   // hind_left_hip: wrench
-  const Real t1844 = carried[480] * constant<Real>(0.0273L);
+  const Real t1844 = carried[501] * constant<Real>(0.0273L);
   const Real t1845 = t1844 + t1843;
 
   // hind_left_hip: acceleration
-  const Real t1846 = carried[271] * carried[271];
-  carried[485] = t1846;
-  const Real t1847 = carried[291] * carried[291];
-  carried[486] = t1847;
+  const Real t1846 = carried[292] * carried[292];
+  carried[393] = t1846;
+  const Real t1847 = carried[312] * carried[312];
+  carried[394] = t1847;
   const Real t1848 = t1846 + t1847;
 
   // hind_left_hip: wrench
@@ -4606,27 +4623,27 @@ template <class Real>
   const Real t1850 = t1845 - t1849;
 
   // hind_left_hip: wrench
-  const Real t1851 = carried[479] * constant<Real>(1.3L);
+  const Real t1851 = carried[500] * constant<Real>(1.3L);
 
   // hind_left_hip: wrench
   const Real t1852 = t1851 + t1850;
 
   // hind_left_thigh: joint force
   const Real t1853 = t1840 + t1852;
-  carried[487] = t1853;
+  carried[395] = t1853;
 
   // hind_left_hip: joint force
-  const Real t1854 = t1853 * carried[12];
+  const Real t1854 = t1853 * carried[33];
 
   // hind_left_shank: acceleration
   const Real t1855 = t1794 + t1799;
-  carried[488] = t1855;
+  carried[396] = t1855;
 
   // hind_left_shank: wrench
   const Real t1856 = t1855 * constant<Real>(0.00252L);
 
   // hind_left_shank: acceleration
-  const Real t1857 = t1802 + carried[465];
+  const Real t1857 = t1802 + carried[486];
 
   // hind_left_shank: wrench
   const Real t1858 = t1857 * constant<Real>(0.00042L);
@@ -4635,16 +4652,16 @@ template <class Real>
   const Real t1859 = t1856 - t1858;
 
   // hind_left_shank: acceleration
-  const Real t1860 = carried[454] - carried[458];
-  carried[489] = t1860;
+  const Real t1860 = carried[475] - carried[479];
+  carried[397] = t1860;
 
   // hind_left_shank: wrench
   const Real t1861 = constant<Real>(0.0687L) * t1860;
   const Real t1862 = t1859 - t1861;
 
   // hind_left_thigh: acceleration
-  const Real t1863 = t1781 - carried[456];
-  carried[490] = t1863;
+  const Real t1863 = t1781 - carried[477];
+  carried[398] = t1863;
 
   // hind_left_shank: acceleration
   const Real t1864 = t1863 * constant<Real>(0.24L);
@@ -4659,35 +4676,35 @@ template <class Real>
   const Real t1867 = t1866 + t1864;
 
   // hind_left_hip: acceleration
-  const Real t1868 = carried[272] * carried[272];
-  carried[491] = t1868;
+  const Real t1868 = carried[293] * carried[293];
+  carried[399] = t1868;
   const Real t1869 = t1846 + t1868;
 
   // hind_left_thigh: acceleration
   const Real t1870 = constant<Real>(0.075L) * t1869;
 
   // hind_left_hip: acceleration
-  const Real t1871 = carried[13] * carried[477];
-  const Real t1872 = carried[478] * carried[12];
+  const Real t1871 = carried[34] * carried[498];
+  const Real t1872 = carried[499] * carried[33];
   const Real t1873 = t1871 + t1872;
-  carried[492] = t1873;
+  carried[400] = t1873;
 
   // hind_left_thigh: acceleration
   const Real t1874 = t1873 - t1870;
-  carried[493] = t1874;
+  carried[403] = t1874;
 
   // hind_left_shank: acceleration
   const Real t1875 = t1874 - t1867;
-  carried[494] = t1875;
+  carried[506] = t1875;
 
   // hind_left_shank: wrench
   const Real t1876 = constant<Real>(0.51L) * t1875;
   const Real t1877 = t1862 + t1876;
-  carried[495] = t1877;
+  carried[507] = t1877;
 
   // hind_left_thigh: acceleration
-  const Real t1878 = carried[467] + carried[457];
-  carried[496] = t1878;
+  const Real t1878 = carried[488] + carried[478];
+  carried[508] = t1878;
 
   // hind_left_thigh: wrench
   const Real t1879 = t1878 * constant<Real>(0.0051L);
@@ -4710,8 +4727,8 @@ template <class Real>
   const Real t1886 = t1885 + t1877;
 
   // hind_left_hip: acceleration
-  const Real t1887 = carried[471] - carried[455];
-  carried[497] = t1887;
+  const Real t1887 = carried[492] - carried[476];
+  carried[509] = t1887;
 
   // hind_left_hip: wrench
   const Real t1888 = t1887 * constant<Real>(0.0052L);
@@ -4719,7 +4736,7 @@ template <class Real>
   const Real t1890 = t1888 - t1889;
 
   // hind_left_hip: wrench
-  const Real t1891 = constant<Real>(0.0013L) * carried[480];
+  const Real t1891 = constant<Real>(0.0013L) * carried[501];
   const Real t1892 = t1891 + t1890;
 
   // hind_left_hip: wrench
@@ -4730,78 +4747,78 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t1895 = t1894 + t1886;
-  carried[498] = t1895;
+  carried[510] = t1895;
 
   // hind_left_hip: joint force
-  const Real t1896 = t1895 * carried[13];
+  const Real t1896 = t1895 * carried[34];
   const Real t1897 = t1896 - t1854;
-  carried[499] = t1897;
-  const Real t1898 = t1897 + carried[451];
-  carried[500] = t1898;
+  carried[511] = t1897;
+  const Real t1898 = t1897 + carried[472];
+  carried[512] = t1898;
 
   // front_right_shank: twist
-  const Real t1899 = carried[203] + carried[194];
-  const Real t1900 = carried[10] * carried[34];
-  const Real t1901 = carried[11] * carried[199];
+  const Real t1899 = carried[224] + carried[215];
+  const Real t1900 = carried[31] * carried[55];
+  const Real t1901 = carried[32] * carried[220];
   const Real t1902 = t1900 + t1901;
 
   // front_right_shank: acceleration
   const Real t1903 = t1902 * t1899;
-  carried[501] = t1903;
-  const Real t1904 = t1902 * carried[194];
+  carried[513] = t1903;
+  const Real t1904 = t1902 * carried[215];
 
   // front_right_thigh: acceleration
-  const Real t1905 = carried[201] * carried[199];
+  const Real t1905 = carried[222] * carried[220];
 
   // front_right_hip: acceleration
-  const Real t1906 = carried[196] * carried[115];
-  carried[502] = t1906;
+  const Real t1906 = carried[217] * carried[136];
+  carried[514] = t1906;
 
   // front_right_thigh: acceleration
-  const Real t1907 = t1906 * carried[8];
+  const Real t1907 = t1906 * carried[29];
 
   // front_right_thigh: acceleration
   const Real t1908 = t1907 + t1905;
-  carried[503] = t1908;
+  carried[515] = t1908;
 
   // front_right_shank: acceleration
-  const Real t1909 = carried[11] * t1908;
+  const Real t1909 = carried[32] * t1908;
 
   // front_right_thigh: acceleration
-  const Real t1910 = carried[201] * carried[34];
-  const Real t1911 = t1906 * carried[9];
+  const Real t1910 = carried[222] * carried[55];
+  const Real t1911 = t1906 * carried[30];
 
   // front_right_thigh: acceleration
   const Real t1912 = t1911 + t1910;
-  carried[504] = t1912;
+  carried[516] = t1912;
 
   // front_right_shank: acceleration
-  const Real t1913 = t1912 * carried[10];
+  const Real t1913 = t1912 * carried[31];
   const Real t1914 = t1909 + t1913;
   const Real t1915 = t1904 + t1914;
-  carried[505] = t1915;
+  carried[517] = t1915;
   const Real t1916 = t1903 - t1915;
-  carried[506] = t1916;
+  carried[518] = t1916;
 
   // front_right_shank: wrench
   const Real t1917 = t1916 * constant<Real>(0.00042L);
 
   // front_right_shank: twist
-  const Real t1918 = carried[11] * carried[34];
-  const Real t1919 = carried[10] * carried[199];
+  const Real t1918 = carried[32] * carried[55];
+  const Real t1919 = carried[31] * carried[220];
   const Real t1920 = t1918 - t1919;
 
   // front_right_shank: acceleration
   const Real t1921 = t1902 * t1920;
-  carried[507] = t1921;
+  carried[519] = t1921;
 
   // front_right_hip: acceleration
-  const Real t1922 = carried[196] * carried[198];
-  carried[508] = t1922;
+  const Real t1922 = carried[217] * carried[219];
+  carried[520] = t1922;
 
   // front_right_shank: acceleration
   const Real t1923 = t1922 + t1921;
-  carried[509] = t1923;
+  carried[521] = t1923;
 
   // front_right_shank: wrench
   const Real t1924 = t1923 * constant<Real>(0.00252L);
@@ -4809,9 +4826,9 @@ template <class Real>
 
   // front_right_shank: acceleration
   const Real t1926 = t1899 * t1899;
-  carried[510] = t1926;
+  carried[522] = t1926;
   const Real t1927 = t1920 * t1920;
-  carried[511] = t1927;
+  carried[523] = t1927;
   const Real t1928 = t1927 + t1926;
 
   // front_right_shank: wrench
@@ -4821,113 +4838,113 @@ template <class Real>
   const Real t1930 = t1925 + t1929;
 
   // front_right_thigh: acceleration
-  const Real t1931 = carried[203] * carried[203];
-  carried[512] = t1931;
-  const Real t1932 = carried[34] * carried[34];
-  carried[513] = t1932;
+  const Real t1931 = carried[224] * carried[224];
+  carried[524] = t1931;
+  const Real t1932 = carried[55] * carried[55];
+  carried[525] = t1932;
   const Real t1933 = t1932 + t1931;
 
   // front_right_shank: acceleration
   const Real t1934 = constant<Real>(0.24L) * t1933;
 
   // front_right_thigh: acceleration
-  const Real t1935 = carried[203] * carried[199];
-  carried[514] = t1935;
+  const Real t1935 = carried[224] * carried[220];
+  carried[526] = t1935;
 
   // front_right_thigh: acceleration
   const Real t1936 = t1935 - t1908;
-  carried[515] = t1936;
+  carried[527] = t1936;
 
   // front_right_shank: acceleration
   const Real t1937 = t1936 * constant<Real>(0.012L);
   const Real t1938 = t1934 - t1937;
 
   // front_right_hip: acceleration
-  const Real t1939 = carried[115] * carried[197];
-  carried[516] = t1939;
+  const Real t1939 = carried[136] * carried[218];
+  carried[528] = t1939;
   const Real t1940 = t1939 - t1906;
-  carried[517] = t1940;
+  carried[529] = t1940;
 
   // front_right_thigh: acceleration
   const Real t1941 = constant<Real>(0.075L) * t1940;
 
   // front_right_hip: acceleration
-  const Real t1942 = carried[400] - carried[473];
-  carried[518] = t1942;
+  const Real t1942 = carried[421] - carried[494];
+  carried[530] = t1942;
 
   // front_right_thigh: acceleration
   const Real t1943 = t1942 - t1941;
-  const Real t1944 = t1943 * carried[8];
+  const Real t1944 = t1943 * carried[29];
 
   // front_right_hip: acceleration
-  const Real t1945 = carried[476] + carried[405];
-  const Real t1946 = carried[6] * t1945;
-  const Real t1947 = carried[410] - carried[408];
-  const Real t1948 = t1947 + carried[406];
-  const Real t1949 = t1948 * carried[7];
+  const Real t1945 = carried[497] + carried[426];
+  const Real t1946 = carried[27] * t1945;
+  const Real t1947 = carried[431] - carried[429];
+  const Real t1948 = t1947 + carried[427];
+  const Real t1949 = t1948 * carried[28];
   const Real t1950 = t1949 - t1946;
-  carried[519] = t1950;
-  const Real t1951 = carried[115] * carried[198];
-  carried[520] = t1951;
+  carried[531] = t1950;
+  const Real t1951 = carried[136] * carried[219];
+  carried[532] = t1951;
 
   // front_right_thigh: acceleration
   const Real t1952 = constant<Real>(0.075L) * t1951;
   const Real t1953 = t1950 - t1952;
-  const Real t1954 = t1953 * carried[9];
+  const Real t1954 = t1953 * carried[30];
   const Real t1955 = t1954 + t1944;
-  carried[521] = t1955;
+  carried[533] = t1955;
 
   // front_right_shank: acceleration
   const Real t1956 = t1955 + t1938;
-  const Real t1957 = carried[11] * t1956;
+  const Real t1957 = carried[32] * t1956;
 
   // front_right_thigh: acceleration
-  const Real t1958 = carried[34] * carried[203];
-  carried[522] = t1958;
+  const Real t1958 = carried[55] * carried[224];
+  carried[534] = t1958;
 
   // front_right_thigh: acceleration
   const Real t1959 = t1958 - t1912;
-  carried[523] = t1959;
+  carried[535] = t1959;
 
   // front_right_shank: acceleration
   const Real t1960 = t1959 * constant<Real>(0.012L);
 
   // front_right_thigh: acceleration
-  const Real t1961 = carried[34] * carried[199];
-  carried[524] = t1961;
+  const Real t1961 = carried[55] * carried[220];
+  carried[536] = t1961;
 
   // front_right_thigh: acceleration
   const Real t1962 = t1961 - t1922;
-  carried[525] = t1962;
+  carried[537] = t1962;
 
   // front_right_shank: acceleration
   const Real t1963 = t1962 * constant<Real>(0.24L);
   const Real t1964 = t1960 + t1963;
 
   // front_right_thigh: acceleration
-  const Real t1965 = t1943 * carried[9];
+  const Real t1965 = t1943 * carried[30];
 
   // front_right_thigh: acceleration
-  const Real t1966 = t1953 * carried[8];
+  const Real t1966 = t1953 * carried[29];
   const Real t1967 = t1965 - t1966;
-  carried[526] = t1967;
+  carried[538] = t1967;
 
   // front_right_shank: acceleration
   const Real t1968 = t1967 - t1964;
-  const Real t1969 = carried[10] * t1968;
+  const Real t1969 = carried[31] * t1968;
   const Real t1970 = t1957 + t1969;
-  carried[527] = t1970;
+  carried[539] = t1970;
 
   // front_right_shank: wrench
   const Real t1971 = constant<Real>(0.51L) * t1970;
   const Real t1972 = t1930 + t1971;
 
   // front_right_shank: joint force
-  const Real t1973 = carried[11] * t1972;
+  const Real t1973 = carried[32] * t1972;
 
   // front_right_shank: acceleration
   const Real t1974 = t1902 * t1902;
-  carried[528] = t1974;
+  carried[540] = t1974;
   const Real t1975 = t1926 + t1974;
 
   // front_right_shank: wrench
@@ -4935,17 +4952,17 @@ template <class Real>
 
   // front_right_shank: acceleration
   const Real t1977 = t1920 * t1899;
-  carried[529] = t1977;
-  const Real t1978 = t1920 * carried[194];
+  carried[541] = t1977;
+  const Real t1978 = t1920 * carried[215];
 
   // front_right_shank: acceleration
-  const Real t1979 = t1912 * carried[11];
-  const Real t1980 = carried[10] * t1908;
+  const Real t1979 = t1912 * carried[32];
+  const Real t1980 = carried[31] * t1908;
   const Real t1981 = t1979 - t1980;
   const Real t1982 = t1978 + t1981;
-  carried[530] = t1982;
+  carried[542] = t1982;
   const Real t1983 = t1977 - t1982;
-  carried[531] = t1983;
+  carried[543] = t1983;
 
   // front_right_shank: wrench
   const Real t1984 = t1983 * constant<Real>(0.00042L);
@@ -4953,33 +4970,33 @@ template <class Real>
 
   // front_right_shank: acceleration
   const Real t1986 = t1921 - t1922;
-  carried[532] = t1986;
+  carried[544] = t1986;
 
   // front_right_shank: wrench
   const Real t1987 = t1986 * constant<Real>(0.0687L);
   const Real t1988 = t1985 + t1987;
 
   // front_right_shank: acceleration
-  const Real t1989 = carried[11] * t1968;
-  const Real t1990 = carried[10] * t1956;
+  const Real t1989 = carried[32] * t1968;
+  const Real t1990 = carried[31] * t1956;
   const Real t1991 = t1989 - t1990;
-  carried[533] = t1991;
+  carried[545] = t1991;
 
   // front_right_shank: wrench
   const Real t1992 = constant<Real>(0.51L) * t1991;
   const Real t1993 = t1992 - t1988;
 
   // front_right_shank: joint force
-  const Real t1994 = t1993 * carried[10];
+  const Real t1994 = t1993 * carried[31];
   const Real t1995 = t1973 - t1994;
-  carried[534] = t1995;
+  carried[546] = t1995;
 
   // front_right_thigh: wrench
   const Real t1996 = t1936 * constant<Real>(0.0272L);
 
   // front_right_thigh: acceleration
   const Real t1997 = t1922 + t1961;
-  carried[535] = t1997;
+  carried[547] = t1997;
 
   // front_right_thigh: wrench
   const Real t1998 = constant<Real>(0.0051L) * t1997;
@@ -4995,20 +5012,20 @@ template <class Real>
 
   // front_right_shank: joint force
   const Real t2004 = t1995 + t2003;
-  carried[536] = t2004;
+  carried[548] = t2004;
 
   // front_right_thigh: joint force
-  const Real t2005 = t2004 * carried[9];
+  const Real t2005 = t2004 * carried[30];
 
   // front_right_shank: joint force
-  const Real t2006 = carried[10] * t1972;
-  const Real t2007 = t1993 * carried[11];
+  const Real t2006 = carried[31] * t1972;
+  const Real t2007 = t1993 * carried[32];
   const Real t2008 = t2006 + t2007;
-  carried[537] = t2008;
+  carried[549] = t2008;
 
   // front_right_thigh: acceleration
-  const Real t2009 = carried[199] * carried[199];
-  carried[538] = t2009;
+  const Real t2009 = carried[220] * carried[220];
+  carried[550] = t2009;
   const Real t2010 = t1931 + t2009;
 
   // front_right_thigh: wrench
@@ -5024,18 +5041,18 @@ template <class Real>
 
   // front_right_shank: joint force
   const Real t2018 = t2008 + t2017;
-  carried[539] = t2018;
+  carried[551] = t2018;
 
   // front_right_thigh: joint force
-  const Real t2019 = t2018 * carried[8];
+  const Real t2019 = t2018 * carried[29];
   const Real t2020 = t2005 - t2019;
-  carried[540] = t2020;
+  carried[552] = t2020;
 
   // front_right_hip: acceleration
-  const Real t2021 = carried[198] * carried[197];
-  carried[541] = t2021;
+  const Real t2021 = carried[219] * carried[218];
+  carried[553] = t2021;
   const Real t2022 = t2021 + t1922;
-  carried[542] = t2022;
+  carried[554] = t2022;
 
   // front_right_hip: wrench
   const Real t2023 = t2022 * constant<Real>(0.0052L);
@@ -5045,10 +5062,10 @@ template <class Real>
   const Real t2025 = t2024 + t2023;
 
   // front_right_hip: acceleration
-  const Real t2026 = carried[197] * carried[197];
-  carried[543] = t2026;
-  const Real t2027 = carried[115] * carried[115];
-  carried[544] = t2027;
+  const Real t2026 = carried[218] * carried[218];
+  carried[555] = t2026;
+  const Real t2027 = carried[136] * carried[136];
+  carried[556] = t2027;
   const Real t2028 = t2026 + t2027;
 
   // front_right_hip: wrench
@@ -5065,15 +5082,15 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t2033 = t2032 + t2020;
-  carried[545] = t2033;
+  carried[557] = t2033;
 
   // front_right_hip: joint force
-  const Real t2034 = carried[6] * t2033;
-  carried[546] = t2034;
+  const Real t2034 = carried[27] * t2033;
+  carried[558] = t2034;
 
   // front_right_shank: acceleration
   const Real t2035 = t1977 + t1982;
-  carried[547] = t2035;
+  carried[559] = t2035;
 
   // front_right_shank: wrench
   const Real t2036 = constant<Real>(0.00252L) * t2035;
@@ -5089,7 +5106,7 @@ template <class Real>
 
   // front_right_shank: acceleration
   const Real t2040 = t1903 + t1915;
-  carried[548] = t2040;
+  carried[560] = t2040;
 
   // front_right_shank: wrench
   const Real t2041 = t2040 * constant<Real>(0.0687L);
@@ -5097,7 +5114,7 @@ template <class Real>
 
   // front_right_thigh: acceleration
   const Real t2043 = t1935 + t1908;
-  carried[549] = t2043;
+  carried[561] = t2043;
 
   // front_right_shank: acceleration
   const Real t2044 = t2043 * constant<Real>(0.24L);
@@ -5112,35 +5129,35 @@ template <class Real>
   const Real t2047 = t2046 - t2044;
 
   // front_right_hip: acceleration
-  const Real t2048 = carried[198] * carried[198];
-  carried[550] = t2048;
+  const Real t2048 = carried[219] * carried[219];
+  carried[562] = t2048;
   const Real t2049 = t2048 + t2026;
 
   // front_right_thigh: acceleration
   const Real t2050 = t2049 * constant<Real>(0.075L);
 
   // front_right_hip: acceleration
-  const Real t2051 = t1945 * carried[7];
-  const Real t2052 = t1948 * carried[6];
+  const Real t2051 = t1945 * carried[28];
+  const Real t2052 = t1948 * carried[27];
   const Real t2053 = t2052 + t2051;
-  carried[551] = t2053;
+  carried[563] = t2053;
 
   // front_right_thigh: acceleration
   const Real t2054 = t2053 + t2050;
-  carried[552] = t2054;
+  carried[564] = t2054;
 
   // front_right_shank: acceleration
   const Real t2055 = t2047 + t2054;
-  carried[553] = t2055;
+  carried[565] = t2055;
 
   // front_right_shank: wrench
   const Real t2056 = constant<Real>(0.51L) * t2055;
   const Real t2057 = t2056 + t2042;
-  carried[554] = t2057;
+  carried[566] = t2057;
 
   // front_right_thigh: acceleration
   const Real t2058 = t1912 + t1958;
-  carried[555] = t2058;
+  carried[567] = t2058;
 
   // front_right_thigh: wrench
   const Real t2059 = constant<Real>(0.0051L) * t2058;
@@ -5167,7 +5184,7 @@ template <class Real>
 
   // front_right_hip: acceleration
   const Real t2068 = t1939 + t1906;
-  carried[556] = t2068;
+  carried[568] = t2068;
 
   // front_right_hip: wrench
   const Real t2069 = t2068 * constant<Real>(0.0052L);
@@ -5185,76 +5202,76 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t2075 = t2066 + t2074;
-  carried[557] = t2075;
+  carried[569] = t2075;
 
   // front_right_hip: joint force
-  const Real t2076 = t2075 * carried[7];
-  carried[558] = t2076;
+  const Real t2076 = t2075 * carried[28];
+  carried[570] = t2076;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_8(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_right_hip: joint force
-  const Real t2077 = carried[558] - carried[546];
-  carried[34] = t2077;
-  const Real t2078 = carried[500] + t2077;
+  const Real t2077 = carried[570] - carried[558];
+  carried[55] = t2077;
+  const Real t2078 = carried[512] + t2077;
 
   // front_left_shank: twist
-  const Real t2079 = carried[84] + carried[112];
-  const Real t2080 = carried[89] * carried[4];
-  const Real t2081 = carried[95] * carried[5];
+  const Real t2079 = carried[105] + carried[133];
+  const Real t2080 = carried[110] * carried[25];
+  const Real t2081 = carried[116] * carried[26];
   const Real t2082 = t2080 + t2081;
 
   // front_left_shank: acceleration
   const Real t2083 = t2079 * t2082;
-  const Real t2084 = t2082 * carried[84];
+  const Real t2084 = t2082 * carried[105];
 
   // front_left_thigh: acceleration
-  const Real t2085 = carried[95] * carried[90];
+  const Real t2085 = carried[116] * carried[111];
 
   // front_left_hip: acceleration
-  const Real t2086 = carried[111] * carried[86];
-  carried[115] = t2086;
+  const Real t2086 = carried[132] * carried[107];
+  carried[136] = t2086;
 
   // front_left_thigh: acceleration
-  const Real t2087 = t2086 * carried[2];
+  const Real t2087 = t2086 * carried[23];
 
   // front_left_thigh: acceleration
   const Real t2088 = t2087 + t2085;
 
   // front_left_shank: acceleration
-  const Real t2089 = t2088 * carried[5];
+  const Real t2089 = t2088 * carried[26];
 
   // front_left_thigh: acceleration
-  const Real t2090 = carried[89] * carried[90];
-  const Real t2091 = carried[3] * t2086;
+  const Real t2090 = carried[110] * carried[111];
+  const Real t2091 = carried[24] * t2086;
 
   // front_left_thigh: acceleration
   const Real t2092 = t2091 + t2090;
 
   // front_left_shank: acceleration
-  const Real t2093 = carried[4] * t2092;
+  const Real t2093 = carried[25] * t2092;
   const Real t2094 = t2089 + t2093;
   const Real t2095 = t2084 + t2094;
   const Real t2096 = t2083 - t2095;
-  carried[194] = t2096;
+  carried[215] = t2096;
 
   // front_left_shank: wrench
   const Real t2097 = t2096 * constant<Real>(0.00042L);
 
   // front_left_shank: twist
-  const Real t2098 = carried[89] * carried[5];
-  const Real t2099 = carried[95] * carried[4];
+  const Real t2098 = carried[110] * carried[26];
+  const Real t2099 = carried[116] * carried[25];
   const Real t2100 = t2098 - t2099;
 
   // front_left_shank: acceleration
   const Real t2101 = t2082 * t2100;
-  carried[196] = t2101;
+  carried[217] = t2101;
 
   // front_left_hip: acceleration
-  const Real t2102 = carried[88] * carried[86];
-  carried[197] = t2102;
+  const Real t2102 = carried[109] * carried[107];
+  carried[218] = t2102;
 
   // front_left_shank: acceleration
   const Real t2103 = t2102 + t2101;
@@ -5266,7 +5283,7 @@ template <class Real>
   // front_left_shank: acceleration
   const Real t2106 = t2079 * t2079;
   const Real t2107 = t2100 * t2100;
-  carried[198] = t2107;
+  carried[219] = t2107;
   const Real t2108 = t2106 + t2107;
 
   // front_left_shank: wrench
@@ -5276,19 +5293,19 @@ template <class Real>
   const Real t2110 = t2109 + t2105;
 
   // front_left_thigh: acceleration
-  const Real t2111 = carried[95] * carried[112];
+  const Real t2111 = carried[116] * carried[133];
 
   // front_left_thigh: acceleration
   const Real t2112 = t2111 - t2088;
-  carried[199] = t2112;
+  carried[220] = t2112;
 
   // front_left_shank: acceleration
   const Real t2113 = t2112 * constant<Real>(0.012L);
 
   // front_left_thigh: acceleration
-  const Real t2114 = carried[112] * carried[112];
-  const Real t2115 = carried[89] * carried[89];
-  carried[201] = t2115;
+  const Real t2114 = carried[133] * carried[133];
+  const Real t2115 = carried[110] * carried[110];
+  carried[222] = t2115;
   const Real t2116 = t2114 + t2115;
 
   // front_left_shank: acceleration
@@ -5298,58 +5315,58 @@ template <class Real>
   const Real t2118 = t2113 + t2117;
 
   // front_left_hip: acceleration
-  const Real t2119 = carried[87] * carried[111];
-  carried[203] = t2119;
+  const Real t2119 = carried[108] * carried[132];
+  carried[224] = t2119;
   const Real t2120 = t2119 - t2086;
-  carried[269] = t2120;
+  carried[290] = t2120;
 
   // front_left_thigh: acceleration
   const Real t2121 = constant<Real>(0.075L) * t2120;
 
   // front_left_hip: acceleration
-  const Real t2122 = carried[399] - carried[397];
-  const Real t2123 = carried[400] + t2122;
-  carried[271] = t2123;
+  const Real t2122 = carried[420] - carried[418];
+  const Real t2123 = carried[421] + t2122;
+  carried[292] = t2123;
 
   // front_left_thigh: acceleration
   const Real t2124 = t2121 + t2123;
-  const Real t2125 = carried[2] * t2124;
+  const Real t2125 = carried[23] * t2124;
 
   // front_left_hip: acceleration
-  const Real t2126 = carried[404] - carried[403];
-  const Real t2127 = t2126 + carried[405];
-  const Real t2128 = t2127 * carried[0];
-  const Real t2129 = carried[411] + carried[406];
-  const Real t2130 = t2129 * carried[1];
+  const Real t2126 = carried[425] - carried[424];
+  const Real t2127 = t2126 + carried[426];
+  const Real t2128 = t2127 * carried[21];
+  const Real t2129 = carried[432] + carried[427];
+  const Real t2130 = t2129 * carried[22];
   const Real t2131 = t2130 - t2128;
-  carried[272] = t2131;
-  const Real t2132 = carried[88] * carried[111];
-  carried[273] = t2132;
+  carried[293] = t2131;
+  const Real t2132 = carried[109] * carried[132];
+  carried[294] = t2132;
 
   // front_left_thigh: acceleration
   const Real t2133 = constant<Real>(0.075L) * t2132;
   const Real t2134 = t2131 + t2133;
-  const Real t2135 = carried[3] * t2134;
+  const Real t2135 = carried[24] * t2134;
   const Real t2136 = t2125 + t2135;
-  carried[275] = t2136;
+  carried[296] = t2136;
 
   // front_left_shank: acceleration
   const Real t2137 = t2118 + t2136;
-  const Real t2138 = carried[5] * t2137;
+  const Real t2138 = carried[26] * t2137;
 
   // front_left_thigh: acceleration
-  const Real t2139 = carried[89] * carried[112];
+  const Real t2139 = carried[110] * carried[133];
 
   // front_left_thigh: acceleration
   const Real t2140 = t2139 - t2092;
-  carried[291] = t2140;
+  carried[312] = t2140;
 
   // front_left_shank: acceleration
   const Real t2141 = constant<Real>(0.012L) * t2140;
 
   // front_left_thigh: acceleration
-  const Real t2142 = carried[89] * carried[95];
-  carried[292] = t2142;
+  const Real t2142 = carried[110] * carried[116];
+  carried[313] = t2142;
 
   // front_left_thigh: acceleration
   const Real t2143 = t2142 - t2102;
@@ -5359,44 +5376,44 @@ template <class Real>
   const Real t2145 = t2141 - t2144;
 
   // front_left_thigh: acceleration
-  const Real t2146 = carried[3] * t2124;
+  const Real t2146 = carried[24] * t2124;
 
   // front_left_thigh: acceleration
-  const Real t2147 = carried[2] * t2134;
+  const Real t2147 = carried[23] * t2134;
   const Real t2148 = t2146 - t2147;
-  carried[408] = t2148;
+  carried[429] = t2148;
 
   // front_left_shank: acceleration
   const Real t2149 = t2145 + t2148;
-  const Real t2150 = t2149 * carried[4];
+  const Real t2150 = t2149 * carried[25];
   const Real t2151 = t2138 + t2150;
-  carried[410] = t2151;
+  carried[431] = t2151;
 
   // front_left_shank: wrench
   const Real t2152 = constant<Real>(0.51L) * t2151;
   const Real t2153 = t2152 + t2110;
 
   // front_left_shank: joint force
-  const Real t2154 = t2153 * carried[5];
+  const Real t2154 = t2153 * carried[26];
 
   // front_left_shank: acceleration
   const Real t2155 = t2079 * t2100;
-  const Real t2156 = carried[84] * t2100;
+  const Real t2156 = carried[105] * t2100;
 
   // front_left_shank: acceleration
-  const Real t2157 = t2092 * carried[5];
-  const Real t2158 = carried[4] * t2088;
+  const Real t2157 = t2092 * carried[26];
+  const Real t2158 = carried[25] * t2088;
   const Real t2159 = t2157 - t2158;
   const Real t2160 = t2156 + t2159;
   const Real t2161 = t2155 - t2160;
-  carried[451] = t2161;
+  carried[472] = t2161;
 
   // front_left_shank: wrench
   const Real t2162 = t2161 * constant<Real>(0.00042L);
 
   // front_left_shank: acceleration
   const Real t2163 = t2082 * t2082;
-  carried[452] = t2163;
+  carried[473] = t2163;
   const Real t2164 = t2106 + t2163;
 
   // front_left_shank: wrench
@@ -5413,17 +5430,17 @@ template <class Real>
   const Real t2169 = t2166 - t2168;
 
   // front_left_shank: acceleration
-  const Real t2170 = t2149 * carried[5];
-  const Real t2171 = carried[4] * t2137;
+  const Real t2170 = t2149 * carried[26];
+  const Real t2171 = carried[25] * t2137;
   const Real t2172 = t2170 - t2171;
-  carried[453] = t2172;
+  carried[474] = t2172;
 
   // front_left_shank: wrench
   const Real t2173 = constant<Real>(0.51L) * t2172;
   const Real t2174 = t2169 + t2173;
 
   // front_left_shank: joint force
-  const Real t2175 = carried[4] * t2174;
+  const Real t2175 = carried[25] * t2174;
   const Real t2176 = t2154 - t2175;
 
   // front_left_thigh: wrench
@@ -5446,20 +5463,20 @@ template <class Real>
 
   // front_left_shank: joint force
   const Real t2185 = t2184 + t2176;
-  carried[460] = t2185;
+  carried[481] = t2185;
 
   // front_left_thigh: joint force
-  const Real t2186 = carried[3] * t2185;
+  const Real t2186 = carried[24] * t2185;
 
   // front_left_shank: joint force
-  const Real t2187 = carried[4] * t2153;
-  const Real t2188 = t2174 * carried[5];
+  const Real t2187 = carried[25] * t2153;
+  const Real t2188 = t2174 * carried[26];
   const Real t2189 = t2187 + t2188;
-  carried[466] = t2189;
+  carried[487] = t2189;
 
   // front_left_thigh: acceleration
-  const Real t2190 = carried[95] * carried[95];
-  carried[473] = t2190;
+  const Real t2190 = carried[116] * carried[116];
+  carried[494] = t2190;
   const Real t2191 = t2190 + t2114;
 
   // front_left_thigh: wrench
@@ -5475,15 +5492,15 @@ template <class Real>
 
   // front_left_shank: joint force
   const Real t2199 = t2198 + t2189;
-  carried[475] = t2199;
+  carried[496] = t2199;
 
   // front_left_thigh: joint force
-  const Real t2200 = t2199 * carried[2];
+  const Real t2200 = t2199 * carried[23];
   const Real t2201 = t2186 - t2200;
 
   // front_left_hip: acceleration
-  const Real t2202 = carried[88] * carried[87];
-  carried[476] = t2202;
+  const Real t2202 = carried[109] * carried[108];
+  carried[497] = t2202;
   const Real t2203 = t2102 + t2202;
 
   // front_left_hip: wrench
@@ -5494,10 +5511,10 @@ template <class Real>
   const Real t2206 = t2205 - t2204;
 
   // front_left_hip: acceleration
-  const Real t2207 = carried[87] * carried[87];
-  carried[477] = t2207;
-  const Real t2208 = carried[111] * carried[111];
-  carried[478] = t2208;
+  const Real t2207 = carried[108] * carried[108];
+  carried[498] = t2207;
+  const Real t2208 = carried[132] * carried[132];
+  carried[499] = t2208;
   const Real t2209 = t2208 + t2207;
 
   // front_left_hip: wrench
@@ -5514,10 +5531,10 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t2214 = t2213 + t2201;
-  carried[481] = t2214;
+  carried[502] = t2214;
 
   // front_left_hip: joint force
-  const Real t2215 = t2214 * carried[0];
+  const Real t2215 = t2214 * carried[21];
 
   // front_left_shank: acceleration
   const Real t2216 = t2160 + t2155;
@@ -5557,18 +5574,18 @@ template <class Real>
   const Real t2228 = t2225 + t2227;
 
   // front_left_hip: acceleration
-  const Real t2229 = carried[88] * carried[88];
-  carried[483] = t2229;
+  const Real t2229 = carried[109] * carried[109];
+  carried[504] = t2229;
   const Real t2230 = t2207 + t2229;
 
   // front_left_thigh: acceleration
   const Real t2231 = constant<Real>(0.075L) * t2230;
 
   // front_left_hip: acceleration
-  const Real t2232 = t2127 * carried[1];
-  const Real t2233 = t2129 * carried[0];
+  const Real t2232 = t2127 * carried[22];
+  const Real t2233 = t2129 * carried[21];
   const Real t2234 = t2233 + t2232;
-  carried[484] = t2234;
+  carried[505] = t2234;
 
   // front_left_thigh: acceleration
   const Real t2235 = t2234 - t2231;
@@ -5623,17 +5640,17 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t2256 = t2255 + t2247;
-  carried[559] = t2256;
+  carried[571] = t2256;
 
   // front_left_hip: joint force
-  const Real t2257 = carried[1] * t2256;
+  const Real t2257 = carried[22] * t2256;
   const Real t2258 = t2257 - t2215;
-  carried[560] = t2258;
+  carried[572] = t2258;
   const Real t2259 = t2258 + t2078;
 
   // reduced forces
-  const Real t2260 = t2259 + carried[299];
-  carried[561] = t2260;
+  const Real t2260 = t2259 + carried[320];
+  carried[573] = t2260;
 
   // front_left_shank: joint force
   const Real t2261 = t2176 * constant<Real>(0.012L);
@@ -5665,7 +5682,7 @@ template <class Real>
   const Real t2277 = t2276 + t2273;
 
   // front_left_shank: joint force
-  const Real t2278 = t2277 * carried[5];
+  const Real t2278 = t2277 * carried[26];
 
   // front_left_shank: wrench
   const Real t2279 = t2155 * constant<Real>(0.0000247L);
@@ -5690,7 +5707,7 @@ template <class Real>
   const Real t2292 = t2288 + t2291;
 
   // front_left_shank: joint force
-  const Real t2293 = t2292 * carried[4];
+  const Real t2293 = t2292 * carried[25];
   const Real t2294 = t2278 + t2293;
   const Real t2295 = t2263 + t2294;
 
@@ -5722,14 +5739,14 @@ template <class Real>
 
   // front_left_shank: joint force
   const Real t2310 = t2295 + t2309;
-  carried[562] = t2310;
+  carried[574] = t2310;
 
   // front_left_thigh: joint force
-  const Real t2311 = t2310 * carried[3];
+  const Real t2311 = t2310 * carried[24];
 
   // front_left_shank: joint force
-  const Real t2312 = t2292 * carried[5];
-  const Real t2313 = carried[4] * t2277;
+  const Real t2312 = t2292 * carried[26];
+  const Real t2313 = carried[25] * t2277;
   const Real t2314 = t2312 - t2313;
   const Real t2315 = t2189 * constant<Real>(0.012L);
   const Real t2316 = t2314 - t2315;
@@ -5764,10 +5781,10 @@ template <class Real>
 
   // front_left_shank: joint force
   const Real t2331 = t2316 + t2330;
-  carried[563] = t2331;
+  carried[575] = t2331;
 
   // front_left_thigh: joint force
-  const Real t2332 = t2331 * carried[2];
+  const Real t2332 = t2331 * carried[23];
   const Real t2333 = t2332 + t2311;
   const Real t2334 = constant<Real>(0.075L) * t2201;
   const Real t2335 = t2334 + t2333;
@@ -5802,104 +5819,103 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t2348 = t2347 + t2335;
-  carried[564] = t2348;
+  carried[576] = t2348;
 
   // front_left_shank: wrench
-  const Real t2349 = carried[38] * constant<Real>(0.0687L);
-  const Real t2350 = constant<Real>(0.00252L) * carried[28];
+  const Real t2349 = carried[59] * constant<Real>(0.0687L);
+  const Real t2350 = constant<Real>(0.00252L) * carried[49];
   const Real t2351 = t2349 - t2350;
 
   // front_left_shank: wrench
-  const Real t2352 = carried[41] * constant<Real>(0.0000562L);
-  const Real t2353 = carried[26] * constant<Real>(2.52e-6L);
+  const Real t2352 = carried[62] * constant<Real>(0.0000562L);
+  const Real t2353 = carried[47] * constant<Real>(2.52e-6L);
   const Real t2354 = t2352 - t2353;
-  carried[565] = t2354;
+  carried[577] = t2354;
 
   // front_left_shank: wrench
   const Real t2355 = t2351 + t2354;
-  carried[566] = t2355;
+  carried[578] = t2355;
 
   // reduced forces
-  const Real t2356 = t2355 * carried[118];
-  carried[567] = t2356;
+  const Real t2356 = t2355 * carried[139];
+  carried[579] = t2356;
 
   // front_left_shank: wrench
-  const Real t2357 = constant<Real>(0.51L) * carried[28];
+  const Real t2357 = constant<Real>(0.51L) * carried[49];
 
   // front_left_shank: wrench
-  const Real t2358 = carried[26] * constant<Real>(0.00042L);
-  carried[568] = t2358;
+  const Real t2358 = carried[47] * constant<Real>(0.00042L);
+  carried[580] = t2358;
 
   // front_left_shank: wrench
   const Real t2359 = t2357 + t2358;
-  carried[569] = t2359;
+  carried[581] = t2359;
 
   // front_left_shank: joint force
-  const Real t2360 = carried[4] * t2359;
+  const Real t2360 = carried[25] * t2359;
 
   // front_left_shank: wrench
-  const Real t2361 = constant<Real>(0.51L) * carried[38];
+  const Real t2361 = constant<Real>(0.51L) * carried[59];
 
   // front_left_shank: wrench
-  const Real t2362 = carried[41] * constant<Real>(0.00042L);
-  carried[570] = t2362;
+  const Real t2362 = carried[62] * constant<Real>(0.00042L);
+  carried[582] = t2362;
 
   // front_left_shank: wrench
   const Real t2363 = t2361 + t2362;
-  carried[571] = t2363;
+  carried[583] = t2363;
 
   // front_left_shank: joint force
-  const Real t2364 = t2363 * carried[5];
+  const Real t2364 = t2363 * carried[26];
   const Real t2365 = t2360 - t2364;
-  carried[572] = t2365;
+  carried[584] = t2365;
   const Real t2366 = constant<Real>(0.24L) * t2365;
   const Real t2367 = t2355 - t2366;
 
   // front_left_thigh: wrench
-  const Real t2368 = constant<Real>(8.4e-6L) * carried[3];
-  const Real t2369 = constant<Real>(0.0025144L) * carried[2];
+  const Real t2368 = constant<Real>(8.4e-6L) * carried[24];
+  const Real t2369 = constant<Real>(0.0025144L) * carried[23];
   const Real t2370 = t2368 - t2369;
-  carried[573] = t2370;
+  carried[585] = t2370;
 
   // front_left_thigh: wrench
-  const Real t2371 = carried[3] * constant<Real>(0.0003825L);
-  const Real t2372 = constant<Real>(0.00663L) * carried[2];
+  const Real t2371 = carried[24] * constant<Real>(0.0003825L);
+  const Real t2372 = constant<Real>(0.00663L) * carried[23];
   const Real t2373 = t2371 + t2372;
   const Real t2374 = t2370 + t2373;
 
   // front_left_shank: joint force
   const Real t2375 = t2374 + t2367;
-  carried[574] = t2375;
+  carried[586] = t2375;
 
   // reduced forces
-  const Real t2376 = t2375 * carried[116];
-  carried[575] = t2376;
+  const Real t2376 = t2375 * carried[137];
+  carried[587] = t2376;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_9(const Real (&tau_a)[12],
-                                                             Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_9(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_left_shank: joint force
-  const Real t2377 = carried[569] * carried[5];
-  const Real t2378 = carried[571] * carried[4];
+  const Real t2377 = carried[581] * carried[26];
+  const Real t2378 = carried[583] * carried[25];
   const Real t2379 = t2377 + t2378;
   const Real t2380 = t2379 * constant<Real>(0.012L);
 
   // front_left_shank: wrench
-  const Real t2381 = carried[41] * constant<Real>(0.00252L);
-  carried[84] = t2381;
+  const Real t2381 = carried[62] * constant<Real>(0.00252L);
+  carried[105] = t2381;
 
   // front_left_shank: acceleration
-  const Real t2382 = carried[25] - carried[24];
+  const Real t2382 = carried[46] - carried[45];
 
   // front_left_shank: wrench
   const Real t2383 = t2382 * constant<Real>(0.0687L);
   const Real t2384 = t2381 - t2383;
-  carried[86] = t2384;
+  carried[107] = t2384;
 
   // front_left_shank: wrench
-  const Real t2385 = constant<Real>(0.1224L) * carried[3];
+  const Real t2385 = constant<Real>(0.1224L) * carried[24];
   const Real t2386 = t2385 + t2384;
 
   // front_left_shank: joint force
@@ -5907,173 +5923,173 @@ template <class Real>
   const Real t2388 = t2380 + t2387;
 
   // front_left_shank: wrench
-  const Real t2389 = carried[38] * constant<Real>(0.00042L);
-  const Real t2390 = constant<Real>(0.0006048L) * carried[3];
+  const Real t2389 = carried[59] * constant<Real>(0.00042L);
+  const Real t2390 = constant<Real>(0.0006048L) * carried[24];
   const Real t2391 = t2389 + t2390;
 
   // front_left_shank: wrench
-  const Real t2392 = carried[41] * constant<Real>(0.00007492L);
+  const Real t2392 = carried[62] * constant<Real>(0.00007492L);
   const Real t2393 = constant<Real>(0.0004672L) * t2382;
   const Real t2394 = t2392 - t2393;
-  carried[87] = t2394;
+  carried[108] = t2394;
 
   // front_left_shank: wrench
   const Real t2395 = t2391 + t2394;
 
   // front_left_shank: joint force
-  const Real t2396 = carried[4] * t2395;
+  const Real t2396 = carried[25] * t2395;
 
   // front_left_shank: wrench
-  const Real t2397 = carried[28] * constant<Real>(0.00042L);
-  const Real t2398 = carried[3] * constant<Real>(0.016488L);
+  const Real t2397 = carried[49] * constant<Real>(0.00042L);
+  const Real t2398 = carried[24] * constant<Real>(0.016488L);
   const Real t2399 = t2397 + t2398;
 
   // front_left_shank: wrench
-  const Real t2400 = carried[41] * constant<Real>(0.0004672L);
-  const Real t2401 = constant<Real>(0.01292242L) * carried[26];
+  const Real t2400 = carried[62] * constant<Real>(0.0004672L);
+  const Real t2401 = constant<Real>(0.01292242L) * carried[47];
   const Real t2402 = t2400 + t2401;
-  carried[88] = t2402;
+  carried[109] = t2402;
 
   // front_left_shank: wrench
   const Real t2403 = t2402 + t2399;
 
   // front_left_shank: joint force
-  const Real t2404 = t2403 * carried[5];
+  const Real t2404 = t2403 * carried[26];
   const Real t2405 = t2396 + t2404;
   const Real t2406 = t2405 + t2388;
 
   // front_left_thigh: wrench
-  const Real t2407 = constant<Real>(0.013546L) * carried[3];
-  const Real t2408 = carried[2] * constant<Real>(0.0003348L);
+  const Real t2407 = constant<Real>(0.013546L) * carried[24];
+  const Real t2408 = carried[23] * constant<Real>(0.0003348L);
   const Real t2409 = t2407 + t2408;
-  carried[89] = t2409;
+  carried[110] = t2409;
 
   // front_left_thigh: wrench
-  const Real t2410 = carried[3] * constant<Real>(0.00204L);
+  const Real t2410 = carried[24] * constant<Real>(0.00204L);
   const Real t2411 = t2409 - t2410;
 
   // front_left_shank: joint force
   const Real t2412 = t2411 + t2406;
 
   // front_left_thigh: joint force
-  const Real t2413 = carried[3] * t2412;
+  const Real t2413 = carried[24] * t2412;
 
   // front_left_shank: joint force
-  const Real t2414 = t2395 * carried[5];
-  const Real t2415 = t2403 * carried[4];
+  const Real t2414 = t2395 * carried[26];
+  const Real t2415 = t2403 * carried[25];
   const Real t2416 = t2414 - t2415;
-  const Real t2417 = carried[572] * constant<Real>(0.012L);
+  const Real t2417 = carried[584] * constant<Real>(0.012L);
   const Real t2418 = t2416 - t2417;
 
   // front_left_thigh: wrench
-  const Real t2419 = carried[2] * constant<Real>(0.0014985L);
-  const Real t2420 = carried[3] * constant<Real>(0.0003348L);
+  const Real t2419 = carried[23] * constant<Real>(0.0014985L);
+  const Real t2420 = carried[24] * constant<Real>(0.0003348L);
   const Real t2421 = t2419 + t2420;
-  carried[90] = t2421;
+  carried[111] = t2421;
 
   // front_left_thigh: wrench
-  const Real t2422 = carried[2] * constant<Real>(0.00204L);
+  const Real t2422 = carried[23] * constant<Real>(0.00204L);
   const Real t2423 = t2421 - t2422;
 
   // front_left_shank: joint force
   const Real t2424 = t2418 + t2423;
 
   // front_left_thigh: joint force
-  const Real t2425 = carried[2] * t2424;
+  const Real t2425 = carried[23] * t2424;
   const Real t2426 = t2413 + t2425;
 
   // front_left_thigh: wrench
-  const Real t2427 = constant<Real>(0.1003L) * carried[3];
+  const Real t2427 = constant<Real>(0.1003L) * carried[24];
 
   // front_left_shank: joint force
   const Real t2428 = t2427 + t2379;
 
   // front_left_thigh: joint force
-  const Real t2429 = carried[3] * t2428;
+  const Real t2429 = carried[24] * t2428;
 
   // front_left_thigh: wrench
-  const Real t2430 = constant<Real>(0.1003L) * carried[2];
+  const Real t2430 = constant<Real>(0.1003L) * carried[23];
 
   // front_left_shank: joint force
-  const Real t2431 = carried[572] - t2430;
+  const Real t2431 = carried[584] - t2430;
 
   // front_left_thigh: joint force
-  const Real t2432 = carried[2] * t2431;
+  const Real t2432 = carried[23] * t2431;
   const Real t2433 = t2429 - t2432;
   const Real t2434 = t2433 * constant<Real>(0.075L);
   const Real t2435 = t2426 + t2434;
   const Real t2436 = t2435 + constant<Real>(0.0022646L);
-  carried[95] = t2436;
+  carried[116] = t2436;
 
   // reduced forces
-  const Real t2437 = t2436 * carried[100];
-  const Real t2438 = carried[575] + t2437;
-  const Real t2439 = t2438 - carried[567];
-  const Real t2440 = carried[564] + t2439;
-  const Real t2441 = tau_a[0] - t2440;
-  carried[111] = t2441;
-  const Real t2442 = t2441 * carried[27];
-  const Real t2443 = t2442 + carried[561];
+  const Real t2437 = t2436 * carried[121];
+  const Real t2438 = carried[587] + t2437;
+  const Real t2439 = t2438 - carried[579];
+  const Real t2440 = carried[576] + t2439;
+  const Real t2441 = carried[9] - t2440;
+  carried[132] = t2441;
+  const Real t2442 = t2441 * carried[48];
+  const Real t2443 = t2442 + carried[573];
 
   // front_left_shank: wrench
-  const Real t2444 = constant<Real>(0.016488L) * carried[5];
-  const Real t2445 = constant<Real>(0.0006048L) * carried[4];
+  const Real t2444 = constant<Real>(0.016488L) * carried[26];
+  const Real t2445 = constant<Real>(0.0006048L) * carried[25];
   const Real t2446 = t2444 + t2445;
   const Real t2447 = constant<Real>(0.01294712L) + t2446;
-  carried[112] = t2447;
+  carried[133] = t2447;
 
   // reduced forces
-  const Real t2448 = t2447 * carried[118];
+  const Real t2448 = t2447 * carried[139];
 
   // front_left_shank: wrench
-  const Real t2449 = constant<Real>(0.1224L) * carried[5];
+  const Real t2449 = constant<Real>(0.1224L) * carried[26];
   const Real t2450 = constant<Real>(-0.0687L) - t2449;
 
   // front_left_shank: joint force
-  const Real t2451 = t2450 * carried[5];
+  const Real t2451 = t2450 * carried[26];
 
   // front_left_shank: wrench
-  const Real t2452 = constant<Real>(0.1224L) * carried[4];
+  const Real t2452 = constant<Real>(0.1224L) * carried[25];
   const Real t2453 = constant<Real>(-0.00252L) - t2452;
 
   // front_left_shank: joint force
-  const Real t2454 = carried[4] * t2453;
+  const Real t2454 = carried[25] * t2453;
   const Real t2455 = t2451 + t2454;
   const Real t2456 = constant<Real>(0.24L) * t2455;
   const Real t2457 = t2447 - t2456;
   const Real t2458 = constant<Real>(0.0134661L) + t2457;
-  carried[299] = t2458;
+  carried[320] = t2458;
 
   // reduced forces
-  const Real t2459 = carried[116] * t2458;
-  const Real t2460 = carried[574] * carried[100];
+  const Real t2459 = carried[137] * t2458;
+  const Real t2460 = carried[586] * carried[121];
   const Real t2461 = t2460 + t2459;
   const Real t2462 = t2461 - t2448;
 
   // front_left_shank: joint force
-  const Real t2463 = constant<Real>(0.24L) * carried[466];
+  const Real t2463 = constant<Real>(0.24L) * carried[487];
 
   // front_left_shank: wrench
-  const Real t2464 = carried[451] * constant<Real>(0.0000562L);
+  const Real t2464 = carried[472] * constant<Real>(0.0000562L);
 
   // front_left_shank: wrench
-  const Real t2465 = carried[196] * constant<Real>(0.0128475L);
+  const Real t2465 = carried[217] * constant<Real>(0.0128475L);
 
   // front_left_shank: wrench
-  const Real t2466 = carried[197] * constant<Real>(0.01294712L);
+  const Real t2466 = carried[218] * constant<Real>(0.01294712L);
   const Real t2467 = t2465 - t2466;
   const Real t2468 = t2467 - t2464;
-  const Real t2469 = carried[194] * constant<Real>(2.52e-6L);
+  const Real t2469 = carried[215] * constant<Real>(2.52e-6L);
   const Real t2470 = t2468 - t2469;
 
   // front_left_shank: wrench
-  const Real t2471 = carried[452] - carried[198];
+  const Real t2471 = carried[473] - carried[219];
   const Real t2472 = constant<Real>(0.0004672L) * t2471;
 
   // front_left_shank: wrench
   const Real t2473 = t2472 + t2470;
-  const Real t2474 = carried[410] * constant<Real>(0.00252L);
-  const Real t2475 = carried[453] * constant<Real>(0.0687L);
+  const Real t2474 = carried[431] * constant<Real>(0.00252L);
+  const Real t2475 = carried[474] * constant<Real>(0.0687L);
   const Real t2476 = t2474 + t2475;
   const Real t2477 = t2473 - t2476;
 
@@ -6081,42 +6097,42 @@ template <class Real>
   const Real t2478 = t2477 - t2463;
 
   // front_left_thigh: wrench
-  const Real t2479 = constant<Real>(0.0025144L) * carried[291];
+  const Real t2479 = constant<Real>(0.0025144L) * carried[312];
 
   // front_left_thigh: wrench
-  const Real t2480 = constant<Real>(0.0120475L) * carried[292];
+  const Real t2480 = constant<Real>(0.0120475L) * carried[313];
 
   // front_left_thigh: wrench
-  const Real t2481 = carried[197] * constant<Real>(0.0134661L);
+  const Real t2481 = carried[218] * constant<Real>(0.0134661L);
   const Real t2482 = t2480 - t2481;
   const Real t2483 = t2482 + t2479;
-  const Real t2484 = constant<Real>(8.4e-6L) * carried[199];
+  const Real t2484 = constant<Real>(8.4e-6L) * carried[220];
   const Real t2485 = t2483 + t2484;
 
   // front_left_thigh: wrench
-  const Real t2486 = carried[473] - carried[201];
+  const Real t2486 = carried[494] - carried[222];
   const Real t2487 = t2486 * constant<Real>(0.0003348L);
 
   // front_left_thigh: wrench
   const Real t2488 = t2487 + t2485;
-  const Real t2489 = constant<Real>(0.0051L) * carried[275];
-  const Real t2490 = constant<Real>(0.0884L) * carried[408];
+  const Real t2489 = constant<Real>(0.0051L) * carried[296];
+  const Real t2490 = constant<Real>(0.0884L) * carried[429];
   const Real t2491 = t2489 - t2490;
   const Real t2492 = t2491 + t2488;
 
   // front_left_shank: joint force
   const Real t2493 = t2478 + t2492;
-  carried[397] = t2493;
+  carried[418] = t2493;
 
   // reduced forces
   const Real t2494 = t2462 + t2493;
-  const Real t2495 = tau_a[1] - t2494;
-  carried[399] = t2495;
-  const Real t2496 = t2495 * carried[35];
+  const Real t2495 = carried[10] - t2494;
+  carried[420] = t2495;
+  const Real t2496 = t2495 * carried[56];
   const Real t2497 = t2496 - t2443;
-  const Real t2498 = carried[117] * constant<Real>(0.05178848L);
-  const Real t2499 = carried[116] * t2447;
-  const Real t2500 = carried[566] * carried[100];
+  const Real t2498 = carried[138] * constant<Real>(0.05178848L);
+  const Real t2499 = carried[137] * t2447;
+  const Real t2500 = carried[578] * carried[121];
   const Real t2501 = t2500 + t2499;
   const Real t2502 = t2501 - t2498;
 
@@ -6125,92 +6141,92 @@ template <class Real>
 
   // reduced forces
   const Real t2504 = t2503 - t2502;
-  const Real t2505 = t2504 + tau_a[2];
-  carried[403] = t2505;
-  const Real t2506 = carried[40] * t2505;
+  const Real t2505 = t2504 + carried[11];
+  carried[424] = t2505;
+  const Real t2506 = carried[61] * t2505;
   const Real t2507 = t2506 + t2497;
-  carried[404] = t2507;
+  carried[425] = t2507;
 
   // front_right_shank: joint force
-  const Real t2508 = carried[534] * constant<Real>(0.012L);
-  const Real t2509 = carried[554] * constant<Real>(0.24L);
+  const Real t2508 = carried[546] * constant<Real>(0.012L);
+  const Real t2509 = carried[566] * constant<Real>(0.24L);
   const Real t2510 = t2509 - t2508;
 
   // front_right_shank: wrench
-  const Real t2511 = carried[501] * constant<Real>(0.0128722L);
+  const Real t2511 = carried[513] * constant<Real>(0.0128722L);
 
   // front_right_shank: wrench
-  const Real t2512 = constant<Real>(0.01292242L) * carried[505];
+  const Real t2512 = constant<Real>(0.01292242L) * carried[517];
   const Real t2513 = t2511 + t2512;
-  const Real t2514 = carried[509] * constant<Real>(2.52e-6L);
+  const Real t2514 = carried[521] * constant<Real>(2.52e-6L);
   const Real t2515 = t2513 + t2514;
-  const Real t2516 = constant<Real>(0.0004672L) * carried[547];
+  const Real t2516 = constant<Real>(0.0004672L) * carried[559];
   const Real t2517 = t2516 - t2515;
 
   // front_right_shank: wrench
-  const Real t2518 = carried[510] - carried[528];
+  const Real t2518 = carried[522] - carried[540];
   const Real t2519 = constant<Real>(0.0000562L) * t2518;
 
   // front_right_shank: wrench
   const Real t2520 = t2517 - t2519;
-  const Real t2521 = carried[527] * constant<Real>(0.00042L);
-  const Real t2522 = carried[553] * constant<Real>(0.0687L);
+  const Real t2521 = carried[539] * constant<Real>(0.00042L);
+  const Real t2522 = carried[565] * constant<Real>(0.0687L);
   const Real t2523 = t2522 - t2521;
   const Real t2524 = t2520 + t2523;
 
   // front_right_shank: joint force
-  const Real t2525 = carried[11] * t2524;
+  const Real t2525 = carried[32] * t2524;
 
   // front_right_shank: wrench
-  const Real t2526 = constant<Real>(0.00007492L) * carried[530];
+  const Real t2526 = constant<Real>(0.00007492L) * carried[542];
 
   // front_right_shank: wrench
-  const Real t2527 = carried[529] * constant<Real>(0.0000247L);
+  const Real t2527 = carried[541] * constant<Real>(0.0000247L);
 
   // front_right_shank: wrench
   const Real t2528 = t2526 + t2527;
-  const Real t2529 = carried[548] * constant<Real>(0.0004672L);
+  const Real t2529 = carried[560] * constant<Real>(0.0004672L);
   const Real t2530 = t2528 - t2529;
-  const Real t2531 = carried[532] * constant<Real>(0.0000562L);
+  const Real t2531 = carried[544] * constant<Real>(0.0000562L);
   const Real t2532 = t2530 - t2531;
 
   // front_right_shank: wrench
-  const Real t2533 = carried[511] - carried[510];
+  const Real t2533 = carried[523] - carried[522];
   const Real t2534 = t2533 * constant<Real>(2.52e-6L);
 
   // front_right_shank: wrench
   const Real t2535 = t2534 + t2532;
-  const Real t2536 = carried[533] * constant<Real>(0.00042L);
-  const Real t2537 = carried[553] * constant<Real>(0.00252L);
+  const Real t2536 = carried[545] * constant<Real>(0.00042L);
+  const Real t2537 = carried[565] * constant<Real>(0.00252L);
   const Real t2538 = t2536 + t2537;
   const Real t2539 = t2538 + t2535;
 
   // front_right_shank: joint force
-  const Real t2540 = carried[10] * t2539;
+  const Real t2540 = carried[31] * t2539;
   const Real t2541 = t2525 + t2540;
   const Real t2542 = t2510 + t2541;
 
   // front_right_thigh: wrench
-  const Real t2543 = constant<Real>(0.0119676L) * carried[514];
+  const Real t2543 = constant<Real>(0.0119676L) * carried[526];
 
   // front_right_thigh: wrench
-  const Real t2544 = constant<Real>(0.013546L) * carried[503];
+  const Real t2544 = constant<Real>(0.013546L) * carried[515];
   const Real t2545 = t2543 + t2544;
-  const Real t2546 = carried[535] * constant<Real>(8.4e-6L);
+  const Real t2546 = carried[547] * constant<Real>(8.4e-6L);
   const Real t2547 = t2546 - t2545;
-  const Real t2548 = carried[555] * constant<Real>(0.0003348L);
+  const Real t2548 = carried[567] * constant<Real>(0.0003348L);
   const Real t2549 = t2548 + t2547;
 
   // front_right_thigh: wrench
-  const Real t2550 = carried[512] - carried[538];
+  const Real t2550 = carried[524] - carried[550];
   const Real t2551 = constant<Real>(0.0025144L) * t2550;
 
   // front_right_thigh: wrench
   const Real t2552 = t2551 + t2549;
-  const Real t2553 = constant<Real>(0.0272L) * carried[521];
+  const Real t2553 = constant<Real>(0.0272L) * carried[533];
 
   // front_right_thigh: wrench
-  const Real t2554 = carried[552] * constant<Real>(0.0884L);
+  const Real t2554 = carried[564] * constant<Real>(0.0884L);
 
   // front_right_thigh: wrench
   const Real t2555 = t2553 + t2554;
@@ -6218,41 +6234,41 @@ template <class Real>
 
   // front_right_shank: joint force
   const Real t2557 = t2542 + t2556;
-  carried[411] = t2557;
+  carried[432] = t2557;
 
   // front_right_thigh: joint force
-  const Real t2558 = carried[9] * t2557;
+  const Real t2558 = carried[30] * t2557;
 
   // front_right_shank: joint force
-  const Real t2559 = carried[537] * constant<Real>(0.012L);
-  const Real t2560 = carried[11] * t2539;
-  const Real t2561 = carried[10] * t2524;
+  const Real t2559 = carried[549] * constant<Real>(0.012L);
+  const Real t2560 = carried[32] * t2539;
+  const Real t2561 = carried[31] * t2524;
   const Real t2562 = t2560 - t2561;
   const Real t2563 = t2559 + t2562;
 
   // front_right_thigh: wrench
-  const Real t2564 = carried[504] * constant<Real>(0.0014985L);
+  const Real t2564 = carried[516] * constant<Real>(0.0014985L);
 
   // front_right_thigh: wrench
-  const Real t2565 = constant<Real>(0.0000799L) * carried[522];
+  const Real t2565 = constant<Real>(0.0000799L) * carried[534];
 
   // front_right_thigh: wrench
   const Real t2566 = t2564 - t2565;
-  const Real t2567 = carried[549] * constant<Real>(0.0003348L);
+  const Real t2567 = carried[561] * constant<Real>(0.0003348L);
   const Real t2568 = t2566 - t2567;
-  const Real t2569 = carried[525] * constant<Real>(0.0025144L);
+  const Real t2569 = carried[537] * constant<Real>(0.0025144L);
   const Real t2570 = t2569 + t2568;
 
   // front_right_thigh: wrench
-  const Real t2571 = carried[513] - carried[512];
+  const Real t2571 = carried[525] - carried[524];
   const Real t2572 = constant<Real>(8.4e-6L) * t2571;
 
   // front_right_thigh: wrench
   const Real t2573 = t2570 - t2572;
-  const Real t2574 = carried[526] * constant<Real>(0.0272L);
+  const Real t2574 = carried[538] * constant<Real>(0.0272L);
 
   // front_right_thigh: wrench
-  const Real t2575 = constant<Real>(0.0051L) * carried[552];
+  const Real t2575 = constant<Real>(0.0051L) * carried[564];
 
   // front_right_thigh: wrench
   const Real t2576 = t2574 + t2575;
@@ -6260,37 +6276,37 @@ template <class Real>
 
   // front_right_shank: joint force
   const Real t2578 = t2563 + t2577;
-  carried[500] = t2578;
+  carried[512] = t2578;
 
   // front_right_thigh: joint force
-  const Real t2579 = t2578 * carried[8];
+  const Real t2579 = t2578 * carried[29];
   const Real t2580 = t2558 + t2579;
-  const Real t2581 = constant<Real>(0.075L) * carried[540];
+  const Real t2581 = constant<Real>(0.075L) * carried[552];
   const Real t2582 = t2580 - t2581;
 
   // front_right_hip: wrench
-  const Real t2583 = carried[542] * constant<Real>(0.0001392L);
-  const Real t2584 = carried[520] * constant<Real>(0.000637L);
+  const Real t2583 = carried[554] * constant<Real>(0.0001392L);
+  const Real t2584 = carried[532] * constant<Real>(0.000637L);
 
   // front_right_hip: wrench
   const Real t2585 = t2583 + t2584;
 
   // front_right_hip: wrench
-  const Real t2586 = constant<Real>(5.2e-6L) * carried[556];
+  const Real t2586 = constant<Real>(5.2e-6L) * carried[568];
 
   // front_right_hip: wrench
   const Real t2587 = t2586 + t2585;
 
   // front_right_hip: wrench
-  const Real t2588 = carried[544] - carried[550];
+  const Real t2588 = carried[556] - carried[562];
   const Real t2589 = t2588 * constant<Real>(0.0000473L);
 
   // front_right_hip: wrench
   const Real t2590 = t2587 + t2589;
 
   // front_right_hip: wrench
-  const Real t2591 = constant<Real>(0.0013L) * carried[551];
-  const Real t2592 = carried[519] * constant<Real>(0.0273L);
+  const Real t2591 = constant<Real>(0.0013L) * carried[563];
+  const Real t2592 = carried[531] * constant<Real>(0.0273L);
   const Real t2593 = t2591 + t2592;
 
   // front_right_hip: wrench
@@ -6298,97 +6314,97 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t2595 = t2594 + t2582;
-  carried[546] = t2595;
+  carried[558] = t2595;
 
   // front_right_shank: wrench
-  const Real t2596 = constant<Real>(0.00252L) * carried[141];
-  const Real t2597 = carried[151] * constant<Real>(0.0687L);
+  const Real t2596 = constant<Real>(0.00252L) * carried[162];
+  const Real t2597 = carried[172] * constant<Real>(0.0687L);
   const Real t2598 = t2596 + t2597;
 
   // front_right_shank: wrench
-  const Real t2599 = carried[138] * constant<Real>(2.52e-6L);
-  const Real t2600 = carried[154] * constant<Real>(0.0000562L);
+  const Real t2599 = carried[159] * constant<Real>(2.52e-6L);
+  const Real t2600 = carried[175] * constant<Real>(0.0000562L);
   const Real t2601 = t2599 - t2600;
-  carried[558] = t2601;
+  carried[570] = t2601;
 
   // front_right_shank: wrench
   const Real t2602 = t2601 - t2598;
-  carried[576] = t2602;
+  carried[588] = t2602;
 
   // reduced forces
-  const Real t2603 = t2602 * carried[209];
-  carried[577] = t2603;
+  const Real t2603 = t2602 * carried[230];
+  carried[589] = t2603;
 
   // front_right_shank: wrench
-  const Real t2604 = constant<Real>(0.51L) * carried[141];
+  const Real t2604 = constant<Real>(0.51L) * carried[162];
 
   // front_right_shank: wrench
-  const Real t2605 = carried[138] * constant<Real>(0.00042L);
-  carried[578] = t2605;
+  const Real t2605 = carried[159] * constant<Real>(0.00042L);
+  carried[590] = t2605;
 
   // front_right_shank: wrench
   const Real t2606 = t2604 - t2605;
 
   // front_right_shank: joint force
-  const Real t2607 = carried[10] * t2606;
+  const Real t2607 = carried[31] * t2606;
 
   // front_right_shank: wrench
-  const Real t2608 = carried[151] * constant<Real>(0.51L);
+  const Real t2608 = carried[172] * constant<Real>(0.51L);
 
   // front_right_shank: wrench
-  const Real t2609 = carried[154] * constant<Real>(0.00042L);
-  carried[579] = t2609;
+  const Real t2609 = carried[175] * constant<Real>(0.00042L);
+  carried[591] = t2609;
 
   // front_right_shank: wrench
   const Real t2610 = t2608 + t2609;
 
   // front_right_shank: joint force
-  const Real t2611 = t2610 * carried[11];
+  const Real t2611 = t2610 * carried[32];
   const Real t2612 = t2607 + t2611;
-  carried[580] = t2612;
+  carried[592] = t2612;
   const Real t2613 = t2612 * constant<Real>(0.24L);
   const Real t2614 = t2602 - t2613;
 
   // front_right_thigh: wrench
-  const Real t2615 = constant<Real>(0.0025144L) * carried[8];
-  const Real t2616 = constant<Real>(8.4e-6L) * carried[9];
+  const Real t2615 = constant<Real>(0.0025144L) * carried[29];
+  const Real t2616 = constant<Real>(8.4e-6L) * carried[30];
   const Real t2617 = t2615 - t2616;
-  carried[581] = t2617;
+  carried[593] = t2617;
 
   // front_right_thigh: wrench
-  const Real t2618 = constant<Real>(0.00663L) * carried[8];
-  const Real t2619 = constant<Real>(0.0003825L) * carried[9];
+  const Real t2618 = constant<Real>(0.00663L) * carried[29];
+  const Real t2619 = constant<Real>(0.0003825L) * carried[30];
   const Real t2620 = t2618 + t2619;
   const Real t2621 = t2617 - t2620;
 
   // front_right_shank: joint force
   const Real t2622 = t2621 + t2614;
-  carried[582] = t2622;
+  carried[594] = t2622;
 
   // reduced forces
-  const Real t2623 = carried[204] * t2622;
-  carried[583] = t2623;
+  const Real t2623 = carried[225] * t2622;
+  carried[595] = t2623;
 
   // front_right_shank: joint force
-  const Real t2624 = carried[11] * t2606;
-  const Real t2625 = t2610 * carried[10];
+  const Real t2624 = carried[32] * t2606;
+  const Real t2625 = t2610 * carried[31];
   const Real t2626 = t2624 - t2625;
   const Real t2627 = t2626 * constant<Real>(0.012L);
 
   // front_right_shank: wrench
-  const Real t2628 = carried[154] * constant<Real>(0.00252L);
-  carried[584] = t2628;
+  const Real t2628 = carried[175] * constant<Real>(0.00252L);
+  carried[596] = t2628;
 
   // front_right_shank: acceleration
-  const Real t2629 = carried[137] - carried[136];
+  const Real t2629 = carried[158] - carried[157];
 
   // front_right_shank: wrench
   const Real t2630 = constant<Real>(0.0687L) * t2629;
   const Real t2631 = t2628 - t2630;
-  carried[585] = t2631;
+  carried[597] = t2631;
 
   // front_right_shank: wrench
-  const Real t2632 = constant<Real>(0.1224L) * carried[9];
+  const Real t2632 = constant<Real>(0.1224L) * carried[30];
   const Real t2633 = t2632 + t2631;
 
   // front_right_shank: joint force
@@ -6396,180 +6412,179 @@ template <class Real>
   const Real t2635 = t2634 - t2627;
 
   // front_right_shank: wrench
-  const Real t2636 = carried[151] * constant<Real>(0.00042L);
-  const Real t2637 = constant<Real>(0.0006048L) * carried[9];
+  const Real t2636 = carried[172] * constant<Real>(0.00042L);
+  const Real t2637 = constant<Real>(0.0006048L) * carried[30];
   const Real t2638 = t2637 + t2636;
 
   // front_right_shank: wrench
-  const Real t2639 = carried[154] * constant<Real>(0.00007492L);
+  const Real t2639 = carried[175] * constant<Real>(0.00007492L);
   const Real t2640 = constant<Real>(0.0004672L) * t2629;
   const Real t2641 = t2639 - t2640;
-  carried[586] = t2641;
+  carried[598] = t2641;
 
   // front_right_shank: wrench
   const Real t2642 = t2641 + t2638;
 
   // front_right_shank: joint force
-  const Real t2643 = carried[10] * t2642;
+  const Real t2643 = carried[31] * t2642;
 
   // front_right_shank: wrench
-  const Real t2644 = carried[141] * constant<Real>(0.00042L);
-  const Real t2645 = constant<Real>(0.016488L) * carried[9];
+  const Real t2644 = carried[162] * constant<Real>(0.00042L);
+  const Real t2645 = constant<Real>(0.016488L) * carried[30];
   const Real t2646 = t2645 - t2644;
 
   // front_right_shank: wrench
-  const Real t2647 = constant<Real>(0.01292242L) * carried[138];
-  const Real t2648 = carried[154] * constant<Real>(0.0004672L);
+  const Real t2647 = constant<Real>(0.01292242L) * carried[159];
+  const Real t2648 = carried[175] * constant<Real>(0.0004672L);
   const Real t2649 = t2647 + t2648;
-  carried[587] = t2649;
+  carried[599] = t2649;
 
   // front_right_shank: wrench
   const Real t2650 = t2649 + t2646;
 
   // front_right_shank: joint force
-  const Real t2651 = carried[11] * t2650;
+  const Real t2651 = carried[32] * t2650;
   const Real t2652 = t2643 + t2651;
   const Real t2653 = t2635 + t2652;
 
   // front_right_thigh: wrench
-  const Real t2654 = carried[8] * constant<Real>(0.0003348L);
-  const Real t2655 = constant<Real>(0.013546L) * carried[9];
+  const Real t2654 = carried[29] * constant<Real>(0.0003348L);
+  const Real t2655 = constant<Real>(0.013546L) * carried[30];
   const Real t2656 = t2654 + t2655;
-  carried[588] = t2656;
+  carried[600] = t2656;
 
   // front_right_thigh: wrench
-  const Real t2657 = constant<Real>(0.00204L) * carried[9];
+  const Real t2657 = constant<Real>(0.00204L) * carried[30];
   const Real t2658 = t2656 - t2657;
 
   // front_right_shank: joint force
   const Real t2659 = t2658 + t2653;
 
   // front_right_thigh: joint force
-  const Real t2660 = t2659 * carried[9];
+  const Real t2660 = t2659 * carried[30];
 
   // front_right_shank: joint force
-  const Real t2661 = carried[11] * t2642;
-  const Real t2662 = carried[10] * t2650;
+  const Real t2661 = carried[32] * t2642;
+  const Real t2662 = carried[31] * t2650;
   const Real t2663 = t2661 - t2662;
   const Real t2664 = t2612 * constant<Real>(0.012L);
   const Real t2665 = t2663 + t2664;
 
   // front_right_thigh: wrench
-  const Real t2666 = carried[9] * constant<Real>(0.0003348L);
-  const Real t2667 = carried[8] * constant<Real>(0.0014985L);
+  const Real t2666 = carried[30] * constant<Real>(0.0003348L);
+  const Real t2667 = carried[29] * constant<Real>(0.0014985L);
   const Real t2668 = t2666 + t2667;
-  carried[589] = t2668;
+  carried[601] = t2668;
 
   // front_right_thigh: wrench
-  const Real t2669 = constant<Real>(0.00204L) * carried[8];
+  const Real t2669 = constant<Real>(0.00204L) * carried[29];
   const Real t2670 = t2668 - t2669;
 
   // front_right_shank: joint force
   const Real t2671 = t2665 + t2670;
 
   // front_right_thigh: joint force
-  const Real t2672 = t2671 * carried[8];
+  const Real t2672 = t2671 * carried[29];
   const Real t2673 = t2660 + t2672;
-  carried[590] = t2673;
+  carried[602] = t2673;
 
   // front_right_thigh: wrench
-  const Real t2674 = constant<Real>(0.1003L) * carried[9];
+  const Real t2674 = constant<Real>(0.1003L) * carried[30];
 
   // front_right_shank: joint force
   const Real t2675 = t2626 - t2674;
 
   // front_right_thigh: joint force
-  const Real t2676 = t2675 * carried[9];
-  carried[591] = t2676;
+  const Real t2676 = t2675 * carried[30];
+  carried[603] = t2676;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_10(const Real (&tau_a)[12],
-                                                              Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_10(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_right_thigh: wrench
-  const Real t2677 = constant<Real>(0.1003L) * carried[8];
+  const Real t2677 = constant<Real>(0.1003L) * carried[29];
 
   // front_right_shank: joint force
-  const Real t2678 = t2677 + carried[580];
+  const Real t2678 = t2677 + carried[592];
 
   // front_right_thigh: joint force
-  const Real t2679 = t2678 * carried[8];
-  const Real t2680 = carried[591] - t2679;
+  const Real t2679 = t2678 * carried[29];
+  const Real t2680 = carried[603] - t2679;
   const Real t2681 = constant<Real>(0.075L) * t2680;
-  const Real t2682 = carried[590] - t2681;
+  const Real t2682 = carried[602] - t2681;
   const Real t2683 = t2682 + constant<Real>(0.0022646L);
-  carried[24] = t2683;
+  carried[9] = t2683;
 
   // reduced forces
-  const Real t2684 = carried[85] * t2683;
-  const Real t2685 = t2684 + carried[583];
-  const Real t2686 = t2685 - carried[577];
-  const Real t2687 = carried[546] + t2686;
-  const Real t2688 = tau_a[3] - t2687;
-  carried[25] = t2688;
-  const Real t2689 = t2688 * carried[140];
-  const Real t2690 = carried[404] - t2689;
+  const Real t2684 = carried[106] * t2683;
+  const Real t2685 = t2684 + carried[595];
+  const Real t2686 = t2685 - carried[589];
+  const Real t2687 = carried[558] + t2686;
+  const Real t2688 = carried[12] - t2687;
+  carried[10] = t2688;
+  const Real t2689 = t2688 * carried[161];
+  const Real t2690 = carried[425] - t2689;
 
   // front_right_shank: wrench
-  const Real t2691 = carried[11] * constant<Real>(0.016488L);
-  const Real t2692 = constant<Real>(0.0006048L) * carried[10];
+  const Real t2691 = carried[32] * constant<Real>(0.016488L);
+  const Real t2692 = constant<Real>(0.0006048L) * carried[31];
   const Real t2693 = t2691 + t2692;
   const Real t2694 = t2693 + constant<Real>(0.01294712L);
-  carried[28] = t2694;
+  carried[11] = t2694;
 
   // reduced forces
-  const Real t2695 = carried[209] * t2694;
+  const Real t2695 = carried[230] * t2694;
 
   // front_right_shank: wrench
-  const Real t2696 = constant<Real>(0.1224L) * carried[11];
+  const Real t2696 = constant<Real>(0.1224L) * carried[32];
   const Real t2697 = constant<Real>(-0.0687L) - t2696;
 
   // front_right_shank: joint force
-  const Real t2698 = carried[11] * t2697;
+  const Real t2698 = carried[32] * t2697;
 
   // front_right_shank: wrench
-  const Real t2699 = constant<Real>(0.1224L) * carried[10];
+  const Real t2699 = constant<Real>(0.1224L) * carried[31];
   const Real t2700 = constant<Real>(-0.00252L) - t2699;
 
   // front_right_shank: joint force
-  const Real t2701 = carried[10] * t2700;
+  const Real t2701 = carried[31] * t2700;
   const Real t2702 = t2698 + t2701;
   const Real t2703 = constant<Real>(0.24L) * t2702;
   const Real t2704 = t2694 - t2703;
   const Real t2705 = constant<Real>(0.0134661L) + t2704;
-  carried[38] = t2705;
+  carried[45] = t2705;
 
   // reduced forces
-  const Real t2706 = carried[204] * t2705;
-  const Real t2707 = carried[85] * carried[582];
+  const Real t2706 = carried[225] * t2705;
+  const Real t2707 = carried[106] * carried[594];
   const Real t2708 = t2707 + t2706;
   const Real t2709 = t2708 - t2695;
 
   // front_right_shank: joint force
-  const Real t2710 = carried[537] * constant<Real>(0.24L);
+  const Real t2710 = carried[549] * constant<Real>(0.24L);
 
   // front_right_shank: wrench
-  const Real t2711 = constant<Real>(0.0000562L) * carried[531];
+  const Real t2711 = constant<Real>(0.0000562L) * carried[543];
 
   // front_right_shank: wrench
-  const Real t2712 = constant<Real>(0.0128475L) * carried[507];
+  const Real t2712 = constant<Real>(0.0128475L) * carried[519];
 
   // front_right_shank: wrench
-  const Real t2713 = carried[508] * constant<Real>(0.01294712L);
+  const Real t2713 = carried[520] * constant<Real>(0.01294712L);
   const Real t2714 = t2712 - t2713;
   const Real t2715 = t2711 + t2714;
-  const Real t2716 = carried[506] * constant<Real>(2.52e-6L);
+  const Real t2716 = carried[518] * constant<Real>(2.52e-6L);
   const Real t2717 = t2716 + t2715;
 
   // front_right_shank: wrench
-  const Real t2718 = carried[528] - carried[511];
+  const Real t2718 = carried[540] - carried[523];
   const Real t2719 = constant<Real>(0.0004672L) * t2718;
 
   // front_right_shank: wrench
   const Real t2720 = t2717 + t2719;
-  const Real t2721 = constant<Real>(0.00252L) * carried[527];
-  const Real t2722 = carried[533] * constant<Real>(0.0687L);
+  const Real t2721 = constant<Real>(0.00252L) * carried[539];
+  const Real t2722 = carried[545] * constant<Real>(0.0687L);
   const Real t2723 = t2721 + t2722;
   const Real t2724 = t2720 - t2723;
 
@@ -6577,42 +6592,42 @@ template <class Real>
   const Real t2725 = t2724 - t2710;
 
   // front_right_thigh: wrench
-  const Real t2726 = carried[523] * constant<Real>(0.0025144L);
+  const Real t2726 = carried[535] * constant<Real>(0.0025144L);
 
   // front_right_thigh: wrench
-  const Real t2727 = carried[524] * constant<Real>(0.0120475L);
+  const Real t2727 = carried[536] * constant<Real>(0.0120475L);
 
   // front_right_thigh: wrench
-  const Real t2728 = constant<Real>(0.0134661L) * carried[508];
+  const Real t2728 = constant<Real>(0.0134661L) * carried[520];
   const Real t2729 = t2727 - t2728;
   const Real t2730 = t2729 - t2726;
-  const Real t2731 = carried[515] * constant<Real>(8.4e-6L);
+  const Real t2731 = carried[527] * constant<Real>(8.4e-6L);
   const Real t2732 = t2730 - t2731;
 
   // front_right_thigh: wrench
-  const Real t2733 = carried[538] - carried[513];
+  const Real t2733 = carried[550] - carried[525];
   const Real t2734 = t2733 * constant<Real>(0.0003348L);
 
   // front_right_thigh: wrench
   const Real t2735 = t2734 + t2732;
-  const Real t2736 = constant<Real>(0.0051L) * carried[521];
-  const Real t2737 = carried[526] * constant<Real>(0.0884L);
+  const Real t2736 = constant<Real>(0.0051L) * carried[533];
+  const Real t2737 = carried[538] * constant<Real>(0.0884L);
   const Real t2738 = t2736 - t2737;
   const Real t2739 = t2738 + t2735;
 
   // front_right_shank: joint force
   const Real t2740 = t2739 + t2725;
-  carried[117] = t2740;
+  carried[46] = t2740;
 
   // reduced forces
   const Real t2741 = t2740 + t2709;
-  const Real t2742 = tau_a[4] - t2741;
-  carried[136] = t2742;
-  const Real t2743 = carried[148] * t2742;
+  const Real t2742 = carried[13] - t2741;
+  carried[49] = t2742;
+  const Real t2743 = carried[169] * t2742;
   const Real t2744 = t2743 + t2690;
-  const Real t2745 = carried[208] * constant<Real>(0.05178848L);
-  const Real t2746 = carried[204] * t2694;
-  const Real t2747 = carried[576] * carried[85];
+  const Real t2745 = carried[229] * constant<Real>(0.05178848L);
+  const Real t2746 = carried[225] * t2694;
+  const Real t2747 = carried[588] * carried[106];
   const Real t2748 = t2747 + t2746;
   const Real t2749 = t2748 - t2745;
 
@@ -6621,95 +6636,95 @@ template <class Real>
 
   // reduced forces
   const Real t2751 = t2750 - t2749;
-  const Real t2752 = t2751 + tau_a[5];
-  carried[137] = t2752;
-  const Real t2753 = carried[153] * t2752;
+  const Real t2752 = t2751 + carried[14];
+  carried[59] = t2752;
+  const Real t2753 = carried[174] * t2752;
   const Real t2754 = t2753 + t2744;
 
   // hind_left_shank: joint force
-  const Real t2755 = carried[372] * constant<Real>(0.012L);
-  const Real t2756 = constant<Real>(0.24L) * carried[495];
+  const Real t2755 = carried[370] * constant<Real>(0.012L);
+  const Real t2756 = constant<Real>(0.24L) * carried[507];
   const Real t2757 = t2755 + t2756;
 
   // hind_left_shank: wrench
-  const Real t2758 = constant<Real>(0.01292242L) * carried[458];
+  const Real t2758 = constant<Real>(0.01292242L) * carried[479];
 
   // hind_left_shank: wrench
-  const Real t2759 = constant<Real>(0.0128722L) * carried[454];
+  const Real t2759 = constant<Real>(0.0128722L) * carried[475];
 
   // hind_left_shank: wrench
   const Real t2760 = t2758 - t2759;
-  const Real t2761 = carried[463] * constant<Real>(2.52e-6L);
+  const Real t2761 = carried[484] * constant<Real>(2.52e-6L);
   const Real t2762 = t2760 + t2761;
-  const Real t2763 = constant<Real>(0.0004672L) * carried[488];
+  const Real t2763 = constant<Real>(0.0004672L) * carried[396];
   const Real t2764 = t2762 + t2763;
 
   // hind_left_shank: wrench
-  const Real t2765 = carried[464] - carried[355];
+  const Real t2765 = carried[485] - carried[291];
   const Real t2766 = constant<Real>(0.0000562L) * t2765;
 
   // hind_left_shank: wrench
   const Real t2767 = t2766 + t2764;
-  const Real t2768 = carried[351] * constant<Real>(0.00042L);
-  const Real t2769 = carried[494] * constant<Real>(0.0687L);
+  const Real t2768 = carried[5] * constant<Real>(0.00042L);
+  const Real t2769 = carried[506] * constant<Real>(0.0687L);
   const Real t2770 = t2769 + t2768;
   const Real t2771 = t2770 + t2767;
 
   // hind_left_shank: joint force
-  const Real t2772 = carried[17] * t2771;
+  const Real t2772 = carried[38] * t2771;
 
   // hind_left_shank: wrench
-  const Real t2773 = constant<Real>(0.00007492L) * carried[353];
+  const Real t2773 = constant<Real>(0.00007492L) * carried[7];
 
   // hind_left_shank: wrench
-  const Real t2774 = carried[352] * constant<Real>(0.0000247L);
+  const Real t2774 = carried[6] * constant<Real>(0.0000247L);
 
   // hind_left_shank: wrench
   const Real t2775 = t2773 + t2774;
-  const Real t2776 = constant<Real>(0.0004672L) * carried[489];
+  const Real t2776 = constant<Real>(0.0004672L) * carried[397];
   const Real t2777 = t2775 - t2776;
-  const Real t2778 = constant<Real>(0.0000562L) * carried[356];
+  const Real t2778 = constant<Real>(0.0000562L) * carried[295];
   const Real t2779 = t2777 + t2778;
 
   // hind_left_shank: wrench
-  const Real t2780 = carried[465] - carried[464];
+  const Real t2780 = carried[486] - carried[485];
   const Real t2781 = t2780 * constant<Real>(2.52e-6L);
 
   // hind_left_shank: wrench
   const Real t2782 = t2779 - t2781;
-  const Real t2783 = carried[357] * constant<Real>(0.00042L);
-  const Real t2784 = constant<Real>(0.00252L) * carried[494];
+  const Real t2783 = carried[336] * constant<Real>(0.00042L);
+  const Real t2784 = constant<Real>(0.00252L) * carried[506];
   const Real t2785 = t2784 - t2783;
   const Real t2786 = t2785 + t2782;
 
   // hind_left_shank: joint force
-  const Real t2787 = t2786 * carried[16];
+  const Real t2787 = t2786 * carried[37];
   const Real t2788 = t2772 + t2787;
   const Real t2789 = t2757 + t2788;
 
   // hind_left_thigh: wrench
-  const Real t2790 = constant<Real>(0.013546L) * carried[456];
+  const Real t2790 = constant<Real>(0.013546L) * carried[477];
 
   // hind_left_thigh: wrench
-  const Real t2791 = constant<Real>(0.0119676L) * carried[315];
+  const Real t2791 = constant<Real>(0.0119676L) * carried[2];
 
   // hind_left_thigh: wrench
   const Real t2792 = t2790 - t2791;
-  const Real t2793 = constant<Real>(8.4e-6L) * carried[373];
+  const Real t2793 = constant<Real>(8.4e-6L) * carried[371];
   const Real t2794 = t2792 - t2793;
-  const Real t2795 = carried[496] * constant<Real>(0.0003348L);
+  const Real t2795 = carried[508] * constant<Real>(0.0003348L);
   const Real t2796 = t2794 + t2795;
 
   // hind_left_thigh: wrench
-  const Real t2797 = carried[270] - carried[376];
+  const Real t2797 = carried[0] - carried[374];
   const Real t2798 = t2797 * constant<Real>(0.0025144L);
 
   // hind_left_thigh: wrench
   const Real t2799 = t2796 - t2798;
-  const Real t2800 = constant<Real>(0.0272L) * carried[350];
+  const Real t2800 = constant<Real>(0.0272L) * carried[4];
 
   // hind_left_thigh: wrench
-  const Real t2801 = carried[493] * constant<Real>(0.0884L);
+  const Real t2801 = carried[403] * constant<Real>(0.0884L);
 
   // hind_left_thigh: wrench
   const Real t2802 = t2801 - t2800;
@@ -6717,41 +6732,41 @@ template <class Real>
 
   // hind_left_shank: joint force
   const Real t2804 = t2803 + t2789;
-  carried[141] = t2804;
+  carried[138] = t2804;
 
   // hind_left_thigh: joint force
-  const Real t2805 = carried[15] * t2804;
+  const Real t2805 = carried[36] * t2804;
 
   // hind_left_shank: joint force
-  const Real t2806 = carried[17] * t2786;
-  const Real t2807 = carried[16] * t2771;
+  const Real t2806 = carried[38] * t2786;
+  const Real t2807 = carried[37] * t2771;
   const Real t2808 = t2806 - t2807;
-  const Real t2809 = constant<Real>(0.012L) * carried[375];
+  const Real t2809 = constant<Real>(0.012L) * carried[373];
   const Real t2810 = t2808 - t2809;
 
   // hind_left_thigh: wrench
-  const Real t2811 = carried[457] * constant<Real>(0.0014985L);
+  const Real t2811 = carried[478] * constant<Real>(0.0014985L);
 
   // hind_left_thigh: wrench
-  const Real t2812 = constant<Real>(0.0000799L) * carried[467];
+  const Real t2812 = constant<Real>(0.0000799L) * carried[488];
 
   // hind_left_thigh: wrench
   const Real t2813 = t2811 - t2812;
-  const Real t2814 = carried[490] * constant<Real>(0.0003348L);
+  const Real t2814 = carried[398] * constant<Real>(0.0003348L);
   const Real t2815 = t2813 - t2814;
-  const Real t2816 = constant<Real>(0.0025144L) * carried[470];
+  const Real t2816 = constant<Real>(0.0025144L) * carried[491];
   const Real t2817 = t2815 - t2816;
 
   // hind_left_thigh: wrench
-  const Real t2818 = carried[274] - carried[270];
+  const Real t2818 = carried[1] - carried[0];
   const Real t2819 = constant<Real>(8.4e-6L) * t2818;
 
   // hind_left_thigh: wrench
   const Real t2820 = t2819 + t2817;
-  const Real t2821 = constant<Real>(0.0272L) * carried[482];
+  const Real t2821 = constant<Real>(0.0272L) * carried[503];
 
   // hind_left_thigh: wrench
-  const Real t2822 = constant<Real>(0.0051L) * carried[493];
+  const Real t2822 = constant<Real>(0.0051L) * carried[403];
 
   // hind_left_thigh: wrench
   const Real t2823 = t2821 - t2822;
@@ -6759,37 +6774,37 @@ template <class Real>
 
   // hind_left_shank: joint force
   const Real t2825 = t2824 + t2810;
-  carried[151] = t2825;
+  carried[157] = t2825;
 
   // hind_left_thigh: joint force
-  const Real t2826 = t2825 * carried[14];
+  const Real t2826 = t2825 * carried[35];
   const Real t2827 = t2826 + t2805;
-  const Real t2828 = constant<Real>(0.075L) * carried[378];
+  const Real t2828 = constant<Real>(0.075L) * carried[376];
   const Real t2829 = t2827 + t2828;
 
   // hind_left_hip: wrench
-  const Real t2830 = constant<Real>(0.0001392L) * carried[382];
-  const Real t2831 = carried[480] * constant<Real>(0.000637L);
+  const Real t2830 = constant<Real>(0.0001392L) * carried[378];
+  const Real t2831 = carried[501] * constant<Real>(0.000637L);
 
   // hind_left_hip: wrench
   const Real t2832 = t2831 + t2830;
 
   // hind_left_hip: wrench
-  const Real t2833 = carried[497] * constant<Real>(5.2e-6L);
+  const Real t2833 = carried[509] * constant<Real>(5.2e-6L);
 
   // hind_left_hip: wrench
   const Real t2834 = t2832 - t2833;
 
   // hind_left_hip: wrench
-  const Real t2835 = carried[486] - carried[491];
+  const Real t2835 = carried[394] - carried[399];
   const Real t2836 = t2835 * constant<Real>(0.0000473L);
 
   // hind_left_hip: wrench
   const Real t2837 = t2834 - t2836;
 
   // hind_left_hip: wrench
-  const Real t2838 = carried[479] * constant<Real>(0.0273L);
-  const Real t2839 = constant<Real>(0.0013L) * carried[492];
+  const Real t2838 = carried[500] * constant<Real>(0.0273L);
+  const Real t2839 = constant<Real>(0.0013L) * carried[400];
   const Real t2840 = t2838 - t2839;
 
   // hind_left_hip: wrench
@@ -6797,94 +6812,94 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t2842 = t2829 + t2841;
-  carried[194] = t2842;
+  carried[158] = t2842;
 
   // hind_left_shank: wrench
-  const Real t2843 = carried[226] * constant<Real>(0.0687L);
-  const Real t2844 = constant<Real>(0.00252L) * carried[216];
+  const Real t2843 = carried[247] * constant<Real>(0.0687L);
+  const Real t2844 = constant<Real>(0.00252L) * carried[237];
   const Real t2845 = t2843 - t2844;
 
   // hind_left_shank: wrench
-  const Real t2846 = constant<Real>(0.0000562L) * carried[229];
-  const Real t2847 = constant<Real>(2.52e-6L) * carried[213];
+  const Real t2846 = constant<Real>(0.0000562L) * carried[250];
+  const Real t2847 = constant<Real>(2.52e-6L) * carried[234];
   const Real t2848 = t2846 - t2847;
-  carried[196] = t2848;
+  carried[162] = t2848;
 
   // hind_left_shank: wrench
   const Real t2849 = t2848 + t2845;
-  carried[198] = t2849;
+  carried[172] = t2849;
 
   // reduced forces
-  const Real t2850 = t2849 * carried[298];
+  const Real t2850 = t2849 * carried[319];
 
   // hind_left_shank: wrench
-  const Real t2851 = constant<Real>(0.51L) * carried[216];
+  const Real t2851 = constant<Real>(0.51L) * carried[237];
 
   // hind_left_shank: wrench
-  const Real t2852 = constant<Real>(0.00042L) * carried[213];
-  carried[199] = t2852;
+  const Real t2852 = constant<Real>(0.00042L) * carried[234];
+  carried[215] = t2852;
 
   // hind_left_shank: wrench
   const Real t2853 = t2851 + t2852;
 
   // hind_left_shank: joint force
-  const Real t2854 = t2853 * carried[16];
+  const Real t2854 = t2853 * carried[37];
 
   // hind_left_shank: wrench
-  const Real t2855 = constant<Real>(0.51L) * carried[226];
+  const Real t2855 = constant<Real>(0.51L) * carried[247];
 
   // hind_left_shank: wrench
-  const Real t2856 = carried[229] * constant<Real>(0.00042L);
-  carried[201] = t2856;
+  const Real t2856 = carried[250] * constant<Real>(0.00042L);
+  carried[217] = t2856;
 
   // hind_left_shank: wrench
   const Real t2857 = t2855 + t2856;
 
   // hind_left_shank: joint force
-  const Real t2858 = t2857 * carried[17];
+  const Real t2858 = t2857 * carried[38];
   const Real t2859 = t2854 - t2858;
   const Real t2860 = constant<Real>(0.24L) * t2859;
   const Real t2861 = t2849 - t2860;
 
   // hind_left_thigh: wrench
-  const Real t2862 = carried[15] * constant<Real>(8.4e-6L);
-  const Real t2863 = carried[14] * constant<Real>(0.0025144L);
+  const Real t2862 = carried[36] * constant<Real>(8.4e-6L);
+  const Real t2863 = carried[35] * constant<Real>(0.0025144L);
   const Real t2864 = t2862 - t2863;
-  carried[275] = t2864;
+  carried[219] = t2864;
 
   // hind_left_thigh: wrench
-  const Real t2865 = carried[14] * constant<Real>(0.00663L);
-  const Real t2866 = carried[15] * constant<Real>(0.0003825L);
+  const Real t2865 = carried[35] * constant<Real>(0.00663L);
+  const Real t2866 = carried[36] * constant<Real>(0.0003825L);
   const Real t2867 = t2865 + t2866;
   const Real t2868 = t2864 + t2867;
 
   // hind_left_shank: joint force
   const Real t2869 = t2861 + t2868;
-  carried[291] = t2869;
+  carried[220] = t2869;
 
   // reduced forces
-  const Real t2870 = t2869 * carried[293];
+  const Real t2870 = t2869 * carried[314];
 
   // hind_left_shank: joint force
-  const Real t2871 = t2853 * carried[17];
-  const Real t2872 = t2857 * carried[16];
+  const Real t2871 = t2853 * carried[38];
+  const Real t2872 = t2857 * carried[37];
   const Real t2873 = t2871 + t2872;
   const Real t2874 = t2873 * constant<Real>(0.012L);
 
   // hind_left_shank: wrench
-  const Real t2875 = constant<Real>(0.00252L) * carried[229];
-  carried[292] = t2875;
+  const Real t2875 = constant<Real>(0.00252L) * carried[250];
+  carried[222] = t2875;
 
   // hind_left_shank: acceleration
-  const Real t2876 = carried[212] - carried[211];
+  const Real t2876 = carried[233] - carried[232];
 
   // hind_left_shank: wrench
   const Real t2877 = constant<Real>(0.0687L) * t2876;
   const Real t2878 = t2875 - t2877;
-  carried[408] = t2878;
+  carried[296] = t2878;
 
   // hind_left_shank: wrench
-  const Real t2879 = carried[15] * constant<Real>(0.1224L);
+  const Real t2879 = carried[36] * constant<Real>(0.1224L);
   const Real t2880 = t2878 + t2879;
 
   // hind_left_shank: joint force
@@ -6892,327 +6907,326 @@ template <class Real>
   const Real t2882 = t2874 + t2881;
 
   // hind_left_shank: wrench
-  const Real t2883 = carried[216] * constant<Real>(0.00042L);
-  const Real t2884 = carried[15] * constant<Real>(0.016488L);
+  const Real t2883 = carried[237] * constant<Real>(0.00042L);
+  const Real t2884 = carried[36] * constant<Real>(0.016488L);
   const Real t2885 = t2884 + t2883;
 
   // hind_left_shank: wrench
-  const Real t2886 = constant<Real>(0.01292242L) * carried[213];
-  const Real t2887 = constant<Real>(0.0004672L) * carried[229];
+  const Real t2886 = constant<Real>(0.01292242L) * carried[234];
+  const Real t2887 = constant<Real>(0.0004672L) * carried[250];
   const Real t2888 = t2886 + t2887;
-  carried[410] = t2888;
+  carried[312] = t2888;
 
   // hind_left_shank: wrench
   const Real t2889 = t2885 + t2888;
 
   // hind_left_shank: joint force
-  const Real t2890 = t2889 * carried[17];
+  const Real t2890 = t2889 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t2891 = carried[226] * constant<Real>(0.00042L);
-  const Real t2892 = constant<Real>(0.0006048L) * carried[15];
+  const Real t2891 = carried[247] * constant<Real>(0.00042L);
+  const Real t2892 = constant<Real>(0.0006048L) * carried[36];
   const Real t2893 = t2892 + t2891;
 
   // hind_left_shank: wrench
-  const Real t2894 = constant<Real>(0.00007492L) * carried[229];
+  const Real t2894 = constant<Real>(0.00007492L) * carried[250];
   const Real t2895 = constant<Real>(0.0004672L) * t2876;
   const Real t2896 = t2894 - t2895;
-  carried[451] = t2896;
+  carried[313] = t2896;
 
   // hind_left_shank: wrench
   const Real t2897 = t2893 + t2896;
 
   // hind_left_shank: joint force
-  const Real t2898 = t2897 * carried[16];
+  const Real t2898 = t2897 * carried[37];
   const Real t2899 = t2890 + t2898;
   const Real t2900 = t2899 + t2882;
 
   // hind_left_thigh: wrench
-  const Real t2901 = carried[14] * constant<Real>(0.0003348L);
-  const Real t2902 = constant<Real>(0.013546L) * carried[15];
+  const Real t2901 = carried[35] * constant<Real>(0.0003348L);
+  const Real t2902 = constant<Real>(0.013546L) * carried[36];
   const Real t2903 = t2901 + t2902;
-  carried[452] = t2903;
+  carried[429] = t2903;
 
   // hind_left_thigh: wrench
-  const Real t2904 = carried[15] * constant<Real>(0.00204L);
+  const Real t2904 = carried[36] * constant<Real>(0.00204L);
   const Real t2905 = t2903 - t2904;
 
   // hind_left_shank: joint force
   const Real t2906 = t2905 + t2900;
 
   // hind_left_thigh: joint force
-  const Real t2907 = carried[15] * t2906;
+  const Real t2907 = carried[36] * t2906;
 
   // hind_left_shank: joint force
-  const Real t2908 = carried[17] * t2897;
-  const Real t2909 = t2889 * carried[16];
+  const Real t2908 = carried[38] * t2897;
+  const Real t2909 = t2889 * carried[37];
   const Real t2910 = t2908 - t2909;
   const Real t2911 = t2859 * constant<Real>(0.012L);
   const Real t2912 = t2910 - t2911;
 
   // hind_left_thigh: wrench
-  const Real t2913 = carried[14] * constant<Real>(0.0014985L);
-  const Real t2914 = carried[15] * constant<Real>(0.0003348L);
+  const Real t2913 = carried[35] * constant<Real>(0.0014985L);
+  const Real t2914 = carried[36] * constant<Real>(0.0003348L);
   const Real t2915 = t2913 + t2914;
-  carried[453] = t2915;
+  carried[431] = t2915;
 
   // hind_left_thigh: wrench
-  const Real t2916 = carried[14] * constant<Real>(0.00204L);
+  const Real t2916 = carried[35] * constant<Real>(0.00204L);
   const Real t2917 = t2915 - t2916;
 
   // hind_left_shank: joint force
   const Real t2918 = t2912 + t2917;
 
   // hind_left_thigh: joint force
-  const Real t2919 = carried[14] * t2918;
+  const Real t2919 = carried[35] * t2918;
   const Real t2920 = t2919 + t2907;
 
   // hind_left_thigh: wrench
-  const Real t2921 = carried[15] * constant<Real>(0.1003L);
+  const Real t2921 = carried[36] * constant<Real>(0.1003L);
 
   // hind_left_shank: joint force
   const Real t2922 = t2873 + t2921;
 
   // hind_left_thigh: joint force
-  const Real t2923 = carried[15] * t2922;
+  const Real t2923 = carried[36] * t2922;
 
   // hind_left_thigh: wrench
-  const Real t2924 = carried[14] * constant<Real>(0.1003L);
+  const Real t2924 = carried[35] * constant<Real>(0.1003L);
 
   // hind_left_shank: joint force
   const Real t2925 = t2859 - t2924;
 
   // hind_left_thigh: joint force
-  const Real t2926 = carried[14] * t2925;
+  const Real t2926 = carried[35] * t2925;
   const Real t2927 = t2923 - t2926;
   const Real t2928 = constant<Real>(0.075L) * t2927;
   const Real t2929 = t2928 + t2920;
   const Real t2930 = t2929 + constant<Real>(0.0022646L);
-  carried[466] = t2930;
+  carried[472] = t2930;
 
   // reduced forces
-  const Real t2931 = carried[277] * t2930;
+  const Real t2931 = carried[298] * t2930;
   const Real t2932 = t2931 + t2870;
   const Real t2933 = t2932 - t2850;
   const Real t2934 = t2842 + t2933;
-  const Real t2935 = tau_a[6] - t2934;
+  const Real t2935 = carried[15] - t2934;
   carried[473] = t2935;
-  const Real t2936 = carried[215] * t2935;
+  const Real t2936 = carried[236] * t2935;
   const Real t2937 = t2754 - t2936;
-  carried[501] = t2937;
+  carried[474] = t2937;
 
   // hind_left_shank: wrench
-  const Real t2938 = constant<Real>(0.0006048L) * carried[16];
-  const Real t2939 = constant<Real>(0.016488L) * carried[17];
+  const Real t2938 = constant<Real>(0.0006048L) * carried[37];
+  const Real t2939 = constant<Real>(0.016488L) * carried[38];
   const Real t2940 = t2938 + t2939;
   const Real t2941 = constant<Real>(0.01294712L) + t2940;
-  carried[503] = t2941;
+  carried[487] = t2941;
 
   // reduced forces
-  const Real t2942 = t2941 * carried[298];
+  const Real t2942 = t2941 * carried[319];
 
   // hind_left_shank: wrench
-  const Real t2943 = constant<Real>(0.1224L) * carried[17];
+  const Real t2943 = constant<Real>(0.1224L) * carried[38];
   const Real t2944 = constant<Real>(-0.0687L) - t2943;
 
   // hind_left_shank: joint force
-  const Real t2945 = t2944 * carried[17];
+  const Real t2945 = t2944 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t2946 = constant<Real>(0.1224L) * carried[16];
+  const Real t2946 = constant<Real>(0.1224L) * carried[37];
   const Real t2947 = constant<Real>(-0.00252L) - t2946;
 
   // hind_left_shank: joint force
-  const Real t2948 = t2947 * carried[16];
+  const Real t2948 = t2947 * carried[37];
   const Real t2949 = t2945 + t2948;
   const Real t2950 = constant<Real>(0.24L) * t2949;
   const Real t2951 = t2941 - t2950;
   const Real t2952 = t2951 + constant<Real>(0.0134661L);
-  carried[504] = t2952;
+  carried[494] = t2952;
 
   // reduced forces
-  const Real t2953 = carried[293] * t2952;
-  const Real t2954 = carried[277] * t2869;
+  const Real t2953 = carried[314] * t2952;
+  const Real t2954 = carried[298] * t2869;
   const Real t2955 = t2953 + t2954;
   const Real t2956 = t2955 - t2942;
-  carried[505] = t2956;
+  carried[513] = t2956;
 
   // hind_left_shank: joint force
-  const Real t2957 = constant<Real>(0.24L) * carried[375];
+  const Real t2957 = constant<Real>(0.24L) * carried[373];
 
   // hind_left_shank: wrench
-  const Real t2958 = carried[354] * constant<Real>(0.0000562L);
+  const Real t2958 = carried[8] * constant<Real>(0.0000562L);
 
   // hind_left_shank: wrench
-  const Real t2959 = constant<Real>(0.0128475L) * carried[461];
+  const Real t2959 = constant<Real>(0.0128475L) * carried[482];
 
   // hind_left_shank: wrench
-  const Real t2960 = carried[462] * constant<Real>(0.01294712L);
+  const Real t2960 = carried[483] * constant<Real>(0.01294712L);
   const Real t2961 = t2960 + t2959;
   const Real t2962 = t2961 - t2958;
-  const Real t2963 = constant<Real>(2.52e-6L) * carried[459];
+  const Real t2963 = constant<Real>(2.52e-6L) * carried[480];
   const Real t2964 = t2962 - t2963;
 
   // hind_left_shank: wrench
-  const Real t2965 = carried[355] - carried[465];
+  const Real t2965 = carried[291] - carried[486];
   const Real t2966 = t2965 * constant<Real>(0.0004672L);
 
   // hind_left_shank: wrench
   const Real t2967 = t2964 + t2966;
-  carried[509] = t2967;
-  const Real t2968 = carried[357] * constant<Real>(0.0687L);
-  const Real t2969 = carried[351] * constant<Real>(0.00252L);
+  carried[515] = t2967;
+  const Real t2968 = carried[336] * constant<Real>(0.0687L);
+  const Real t2969 = carried[5] * constant<Real>(0.00252L);
   const Real t2970 = t2968 + t2969;
-  carried[510] = t2970;
+  carried[516] = t2970;
   const Real t2971 = t2967 - t2970;
 
   // hind_left_shank: joint force
   const Real t2972 = t2971 - t2957;
-  carried[512] = t2972;
+  carried[517] = t2972;
 
   // hind_left_thigh: wrench
-  const Real t2973 = constant<Real>(0.0025144L) * carried[468];
-  carried[514] = t2973;
+  const Real t2973 = constant<Real>(0.0025144L) * carried[489];
+  carried[521] = t2973;
 
   // hind_left_thigh: wrench
-  const Real t2974 = carried[469] * constant<Real>(0.0120475L);
+  const Real t2974 = carried[490] * constant<Real>(0.0120475L);
 
   // hind_left_thigh: wrench
-  const Real t2975 = constant<Real>(0.0134661L) * carried[462];
+  const Real t2975 = constant<Real>(0.0134661L) * carried[483];
   const Real t2976 = t2974 + t2975;
   carried[522] = t2976;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_11(const Real (&tau_a)[12],
-                                                              Real (&__restrict carried)[658]) noexcept {
+[[gnu::noinline]] inline void torque_driven_dynamics_block_11(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_left_thigh: wrench
-  const Real t2977 = carried[522] + carried[514];
-  const Real t2978 = constant<Real>(8.4e-6L) * carried[349];
+  const Real t2977 = carried[522] + carried[521];
+  const Real t2978 = constant<Real>(8.4e-6L) * carried[3];
   const Real t2979 = t2977 + t2978;
 
   // hind_left_thigh: wrench
-  const Real t2980 = carried[376] - carried[274];
+  const Real t2980 = carried[374] - carried[1];
   const Real t2981 = t2980 * constant<Real>(0.0003348L);
 
   // hind_left_thigh: wrench
   const Real t2982 = t2981 + t2979;
-  const Real t2983 = constant<Real>(0.0051L) * carried[350];
-  const Real t2984 = constant<Real>(0.0884L) * carried[482];
+  const Real t2983 = constant<Real>(0.0051L) * carried[4];
+  const Real t2984 = constant<Real>(0.0884L) * carried[503];
   const Real t2985 = t2983 - t2984;
   const Real t2986 = t2985 + t2982;
 
   // hind_left_shank: joint force
-  const Real t2987 = t2986 + carried[512];
-  carried[208] = t2987;
+  const Real t2987 = t2986 + carried[517];
+  carried[0] = t2987;
 
   // reduced forces
-  const Real t2988 = carried[505] + t2987;
-  const Real t2989 = tau_a[7] - t2988;
-  carried[211] = t2989;
-  const Real t2990 = t2989 * carried[223];
-  const Real t2991 = t2990 + carried[501];
-  const Real t2992 = carried[297] * constant<Real>(0.05178848L);
-  const Real t2993 = carried[293] * carried[503];
-  const Real t2994 = carried[277] * carried[198];
+  const Real t2988 = carried[513] + t2987;
+  const Real t2989 = carried[16] - t2988;
+  carried[2] = t2989;
+  const Real t2990 = t2989 * carried[244];
+  const Real t2991 = t2990 + carried[474];
+  const Real t2992 = carried[318] * constant<Real>(0.05178848L);
+  const Real t2993 = carried[314] * carried[487];
+  const Real t2994 = carried[298] * carried[172];
   const Real t2995 = t2993 + t2994;
   const Real t2996 = t2995 - t2992;
 
   // front_left_hip: joint force
-  const Real t2997 = carried[510] - carried[509];
+  const Real t2997 = carried[516] - carried[515];
 
   // reduced forces
   const Real t2998 = t2997 - t2996;
-  const Real t2999 = t2998 + tau_a[8];
-  carried[212] = t2999;
-  const Real t3000 = carried[228] * t2999;
+  const Real t2999 = t2998 + carried[17];
+  carried[5] = t2999;
+  const Real t3000 = carried[249] * t2999;
   const Real t3001 = t2991 + t3000;
 
   // hind_right_shank: joint force
-  const Real t3002 = carried[427] * constant<Real>(0.012L);
-  const Real t3003 = carried[446] * constant<Real>(0.24L);
+  const Real t3002 = carried[448] * constant<Real>(0.012L);
+  const Real t3003 = carried[467] * constant<Real>(0.24L);
   const Real t3004 = t3003 - t3002;
 
   // hind_right_shank: wrench
-  const Real t3005 = constant<Real>(0.01292242L) * carried[313];
+  const Real t3005 = constant<Real>(0.01292242L) * carried[334];
 
   // hind_right_shank: wrench
-  const Real t3006 = constant<Real>(0.0128722L) * carried[324];
+  const Real t3006 = constant<Real>(0.0128722L) * carried[345];
 
   // hind_right_shank: wrench
   const Real t3007 = t3005 - t3006;
-  const Real t3008 = carried[385] * constant<Real>(2.52e-6L);
+  const Real t3008 = carried[406] * constant<Real>(2.52e-6L);
   const Real t3009 = t3007 - t3008;
-  const Real t3010 = constant<Real>(0.0004672L) * carried[439];
+  const Real t3010 = constant<Real>(0.0004672L) * carried[460];
   const Real t3011 = t3010 + t3009;
 
   // hind_right_shank: wrench
-  const Real t3012 = carried[386] - carried[421];
+  const Real t3012 = carried[407] - carried[442];
   const Real t3013 = constant<Real>(0.0000562L) * t3012;
 
   // hind_right_shank: wrench
   const Real t3014 = t3011 - t3013;
-  const Real t3015 = carried[420] * constant<Real>(0.00042L);
-  const Real t3016 = carried[445] * constant<Real>(0.0687L);
+  const Real t3015 = carried[441] * constant<Real>(0.00042L);
+  const Real t3016 = carried[466] * constant<Real>(0.0687L);
   const Real t3017 = t3016 - t3015;
   const Real t3018 = t3014 + t3017;
 
   // hind_right_shank: joint force
-  const Real t3019 = carried[23] * t3018;
+  const Real t3019 = carried[44] * t3018;
 
   // hind_right_shank: wrench
-  const Real t3020 = carried[423] * constant<Real>(0.00007492L);
+  const Real t3020 = carried[444] * constant<Real>(0.00007492L);
 
   // hind_right_shank: wrench
-  const Real t3021 = carried[422] * constant<Real>(0.0000247L);
+  const Real t3021 = carried[443] * constant<Real>(0.0000247L);
 
   // hind_right_shank: wrench
   const Real t3022 = t3020 + t3021;
-  const Real t3023 = constant<Real>(0.0004672L) * carried[440];
+  const Real t3023 = constant<Real>(0.0004672L) * carried[461];
   const Real t3024 = t3022 - t3023;
-  const Real t3025 = carried[425] * constant<Real>(0.0000562L);
+  const Real t3025 = carried[446] * constant<Real>(0.0000562L);
   const Real t3026 = t3024 - t3025;
 
   // hind_right_shank: wrench
-  const Real t3027 = carried[387] - carried[386];
+  const Real t3027 = carried[408] - carried[407];
   const Real t3028 = t3027 * constant<Real>(2.52e-6L);
 
   // hind_right_shank: wrench
   const Real t3029 = t3028 + t3026;
-  const Real t3030 = carried[426] * constant<Real>(0.00042L);
-  const Real t3031 = carried[445] * constant<Real>(0.00252L);
+  const Real t3030 = carried[447] * constant<Real>(0.00042L);
+  const Real t3031 = carried[466] * constant<Real>(0.00252L);
   const Real t3032 = t3031 + t3030;
   const Real t3033 = t3029 + t3032;
 
   // hind_right_shank: joint force
-  const Real t3034 = t3033 * carried[22];
+  const Real t3034 = t3033 * carried[43];
   const Real t3035 = t3019 + t3034;
   const Real t3036 = t3035 + t3004;
 
   // hind_right_thigh: wrench
-  const Real t3037 = constant<Real>(0.013546L) * carried[304];
+  const Real t3037 = constant<Real>(0.013546L) * carried[325];
 
   // hind_right_thigh: wrench
-  const Real t3038 = constant<Real>(0.0119676L) * carried[390];
+  const Real t3038 = constant<Real>(0.0119676L) * carried[411];
 
   // hind_right_thigh: wrench
   const Real t3039 = t3037 - t3038;
-  const Real t3040 = carried[428] * constant<Real>(8.4e-6L);
+  const Real t3040 = carried[449] * constant<Real>(8.4e-6L);
   const Real t3041 = t3039 + t3040;
-  const Real t3042 = carried[447] * constant<Real>(0.0003348L);
+  const Real t3042 = carried[468] * constant<Real>(0.0003348L);
   const Real t3043 = t3041 + t3042;
 
   // hind_right_thigh: wrench
-  const Real t3044 = carried[388] - carried[431];
+  const Real t3044 = carried[409] - carried[452];
   const Real t3045 = constant<Real>(0.0025144L) * t3044;
 
   // hind_right_thigh: wrench
   const Real t3046 = t3045 + t3043;
-  const Real t3047 = carried[414] * constant<Real>(0.0272L);
+  const Real t3047 = carried[435] * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t3048 = carried[444] * constant<Real>(0.0884L);
+  const Real t3048 = carried[465] * constant<Real>(0.0884L);
 
   // hind_right_thigh: wrench
   const Real t3049 = t3047 + t3048;
@@ -7220,41 +7234,41 @@ template <class Real>
 
   // hind_right_shank: joint force
   const Real t3051 = t3036 + t3050;
-  carried[216] = t3051;
+  carried[6] = t3051;
 
   // hind_right_thigh: joint force
-  const Real t3052 = t3051 * carried[21];
+  const Real t3052 = t3051 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t3053 = constant<Real>(0.012L) * carried[430];
-  const Real t3054 = carried[23] * t3033;
-  const Real t3055 = t3018 * carried[22];
+  const Real t3053 = constant<Real>(0.012L) * carried[451];
+  const Real t3054 = carried[44] * t3033;
+  const Real t3055 = t3018 * carried[43];
   const Real t3056 = t3054 - t3055;
   const Real t3057 = t3053 + t3056;
 
   // hind_right_thigh: wrench
-  const Real t3058 = constant<Real>(0.0014985L) * carried[305];
+  const Real t3058 = constant<Real>(0.0014985L) * carried[326];
 
   // hind_right_thigh: wrench
-  const Real t3059 = constant<Real>(0.0000799L) * carried[415];
+  const Real t3059 = constant<Real>(0.0000799L) * carried[436];
 
   // hind_right_thigh: wrench
   const Real t3060 = t3058 - t3059;
-  const Real t3061 = carried[441] * constant<Real>(0.0003348L);
+  const Real t3061 = carried[462] * constant<Real>(0.0003348L);
   const Real t3062 = t3060 - t3061;
-  const Real t3063 = carried[418] * constant<Real>(0.0025144L);
+  const Real t3063 = carried[439] * constant<Real>(0.0025144L);
   const Real t3064 = t3062 + t3063;
 
   // hind_right_thigh: wrench
-  const Real t3065 = carried[389] - carried[388];
+  const Real t3065 = carried[410] - carried[409];
   const Real t3066 = t3065 * constant<Real>(8.4e-6L);
 
   // hind_right_thigh: wrench
   const Real t3067 = t3064 - t3066;
-  const Real t3068 = constant<Real>(0.0272L) * carried[419];
+  const Real t3068 = constant<Real>(0.0272L) * carried[440];
 
   // hind_right_thigh: wrench
-  const Real t3069 = carried[444] * constant<Real>(0.0051L);
+  const Real t3069 = carried[465] * constant<Real>(0.0051L);
 
   // hind_right_thigh: wrench
   const Real t3070 = t3068 + t3069;
@@ -7262,37 +7276,37 @@ template <class Real>
 
   // hind_right_shank: joint force
   const Real t3072 = t3057 + t3071;
-  carried[226] = t3072;
+  carried[7] = t3072;
 
   // hind_right_thigh: joint force
-  const Real t3073 = carried[20] * t3072;
+  const Real t3073 = carried[41] * t3072;
   const Real t3074 = t3052 + t3073;
-  const Real t3075 = constant<Real>(0.075L) * carried[433];
+  const Real t3075 = constant<Real>(0.075L) * carried[454];
   const Real t3076 = t3074 - t3075;
 
   // hind_right_hip: wrench
-  const Real t3077 = carried[435] * constant<Real>(0.0001392L);
-  const Real t3078 = carried[413] * constant<Real>(0.000637L);
+  const Real t3077 = carried[456] * constant<Real>(0.0001392L);
+  const Real t3078 = carried[434] * constant<Real>(0.000637L);
 
   // hind_right_hip: wrench
   const Real t3079 = t3078 - t3077;
 
   // hind_right_hip: wrench
-  const Real t3080 = constant<Real>(5.2e-6L) * carried[448];
+  const Real t3080 = constant<Real>(5.2e-6L) * carried[469];
 
   // hind_right_hip: wrench
   const Real t3081 = t3079 - t3080;
 
   // hind_right_hip: wrench
-  const Real t3082 = carried[437] - carried[442];
+  const Real t3082 = carried[458] - carried[463];
   const Real t3083 = t3082 * constant<Real>(0.0000473L);
 
   // hind_right_hip: wrench
   const Real t3084 = t3083 + t3081;
 
   // hind_right_hip: wrench
-  const Real t3085 = constant<Real>(0.0013L) * carried[443];
-  const Real t3086 = carried[412] * constant<Real>(0.0273L);
+  const Real t3085 = constant<Real>(0.0013L) * carried[464];
+  const Real t3086 = carried[433] * constant<Real>(0.0273L);
   const Real t3087 = t3085 + t3086;
 
   // hind_right_hip: wrench
@@ -7300,94 +7314,94 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t3089 = t3076 + t3088;
-  carried[270] = t3089;
+  carried[8] = t3089;
 
   // hind_right_shank: wrench
-  const Real t3090 = carried[317] * constant<Real>(0.0687L);
-  const Real t3091 = constant<Real>(0.00252L) * carried[307];
+  const Real t3090 = carried[338] * constant<Real>(0.0687L);
+  const Real t3091 = constant<Real>(0.00252L) * carried[328];
   const Real t3092 = t3090 + t3091;
 
   // hind_right_shank: wrench
-  const Real t3093 = carried[302] * constant<Real>(2.52e-6L);
-  const Real t3094 = constant<Real>(0.0000562L) * carried[320];
+  const Real t3093 = carried[323] * constant<Real>(2.52e-6L);
+  const Real t3094 = constant<Real>(0.0000562L) * carried[341];
   const Real t3095 = t3093 - t3094;
-  carried[315] = t3095;
+  carried[12] = t3095;
 
   // hind_right_shank: wrench
   const Real t3096 = t3095 - t3092;
-  carried[351] = t3096;
+  carried[13] = t3096;
 
   // reduced forces
-  const Real t3097 = t3096 * carried[276];
+  const Real t3097 = t3096 * carried[297];
 
   // hind_right_shank: wrench
-  const Real t3098 = constant<Real>(0.51L) * carried[317];
+  const Real t3098 = constant<Real>(0.51L) * carried[338];
 
   // hind_right_shank: wrench
-  const Real t3099 = constant<Real>(0.00042L) * carried[320];
-  carried[352] = t3099;
+  const Real t3099 = constant<Real>(0.00042L) * carried[341];
+  carried[14] = t3099;
 
   // hind_right_shank: wrench
   const Real t3100 = t3099 + t3098;
 
   // hind_right_shank: joint force
-  const Real t3101 = carried[23] * t3100;
+  const Real t3101 = carried[44] * t3100;
 
   // hind_right_shank: wrench
-  const Real t3102 = constant<Real>(0.51L) * carried[307];
+  const Real t3102 = constant<Real>(0.51L) * carried[328];
 
   // hind_right_shank: wrench
-  const Real t3103 = carried[302] * constant<Real>(0.00042L);
-  carried[353] = t3103;
+  const Real t3103 = carried[323] * constant<Real>(0.00042L);
+  carried[15] = t3103;
 
   // hind_right_shank: wrench
   const Real t3104 = t3102 - t3103;
 
   // hind_right_shank: joint force
-  const Real t3105 = carried[22] * t3104;
+  const Real t3105 = carried[43] * t3104;
   const Real t3106 = t3101 + t3105;
   const Real t3107 = t3106 * constant<Real>(0.24L);
   const Real t3108 = t3096 - t3107;
 
   // hind_right_thigh: wrench
-  const Real t3109 = carried[20] * constant<Real>(0.0025144L);
-  const Real t3110 = constant<Real>(8.4e-6L) * carried[21];
+  const Real t3109 = carried[41] * constant<Real>(0.0025144L);
+  const Real t3110 = constant<Real>(8.4e-6L) * carried[42];
   const Real t3111 = t3109 - t3110;
-  carried[354] = t3111;
+  carried[229] = t3111;
 
   // hind_right_thigh: wrench
-  const Real t3112 = constant<Real>(0.00663L) * carried[20];
-  const Real t3113 = constant<Real>(0.0003825L) * carried[21];
+  const Real t3112 = constant<Real>(0.00663L) * carried[41];
+  const Real t3113 = constant<Real>(0.0003825L) * carried[42];
   const Real t3114 = t3112 + t3113;
   const Real t3115 = t3111 - t3114;
 
   // hind_right_shank: joint force
   const Real t3116 = t3108 + t3115;
-  carried[355] = t3116;
+  carried[232] = t3116;
 
   // reduced forces
-  const Real t3117 = carried[380] * t3116;
+  const Real t3117 = carried[401] * t3116;
 
   // hind_right_shank: joint force
-  const Real t3118 = carried[23] * t3104;
-  const Real t3119 = t3100 * carried[22];
+  const Real t3118 = carried[44] * t3104;
+  const Real t3119 = t3100 * carried[43];
   const Real t3120 = t3118 - t3119;
   const Real t3121 = constant<Real>(0.012L) * t3120;
 
   // hind_right_shank: wrench
-  const Real t3122 = constant<Real>(0.00252L) * carried[320];
-  carried[356] = t3122;
+  const Real t3122 = constant<Real>(0.00252L) * carried[341];
+  carried[233] = t3122;
 
   // hind_right_shank: acceleration
-  const Real t3123 = carried[301] - carried[300];
+  const Real t3123 = carried[322] - carried[321];
 
   // hind_right_shank: wrench
   const Real t3124 = t3123 * constant<Real>(0.0687L);
   const Real t3125 = t3122 - t3124;
-  carried[357] = t3125;
+  carried[237] = t3125;
 
   // hind_right_shank: wrench
-  const Real t3126 = constant<Real>(0.1224L) * carried[21];
+  const Real t3126 = constant<Real>(0.1224L) * carried[42];
   const Real t3127 = t3126 + t3125;
 
   // hind_right_shank: joint force
@@ -7395,173 +7409,173 @@ template <class Real>
   const Real t3129 = t3128 - t3121;
 
   // hind_right_shank: wrench
-  const Real t3130 = constant<Real>(0.00042L) * carried[307];
-  const Real t3131 = constant<Real>(0.016488L) * carried[21];
+  const Real t3130 = constant<Real>(0.00042L) * carried[328];
+  const Real t3131 = constant<Real>(0.016488L) * carried[42];
   const Real t3132 = t3131 - t3130;
 
   // hind_right_shank: wrench
-  const Real t3133 = constant<Real>(0.0004672L) * carried[320];
-  const Real t3134 = constant<Real>(0.01292242L) * carried[302];
+  const Real t3133 = constant<Real>(0.0004672L) * carried[341];
+  const Real t3134 = constant<Real>(0.01292242L) * carried[323];
   const Real t3135 = t3133 + t3134;
-  carried[372] = t3135;
+  carried[247] = t3135;
 
   // hind_right_shank: wrench
   const Real t3136 = t3135 + t3132;
 
   // hind_right_shank: joint force
-  const Real t3137 = carried[23] * t3136;
+  const Real t3137 = carried[44] * t3136;
 
   // hind_right_shank: wrench
-  const Real t3138 = carried[317] * constant<Real>(0.00042L);
-  const Real t3139 = constant<Real>(0.0006048L) * carried[21];
+  const Real t3138 = carried[338] * constant<Real>(0.00042L);
+  const Real t3139 = constant<Real>(0.0006048L) * carried[42];
   const Real t3140 = t3139 + t3138;
 
   // hind_right_shank: wrench
-  const Real t3141 = constant<Real>(0.00007492L) * carried[320];
+  const Real t3141 = constant<Real>(0.00007492L) * carried[341];
   const Real t3142 = constant<Real>(0.0004672L) * t3123;
   const Real t3143 = t3141 - t3142;
-  carried[373] = t3143;
+  carried[291] = t3143;
 
   // hind_right_shank: wrench
   const Real t3144 = t3140 + t3143;
 
   // hind_right_shank: joint force
-  const Real t3145 = t3144 * carried[22];
+  const Real t3145 = t3144 * carried[43];
   const Real t3146 = t3137 + t3145;
   const Real t3147 = t3146 + t3129;
 
   // hind_right_thigh: wrench
-  const Real t3148 = constant<Real>(0.013546L) * carried[21];
-  const Real t3149 = carried[20] * constant<Real>(0.0003348L);
+  const Real t3148 = constant<Real>(0.013546L) * carried[42];
+  const Real t3149 = carried[41] * constant<Real>(0.0003348L);
   const Real t3150 = t3148 + t3149;
-  carried[375] = t3150;
+  carried[295] = t3150;
 
   // hind_right_thigh: wrench
-  const Real t3151 = constant<Real>(0.00204L) * carried[21];
+  const Real t3151 = constant<Real>(0.00204L) * carried[42];
   const Real t3152 = t3150 - t3151;
 
   // hind_right_shank: joint force
   const Real t3153 = t3152 + t3147;
 
   // hind_right_thigh: joint force
-  const Real t3154 = t3153 * carried[21];
+  const Real t3154 = t3153 * carried[42];
 
   // hind_right_shank: joint force
   const Real t3155 = t3106 * constant<Real>(0.012L);
-  const Real t3156 = carried[23] * t3144;
-  const Real t3157 = t3136 * carried[22];
+  const Real t3156 = carried[44] * t3144;
+  const Real t3157 = t3136 * carried[43];
   const Real t3158 = t3156 - t3157;
   const Real t3159 = t3155 + t3158;
 
   // hind_right_thigh: wrench
-  const Real t3160 = carried[20] * constant<Real>(0.0014985L);
-  const Real t3161 = carried[21] * constant<Real>(0.0003348L);
+  const Real t3160 = carried[41] * constant<Real>(0.0014985L);
+  const Real t3161 = carried[42] * constant<Real>(0.0003348L);
   const Real t3162 = t3160 + t3161;
-  carried[378] = t3162;
+  carried[336] = t3162;
 
   // hind_right_thigh: wrench
-  const Real t3163 = carried[20] * constant<Real>(0.00204L);
+  const Real t3163 = carried[41] * constant<Real>(0.00204L);
   const Real t3164 = t3162 - t3163;
 
   // hind_right_shank: joint force
   const Real t3165 = t3159 + t3164;
 
   // hind_right_thigh: joint force
-  const Real t3166 = carried[20] * t3165;
+  const Real t3166 = carried[41] * t3165;
   const Real t3167 = t3154 + t3166;
 
   // hind_right_thigh: wrench
-  const Real t3168 = constant<Real>(0.1003L) * carried[21];
+  const Real t3168 = constant<Real>(0.1003L) * carried[42];
 
   // hind_right_shank: joint force
   const Real t3169 = t3120 - t3168;
 
   // hind_right_thigh: joint force
-  const Real t3170 = t3169 * carried[21];
+  const Real t3170 = t3169 * carried[42];
 
   // hind_right_thigh: wrench
-  const Real t3171 = constant<Real>(0.1003L) * carried[20];
+  const Real t3171 = constant<Real>(0.1003L) * carried[41];
 
   // hind_right_shank: joint force
   const Real t3172 = t3106 + t3171;
 
   // hind_right_thigh: joint force
-  const Real t3173 = t3172 * carried[20];
+  const Real t3173 = t3172 * carried[41];
   const Real t3174 = t3170 - t3173;
   const Real t3175 = constant<Real>(0.075L) * t3174;
   const Real t3176 = t3167 - t3175;
   const Real t3177 = t3176 + constant<Real>(0.0022646L);
-  carried[382] = t3177;
+  carried[370] = t3177;
 
   // reduced forces
-  const Real t3178 = t3177 * carried[358];
+  const Real t3178 = t3177 * carried[379];
   const Real t3179 = t3178 + t3117;
   const Real t3180 = t3179 - t3097;
   const Real t3181 = t3180 + t3089;
-  const Real t3182 = tau_a[9] - t3181;
-  carried[404] = t3182;
-  const Real t3183 = carried[306] * t3182;
+  const Real t3182 = carried[18] - t3181;
+  carried[371] = t3182;
+  const Real t3183 = carried[327] * t3182;
   const Real t3184 = t3001 - t3183;
 
   // hind_right_shank: wrench
-  const Real t3185 = constant<Real>(0.0006048L) * carried[22];
-  const Real t3186 = carried[23] * constant<Real>(0.016488L);
+  const Real t3185 = constant<Real>(0.0006048L) * carried[43];
+  const Real t3186 = carried[44] * constant<Real>(0.016488L);
   const Real t3187 = t3185 + t3186;
   const Real t3188 = constant<Real>(0.01294712L) + t3187;
-  carried[454] = t3188;
+  carried[373] = t3188;
 
   // reduced forces
-  const Real t3189 = carried[276] * t3188;
+  const Real t3189 = carried[297] * t3188;
 
   // hind_right_shank: wrench
-  const Real t3190 = constant<Real>(0.1224L) * carried[23];
+  const Real t3190 = constant<Real>(0.1224L) * carried[44];
   const Real t3191 = constant<Real>(-0.0687L) - t3190;
 
   // hind_right_shank: joint force
-  const Real t3192 = carried[23] * t3191;
+  const Real t3192 = carried[44] * t3191;
 
   // hind_right_shank: wrench
-  const Real t3193 = constant<Real>(0.1224L) * carried[22];
+  const Real t3193 = constant<Real>(0.1224L) * carried[43];
   const Real t3194 = constant<Real>(-0.00252L) - t3193;
 
   // hind_right_shank: joint force
-  const Real t3195 = t3194 * carried[22];
+  const Real t3195 = t3194 * carried[43];
   const Real t3196 = t3192 + t3195;
   const Real t3197 = constant<Real>(0.24L) * t3196;
   const Real t3198 = t3188 - t3197;
   const Real t3199 = t3198 + constant<Real>(0.0134661L);
-  carried[456] = t3199;
+  carried[376] = t3199;
 
   // reduced forces
-  const Real t3200 = carried[380] * t3199;
-  const Real t3201 = carried[358] * t3116;
+  const Real t3200 = carried[401] * t3199;
+  const Real t3201 = carried[379] * t3116;
   const Real t3202 = t3200 + t3201;
   const Real t3203 = t3202 - t3189;
 
   // hind_right_shank: joint force
-  const Real t3204 = constant<Real>(0.24L) * carried[430];
+  const Real t3204 = constant<Real>(0.24L) * carried[451];
 
   // hind_right_shank: wrench
-  const Real t3205 = constant<Real>(0.0000562L) * carried[424];
+  const Real t3205 = constant<Real>(0.0000562L) * carried[445];
 
   // hind_right_shank: wrench
-  const Real t3206 = constant<Real>(0.0128475L) * carried[383];
+  const Real t3206 = constant<Real>(0.0128475L) * carried[404];
 
   // hind_right_shank: wrench
-  const Real t3207 = carried[384] * constant<Real>(0.01294712L);
+  const Real t3207 = carried[405] * constant<Real>(0.01294712L);
   const Real t3208 = t3206 + t3207;
   const Real t3209 = t3205 + t3208;
-  const Real t3210 = carried[326] * constant<Real>(2.52e-6L);
+  const Real t3210 = carried[347] * constant<Real>(2.52e-6L);
   const Real t3211 = t3209 + t3210;
 
   // hind_right_shank: wrench
-  const Real t3212 = carried[421] - carried[387];
+  const Real t3212 = carried[442] - carried[408];
   const Real t3213 = t3212 * constant<Real>(0.0004672L);
 
   // hind_right_shank: wrench
   const Real t3214 = t3213 + t3211;
-  const Real t3215 = carried[420] * constant<Real>(0.00252L);
-  const Real t3216 = constant<Real>(0.0687L) * carried[426];
+  const Real t3215 = carried[441] * constant<Real>(0.00252L);
+  const Real t3216 = constant<Real>(0.0687L) * carried[447];
   const Real t3217 = t3215 + t3216;
   const Real t3218 = t3214 - t3217;
 
@@ -7569,42 +7583,42 @@ template <class Real>
   const Real t3219 = t3218 - t3204;
 
   // hind_right_thigh: wrench
-  const Real t3220 = constant<Real>(0.0025144L) * carried[416];
+  const Real t3220 = constant<Real>(0.0025144L) * carried[437];
 
   // hind_right_thigh: wrench
-  const Real t3221 = carried[417] * constant<Real>(0.0120475L);
+  const Real t3221 = carried[438] * constant<Real>(0.0120475L);
 
   // hind_right_thigh: wrench
-  const Real t3222 = constant<Real>(0.0134661L) * carried[384];
+  const Real t3222 = constant<Real>(0.0134661L) * carried[405];
   const Real t3223 = t3221 + t3222;
   const Real t3224 = t3223 - t3220;
-  const Real t3225 = carried[391] * constant<Real>(8.4e-6L);
+  const Real t3225 = carried[412] * constant<Real>(8.4e-6L);
   const Real t3226 = t3224 - t3225;
 
   // hind_right_thigh: wrench
-  const Real t3227 = carried[431] - carried[389];
+  const Real t3227 = carried[452] - carried[410];
   const Real t3228 = t3227 * constant<Real>(0.0003348L);
 
   // hind_right_thigh: wrench
   const Real t3229 = t3226 + t3228;
-  const Real t3230 = constant<Real>(0.0051L) * carried[414];
-  const Real t3231 = constant<Real>(0.0884L) * carried[419];
+  const Real t3230 = constant<Real>(0.0051L) * carried[435];
+  const Real t3231 = constant<Real>(0.0884L) * carried[440];
   const Real t3232 = t3230 - t3231;
   const Real t3233 = t3229 + t3232;
 
   // hind_right_shank: joint force
   const Real t3234 = t3219 + t3233;
-  carried[457] = t3234;
+  carried[378] = t3234;
 
   // reduced forces
   const Real t3235 = t3203 + t3234;
-  const Real t3236 = tau_a[10] - t3235;
-  carried[458] = t3236;
-  const Real t3237 = carried[314] * t3236;
+  const Real t3236 = carried[19] - t3235;
+  carried[396] = t3236;
+  const Real t3237 = carried[335] * t3236;
   const Real t3238 = t3237 + t3184;
-  const Real t3239 = carried[114] * constant<Real>(0.05178848L);
-  const Real t3240 = carried[380] * t3188;
-  const Real t3241 = t3096 * carried[358];
+  const Real t3239 = carried[135] * constant<Real>(0.05178848L);
+  const Real t3240 = carried[401] * t3188;
+  const Real t3241 = t3096 * carried[379];
   const Real t3242 = t3241 + t3240;
   const Real t3243 = t3242 - t3239;
 
@@ -7613,760 +7627,760 @@ template <class Real>
 
   // reduced forces
   const Real t3245 = t3244 - t3243;
-  const Real t3246 = t3245 + tau_a[11];
-  carried[459] = t3246;
-  const Real t3247 = t3246 * carried[319];
+  const Real t3246 = t3245 + carried[20];
+  carried[397] = t3246;
+  const Real t3247 = t3246 * carried[340];
   const Real t3248 = t3238 + t3247;
-  carried[461] = t3248;
+  carried[398] = t3248;
 
   // front_left_shank: wrench
-  const Real t3249 = carried[26] * constant<Real>(0.0687L);
-  const Real t3250 = t3249 + carried[84];
-  carried[463] = t3250;
+  const Real t3249 = carried[47] * constant<Real>(0.0687L);
+  const Real t3250 = t3249 + carried[105];
+  carried[403] = t3250;
 
   // reduced forces
-  const Real t3251 = t3250 * carried[118];
-  carried[464] = t3251;
+  const Real t3251 = t3250 * carried[139];
+  carried[425] = t3251;
 
   // front_left_shank: wrench
-  const Real t3252 = constant<Real>(0.51L) * carried[26];
+  const Real t3252 = constant<Real>(0.51L) * carried[47];
 
   // front_left_shank: joint force
-  const Real t3253 = t3252 * carried[5];
+  const Real t3253 = t3252 * carried[26];
 
   // front_left_shank: wrench
-  const Real t3254 = carried[41] * constant<Real>(0.51L);
+  const Real t3254 = carried[62] * constant<Real>(0.51L);
 
   // front_left_shank: joint force
-  const Real t3255 = t3254 * carried[4];
+  const Real t3255 = t3254 * carried[25];
   const Real t3256 = t3253 + t3255;
-  carried[465] = t3256;
+  carried[475] = t3256;
   const Real t3257 = constant<Real>(0.24L) * t3256;
   const Real t3258 = t3257 + t3250;
 
   // front_left_thigh: wrench
-  const Real t3259 = constant<Real>(0.0051L) * carried[2];
-  carried[467] = t3259;
-  const Real t3260 = carried[3] * constant<Real>(0.0884L);
-  carried[468] = t3260;
+  const Real t3259 = constant<Real>(0.0051L) * carried[23];
+  carried[477] = t3259;
+  const Real t3260 = carried[24] * constant<Real>(0.0884L);
+  carried[478] = t3260;
   const Real t3261 = t3259 - t3260;
 
   // front_left_shank: joint force
   const Real t3262 = t3261 - t3258;
-  carried[469] = t3262;
+  carried[479] = t3262;
 
   // reduced forces
-  const Real t3263 = carried[116] * t3262;
-  carried[470] = t3263;
+  const Real t3263 = carried[137] * t3262;
+  carried[480] = t3263;
 
   // front_left_shank: joint force
   const Real t3264 = constant<Real>(0.012L) * t3256;
-  const Real t3265 = carried[568] * carried[5];
-  const Real t3266 = carried[570] * carried[4];
+  const Real t3265 = carried[580] * carried[26];
+  const Real t3266 = carried[582] * carried[25];
   const Real t3267 = t3265 + t3266;
   const Real t3268 = t3264 + t3267;
 
   // front_left_thigh: wrench
-  const Real t3269 = carried[3] * constant<Real>(0.0272L);
-  carried[488] = t3269;
+  const Real t3269 = carried[24] * constant<Real>(0.0272L);
+  carried[482] = t3269;
 
   // front_left_shank: joint force
   const Real t3270 = t3269 - t3268;
-  carried[489] = t3270;
+  carried[484] = t3270;
 
   // front_left_thigh: joint force
-  const Real t3271 = t3270 * carried[2];
-  carried[490] = t3271;
+  const Real t3271 = t3270 * carried[23];
+  carried[485] = t3271;
 
   // front_left_shank: joint force
-  const Real t3272 = t3254 * carried[5];
-  const Real t3273 = carried[4] * t3252;
+  const Real t3272 = t3254 * carried[26];
+  const Real t3273 = carried[25] * t3252;
   const Real t3274 = t3272 - t3273;
-  carried[493] = t3274;
+  carried[486] = t3274;
   const Real t3275 = constant<Real>(0.012L) * t3274;
-  carried[494] = t3275;
-  const Real t3276 = carried[570] * carried[5];
-  carried[495] = t3276;
+  carried[488] = t3275;
+  const Real t3276 = carried[582] * carried[26];
+  carried[489] = t3276;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_12(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_left_shank: joint force
-  const Real t3277 = carried[568] * carried[4];
-  const Real t3278 = carried[495] - t3277;
-  const Real t3279 = t3278 + carried[494];
+  const Real t3277 = carried[580] * carried[25];
+  const Real t3278 = carried[489] - t3277;
+  const Real t3279 = t3278 + carried[488];
 
   // front_left_thigh: wrench
-  const Real t3280 = constant<Real>(0.0272L) * carried[2];
-  carried[26] = t3280;
+  const Real t3280 = constant<Real>(0.0272L) * carried[23];
+  carried[1] = t3280;
 
   // front_left_shank: joint force
   const Real t3281 = t3279 - t3280;
-  carried[41] = t3281;
+  carried[3] = t3281;
 
   // front_left_thigh: joint force
-  const Real t3282 = carried[3] * t3281;
-  const Real t3283 = carried[490] + t3282;
+  const Real t3282 = carried[24] * t3281;
+  const Real t3283 = carried[485] + t3282;
 
   // front_left_thigh: wrench
-  const Real t3284 = constant<Real>(1.7L) * carried[2];
+  const Real t3284 = constant<Real>(1.7L) * carried[23];
 
   // front_left_shank: joint force
-  const Real t3285 = t3284 + carried[493];
-  carried[84] = t3285;
+  const Real t3285 = t3284 + carried[486];
+  carried[4] = t3285;
 
   // front_left_thigh: joint force
-  const Real t3286 = carried[3] * t3285;
+  const Real t3286 = carried[24] * t3285;
 
   // front_left_thigh: wrench
-  const Real t3287 = constant<Real>(1.7L) * carried[3];
+  const Real t3287 = constant<Real>(1.7L) * carried[24];
 
   // front_left_shank: joint force
-  const Real t3288 = t3287 + carried[465];
-  carried[114] = t3288;
+  const Real t3288 = t3287 + carried[475];
+  carried[16] = t3288;
 
   // front_left_thigh: joint force
-  const Real t3289 = carried[2] * t3288;
+  const Real t3289 = carried[23] * t3288;
   const Real t3290 = t3286 - t3289;
-  carried[274] = t3290;
+  carried[17] = t3290;
   const Real t3291 = constant<Real>(0.075L) * t3290;
   const Real t3292 = t3291 + t3283;
-  carried[297] = t3292;
+  carried[18] = t3292;
 
   // reduced forces
-  const Real t3293 = t3292 * carried[100];
-  const Real t3294 = carried[470] + t3293;
-  const Real t3295 = t3294 + carried[464];
+  const Real t3293 = t3292 * carried[121];
+  const Real t3294 = carried[480] + t3293;
+  const Real t3295 = t3294 + carried[425];
 
   // front_right_shank: wrench
-  const Real t3296 = constant<Real>(0.51L) * carried[154];
+  const Real t3296 = constant<Real>(0.51L) * carried[175];
 
   // front_right_shank: joint force
-  const Real t3297 = t3296 * carried[11];
+  const Real t3297 = t3296 * carried[32];
 
   // front_right_shank: wrench
-  const Real t3298 = constant<Real>(0.51L) * carried[138];
+  const Real t3298 = constant<Real>(0.51L) * carried[159];
 
   // front_right_shank: joint force
-  const Real t3299 = t3298 * carried[10];
+  const Real t3299 = t3298 * carried[31];
   const Real t3300 = t3297 - t3299;
   const Real t3301 = constant<Real>(0.012L) * t3300;
-  const Real t3302 = carried[10] * carried[578];
-  const Real t3303 = carried[11] * carried[579];
+  const Real t3302 = carried[31] * carried[590];
+  const Real t3303 = carried[32] * carried[591];
   const Real t3304 = t3302 - t3303;
   const Real t3305 = t3304 - t3301;
 
   // front_right_thigh: wrench
-  const Real t3306 = constant<Real>(0.0272L) * carried[8];
-  carried[300] = t3306;
+  const Real t3306 = constant<Real>(0.0272L) * carried[29];
+  carried[19] = t3306;
 
   // front_right_shank: joint force
   const Real t3307 = t3305 + t3306;
-  carried[301] = t3307;
+  carried[20] = t3307;
 
   // front_right_thigh: joint force
-  const Real t3308 = t3307 * carried[9];
+  const Real t3308 = t3307 * carried[30];
 
   // front_right_shank: joint force
-  const Real t3309 = t3296 * carried[10];
-  const Real t3310 = t3298 * carried[11];
+  const Real t3309 = t3296 * carried[31];
+  const Real t3310 = t3298 * carried[32];
   const Real t3311 = t3309 + t3310;
   const Real t3312 = t3311 * constant<Real>(0.012L);
-  const Real t3313 = carried[10] * carried[579];
-  const Real t3314 = carried[11] * carried[578];
+  const Real t3313 = carried[31] * carried[591];
+  const Real t3314 = carried[32] * carried[590];
   const Real t3315 = t3313 + t3314;
   const Real t3316 = t3315 + t3312;
 
   // front_right_thigh: wrench
-  const Real t3317 = constant<Real>(0.0272L) * carried[9];
-  carried[304] = t3317;
+  const Real t3317 = constant<Real>(0.0272L) * carried[30];
+  carried[47] = t3317;
 
   // front_right_shank: joint force
   const Real t3318 = t3316 - t3317;
-  carried[305] = t3318;
+  carried[62] = t3318;
 
   // front_right_thigh: joint force
-  const Real t3319 = carried[8] * t3318;
+  const Real t3319 = carried[29] * t3318;
   const Real t3320 = t3308 + t3319;
 
   // front_right_thigh: wrench
-  const Real t3321 = constant<Real>(1.7L) * carried[8];
+  const Real t3321 = constant<Real>(1.7L) * carried[29];
 
   // front_right_shank: joint force
   const Real t3322 = t3321 + t3300;
-  carried[307] = t3322;
+  carried[105] = t3322;
 
   // front_right_thigh: joint force
-  const Real t3323 = t3322 * carried[9];
+  const Real t3323 = t3322 * carried[30];
 
   // front_right_thigh: wrench
-  const Real t3324 = constant<Real>(1.7L) * carried[9];
+  const Real t3324 = constant<Real>(1.7L) * carried[30];
 
   // front_right_shank: joint force
   const Real t3325 = t3311 + t3324;
-  carried[313] = t3325;
+  carried[135] = t3325;
 
   // front_right_thigh: joint force
-  const Real t3326 = t3325 * carried[8];
+  const Real t3326 = t3325 * carried[29];
   const Real t3327 = t3323 - t3326;
-  carried[317] = t3327;
+  carried[318] = t3327;
   const Real t3328 = constant<Real>(0.075L) * t3327;
   const Real t3329 = t3320 - t3328;
-  carried[324] = t3329;
+  carried[321] = t3329;
 
   // reduced forces
-  const Real t3330 = carried[85] * t3329;
+  const Real t3330 = carried[106] * t3329;
   const Real t3331 = t3330 + t3295;
 
   // front_right_shank: joint force
   const Real t3332 = t3311 * constant<Real>(0.24L);
 
   // front_right_shank: wrench
-  const Real t3333 = carried[138] * constant<Real>(0.0687L);
-  const Real t3334 = carried[584] + t3333;
-  carried[326] = t3334;
+  const Real t3333 = carried[159] * constant<Real>(0.0687L);
+  const Real t3334 = carried[596] + t3333;
+  carried[322] = t3334;
 
   // front_right_shank: joint force
   const Real t3335 = t3334 + t3332;
 
   // front_right_thigh: wrench
-  const Real t3336 = constant<Real>(0.0051L) * carried[8];
-  carried[349] = t3336;
-  const Real t3337 = constant<Real>(0.0884L) * carried[9];
-  carried[350] = t3337;
+  const Real t3336 = constant<Real>(0.0051L) * carried[29];
+  carried[325] = t3336;
+  const Real t3337 = constant<Real>(0.0884L) * carried[30];
+  carried[326] = t3337;
   const Real t3338 = t3336 - t3337;
 
   // front_right_shank: joint force
   const Real t3339 = t3338 - t3335;
-  carried[376] = t3339;
+  carried[328] = t3339;
 
   // reduced forces
-  const Real t3340 = carried[204] * t3339;
+  const Real t3340 = carried[225] * t3339;
   const Real t3341 = t3331 + t3340;
-  const Real t3342 = carried[209] * t3334;
+  const Real t3342 = carried[230] * t3334;
   const Real t3343 = t3342 + t3341;
 
   // hind_left_shank: wrench
-  const Real t3344 = constant<Real>(0.51L) * carried[213];
+  const Real t3344 = constant<Real>(0.51L) * carried[234];
 
   // hind_left_shank: joint force
-  const Real t3345 = t3344 * carried[17];
+  const Real t3345 = t3344 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t3346 = constant<Real>(0.51L) * carried[229];
+  const Real t3346 = constant<Real>(0.51L) * carried[250];
 
   // hind_left_shank: joint force
-  const Real t3347 = t3346 * carried[16];
+  const Real t3347 = t3346 * carried[37];
   const Real t3348 = t3345 + t3347;
   const Real t3349 = constant<Real>(0.012L) * t3348;
-  const Real t3350 = carried[201] * carried[16];
-  const Real t3351 = carried[199] * carried[17];
+  const Real t3350 = carried[217] * carried[37];
+  const Real t3351 = carried[215] * carried[38];
   const Real t3352 = t3350 + t3351;
   const Real t3353 = t3352 + t3349;
 
   // hind_left_thigh: wrench
-  const Real t3354 = carried[15] * constant<Real>(0.0272L);
-  carried[383] = t3354;
+  const Real t3354 = carried[36] * constant<Real>(0.0272L);
+  carried[334] = t3354;
 
   // hind_left_shank: joint force
   const Real t3355 = t3354 - t3353;
-  carried[385] = t3355;
+  carried[338] = t3355;
 
   // hind_left_thigh: joint force
-  const Real t3356 = carried[14] * t3355;
+  const Real t3356 = carried[35] * t3355;
 
   // hind_left_shank: joint force
-  const Real t3357 = t3346 * carried[17];
-  const Real t3358 = t3344 * carried[16];
+  const Real t3357 = t3346 * carried[38];
+  const Real t3358 = t3344 * carried[37];
   const Real t3359 = t3357 - t3358;
   const Real t3360 = constant<Real>(0.012L) * t3359;
-  const Real t3361 = carried[17] * carried[201];
-  const Real t3362 = carried[199] * carried[16];
+  const Real t3361 = carried[38] * carried[217];
+  const Real t3362 = carried[215] * carried[37];
   const Real t3363 = t3361 - t3362;
   const Real t3364 = t3363 + t3360;
 
   // hind_left_thigh: wrench
-  const Real t3365 = carried[14] * constant<Real>(0.0272L);
-  carried[386] = t3365;
+  const Real t3365 = carried[35] * constant<Real>(0.0272L);
+  carried[345] = t3365;
 
   // hind_left_shank: joint force
   const Real t3366 = t3364 - t3365;
-  carried[387] = t3366;
+  carried[347] = t3366;
 
   // hind_left_thigh: joint force
-  const Real t3367 = carried[15] * t3366;
+  const Real t3367 = carried[36] * t3366;
   const Real t3368 = t3356 + t3367;
 
   // hind_left_thigh: wrench
-  const Real t3369 = carried[14] * constant<Real>(1.7L);
+  const Real t3369 = carried[35] * constant<Real>(1.7L);
 
   // hind_left_shank: joint force
   const Real t3370 = t3359 + t3369;
-  carried[388] = t3370;
+  carried[374] = t3370;
 
   // hind_left_thigh: joint force
-  const Real t3371 = carried[15] * t3370;
+  const Real t3371 = carried[36] * t3370;
 
   // hind_left_thigh: wrench
-  const Real t3372 = carried[15] * constant<Real>(1.7L);
+  const Real t3372 = carried[36] * constant<Real>(1.7L);
 
   // hind_left_shank: joint force
   const Real t3373 = t3372 + t3348;
-  carried[389] = t3373;
+  carried[404] = t3373;
 
   // hind_left_thigh: joint force
-  const Real t3374 = carried[14] * t3373;
+  const Real t3374 = carried[35] * t3373;
   const Real t3375 = t3371 - t3374;
-  carried[390] = t3375;
+  carried[406] = t3375;
   const Real t3376 = constant<Real>(0.075L) * t3375;
   const Real t3377 = t3368 + t3376;
-  carried[391] = t3377;
+  carried[407] = t3377;
 
   // reduced forces
-  const Real t3378 = t3377 * carried[277];
+  const Real t3378 = t3377 * carried[298];
   const Real t3379 = t3378 + t3343;
 
   // hind_left_shank: joint force
   const Real t3380 = constant<Real>(0.24L) * t3348;
 
   // hind_left_shank: wrench
-  const Real t3381 = constant<Real>(0.0687L) * carried[213];
-  const Real t3382 = t3381 + carried[292];
-  carried[414] = t3382;
+  const Real t3381 = constant<Real>(0.0687L) * carried[234];
+  const Real t3382 = t3381 + carried[222];
+  carried[408] = t3382;
 
   // hind_left_shank: joint force
   const Real t3383 = t3382 + t3380;
 
   // hind_left_thigh: wrench
-  const Real t3384 = carried[14] * constant<Real>(0.0051L);
-  carried[415] = t3384;
-  const Real t3385 = carried[15] * constant<Real>(0.0884L);
-  carried[416] = t3385;
+  const Real t3384 = carried[35] * constant<Real>(0.0051L);
+  carried[409] = t3384;
+  const Real t3385 = carried[36] * constant<Real>(0.0884L);
+  carried[410] = t3385;
   const Real t3386 = t3384 - t3385;
 
   // hind_left_shank: joint force
   const Real t3387 = t3386 - t3383;
-  carried[417] = t3387;
+  carried[411] = t3387;
 
   // reduced forces
-  const Real t3388 = carried[293] * t3387;
+  const Real t3388 = carried[314] * t3387;
   const Real t3389 = t3388 + t3379;
-  const Real t3390 = t3382 * carried[298];
+  const Real t3390 = t3382 * carried[319];
   const Real t3391 = t3389 + t3390;
 
   // hind_right_shank: wrench
-  const Real t3392 = constant<Real>(0.51L) * carried[320];
+  const Real t3392 = constant<Real>(0.51L) * carried[341];
 
   // hind_right_shank: joint force
-  const Real t3393 = carried[23] * t3392;
+  const Real t3393 = carried[44] * t3392;
 
   // hind_right_shank: wrench
-  const Real t3394 = constant<Real>(0.51L) * carried[302];
+  const Real t3394 = constant<Real>(0.51L) * carried[323];
 
   // hind_right_shank: joint force
-  const Real t3395 = t3394 * carried[22];
+  const Real t3395 = t3394 * carried[43];
   const Real t3396 = t3393 - t3395;
   const Real t3397 = t3396 * constant<Real>(0.012L);
-  const Real t3398 = carried[353] * carried[22];
-  const Real t3399 = carried[23] * carried[352];
+  const Real t3398 = carried[15] * carried[43];
+  const Real t3399 = carried[44] * carried[14];
   const Real t3400 = t3398 - t3399;
   const Real t3401 = t3400 - t3397;
 
   // hind_right_thigh: wrench
-  const Real t3402 = constant<Real>(0.0272L) * carried[20];
-  carried[418] = t3402;
+  const Real t3402 = constant<Real>(0.0272L) * carried[41];
+  carried[412] = t3402;
 
   // hind_right_shank: joint force
   const Real t3403 = t3402 + t3401;
-  carried[419] = t3403;
+  carried[435] = t3403;
 
   // hind_right_thigh: joint force
-  const Real t3404 = t3403 * carried[21];
+  const Real t3404 = t3403 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t3405 = t3392 * carried[22];
-  const Real t3406 = carried[23] * t3394;
+  const Real t3405 = t3392 * carried[43];
+  const Real t3406 = carried[44] * t3394;
   const Real t3407 = t3405 + t3406;
   const Real t3408 = t3407 * constant<Real>(0.012L);
-  const Real t3409 = carried[352] * carried[22];
-  const Real t3410 = carried[23] * carried[353];
+  const Real t3409 = carried[14] * carried[43];
+  const Real t3410 = carried[44] * carried[15];
   const Real t3411 = t3409 + t3410;
   const Real t3412 = t3408 + t3411;
 
   // hind_right_thigh: wrench
-  const Real t3413 = constant<Real>(0.0272L) * carried[21];
-  carried[420] = t3413;
+  const Real t3413 = constant<Real>(0.0272L) * carried[42];
+  carried[436] = t3413;
 
   // hind_right_shank: joint force
   const Real t3414 = t3412 - t3413;
-  carried[421] = t3414;
+  carried[437] = t3414;
 
   // hind_right_thigh: joint force
-  const Real t3415 = carried[20] * t3414;
+  const Real t3415 = carried[41] * t3414;
   const Real t3416 = t3404 + t3415;
 
   // hind_right_thigh: wrench
-  const Real t3417 = constant<Real>(1.7L) * carried[20];
+  const Real t3417 = constant<Real>(1.7L) * carried[41];
 
   // hind_right_shank: joint force
   const Real t3418 = t3396 + t3417;
-  carried[422] = t3418;
+  carried[438] = t3418;
 
   // hind_right_thigh: joint force
-  const Real t3419 = t3418 * carried[21];
+  const Real t3419 = t3418 * carried[42];
 
   // hind_right_thigh: wrench
-  const Real t3420 = constant<Real>(1.7L) * carried[21];
+  const Real t3420 = constant<Real>(1.7L) * carried[42];
 
   // hind_right_shank: joint force
   const Real t3421 = t3407 + t3420;
-  carried[423] = t3421;
+  carried[439] = t3421;
 
   // hind_right_thigh: joint force
-  const Real t3422 = carried[20] * t3421;
+  const Real t3422 = carried[41] * t3421;
   const Real t3423 = t3419 - t3422;
-  carried[424] = t3423;
+  carried[440] = t3423;
   const Real t3424 = constant<Real>(0.075L) * t3423;
   const Real t3425 = t3416 - t3424;
-  carried[425] = t3425;
+  carried[441] = t3425;
 
   // reduced forces
-  const Real t3426 = carried[358] * t3425;
+  const Real t3426 = carried[379] * t3425;
   const Real t3427 = t3426 + t3391;
 
   // hind_right_shank: joint force
   const Real t3428 = t3407 * constant<Real>(0.24L);
 
   // hind_right_shank: wrench
-  const Real t3429 = carried[302] * constant<Real>(0.0687L);
-  const Real t3430 = t3429 + carried[356];
-  carried[426] = t3430;
+  const Real t3429 = carried[323] * constant<Real>(0.0687L);
+  const Real t3430 = t3429 + carried[233];
+  carried[442] = t3430;
 
   // hind_right_shank: joint force
   const Real t3431 = t3428 + t3430;
 
   // hind_right_thigh: wrench
-  const Real t3432 = constant<Real>(0.0051L) * carried[20];
-  carried[427] = t3432;
-  const Real t3433 = constant<Real>(0.0884L) * carried[21];
-  carried[428] = t3433;
+  const Real t3432 = constant<Real>(0.0051L) * carried[41];
+  carried[443] = t3432;
+  const Real t3433 = constant<Real>(0.0884L) * carried[42];
+  carried[444] = t3433;
   const Real t3434 = t3432 - t3433;
 
   // hind_right_shank: joint force
   const Real t3435 = t3434 - t3431;
-  carried[430] = t3435;
+  carried[445] = t3435;
 
   // reduced forces
-  const Real t3436 = carried[380] * t3435;
+  const Real t3436 = carried[401] * t3435;
   const Real t3437 = t3427 + t3436;
-  const Real t3438 = carried[276] * t3430;
+  const Real t3438 = carried[297] * t3430;
   const Real t3439 = t3438 + t3437;
 
   // hind_right_thigh: joint force
-  const Real t3440 = carried[429] * carried[20];
-  const Real t3441 = carried[432] * carried[21];
+  const Real t3440 = carried[450] * carried[41];
+  const Real t3441 = carried[453] * carried[42];
   const Real t3442 = t3440 + t3441;
-  carried[431] = t3442;
+  carried[446] = t3442;
 
   // hind_right_hip: wrench
-  const Real t3443 = carried[393] * constant<Real>(0.0273L);
+  const Real t3443 = carried[414] * constant<Real>(0.0273L);
 
   // hind_right_hip: acceleration
-  const Real t3444 = carried[442] + carried[437];
+  const Real t3444 = carried[463] + carried[458];
 
   // hind_right_hip: wrench
   const Real t3445 = constant<Real>(0.0052L) * t3444;
   const Real t3446 = t3443 + t3445;
 
   // hind_right_hip: acceleration
-  const Real t3447 = carried[384] + carried[434];
-  carried[433] = t3447;
+  const Real t3447 = carried[405] + carried[455];
+  carried[447] = t3447;
 
   // hind_right_hip: wrench
   const Real t3448 = constant<Real>(0.0013L) * t3447;
   const Real t3449 = t3448 - t3446;
-  const Real t3450 = constant<Real>(1.3L) * carried[401];
+  const Real t3450 = constant<Real>(1.3L) * carried[422];
   const Real t3451 = t3449 + t3450;
 
   // hind_right_thigh: joint force
   const Real t3452 = t3442 + t3451;
-  carried[435] = t3452;
+  carried[448] = t3452;
 
   // trunk: wrench
-  const Real t3453 = constant<Real>(0.0515L) * carried[396];
-  const Real t3454 = constant<Real>(0.011L) * carried[398];
+  const Real t3453 = constant<Real>(0.0515L) * carried[417];
+  const Real t3454 = constant<Real>(0.011L) * carried[419];
   const Real t3455 = t3453 + t3454;
-  const Real t3456 = constant<Real>(0.1412L) * carried[409];
+  const Real t3456 = constant<Real>(0.1412L) * carried[430];
   const Real t3457 = t3456 - t3455;
-  const Real t3458 = constant<Real>(11.55L) * carried[400];
+  const Real t3458 = constant<Real>(11.55L) * carried[421];
   const Real t3459 = t3458 + t3457;
 
   // hind_right_hip: joint force
   const Real t3460 = t3459 + t3452;
 
   // hind_left_thigh: joint force
-  const Real t3461 = carried[14] * carried[374];
-  const Real t3462 = carried[15] * carried[377];
+  const Real t3461 = carried[35] * carried[372];
+  const Real t3462 = carried[36] * carried[375];
   const Real t3463 = t3461 + t3462;
-  carried[439] = t3463;
+  carried[449] = t3463;
 
   // hind_left_hip: wrench
-  const Real t3464 = carried[472] * constant<Real>(0.0273L);
+  const Real t3464 = carried[493] * constant<Real>(0.0273L);
 
   // hind_left_hip: acceleration
-  const Real t3465 = carried[486] + carried[491];
+  const Real t3465 = carried[394] + carried[399];
 
   // hind_left_hip: wrench
   const Real t3466 = constant<Real>(0.0052L) * t3465;
   const Real t3467 = t3464 - t3466;
 
   // hind_left_hip: acceleration
-  const Real t3468 = carried[379] + carried[462];
-  carried[440] = t3468;
+  const Real t3468 = carried[377] + carried[483];
+  carried[451] = t3468;
 
   // hind_left_hip: wrench
   const Real t3469 = constant<Real>(0.0013L) * t3468;
   const Real t3470 = t3469 + t3467;
-  const Real t3471 = carried[474] * constant<Real>(1.3L);
+  const Real t3471 = carried[495] * constant<Real>(1.3L);
   const Real t3472 = t3471 + t3470;
 
   // hind_left_thigh: joint force
   const Real t3473 = t3472 + t3463;
-  carried[441] = t3473;
+  carried[452] = t3473;
 
   // hind_left_hip: joint force
   const Real t3474 = t3473 + t3460;
 
   // front_right_thigh: joint force
-  const Real t3475 = carried[536] * carried[8];
-  const Real t3476 = carried[539] * carried[9];
+  const Real t3475 = carried[548] * carried[29];
+  const Real t3476 = carried[551] * carried[30];
   const Real t3477 = t3475 + t3476;
-  carried[444] = t3477;
+  carried[454] = t3477;
 
   // front_right_hip: wrench
-  const Real t3478 = carried[517] * constant<Real>(0.0273L);
+  const Real t3478 = carried[529] * constant<Real>(0.0273L);
 
   // front_right_hip: acceleration
-  const Real t3479 = carried[550] + carried[544];
+  const Real t3479 = carried[562] + carried[556];
 
   // front_right_hip: wrench
   const Real t3480 = constant<Real>(0.0052L) * t3479;
   const Real t3481 = t3480 - t3478;
 
   // front_right_hip: acceleration
-  const Real t3482 = carried[541] - carried[508];
-  carried[445] = t3482;
+  const Real t3482 = carried[553] - carried[520];
+  carried[456] = t3482;
 
   // front_right_hip: wrench
   const Real t3483 = constant<Real>(0.0013L) * t3482;
   const Real t3484 = t3483 + t3481;
-  const Real t3485 = constant<Real>(1.3L) * carried[518];
+  const Real t3485 = constant<Real>(1.3L) * carried[530];
   const Real t3486 = t3484 + t3485;
 
   // front_right_thigh: joint force
   const Real t3487 = t3486 + t3477;
-  carried[446] = t3487;
+  carried[460] = t3487;
 
   // front_right_hip: joint force
   const Real t3488 = t3487 + t3474;
 
   // front_left_thigh: joint force
-  const Real t3489 = carried[2] * carried[460];
-  const Real t3490 = carried[475] * carried[3];
+  const Real t3489 = carried[23] * carried[481];
+  const Real t3490 = carried[496] * carried[24];
   const Real t3491 = t3489 + t3490;
-  carried[447] = t3491;
+  carried[461] = t3491;
 
   // front_left_hip: wrench
-  const Real t3492 = carried[269] * constant<Real>(0.0273L);
+  const Real t3492 = carried[290] * constant<Real>(0.0273L);
 
   // front_left_hip: acceleration
-  const Real t3493 = carried[478] + carried[483];
+  const Real t3493 = carried[499] + carried[504];
 
   // front_left_hip: wrench
   const Real t3494 = t3493 * constant<Real>(0.0052L);
   const Real t3495 = t3494 + t3492;
 
   // front_left_hip: acceleration
-  const Real t3496 = carried[476] - carried[197];
-  carried[448] = t3496;
+  const Real t3496 = carried[497] - carried[218];
+  carried[462] = t3496;
 
   // front_left_hip: wrench
   const Real t3497 = constant<Real>(0.0013L) * t3496;
   const Real t3498 = t3497 + t3495;
-  const Real t3499 = carried[271] * constant<Real>(1.3L);
+  const Real t3499 = carried[292] * constant<Real>(1.3L);
   const Real t3500 = t3498 + t3499;
 
   // front_left_thigh: joint force
   const Real t3501 = t3500 + t3491;
-  carried[482] = t3501;
+  carried[465] = t3501;
 
   // front_left_hip: joint force
   const Real t3502 = t3501 + t3488;
 
   // reduced forces
   const Real t3503 = t3439 + t3502;
-  const Real t3504 = carried[399] * carried[42];
+  const Real t3504 = carried[420] * carried[63];
   const Real t3505 = t3504 - t3503;
-  const Real t3506 = carried[44] * carried[403];
+  const Real t3506 = carried[65] * carried[424];
   const Real t3507 = t3505 + t3506;
-  const Real t3508 = carried[155] * carried[136];
+  const Real t3508 = carried[176] * carried[49];
   const Real t3509 = t3507 + t3508;
-  const Real t3510 = carried[157] * carried[137];
+  const Real t3510 = carried[178] * carried[59];
   const Real t3511 = t3510 + t3509;
-  const Real t3512 = carried[211] * carried[230];
+  const Real t3512 = carried[2] * carried[251];
   const Real t3513 = t3511 + t3512;
-  const Real t3514 = carried[232] * carried[212];
+  const Real t3514 = carried[253] * carried[5];
   const Real t3515 = t3513 + t3514;
-  const Real t3516 = carried[321] * carried[458];
+  const Real t3516 = carried[342] * carried[396];
   const Real t3517 = t3515 + t3516;
-  const Real t3518 = carried[323] * carried[459];
+  const Real t3518 = carried[344] * carried[397];
   const Real t3519 = t3517 + t3518;
-  carried[496] = t3519;
+  carried[466] = t3519;
 
   // hind_left_hip: joint force
-  const Real t3520 = t3375 * carried[12];
-  carried[497] = t3520;
+  const Real t3520 = t3375 * carried[33];
+  carried[467] = t3520;
 
   // hind_right_hip: joint force
-  const Real t3521 = t3423 * carried[18];
-  carried[501] = t3521;
+  const Real t3521 = t3423 * carried[39];
+  carried[468] = t3521;
 
   // hind_left_hip: joint force
   const Real t3522 = t3520 + t3521;
 
   // front_right_hip: joint force
-  const Real t3523 = carried[6] * t3327;
-  carried[505] = t3523;
+  const Real t3523 = carried[27] * t3327;
+  carried[469] = t3523;
   const Real t3524 = t3522 + t3523;
 
   // front_left_hip: joint force
-  const Real t3525 = t3290 * carried[0];
-  carried[506] = t3525;
+  const Real t3525 = t3290 * carried[21];
+  carried[474] = t3525;
   const Real t3526 = t3525 + t3524;
 
   // reduced mass matrix
-  const Real t3527 = carried[121] * carried[42];
+  const Real t3527 = carried[142] * carried[63];
   const Real t3528 = t3526 + t3527;
-  const Real t3529 = carried[44] * carried[119];
+  const Real t3529 = carried[65] * carried[140];
   const Real t3530 = t3528 + t3529;
-  const Real t3531 = carried[155] * carried[207];
+  const Real t3531 = carried[176] * carried[228];
   const Real t3532 = t3530 + t3531;
-  const Real t3533 = carried[157] * carried[205];
+  const Real t3533 = carried[178] * carried[226];
   const Real t3534 = t3533 + t3532;
-  const Real t3535 = carried[230] * carried[296];
+  const Real t3535 = carried[251] * carried[317];
   const Real t3536 = t3535 + t3534;
-  const Real t3537 = carried[294] * carried[232];
+  const Real t3537 = carried[315] * carried[253];
   const Real t3538 = t3537 + t3536;
-  const Real t3539 = carried[99] * carried[321];
+  const Real t3539 = carried[120] * carried[342];
   const Real t3540 = t3539 + t3538;
-  const Real t3541 = carried[323] * carried[381];
+  const Real t3541 = carried[344] * carried[402];
   const Real t3542 = t3540 + t3541;
-  const Real t3543 = carried[574] * carried[42];
+  const Real t3543 = carried[586] * carried[63];
   const Real t3544 = t3543 + t3292;
-  const Real t3545 = carried[44] * carried[566];
+  const Real t3545 = carried[65] * carried[578];
   const Real t3546 = t3545 + t3544;
-  carried[507] = t3546;
-  const Real t3547 = carried[27] * t3546;
+  carried[490] = t3546;
+  const Real t3547 = carried[48] * t3546;
   const Real t3548 = t3542 + t3547;
-  const Real t3549 = carried[299] * carried[42];
-  const Real t3550 = carried[469] + t3549;
-  const Real t3551 = carried[44] * carried[112];
+  const Real t3549 = carried[320] * carried[63];
+  const Real t3550 = carried[479] + t3549;
+  const Real t3551 = carried[65] * carried[133];
   const Real t3552 = t3550 + t3551;
-  carried[509] = t3552;
-  const Real t3553 = t3552 * carried[35];
+  carried[491] = t3552;
+  const Real t3553 = t3552 * carried[56];
   const Real t3554 = t3553 - t3548;
-  const Real t3555 = constant<Real>(0.05178848L) * carried[43];
-  const Real t3556 = carried[112] * carried[42];
-  const Real t3557 = t3556 - carried[463];
+  const Real t3555 = constant<Real>(0.05178848L) * carried[64];
+  const Real t3556 = carried[133] * carried[63];
+  const Real t3557 = t3556 - carried[403];
   const Real t3558 = t3555 + t3557;
-  carried[510] = t3558;
-  const Real t3559 = carried[40] * t3558;
+  carried[503] = t3558;
+  const Real t3559 = carried[61] * t3558;
   const Real t3560 = t3559 + t3554;
-  const Real t3561 = carried[155] * carried[582];
+  const Real t3561 = carried[176] * carried[594];
   const Real t3562 = t3329 + t3561;
-  const Real t3563 = carried[576] * carried[157];
+  const Real t3563 = carried[588] * carried[178];
   const Real t3564 = t3563 + t3562;
-  carried[511] = t3564;
-  const Real t3565 = t3564 * carried[140];
+  carried[506] = t3564;
+  const Real t3565 = t3564 * carried[161];
   const Real t3566 = t3560 - t3565;
-  const Real t3567 = carried[155] * carried[38];
+  const Real t3567 = carried[176] * carried[45];
   const Real t3568 = t3339 + t3567;
-  const Real t3569 = carried[157] * carried[28];
+  const Real t3569 = carried[178] * carried[11];
   const Real t3570 = t3568 + t3569;
-  carried[512] = t3570;
-  const Real t3571 = carried[148] * t3570;
+  carried[507] = t3570;
+  const Real t3571 = carried[169] * t3570;
   const Real t3572 = t3571 + t3566;
-  carried[513] = t3572;
-  const Real t3573 = carried[156] * constant<Real>(0.05178848L);
-  const Real t3574 = carried[155] * carried[28];
+  carried[508] = t3572;
+  const Real t3573 = carried[177] * constant<Real>(0.05178848L);
+  const Real t3574 = carried[176] * carried[11];
   const Real t3575 = t3574 - t3334;
   const Real t3576 = t3575 + t3573;
-  carried[514] = t3576;
+  carried[509] = t3576;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_13(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced mass matrix
-  const Real t3577 = carried[153] * carried[514];
-  const Real t3578 = carried[513] + t3577;
-  const Real t3579 = carried[291] * carried[230];
-  const Real t3580 = carried[391] + t3579;
-  const Real t3581 = carried[198] * carried[232];
+  const Real t3577 = carried[174] * carried[509];
+  const Real t3578 = carried[508] + t3577;
+  const Real t3579 = carried[220] * carried[251];
+  const Real t3580 = carried[407] + t3579;
+  const Real t3581 = carried[172] * carried[253];
   const Real t3582 = t3581 + t3580;
-  carried[43] = t3582;
-  const Real t3583 = carried[215] * t3582;
+  carried[64] = t3582;
+  const Real t3583 = carried[236] * t3582;
   const Real t3584 = t3578 - t3583;
-  const Real t3585 = carried[230] * carried[504];
-  const Real t3586 = t3585 + carried[417];
-  const Real t3587 = carried[503] * carried[232];
+  const Real t3585 = carried[251] * carried[494];
+  const Real t3586 = t3585 + carried[411];
+  const Real t3587 = carried[487] * carried[253];
   const Real t3588 = t3587 + t3586;
-  carried[138] = t3588;
-  const Real t3589 = t3588 * carried[223];
+  carried[159] = t3588;
+  const Real t3589 = t3588 * carried[244];
   const Real t3590 = t3589 + t3584;
-  const Real t3591 = carried[231] * constant<Real>(0.05178848L);
-  const Real t3592 = carried[230] * carried[503];
-  const Real t3593 = t3592 - carried[414];
+  const Real t3591 = carried[252] * constant<Real>(0.05178848L);
+  const Real t3592 = carried[251] * carried[487];
+  const Real t3593 = t3592 - carried[408];
   const Real t3594 = t3591 + t3593;
-  carried[154] = t3594;
-  const Real t3595 = t3594 * carried[228];
+  carried[175] = t3594;
+  const Real t3595 = t3594 * carried[249];
   const Real t3596 = t3595 + t3590;
-  const Real t3597 = carried[321] * carried[355];
-  const Real t3598 = t3597 + carried[425];
-  const Real t3599 = carried[351] * carried[323];
+  const Real t3597 = carried[342] * carried[232];
+  const Real t3598 = t3597 + carried[441];
+  const Real t3599 = carried[13] * carried[344];
   const Real t3600 = t3599 + t3598;
-  carried[156] = t3600;
-  const Real t3601 = carried[306] * t3600;
+  carried[177] = t3600;
+  const Real t3601 = carried[327] * t3600;
   const Real t3602 = t3596 - t3601;
-  const Real t3603 = carried[456] * carried[321];
-  const Real t3604 = carried[430] + t3603;
-  const Real t3605 = carried[323] * carried[454];
+  const Real t3603 = carried[376] * carried[342];
+  const Real t3604 = carried[445] + t3603;
+  const Real t3605 = carried[344] * carried[373];
   const Real t3606 = t3605 + t3604;
-  carried[213] = t3606;
-  const Real t3607 = carried[314] * t3606;
+  carried[222] = t3606;
+  const Real t3607 = carried[335] * t3606;
   const Real t3608 = t3602 + t3607;
-  const Real t3609 = constant<Real>(0.05178848L) * carried[322];
-  const Real t3610 = carried[321] * carried[454];
-  const Real t3611 = t3610 - carried[426];
+  const Real t3609 = constant<Real>(0.05178848L) * carried[343];
+  const Real t3610 = carried[342] * carried[373];
+  const Real t3611 = t3610 - carried[442];
   const Real t3612 = t3609 + t3611;
-  carried[229] = t3612;
-  const Real t3613 = t3612 * carried[319];
+  carried[233] = t3612;
+  const Real t3613 = t3612 * carried[340];
   const Real t3614 = t3608 + t3613;
 
   // hind_left_thigh: joint force
-  const Real t3615 = carried[15] * carried[389];
-  const Real t3616 = carried[14] * carried[388];
+  const Real t3615 = carried[36] * carried[404];
+  const Real t3616 = carried[35] * carried[374];
   const Real t3617 = t3615 + t3616;
-  carried[292] = t3617;
+  carried[234] = t3617;
   const Real t3618 = t3617 + constant<Real>(1.3L);
-  carried[302] = t3618;
+  carried[250] = t3618;
 
   // hind_right_thigh: joint force
-  const Real t3619 = carried[20] * carried[422];
-  const Real t3620 = carried[423] * carried[21];
+  const Real t3619 = carried[41] * carried[438];
+  const Real t3620 = carried[439] * carried[42];
   const Real t3621 = t3619 + t3620;
-  carried[320] = t3621;
+  carried[323] = t3621;
 
   // hind_right_hip: joint force
   const Real t3622 = t3621 + constant<Real>(12.85L);
@@ -8375,352 +8389,352 @@ template <class Real>
   const Real t3623 = t3618 + t3622;
 
   // front_right_thigh: joint force
-  const Real t3624 = carried[307] * carried[8];
-  const Real t3625 = carried[313] * carried[9];
+  const Real t3624 = carried[105] * carried[29];
+  const Real t3625 = carried[135] * carried[30];
   const Real t3626 = t3624 + t3625;
-  carried[356] = t3626;
+  carried[341] = t3626;
   const Real t3627 = constant<Real>(1.3L) + t3626;
-  carried[374] = t3627;
+  carried[372] = t3627;
 
   // front_right_hip: joint force
   const Real t3628 = t3627 + t3623;
 
   // front_left_thigh: joint force
-  const Real t3629 = carried[3] * carried[114];
-  const Real t3630 = carried[2] * carried[84];
+  const Real t3629 = carried[24] * carried[16];
+  const Real t3630 = carried[23] * carried[4];
   const Real t3631 = t3629 + t3630;
-  carried[377] = t3631;
+  carried[375] = t3631;
   const Real t3632 = t3631 + constant<Real>(1.3L);
-  carried[396] = t3632;
+  carried[417] = t3632;
 
   // front_left_hip: joint force
   const Real t3633 = t3628 + t3632;
 
   // reduced mass matrix
-  const Real t3634 = carried[469] * carried[42];
+  const Real t3634 = carried[479] * carried[63];
   const Real t3635 = t3634 + t3633;
-  const Real t3636 = carried[44] * carried[463];
+  const Real t3636 = carried[65] * carried[403];
   const Real t3637 = t3635 - t3636;
-  const Real t3638 = carried[155] * carried[376];
+  const Real t3638 = carried[176] * carried[328];
   const Real t3639 = t3638 + t3637;
-  const Real t3640 = carried[157] * carried[326];
+  const Real t3640 = carried[178] * carried[322];
   const Real t3641 = t3639 - t3640;
-  const Real t3642 = carried[230] * carried[417];
+  const Real t3642 = carried[251] * carried[411];
   const Real t3643 = t3642 + t3641;
-  const Real t3644 = carried[414] * carried[232];
+  const Real t3644 = carried[408] * carried[253];
   const Real t3645 = t3643 - t3644;
-  const Real t3646 = carried[430] * carried[321];
+  const Real t3646 = carried[445] * carried[342];
   const Real t3647 = t3645 + t3646;
-  const Real t3648 = carried[323] * carried[426];
+  const Real t3648 = carried[344] * carried[442];
   const Real t3649 = t3647 - t3648;
-  const Real t3650 = carried[509] * carried[42];
+  const Real t3650 = carried[491] * carried[63];
   const Real t3651 = t3650 + t3649;
-  const Real t3652 = carried[44] * carried[510];
+  const Real t3652 = carried[65] * carried[503];
   const Real t3653 = t3652 + t3651;
-  const Real t3654 = carried[155] * carried[512];
+  const Real t3654 = carried[176] * carried[507];
   const Real t3655 = t3654 + t3653;
-  const Real t3656 = carried[157] * carried[514];
+  const Real t3656 = carried[178] * carried[509];
   const Real t3657 = t3655 + t3656;
-  const Real t3658 = t3588 * carried[230];
+  const Real t3658 = t3588 * carried[251];
   const Real t3659 = t3657 + t3658;
-  const Real t3660 = t3594 * carried[232];
+  const Real t3660 = t3594 * carried[253];
   const Real t3661 = t3659 + t3660;
-  const Real t3662 = carried[321] * t3606;
+  const Real t3662 = carried[342] * t3606;
   const Real t3663 = t3662 + t3661;
-  const Real t3664 = carried[323] * t3612;
+  const Real t3664 = carried[344] * t3612;
   const Real t3665 = t3664 + t3663;
 
   // reduced accelerations
   const Real t3666 = constant<Real>(1.0L) / t3665;
-  carried[429] = t3666;
+  carried[425] = t3666;
   const Real t3667 = t3666 * t3614;
-  carried[432] = t3667;
-  const Real t3668 = t3667 * carried[496];
-  const Real t3669 = carried[461] - t3668;
-  carried[460] = t3669;
+  carried[450] = t3667;
+  const Real t3668 = t3667 * carried[466];
+  const Real t3669 = carried[398] - t3668;
+  carried[453] = t3669;
 
   // hind_right_hip: wrench
-  const Real t3670 = constant<Real>(1.3L) * carried[18];
+  const Real t3670 = constant<Real>(1.3L) * carried[39];
 
   // hind_right_thigh: joint force
-  const Real t3671 = carried[368] - t3670;
+  const Real t3671 = carried[389] - t3670;
 
   // hind_right_hip: joint force
-  const Real t3672 = t3671 * carried[18];
+  const Real t3672 = t3671 * carried[39];
 
   // hind_right_thigh: joint force
-  const Real t3673 = constant<Real>(3.51L) * carried[19];
+  const Real t3673 = constant<Real>(3.51L) * carried[40];
 
   // hind_right_hip: joint force
-  const Real t3674 = t3673 * carried[19];
+  const Real t3674 = t3673 * carried[40];
   const Real t3675 = t3674 - t3672;
-  carried[464] = t3675;
+  carried[475] = t3675;
   const Real t3676 = constant<Real>(11.55L) + t3675;
 
   // hind_left_hip: wrench
-  const Real t3677 = constant<Real>(1.3L) * carried[12];
+  const Real t3677 = constant<Real>(1.3L) * carried[33];
 
   // hind_left_thigh: joint force
-  const Real t3678 = carried[288] - t3677;
+  const Real t3678 = carried[309] - t3677;
 
   // hind_left_hip: joint force
-  const Real t3679 = t3678 * carried[12];
+  const Real t3679 = t3678 * carried[33];
 
   // hind_left_thigh: joint force
-  const Real t3680 = carried[13] * constant<Real>(3.51L);
+  const Real t3680 = carried[34] * constant<Real>(3.51L);
 
   // hind_left_hip: joint force
-  const Real t3681 = t3680 * carried[13];
+  const Real t3681 = t3680 * carried[34];
   const Real t3682 = t3681 - t3679;
-  carried[465] = t3682;
+  carried[480] = t3682;
   const Real t3683 = t3676 + t3682;
 
   // front_right_hip: wrench
-  const Real t3684 = carried[6] * constant<Real>(1.3L);
+  const Real t3684 = carried[27] * constant<Real>(1.3L);
 
   // front_right_thigh: joint force
-  const Real t3685 = carried[108] - t3684;
+  const Real t3685 = carried[129] - t3684;
 
   // front_right_hip: joint force
-  const Real t3686 = carried[6] * t3685;
+  const Real t3686 = carried[27] * t3685;
 
   // front_right_thigh: joint force
-  const Real t3687 = constant<Real>(3.51L) * carried[7];
+  const Real t3687 = constant<Real>(3.51L) * carried[28];
 
   // front_right_hip: joint force
-  const Real t3688 = t3687 * carried[7];
+  const Real t3688 = t3687 * carried[28];
   const Real t3689 = t3688 - t3686;
-  carried[470] = t3689;
+  carried[481] = t3689;
   const Real t3690 = t3689 + t3683;
 
   // front_left_hip: wrench
-  const Real t3691 = constant<Real>(1.3L) * carried[0];
+  const Real t3691 = constant<Real>(1.3L) * carried[21];
 
   // front_left_thigh: joint force
-  const Real t3692 = carried[132] - t3691;
+  const Real t3692 = carried[153] - t3691;
 
   // front_left_hip: joint force
-  const Real t3693 = t3692 * carried[0];
+  const Real t3693 = t3692 * carried[21];
 
   // front_left_thigh: joint force
-  const Real t3694 = constant<Real>(3.51L) * carried[1];
+  const Real t3694 = constant<Real>(3.51L) * carried[22];
 
   // front_left_hip: joint force
-  const Real t3695 = t3694 * carried[1];
+  const Real t3695 = t3694 * carried[22];
   const Real t3696 = t3695 - t3693;
-  carried[475] = t3696;
+  carried[485] = t3696;
   const Real t3697 = t3690 + t3696;
 
   // reduced mass matrix
-  const Real t3698 = carried[134] * carried[27];
+  const Real t3698 = carried[155] * carried[48];
   const Real t3699 = t3697 - t3698;
-  const Real t3700 = carried[35] * carried[121];
+  const Real t3700 = carried[56] * carried[142];
   const Real t3701 = t3699 - t3700;
-  const Real t3702 = carried[40] * carried[119];
+  const Real t3702 = carried[61] * carried[140];
   const Real t3703 = t3701 - t3702;
-  const Real t3704 = carried[113] * carried[140];
+  const Real t3704 = carried[134] * carried[161];
   const Real t3705 = t3703 - t3704;
-  const Real t3706 = carried[148] * carried[207];
+  const Real t3706 = carried[169] * carried[228];
   const Real t3707 = t3705 - t3706;
-  const Real t3708 = carried[153] * carried[205];
+  const Real t3708 = carried[174] * carried[226];
   const Real t3709 = t3707 - t3708;
-  const Real t3710 = carried[290] * carried[215];
+  const Real t3710 = carried[311] * carried[236];
   const Real t3711 = t3709 - t3710;
-  const Real t3712 = carried[296] * carried[223];
+  const Real t3712 = carried[317] * carried[244];
   const Real t3713 = t3711 - t3712;
-  const Real t3714 = carried[294] * carried[228];
+  const Real t3714 = carried[315] * carried[249];
   const Real t3715 = t3713 - t3714;
-  const Real t3716 = carried[371] * carried[306];
+  const Real t3716 = carried[392] * carried[327];
   const Real t3717 = t3715 - t3716;
-  const Real t3718 = carried[314] * carried[99];
+  const Real t3718 = carried[335] * carried[120];
   const Real t3719 = t3717 - t3718;
-  const Real t3720 = carried[381] * carried[319];
+  const Real t3720 = carried[402] * carried[340];
   const Real t3721 = t3719 - t3720;
-  const Real t3722 = carried[95] * carried[27];
-  const Real t3723 = carried[134] - t3722;
-  const Real t3724 = carried[574] * carried[35];
+  const Real t3722 = carried[116] * carried[48];
+  const Real t3723 = carried[155] - t3722;
+  const Real t3724 = carried[586] * carried[56];
   const Real t3725 = t3724 + t3723;
-  const Real t3726 = carried[40] * carried[566];
+  const Real t3726 = carried[61] * carried[578];
   const Real t3727 = t3725 + t3726;
-  carried[490] = t3727;
-  const Real t3728 = t3727 * carried[27];
+  carried[486] = t3727;
+  const Real t3728 = t3727 * carried[48];
   const Real t3729 = t3721 - t3728;
-  const Real t3730 = carried[40] * carried[112];
-  const Real t3731 = carried[574] * carried[27];
-  const Real t3732 = t3731 + carried[121];
-  const Real t3733 = carried[35] * carried[299];
+  const Real t3730 = carried[61] * carried[133];
+  const Real t3731 = carried[586] * carried[48];
+  const Real t3732 = t3731 + carried[142];
+  const Real t3733 = carried[56] * carried[320];
   const Real t3734 = t3733 - t3732;
   const Real t3735 = t3730 + t3734;
-  carried[493] = t3735;
-  const Real t3736 = t3735 * carried[35];
+  carried[488] = t3735;
+  const Real t3736 = t3735 * carried[56];
   const Real t3737 = t3736 + t3729;
-  const Real t3738 = carried[39] * constant<Real>(0.05178848L);
-  const Real t3739 = carried[112] * carried[35];
-  const Real t3740 = carried[566] * carried[27];
-  const Real t3741 = carried[119] + t3740;
+  const Real t3738 = carried[60] * constant<Real>(0.05178848L);
+  const Real t3739 = carried[133] * carried[56];
+  const Real t3740 = carried[578] * carried[48];
+  const Real t3741 = carried[140] + t3740;
   const Real t3742 = t3739 - t3741;
   const Real t3743 = t3738 + t3742;
-  carried[494] = t3743;
-  const Real t3744 = carried[40] * t3743;
+  carried[489] = t3743;
+  const Real t3744 = carried[61] * t3743;
   const Real t3745 = t3737 + t3744;
-  const Real t3746 = carried[24] * carried[140];
-  const Real t3747 = carried[113] - t3746;
-  const Real t3748 = carried[148] * carried[582];
+  const Real t3746 = carried[9] * carried[161];
+  const Real t3747 = carried[134] - t3746;
+  const Real t3748 = carried[169] * carried[594];
   const Real t3749 = t3747 + t3748;
-  const Real t3750 = carried[576] * carried[153];
+  const Real t3750 = carried[588] * carried[174];
   const Real t3751 = t3750 + t3749;
-  carried[495] = t3751;
-  const Real t3752 = t3751 * carried[140];
+  carried[496] = t3751;
+  const Real t3752 = t3751 * carried[161];
   const Real t3753 = t3745 - t3752;
-  const Real t3754 = carried[153] * carried[28];
-  const Real t3755 = carried[582] * carried[140];
-  const Real t3756 = t3755 + carried[207];
-  const Real t3757 = carried[148] * carried[38];
+  const Real t3754 = carried[174] * carried[11];
+  const Real t3755 = carried[594] * carried[161];
+  const Real t3756 = t3755 + carried[228];
+  const Real t3757 = carried[169] * carried[45];
   const Real t3758 = t3757 - t3756;
   const Real t3759 = t3758 + t3754;
-  carried[515] = t3759;
-  const Real t3760 = t3759 * carried[148];
+  carried[513] = t3759;
+  const Real t3760 = t3759 * carried[169];
   const Real t3761 = t3760 + t3753;
-  const Real t3762 = constant<Real>(0.05178848L) * carried[152];
-  const Real t3763 = carried[148] * carried[28];
-  const Real t3764 = carried[576] * carried[140];
-  const Real t3765 = t3764 + carried[205];
+  const Real t3762 = constant<Real>(0.05178848L) * carried[173];
+  const Real t3763 = carried[169] * carried[11];
+  const Real t3764 = carried[588] * carried[161];
+  const Real t3765 = t3764 + carried[226];
   const Real t3766 = t3763 - t3765;
   const Real t3767 = t3766 + t3762;
-  carried[521] = t3767;
-  const Real t3768 = t3767 * carried[153];
+  carried[515] = t3767;
+  const Real t3768 = t3767 * carried[174];
   const Real t3769 = t3761 + t3768;
-  const Real t3770 = carried[215] * carried[466];
-  const Real t3771 = carried[290] - t3770;
-  const Real t3772 = carried[291] * carried[223];
+  const Real t3770 = carried[236] * carried[472];
+  const Real t3771 = carried[311] - t3770;
+  const Real t3772 = carried[220] * carried[244];
   const Real t3773 = t3771 + t3772;
-  const Real t3774 = carried[198] * carried[228];
+  const Real t3774 = carried[172] * carried[249];
   const Real t3775 = t3773 + t3774;
-  carried[522] = t3775;
-  const Real t3776 = carried[215] * t3775;
+  carried[516] = t3775;
+  const Real t3776 = carried[236] * t3775;
   const Real t3777 = t3769 - t3776;
-  const Real t3778 = carried[503] * carried[228];
-  const Real t3779 = carried[291] * carried[215];
-  const Real t3780 = t3779 + carried[296];
-  const Real t3781 = carried[223] * carried[504];
+  const Real t3778 = carried[487] * carried[249];
+  const Real t3779 = carried[220] * carried[236];
+  const Real t3780 = t3779 + carried[317];
+  const Real t3781 = carried[244] * carried[494];
   const Real t3782 = t3781 - t3780;
   const Real t3783 = t3782 + t3778;
-  carried[523] = t3783;
-  const Real t3784 = t3783 * carried[223];
+  carried[517] = t3783;
+  const Real t3784 = t3783 * carried[244];
   const Real t3785 = t3777 + t3784;
-  const Real t3786 = carried[227] * constant<Real>(0.05178848L);
-  const Real t3787 = carried[503] * carried[223];
-  const Real t3788 = carried[198] * carried[215];
-  const Real t3789 = carried[294] + t3788;
+  const Real t3786 = carried[248] * constant<Real>(0.05178848L);
+  const Real t3787 = carried[487] * carried[244];
+  const Real t3788 = carried[172] * carried[236];
+  const Real t3789 = carried[315] + t3788;
   const Real t3790 = t3787 - t3789;
   const Real t3791 = t3786 + t3790;
-  carried[524] = t3791;
-  const Real t3792 = t3791 * carried[228];
+  carried[518] = t3791;
+  const Real t3792 = t3791 * carried[249];
   const Real t3793 = t3792 + t3785;
-  const Real t3794 = carried[382] * carried[306];
-  const Real t3795 = carried[371] - t3794;
-  const Real t3796 = carried[314] * carried[355];
+  const Real t3794 = carried[370] * carried[327];
+  const Real t3795 = carried[392] - t3794;
+  const Real t3796 = carried[335] * carried[232];
   const Real t3797 = t3796 + t3795;
-  const Real t3798 = carried[351] * carried[319];
+  const Real t3798 = carried[13] * carried[340];
   const Real t3799 = t3798 + t3797;
-  carried[525] = t3799;
-  const Real t3800 = carried[306] * t3799;
+  carried[519] = t3799;
+  const Real t3800 = carried[327] * t3799;
   const Real t3801 = t3793 - t3800;
-  const Real t3802 = carried[454] * carried[319];
-  const Real t3803 = carried[306] * carried[355];
-  const Real t3804 = carried[99] + t3803;
-  const Real t3805 = carried[456] * carried[314];
+  const Real t3802 = carried[373] * carried[340];
+  const Real t3803 = carried[327] * carried[232];
+  const Real t3804 = carried[120] + t3803;
+  const Real t3805 = carried[376] * carried[335];
   const Real t3806 = t3805 - t3804;
   const Real t3807 = t3806 + t3802;
-  carried[526] = t3807;
-  const Real t3808 = t3807 * carried[314];
+  carried[521] = t3807;
+  const Real t3808 = t3807 * carried[335];
   const Real t3809 = t3808 + t3801;
-  const Real t3810 = carried[318] * constant<Real>(0.05178848L);
-  const Real t3811 = carried[314] * carried[454];
-  const Real t3812 = carried[351] * carried[306];
-  const Real t3813 = t3812 + carried[381];
+  const Real t3810 = carried[339] * constant<Real>(0.05178848L);
+  const Real t3811 = carried[335] * carried[373];
+  const Real t3812 = carried[13] * carried[327];
+  const Real t3813 = t3812 + carried[402];
   const Real t3814 = t3811 - t3813;
   const Real t3815 = t3814 + t3810;
-  carried[527] = t3815;
-  const Real t3816 = t3815 * carried[319];
+  carried[522] = t3815;
+  const Real t3816 = t3815 * carried[340];
   const Real t3817 = t3816 + t3809;
 
   // reduced accelerations
   const Real t3818 = t3667 * t3614;
   const Real t3819 = t3817 - t3818;
   const Real t3820 = constant<Real>(1.0L) / t3819;
-  carried[528] = t3820;
+  carried[523] = t3820;
 
   // hind_right_hip: joint force
-  const Real t3821 = t3671 * carried[19];
-  const Real t3822 = t3673 * carried[18];
+  const Real t3821 = t3671 * carried[40];
+  const Real t3822 = t3673 * carried[39];
   const Real t3823 = t3822 + t3821;
-  carried[529] = t3823;
+  carried[524] = t3823;
 
   // hind_left_hip: joint force
-  const Real t3824 = carried[13] * t3678;
-  const Real t3825 = t3680 * carried[12];
+  const Real t3824 = carried[34] * t3678;
+  const Real t3825 = t3680 * carried[33];
   const Real t3826 = t3825 + t3824;
-  carried[530] = t3826;
+  carried[525] = t3826;
   const Real t3827 = t3823 + t3826;
 
   // front_right_hip: joint force
-  const Real t3828 = t3685 * carried[7];
-  const Real t3829 = carried[6] * t3687;
+  const Real t3828 = t3685 * carried[28];
+  const Real t3829 = carried[27] * t3687;
   const Real t3830 = t3828 + t3829;
-  carried[531] = t3830;
+  carried[526] = t3830;
   const Real t3831 = t3830 + t3827;
 
   // front_left_hip: joint force
-  const Real t3832 = t3692 * carried[1];
-  const Real t3833 = t3694 * carried[0];
+  const Real t3832 = t3692 * carried[22];
+  const Real t3833 = t3694 * carried[21];
   const Real t3834 = t3833 + t3832;
-  carried[532] = t3834;
+  carried[527] = t3834;
   const Real t3835 = t3834 + t3831;
   carried[533] = t3835;
 
   // front_left_shank: wrench
-  const Real t3836 = constant<Real>(0.51L) * carried[52];
+  const Real t3836 = constant<Real>(0.51L) * carried[73];
 
   // front_left_shank: joint force
-  const Real t3837 = t3836 * carried[4];
+  const Real t3837 = t3836 * carried[25];
 
   // front_left_shank: wrench
-  const Real t3838 = constant<Real>(0.51L) * carried[50];
+  const Real t3838 = constant<Real>(0.51L) * carried[71];
 
   // front_left_shank: joint force
-  const Real t3839 = t3838 * carried[5];
+  const Real t3839 = t3838 * carried[26];
   const Real t3840 = t3837 + t3839;
   const Real t3841 = constant<Real>(0.012L) * t3840;
-  const Real t3842 = constant<Real>(0.1224L) * carried[0];
+  const Real t3842 = constant<Real>(0.1224L) * carried[21];
   const Real t3843 = t3842 + t3841;
 
   // front_left_shank: wrench
-  const Real t3844 = carried[52] * constant<Real>(0.00042L);
-  const Real t3845 = constant<Real>(0.00252L) * carried[0];
+  const Real t3844 = carried[73] * constant<Real>(0.00042L);
+  const Real t3845 = constant<Real>(0.00252L) * carried[21];
   const Real t3846 = t3844 + t3845;
   carried[534] = t3846;
 
   // front_left_shank: joint force
-  const Real t3847 = t3846 * carried[4];
+  const Real t3847 = t3846 * carried[25];
 
   // front_left_shank: wrench
-  const Real t3848 = carried[50] * constant<Real>(0.00042L);
-  const Real t3849 = carried[0] * constant<Real>(0.0687L);
+  const Real t3848 = carried[71] * constant<Real>(0.00042L);
+  const Real t3849 = carried[21] * constant<Real>(0.0687L);
   carried[535] = t3849;
   const Real t3850 = t3848 + t3849;
 
   // front_left_shank: joint force
-  const Real t3851 = carried[5] * t3850;
+  const Real t3851 = carried[26] * t3850;
   const Real t3852 = t3847 + t3851;
   const Real t3853 = t3852 + t3843;
 
   // front_left_thigh: wrench
-  const Real t3854 = constant<Real>(0.0272L) * carried[46];
+  const Real t3854 = constant<Real>(0.0272L) * carried[67];
   carried[536] = t3854;
 
   // front_left_thigh: wrench
-  const Real t3855 = constant<Real>(0.0884L) * carried[0];
+  const Real t3855 = constant<Real>(0.0884L) * carried[21];
   carried[537] = t3855;
 
   // front_left_thigh: wrench
@@ -8731,24 +8745,24 @@ template <class Real>
   carried[538] = t3857;
 
   // front_left_thigh: joint force
-  const Real t3858 = carried[3] * t3857;
+  const Real t3858 = carried[24] * t3857;
 
   // front_left_shank: joint force
-  const Real t3859 = t3846 * carried[5];
-  const Real t3860 = carried[4] * t3850;
+  const Real t3859 = t3846 * carried[26];
+  const Real t3860 = carried[25] * t3850;
   const Real t3861 = t3859 - t3860;
-  const Real t3862 = carried[4] * t3838;
-  const Real t3863 = t3836 * carried[5];
+  const Real t3862 = carried[25] * t3838;
+  const Real t3863 = t3836 * carried[26];
   const Real t3864 = t3862 - t3863;
   carried[539] = t3864;
   const Real t3865 = t3864 * constant<Real>(0.012L);
   const Real t3866 = t3861 - t3865;
 
   // front_left_thigh: wrench
-  const Real t3867 = constant<Real>(0.0272L) * carried[48];
+  const Real t3867 = constant<Real>(0.0272L) * carried[69];
 
   // front_left_thigh: wrench
-  const Real t3868 = constant<Real>(0.0051L) * carried[0];
+  const Real t3868 = constant<Real>(0.0051L) * carried[21];
 
   // front_left_thigh: wrench
   const Real t3869 = t3867 + t3868;
@@ -8756,460 +8770,460 @@ template <class Real>
 
   // front_left_shank: joint force
   const Real t3870 = t3866 - t3869;
-  carried[542] = t3870;
+  carried[541] = t3870;
 
   // front_left_thigh: joint force
-  const Real t3871 = t3870 * carried[2];
+  const Real t3871 = t3870 * carried[23];
   const Real t3872 = t3871 + t3858;
-  carried[547] = t3872;
+  carried[542] = t3872;
 
   // front_left_thigh: wrench
-  const Real t3873 = constant<Real>(1.7L) * carried[46];
+  const Real t3873 = constant<Real>(1.7L) * carried[67];
 
   // front_left_shank: joint force
   const Real t3874 = t3873 + t3840;
-  carried[548] = t3874;
+  carried[543] = t3874;
 
   // front_left_thigh: joint force
-  const Real t3875 = carried[3] * t3874;
-  carried[549] = t3875;
+  const Real t3875 = carried[24] * t3874;
+  carried[544] = t3875;
 
   // front_left_thigh: wrench
-  const Real t3876 = constant<Real>(1.7L) * carried[48];
-  carried[552] = t3876;
+  const Real t3876 = constant<Real>(1.7L) * carried[69];
+  carried[545] = t3876;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_14(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_left_shank: joint force
-  const Real t3877 = carried[539] - carried[552];
-  carried[39] = t3877;
+  const Real t3877 = carried[539] - carried[545];
+  carried[4] = t3877;
 
   // front_left_thigh: joint force
-  const Real t3878 = carried[2] * t3877;
-  const Real t3879 = carried[549] - t3878;
-  carried[84] = t3879;
+  const Real t3878 = carried[23] * t3877;
+  const Real t3879 = carried[544] - t3878;
+  carried[16] = t3879;
   const Real t3880 = constant<Real>(0.075L) * t3879;
-  const Real t3881 = t3880 + carried[547];
+  const Real t3881 = t3880 + carried[542];
 
   // front_left_hip: wrench
-  const Real t3882 = carried[1] * constant<Real>(0.0273L);
-  carried[108] = t3882;
-  const Real t3883 = constant<Real>(0.0013L) * carried[0];
-  carried[114] = t3883;
+  const Real t3882 = carried[22] * constant<Real>(0.0273L);
+  carried[60] = t3882;
+  const Real t3883 = constant<Real>(0.0013L) * carried[21];
+  carried[105] = t3883;
   const Real t3884 = t3882 - t3883;
 
   // front_left_thigh: joint force
   const Real t3885 = t3884 + t3881;
-  carried[132] = t3885;
+  carried[129] = t3885;
 
   // reduced mass matrix
-  const Real t3886 = t3885 * carried[27];
+  const Real t3886 = t3885 * carried[48];
   const Real t3887 = carried[533] - t3886;
 
   // front_left_shank: joint force
   const Real t3888 = carried[539] * constant<Real>(0.24L);
 
   // front_left_shank: wrench
-  const Real t3889 = carried[52] * constant<Real>(0.0687L);
-  carried[152] = t3889;
-  const Real t3890 = carried[50] * constant<Real>(0.00252L);
-  carried[227] = t3890;
+  const Real t3889 = carried[73] * constant<Real>(0.0687L);
+  carried[135] = t3889;
+  const Real t3890 = carried[71] * constant<Real>(0.00252L);
+  carried[153] = t3890;
   const Real t3891 = t3889 - t3890;
-  carried[231] = t3891;
+  carried[173] = t3891;
 
   // front_left_shank: joint force
   const Real t3892 = t3891 - t3888;
 
   // front_left_thigh: wrench
-  const Real t3893 = constant<Real>(0.0884L) * carried[48];
-  const Real t3894 = constant<Real>(0.0051L) * carried[46];
+  const Real t3893 = constant<Real>(0.0884L) * carried[69];
+  const Real t3894 = constant<Real>(0.0051L) * carried[67];
   const Real t3895 = t3893 + t3894;
-  carried[288] = t3895;
+  carried[248] = t3895;
 
   // front_left_shank: joint force
   const Real t3896 = t3892 + t3895;
-  carried[307] = t3896;
+  carried[252] = t3896;
 
   // reduced mass matrix
-  const Real t3897 = t3896 * carried[35];
+  const Real t3897 = t3896 * carried[56];
   const Real t3898 = t3887 + t3897;
-  const Real t3899 = t3891 * carried[40];
+  const Real t3899 = t3891 * carried[61];
   const Real t3900 = t3899 + t3898;
 
   // front_right_shank: wrench
-  const Real t3901 = constant<Real>(0.51L) * carried[165];
+  const Real t3901 = constant<Real>(0.51L) * carried[186];
 
   // front_right_shank: joint force
-  const Real t3902 = carried[10] * t3901;
+  const Real t3902 = carried[31] * t3901;
 
   // front_right_shank: wrench
-  const Real t3903 = constant<Real>(0.51L) * carried[163];
+  const Real t3903 = constant<Real>(0.51L) * carried[184];
 
   // front_right_shank: joint force
-  const Real t3904 = t3903 * carried[11];
+  const Real t3904 = t3903 * carried[32];
   const Real t3905 = t3902 + t3904;
   const Real t3906 = constant<Real>(0.012L) * t3905;
-  const Real t3907 = constant<Real>(0.1224L) * carried[6];
+  const Real t3907 = constant<Real>(0.1224L) * carried[27];
   const Real t3908 = t3907 - t3906;
 
   // front_right_shank: wrench
-  const Real t3909 = carried[165] * constant<Real>(0.00042L);
-  carried[313] = t3909;
-  const Real t3910 = carried[6] * constant<Real>(0.00252L);
-  carried[318] = t3910;
+  const Real t3909 = carried[186] * constant<Real>(0.00042L);
+  carried[309] = t3909;
+  const Real t3910 = carried[27] * constant<Real>(0.00252L);
+  carried[322] = t3910;
   const Real t3911 = t3910 - t3909;
 
   // front_right_shank: joint force
-  const Real t3912 = carried[10] * t3911;
+  const Real t3912 = carried[31] * t3911;
 
   // front_right_shank: wrench
-  const Real t3913 = carried[163] * constant<Real>(0.00042L);
-  const Real t3914 = carried[6] * constant<Real>(0.0687L);
-  carried[322] = t3914;
+  const Real t3913 = carried[184] * constant<Real>(0.00042L);
+  const Real t3914 = carried[27] * constant<Real>(0.0687L);
+  carried[339] = t3914;
   const Real t3915 = t3914 - t3913;
 
   // front_right_shank: joint force
-  const Real t3916 = carried[11] * t3915;
+  const Real t3916 = carried[32] * t3915;
   const Real t3917 = t3912 + t3916;
   const Real t3918 = t3917 + t3908;
 
   // front_right_thigh: wrench
-  const Real t3919 = carried[159] * constant<Real>(0.0272L);
+  const Real t3919 = carried[180] * constant<Real>(0.0272L);
 
   // front_right_thigh: wrench
-  const Real t3920 = carried[6] * constant<Real>(0.0884L);
+  const Real t3920 = carried[27] * constant<Real>(0.0884L);
 
   // front_right_thigh: wrench
   const Real t3921 = t3919 + t3920;
-  carried[326] = t3921;
+  carried[343] = t3921;
 
   // front_right_shank: joint force
   const Real t3922 = t3921 + t3918;
-  carried[368] = t3922;
+  carried[374] = t3922;
 
   // front_right_thigh: joint force
-  const Real t3923 = t3922 * carried[9];
+  const Real t3923 = t3922 * carried[30];
 
   // front_right_shank: joint force
-  const Real t3924 = carried[11] * t3911;
-  const Real t3925 = carried[10] * t3915;
+  const Real t3924 = carried[32] * t3911;
+  const Real t3925 = carried[31] * t3915;
   const Real t3926 = t3924 - t3925;
-  const Real t3927 = t3903 * carried[10];
-  const Real t3928 = carried[11] * t3901;
+  const Real t3927 = t3903 * carried[31];
+  const Real t3928 = carried[32] * t3901;
   const Real t3929 = t3927 - t3928;
   const Real t3930 = constant<Real>(0.012L) * t3929;
   const Real t3931 = t3926 + t3930;
 
   // front_right_thigh: wrench
-  const Real t3932 = constant<Real>(0.0272L) * carried[161];
-  carried[388] = t3932;
+  const Real t3932 = constant<Real>(0.0272L) * carried[182];
+  carried[389] = t3932;
 
   // front_right_thigh: wrench
-  const Real t3933 = constant<Real>(0.0051L) * carried[6];
-  carried[389] = t3933;
+  const Real t3933 = constant<Real>(0.0051L) * carried[27];
+  carried[398] = t3933;
 
   // front_right_thigh: wrench
   const Real t3934 = t3932 - t3933;
 
   // front_right_shank: joint force
   const Real t3935 = t3931 + t3934;
-  carried[414] = t3935;
+  carried[403] = t3935;
 
   // front_right_thigh: joint force
-  const Real t3936 = carried[8] * t3935;
+  const Real t3936 = carried[29] * t3935;
   const Real t3937 = t3936 + t3923;
 
   // front_right_thigh: wrench
-  const Real t3938 = carried[159] * constant<Real>(1.7L);
+  const Real t3938 = carried[180] * constant<Real>(1.7L);
 
   // front_right_shank: joint force
   const Real t3939 = t3938 + t3905;
-  carried[422] = t3939;
+  carried[404] = t3939;
 
   // front_right_thigh: joint force
-  const Real t3940 = t3939 * carried[9];
+  const Real t3940 = t3939 * carried[30];
 
   // front_right_thigh: wrench
-  const Real t3941 = constant<Real>(1.7L) * carried[161];
+  const Real t3941 = constant<Real>(1.7L) * carried[182];
 
   // front_right_shank: joint force
   const Real t3942 = t3929 - t3941;
-  carried[423] = t3942;
+  carried[408] = t3942;
 
   // front_right_thigh: joint force
-  const Real t3943 = t3942 * carried[8];
+  const Real t3943 = t3942 * carried[29];
   const Real t3944 = t3940 - t3943;
-  carried[426] = t3944;
+  carried[438] = t3944;
   const Real t3945 = t3944 * constant<Real>(0.075L);
   const Real t3946 = t3937 - t3945;
 
   // front_right_hip: wrench
-  const Real t3947 = constant<Real>(0.0273L) * carried[7];
-  const Real t3948 = carried[6] * constant<Real>(0.0013L);
+  const Real t3947 = constant<Real>(0.0273L) * carried[28];
+  const Real t3948 = carried[27] * constant<Real>(0.0013L);
   const Real t3949 = t3947 + t3948;
-  carried[461] = t3949;
+  carried[439] = t3949;
 
   // front_right_thigh: joint force
   const Real t3950 = t3946 - t3949;
-  carried[463] = t3950;
+  carried[442] = t3950;
 
   // reduced mass matrix
-  const Real t3951 = t3950 * carried[140];
+  const Real t3951 = t3950 * carried[161];
   const Real t3952 = t3900 - t3951;
 
   // front_right_shank: joint force
   const Real t3953 = constant<Real>(0.24L) * t3929;
 
   // front_right_shank: wrench
-  const Real t3954 = constant<Real>(0.0687L) * carried[165];
-  carried[513] = t3954;
-  const Real t3955 = constant<Real>(0.00252L) * carried[163];
-  carried[553] = t3955;
+  const Real t3954 = constant<Real>(0.0687L) * carried[186];
+  carried[508] = t3954;
+  const Real t3955 = constant<Real>(0.00252L) * carried[184];
+  carried[546] = t3955;
   const Real t3956 = t3954 - t3955;
-  carried[554] = t3956;
+  carried[547] = t3956;
 
   // front_right_shank: joint force
   const Real t3957 = t3956 - t3953;
 
   // front_right_thigh: wrench
-  const Real t3958 = constant<Real>(0.0884L) * carried[161];
-  const Real t3959 = constant<Real>(0.0051L) * carried[159];
+  const Real t3958 = constant<Real>(0.0884L) * carried[182];
+  const Real t3959 = constant<Real>(0.0051L) * carried[180];
   const Real t3960 = t3958 + t3959;
-  carried[555] = t3960;
+  carried[548] = t3960;
 
   // front_right_shank: joint force
   const Real t3961 = t3957 + t3960;
-  carried[556] = t3961;
+  carried[549] = t3961;
 
   // reduced mass matrix
-  const Real t3962 = carried[148] * t3961;
+  const Real t3962 = carried[169] * t3961;
   const Real t3963 = t3962 + t3952;
-  const Real t3964 = t3956 * carried[153];
+  const Real t3964 = t3956 * carried[174];
   const Real t3965 = t3964 + t3963;
 
   // hind_left_shank: wrench
-  const Real t3966 = constant<Real>(0.51L) * carried[238];
+  const Real t3966 = constant<Real>(0.51L) * carried[259];
 
   // hind_left_shank: joint force
-  const Real t3967 = t3966 * carried[17];
+  const Real t3967 = t3966 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t3968 = constant<Real>(0.51L) * carried[240];
+  const Real t3968 = constant<Real>(0.51L) * carried[261];
 
   // hind_left_shank: joint force
-  const Real t3969 = t3968 * carried[16];
+  const Real t3969 = t3968 * carried[37];
   const Real t3970 = t3967 + t3969;
   const Real t3971 = t3970 * constant<Real>(0.012L);
-  const Real t3972 = constant<Real>(0.1224L) * carried[12];
+  const Real t3972 = constant<Real>(0.1224L) * carried[33];
   const Real t3973 = t3972 + t3971;
 
   // hind_left_shank: wrench
-  const Real t3974 = carried[238] * constant<Real>(0.00042L);
-  const Real t3975 = constant<Real>(0.0687L) * carried[12];
-  carried[561] = t3975;
+  const Real t3974 = carried[259] * constant<Real>(0.00042L);
+  const Real t3975 = constant<Real>(0.0687L) * carried[33];
+  carried[550] = t3975;
   const Real t3976 = t3974 + t3975;
 
   // hind_left_shank: joint force
-  const Real t3977 = carried[17] * t3976;
+  const Real t3977 = carried[38] * t3976;
 
   // hind_left_shank: wrench
-  const Real t3978 = carried[240] * constant<Real>(0.00042L);
-  const Real t3979 = constant<Real>(0.00252L) * carried[12];
+  const Real t3978 = carried[261] * constant<Real>(0.00042L);
+  const Real t3979 = constant<Real>(0.00252L) * carried[33];
   const Real t3980 = t3979 + t3978;
-  carried[567] = t3980;
+  carried[551] = t3980;
 
   // hind_left_shank: joint force
-  const Real t3981 = t3980 * carried[16];
+  const Real t3981 = t3980 * carried[37];
   const Real t3982 = t3977 + t3981;
   const Real t3983 = t3973 + t3982;
 
   // hind_left_thigh: wrench
-  const Real t3984 = carried[234] * constant<Real>(0.0272L);
-  carried[569] = t3984;
+  const Real t3984 = carried[255] * constant<Real>(0.0272L);
+  carried[552] = t3984;
 
   // hind_left_thigh: wrench
-  const Real t3985 = constant<Real>(0.0884L) * carried[12];
-  carried[571] = t3985;
+  const Real t3985 = constant<Real>(0.0884L) * carried[33];
+  carried[554] = t3985;
 
   // hind_left_thigh: wrench
   const Real t3986 = t3985 - t3984;
 
   // hind_left_shank: joint force
   const Real t3987 = t3983 + t3986;
-  carried[572] = t3987;
+  carried[559] = t3987;
 
   // hind_left_thigh: joint force
-  const Real t3988 = carried[15] * t3987;
+  const Real t3988 = carried[36] * t3987;
 
   // hind_left_shank: joint force
-  const Real t3989 = carried[17] * t3980;
-  const Real t3990 = t3976 * carried[16];
+  const Real t3989 = carried[38] * t3980;
+  const Real t3990 = t3976 * carried[37];
   const Real t3991 = t3989 - t3990;
-  const Real t3992 = t3966 * carried[16];
-  const Real t3993 = t3968 * carried[17];
+  const Real t3992 = t3966 * carried[37];
+  const Real t3993 = t3968 * carried[38];
   const Real t3994 = t3992 - t3993;
   const Real t3995 = constant<Real>(0.012L) * t3994;
   const Real t3996 = t3991 - t3995;
 
   // hind_left_thigh: wrench
-  const Real t3997 = constant<Real>(0.0272L) * carried[236];
+  const Real t3997 = constant<Real>(0.0272L) * carried[257];
 
   // hind_left_thigh: wrench
-  const Real t3998 = constant<Real>(0.0051L) * carried[12];
+  const Real t3998 = constant<Real>(0.0051L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t3999 = t3997 + t3998;
-  carried[575] = t3999;
+  carried[560] = t3999;
 
   // hind_left_shank: joint force
   const Real t4000 = t3996 - t3999;
-  carried[577] = t4000;
+  carried[561] = t4000;
 
   // hind_left_thigh: joint force
-  const Real t4001 = carried[14] * t4000;
+  const Real t4001 = carried[35] * t4000;
   const Real t4002 = t3988 + t4001;
 
   // hind_left_thigh: wrench
-  const Real t4003 = constant<Real>(1.7L) * carried[234];
+  const Real t4003 = constant<Real>(1.7L) * carried[255];
 
   // hind_left_shank: joint force
   const Real t4004 = t3970 + t4003;
-  carried[580] = t4004;
+  carried[564] = t4004;
 
   // hind_left_thigh: joint force
-  const Real t4005 = carried[15] * t4004;
+  const Real t4005 = carried[36] * t4004;
 
   // hind_left_thigh: wrench
-  const Real t4006 = constant<Real>(1.7L) * carried[236];
+  const Real t4006 = constant<Real>(1.7L) * carried[257];
 
   // hind_left_shank: joint force
   const Real t4007 = t3994 - t4006;
-  carried[583] = t4007;
+  carried[565] = t4007;
 
   // hind_left_thigh: joint force
-  const Real t4008 = carried[14] * t4007;
+  const Real t4008 = carried[35] * t4007;
   const Real t4009 = t4005 - t4008;
-  carried[584] = t4009;
+  carried[566] = t4009;
   const Real t4010 = constant<Real>(0.075L) * t4009;
   const Real t4011 = t4010 + t4002;
 
   // hind_left_hip: wrench
-  const Real t4012 = carried[13] * constant<Real>(0.0273L);
-  carried[590] = t4012;
-  const Real t4013 = constant<Real>(0.0013L) * carried[12];
-  carried[591] = t4013;
+  const Real t4012 = carried[34] * constant<Real>(0.0273L);
+  carried[567] = t4012;
+  const Real t4013 = constant<Real>(0.0013L) * carried[33];
+  carried[568] = t4013;
   const Real t4014 = t4012 - t4013;
 
   // hind_left_thigh: joint force
   const Real t4015 = t4014 + t4011;
-  carried[592] = t4015;
+  carried[573] = t4015;
 
   // reduced mass matrix
-  const Real t4016 = t4015 * carried[215];
+  const Real t4016 = t4015 * carried[236];
   const Real t4017 = t3965 - t4016;
 
   // hind_left_shank: joint force
   const Real t4018 = constant<Real>(0.24L) * t3994;
 
   // hind_left_shank: wrench
-  const Real t4019 = carried[240] * constant<Real>(0.0687L);
-  carried[593] = t4019;
-  const Real t4020 = carried[238] * constant<Real>(0.00252L);
-  carried[594] = t4020;
+  const Real t4019 = carried[261] * constant<Real>(0.0687L);
+  carried[579] = t4019;
+  const Real t4020 = carried[259] * constant<Real>(0.00252L);
+  carried[581] = t4020;
   const Real t4021 = t4019 - t4020;
-  carried[595] = t4021;
+  carried[583] = t4021;
 
   // hind_left_shank: joint force
   const Real t4022 = t4021 - t4018;
 
   // hind_left_thigh: wrench
-  const Real t4023 = constant<Real>(0.0884L) * carried[236];
-  const Real t4024 = constant<Real>(0.0051L) * carried[234];
+  const Real t4023 = constant<Real>(0.0884L) * carried[257];
+  const Real t4024 = constant<Real>(0.0051L) * carried[255];
   const Real t4025 = t4023 + t4024;
-  carried[596] = t4025;
+  carried[584] = t4025;
 
   // hind_left_shank: joint force
   const Real t4026 = t4022 + t4025;
-  carried[597] = t4026;
+  carried[587] = t4026;
 
   // reduced mass matrix
-  const Real t4027 = carried[223] * t4026;
+  const Real t4027 = carried[244] * t4026;
   const Real t4028 = t4017 + t4027;
-  const Real t4029 = carried[228] * t4021;
+  const Real t4029 = carried[249] * t4021;
   const Real t4030 = t4029 + t4028;
 
   // hind_right_shank: wrench
-  const Real t4031 = constant<Real>(0.51L) * carried[210];
+  const Real t4031 = constant<Real>(0.51L) * carried[231];
 
   // hind_right_shank: joint force
-  const Real t4032 = t4031 * carried[22];
+  const Real t4032 = t4031 * carried[43];
 
   // hind_right_shank: wrench
-  const Real t4033 = constant<Real>(0.51L) * carried[96];
+  const Real t4033 = constant<Real>(0.51L) * carried[117];
 
   // hind_right_shank: joint force
-  const Real t4034 = carried[23] * t4033;
+  const Real t4034 = carried[44] * t4033;
   const Real t4035 = t4032 + t4034;
   const Real t4036 = t4035 * constant<Real>(0.012L);
-  const Real t4037 = constant<Real>(0.1224L) * carried[18];
+  const Real t4037 = constant<Real>(0.1224L) * carried[39];
   const Real t4038 = t4037 - t4036;
 
   // hind_right_shank: wrench
-  const Real t4039 = carried[96] * constant<Real>(0.00042L);
-  const Real t4040 = carried[18] * constant<Real>(0.0687L);
-  carried[598] = t4040;
+  const Real t4039 = carried[117] * constant<Real>(0.00042L);
+  const Real t4040 = carried[39] * constant<Real>(0.0687L);
+  carried[589] = t4040;
   const Real t4041 = t4040 - t4039;
 
   // hind_right_shank: joint force
-  const Real t4042 = carried[23] * t4041;
+  const Real t4042 = carried[44] * t4041;
 
   // hind_right_shank: wrench
-  const Real t4043 = carried[210] * constant<Real>(0.00042L);
-  carried[599] = t4043;
-  const Real t4044 = constant<Real>(0.00252L) * carried[18];
-  carried[600] = t4044;
+  const Real t4043 = carried[231] * constant<Real>(0.00042L);
+  carried[592] = t4043;
+  const Real t4044 = constant<Real>(0.00252L) * carried[39];
+  carried[595] = t4044;
   const Real t4045 = t4044 - t4043;
 
   // hind_right_shank: joint force
-  const Real t4046 = t4045 * carried[22];
+  const Real t4046 = t4045 * carried[43];
   const Real t4047 = t4042 + t4046;
   const Real t4048 = t4047 + t4038;
 
   // hind_right_thigh: wrench
-  const Real t4049 = carried[327] * constant<Real>(0.0272L);
+  const Real t4049 = carried[348] * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t4050 = constant<Real>(0.0884L) * carried[18];
+  const Real t4050 = constant<Real>(0.0884L) * carried[39];
 
   // hind_right_thigh: wrench
   const Real t4051 = t4049 + t4050;
-  carried[601] = t4051;
+  carried[596] = t4051;
 
   // hind_right_shank: joint force
   const Real t4052 = t4048 + t4051;
   carried[602] = t4052;
 
   // hind_right_thigh: joint force
-  const Real t4053 = t4052 * carried[21];
+  const Real t4053 = t4052 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t4054 = t4033 * carried[22];
-  const Real t4055 = t4031 * carried[23];
+  const Real t4054 = t4033 * carried[43];
+  const Real t4055 = t4031 * carried[44];
   const Real t4056 = t4054 - t4055;
   const Real t4057 = t4056 * constant<Real>(0.012L);
-  const Real t4058 = t4045 * carried[23];
-  const Real t4059 = t4041 * carried[22];
+  const Real t4058 = t4045 * carried[44];
+  const Real t4059 = t4041 * carried[43];
   const Real t4060 = t4058 - t4059;
   const Real t4061 = t4057 + t4060;
 
   // hind_right_thigh: wrench
-  const Real t4062 = constant<Real>(0.0272L) * carried[329];
+  const Real t4062 = constant<Real>(0.0272L) * carried[350];
   carried[603] = t4062;
 
   // hind_right_thigh: wrench
-  const Real t4063 = constant<Real>(0.0051L) * carried[18];
+  const Real t4063 = constant<Real>(0.0051L) * carried[39];
   carried[604] = t4063;
 
   // hind_right_thigh: wrench
@@ -9220,36 +9234,36 @@ template <class Real>
   carried[605] = t4065;
 
   // hind_right_thigh: joint force
-  const Real t4066 = t4065 * carried[20];
+  const Real t4066 = t4065 * carried[41];
   const Real t4067 = t4066 + t4053;
 
   // hind_right_thigh: wrench
-  const Real t4068 = carried[327] * constant<Real>(1.7L);
+  const Real t4068 = carried[348] * constant<Real>(1.7L);
 
   // hind_right_shank: joint force
   const Real t4069 = t4035 + t4068;
   carried[606] = t4069;
 
   // hind_right_thigh: joint force
-  const Real t4070 = carried[21] * t4069;
+  const Real t4070 = carried[42] * t4069;
 
   // hind_right_thigh: wrench
-  const Real t4071 = constant<Real>(1.7L) * carried[329];
+  const Real t4071 = constant<Real>(1.7L) * carried[350];
 
   // hind_right_shank: joint force
   const Real t4072 = t4056 - t4071;
   carried[607] = t4072;
 
   // hind_right_thigh: joint force
-  const Real t4073 = carried[20] * t4072;
+  const Real t4073 = carried[41] * t4072;
   const Real t4074 = t4070 - t4073;
   carried[608] = t4074;
   const Real t4075 = constant<Real>(0.075L) * t4074;
   const Real t4076 = t4067 - t4075;
 
   // hind_right_hip: wrench
-  const Real t4077 = constant<Real>(0.0013L) * carried[18];
-  const Real t4078 = carried[19] * constant<Real>(0.0273L);
+  const Real t4077 = constant<Real>(0.0013L) * carried[39];
+  const Real t4078 = carried[40] * constant<Real>(0.0273L);
   const Real t4079 = t4077 + t4078;
   carried[609] = t4079;
 
@@ -9258,16 +9272,16 @@ template <class Real>
   carried[610] = t4080;
 
   // reduced mass matrix
-  const Real t4081 = carried[306] * t4080;
+  const Real t4081 = carried[327] * t4080;
   const Real t4082 = t4030 - t4081;
 
   // hind_right_shank: joint force
   const Real t4083 = t4056 * constant<Real>(0.24L);
 
   // hind_right_shank: wrench
-  const Real t4084 = carried[210] * constant<Real>(0.0687L);
+  const Real t4084 = carried[231] * constant<Real>(0.0687L);
   carried[611] = t4084;
-  const Real t4085 = constant<Real>(0.00252L) * carried[96];
+  const Real t4085 = constant<Real>(0.00252L) * carried[117];
   carried[612] = t4085;
   const Real t4086 = t4084 - t4085;
   carried[613] = t4086;
@@ -9276,8 +9290,8 @@ template <class Real>
   const Real t4087 = t4086 - t4083;
 
   // hind_right_thigh: wrench
-  const Real t4088 = constant<Real>(0.0884L) * carried[329];
-  const Real t4089 = constant<Real>(0.0051L) * carried[327];
+  const Real t4088 = constant<Real>(0.0884L) * carried[350];
+  const Real t4089 = constant<Real>(0.0051L) * carried[348];
   const Real t4090 = t4088 + t4089;
   carried[614] = t4090;
 
@@ -9286,114 +9300,114 @@ template <class Real>
   carried[615] = t4091;
 
   // reduced mass matrix
-  const Real t4092 = carried[314] * t4091;
+  const Real t4092 = carried[335] * t4091;
   const Real t4093 = t4082 + t4092;
-  const Real t4094 = t4086 * carried[319];
+  const Real t4094 = t4086 * carried[340];
   const Real t4095 = t4093 + t4094;
-  const Real t4096 = carried[490] * carried[45];
+  const Real t4096 = carried[486] * carried[66];
   const Real t4097 = t4095 - t4096;
-  const Real t4098 = carried[493] * carried[51];
+  const Real t4098 = carried[488] * carried[72];
   const Real t4099 = t4098 + t4097;
-  const Real t4100 = carried[54] * carried[494];
+  const Real t4100 = carried[75] * carried[489];
   const Real t4101 = t4099 + t4100;
-  const Real t4102 = carried[158] * carried[495];
+  const Real t4102 = carried[179] * carried[496];
   const Real t4103 = t4101 - t4102;
-  const Real t4104 = carried[515] * carried[164];
+  const Real t4104 = carried[513] * carried[185];
   const Real t4105 = t4104 + t4103;
-  const Real t4106 = carried[521] * carried[167];
+  const Real t4106 = carried[515] * carried[188];
   const Real t4107 = t4105 - t4106;
-  const Real t4108 = carried[233] * carried[522];
+  const Real t4108 = carried[254] * carried[516];
   const Real t4109 = t4107 - t4108;
-  const Real t4110 = carried[523] * carried[239];
+  const Real t4110 = carried[517] * carried[260];
   const Real t4111 = t4109 + t4110;
-  const Real t4112 = carried[524] * carried[242];
+  const Real t4112 = carried[518] * carried[263];
   const Real t4113 = t4112 + t4111;
-  const Real t4114 = carried[325] * carried[525];
+  const Real t4114 = carried[346] * carried[519];
   const Real t4115 = t4113 - t4114;
-  const Real t4116 = carried[526] * carried[106];
+  const Real t4116 = carried[521] * carried[127];
   const Real t4117 = t4116 + t4115;
-  const Real t4118 = carried[222] * carried[527];
+  const Real t4118 = carried[243] * carried[522];
   const Real t4119 = t4117 - t4118;
 
   // hind_right_hip: joint force
-  const Real t4120 = carried[19] * carried[424];
+  const Real t4120 = carried[40] * carried[440];
   carried[616] = t4120;
 
   // hind_left_hip: joint force
-  const Real t4121 = carried[13] * carried[390];
+  const Real t4121 = carried[34] * carried[406];
   carried[617] = t4121;
   const Real t4122 = t4120 + t4121;
 
   // front_right_hip: joint force
-  const Real t4123 = carried[317] * carried[7];
+  const Real t4123 = carried[318] * carried[28];
   carried[618] = t4123;
   const Real t4124 = t4122 + t4123;
 
   // front_left_hip: joint force
-  const Real t4125 = carried[274] * carried[1];
+  const Real t4125 = carried[17] * carried[22];
   carried[619] = t4125;
   const Real t4126 = t4125 + t4124;
 
   // reduced mass matrix
-  const Real t4127 = t3896 * carried[42];
+  const Real t4127 = t3896 * carried[63];
   const Real t4128 = t4126 + t4127;
-  const Real t4129 = t3891 * carried[44];
+  const Real t4129 = t3891 * carried[65];
   const Real t4130 = t4128 + t4129;
-  const Real t4131 = carried[155] * t3961;
+  const Real t4131 = carried[176] * t3961;
   const Real t4132 = t4131 + t4130;
-  const Real t4133 = carried[157] * t3956;
+  const Real t4133 = carried[178] * t3956;
   const Real t4134 = t4133 + t4132;
-  const Real t4135 = carried[230] * t4026;
+  const Real t4135 = carried[251] * t4026;
   const Real t4136 = t4135 + t4134;
-  const Real t4137 = carried[232] * t4021;
+  const Real t4137 = carried[253] * t4021;
   const Real t4138 = t4136 + t4137;
-  const Real t4139 = carried[321] * t4091;
+  const Real t4139 = carried[342] * t4091;
   const Real t4140 = t4139 + t4138;
-  const Real t4141 = t4086 * carried[323];
+  const Real t4141 = t4086 * carried[344];
   const Real t4142 = t4141 + t4140;
-  const Real t4143 = carried[45] * carried[507];
+  const Real t4143 = carried[66] * carried[490];
   const Real t4144 = t4142 - t4143;
-  const Real t4145 = carried[509] * carried[51];
+  const Real t4145 = carried[491] * carried[72];
   const Real t4146 = t4145 + t4144;
-  const Real t4147 = carried[54] * carried[510];
+  const Real t4147 = carried[75] * carried[503];
   const Real t4148 = t4147 + t4146;
-  const Real t4149 = carried[158] * carried[511];
+  const Real t4149 = carried[179] * carried[506];
   const Real t4150 = t4148 - t4149;
-  const Real t4151 = carried[512] * carried[164];
+  const Real t4151 = carried[507] * carried[185];
   const Real t4152 = t4151 + t4150;
-  const Real t4153 = carried[514] * carried[167];
+  const Real t4153 = carried[509] * carried[188];
   const Real t4154 = t4152 - t4153;
-  const Real t4155 = carried[233] * carried[43];
+  const Real t4155 = carried[254] * carried[64];
   const Real t4156 = t4154 - t4155;
-  const Real t4157 = carried[138] * carried[239];
+  const Real t4157 = carried[159] * carried[260];
   const Real t4158 = t4157 + t4156;
-  const Real t4159 = carried[242] * carried[154];
+  const Real t4159 = carried[263] * carried[175];
   const Real t4160 = t4158 + t4159;
-  const Real t4161 = carried[325] * carried[156];
+  const Real t4161 = carried[346] * carried[177];
   const Real t4162 = t4160 - t4161;
-  const Real t4163 = carried[106] * carried[213];
+  const Real t4163 = carried[127] * carried[222];
   const Real t4164 = t4162 + t4163;
-  const Real t4165 = carried[222] * carried[229];
+  const Real t4165 = carried[243] * carried[233];
   const Real t4166 = t4164 - t4165;
   carried[620] = t4166;
 
   // reduced accelerations
-  const Real t4167 = carried[432] * t4166;
+  const Real t4167 = carried[450] * t4166;
   const Real t4168 = t4119 - t4167;
   carried[621] = t4168;
-  const Real t4169 = t4168 * carried[528];
+  const Real t4169 = t4168 * carried[523];
   carried[622] = t4169;
-  const Real t4170 = t4169 * carried[460];
+  const Real t4170 = t4169 * carried[453];
   carried[623] = t4170;
 
   // reduced forces
-  const Real t4171 = t3891 * carried[118];
-  const Real t4172 = carried[116] * t3896;
-  const Real t4173 = t3885 * carried[100];
+  const Real t4171 = t3891 * carried[139];
+  const Real t4172 = carried[137] * t3896;
+  const Real t4173 = t3885 * carried[121];
   const Real t4174 = t4172 + t4173;
   const Real t4175 = t4174 - t4171;
   carried[624] = t4175;
-  const Real t4176 = t3950 * carried[85];
+  const Real t4176 = t3950 * carried[106];
   carried[625] = t4176;
 }
 
@@ -9402,37 +9416,37 @@ template <class Real>
   using detail::constant;
   // reduced forces
   const Real t4177 = carried[624] + carried[625];
-  const Real t4178 = carried[204] * carried[556];
+  const Real t4178 = carried[225] * carried[549];
   const Real t4179 = t4178 + t4177;
-  const Real t4180 = carried[209] * carried[554];
+  const Real t4180 = carried[230] * carried[547];
   const Real t4181 = t4179 - t4180;
-  const Real t4182 = carried[277] * carried[592];
+  const Real t4182 = carried[298] * carried[573];
   const Real t4183 = t4181 + t4182;
-  const Real t4184 = carried[293] * carried[597];
+  const Real t4184 = carried[314] * carried[587];
   const Real t4185 = t4184 + t4183;
-  const Real t4186 = carried[595] * carried[298];
+  const Real t4186 = carried[583] * carried[319];
   const Real t4187 = t4185 - t4186;
-  const Real t4188 = carried[610] * carried[358];
+  const Real t4188 = carried[610] * carried[379];
   const Real t4189 = t4187 + t4188;
-  const Real t4190 = carried[380] * carried[615];
+  const Real t4190 = carried[401] * carried[615];
   const Real t4191 = t4189 + t4190;
-  const Real t4192 = carried[276] * carried[613];
+  const Real t4192 = carried[297] * carried[613];
   const Real t4193 = t4191 - t4192;
 
   // hind_right_hip: joint force
-  const Real t4194 = carried[438] * carried[19];
-  const Real t4195 = carried[449] * carried[18];
+  const Real t4194 = carried[459] * carried[40];
+  const Real t4195 = carried[470] * carried[39];
   const Real t4196 = t4194 + t4195;
-  carried[274] = t4196;
+  carried[17] = t4196;
 
   // trunk: wrench
-  const Real t4197 = constant<Real>(11.55L) * carried[406];
-  const Real t4198 = carried[409] * constant<Real>(0.0515L);
-  const Real t4199 = constant<Real>(0.011L) * carried[407];
+  const Real t4197 = constant<Real>(11.55L) * carried[427];
+  const Real t4198 = carried[430] * constant<Real>(0.0515L);
+  const Real t4199 = constant<Real>(0.011L) * carried[428];
   const Real t4200 = t4198 - t4199;
 
   // trunk: acceleration
-  const Real t4201 = carried[402] + carried[395];
+  const Real t4201 = carried[423] + carried[416];
 
   // trunk: wrench
   const Real t4202 = constant<Real>(0.1412L) * t4201;
@@ -9443,274 +9457,274 @@ template <class Real>
   const Real t4205 = t4196 + t4204;
 
   // hind_left_hip: joint force
-  const Real t4206 = carried[487] * carried[13];
-  const Real t4207 = carried[498] * carried[12];
+  const Real t4206 = carried[395] * carried[34];
+  const Real t4207 = carried[510] * carried[33];
   const Real t4208 = t4206 + t4207;
-  carried[317] = t4208;
+  carried[318] = t4208;
   const Real t4209 = t4208 + t4205;
 
   // front_right_hip: joint force
-  const Real t4210 = carried[545] * carried[7];
-  const Real t4211 = carried[6] * carried[557];
+  const Real t4210 = carried[557] * carried[28];
+  const Real t4211 = carried[27] * carried[569];
   const Real t4212 = t4210 + t4211;
-  carried[390] = t4212;
+  carried[406] = t4212;
   const Real t4213 = t4209 + t4212;
 
   // front_left_hip: joint force
-  const Real t4214 = carried[481] * carried[1];
-  const Real t4215 = carried[0] * carried[559];
+  const Real t4214 = carried[502] * carried[22];
+  const Real t4215 = carried[21] * carried[571];
   const Real t4216 = t4215 + t4214;
-  carried[424] = t4216;
+  carried[440] = t4216;
   const Real t4217 = t4216 + t4213;
 
   // reduced forces
   const Real t4218 = t4193 + t4217;
-  const Real t4219 = carried[45] * carried[111];
+  const Real t4219 = carried[66] * carried[132];
   const Real t4220 = t4218 + t4219;
-  const Real t4221 = carried[399] * carried[51];
+  const Real t4221 = carried[420] * carried[72];
   const Real t4222 = t4221 - t4220;
-  const Real t4223 = carried[54] * carried[403];
+  const Real t4223 = carried[75] * carried[424];
   const Real t4224 = t4223 + t4222;
-  const Real t4225 = carried[158] * carried[25];
+  const Real t4225 = carried[179] * carried[10];
   const Real t4226 = t4224 - t4225;
-  const Real t4227 = carried[164] * carried[136];
+  const Real t4227 = carried[185] * carried[49];
   const Real t4228 = t4226 + t4227;
-  const Real t4229 = carried[167] * carried[137];
+  const Real t4229 = carried[188] * carried[59];
   const Real t4230 = t4228 - t4229;
-  const Real t4231 = carried[233] * carried[473];
+  const Real t4231 = carried[254] * carried[473];
   const Real t4232 = t4230 - t4231;
-  const Real t4233 = carried[211] * carried[239];
+  const Real t4233 = carried[2] * carried[260];
   const Real t4234 = t4233 + t4232;
-  const Real t4235 = carried[242] * carried[212];
+  const Real t4235 = carried[263] * carried[5];
   const Real t4236 = t4235 + t4234;
-  const Real t4237 = carried[325] * carried[404];
+  const Real t4237 = carried[346] * carried[371];
   const Real t4238 = t4236 - t4237;
-  const Real t4239 = carried[106] * carried[458];
+  const Real t4239 = carried[127] * carried[396];
   const Real t4240 = t4238 + t4239;
-  const Real t4241 = carried[222] * carried[459];
+  const Real t4241 = carried[243] * carried[397];
   const Real t4242 = t4240 - t4241;
 
   // reduced accelerations
-  const Real t4243 = carried[429] * carried[620];
+  const Real t4243 = carried[425] * carried[620];
   carried[533] = t4243;
-  const Real t4244 = t4243 * carried[496];
+  const Real t4244 = t4243 * carried[466];
   const Real t4245 = t4242 - t4244;
   const Real t4246 = t4245 - carried[623];
   carried[539] = t4246;
   const Real t4247 = carried[622] * carried[621];
 
   // hind_right_hip: wrench
-  const Real t4248 = constant<Real>(1.3L) * carried[19];
+  const Real t4248 = constant<Real>(1.3L) * carried[40];
 
   // hind_right_thigh: joint force
   const Real t4249 = t4248 + carried[608];
-  carried[547] = t4249;
+  carried[542] = t4249;
 
   // hind_right_hip: joint force
-  const Real t4250 = carried[19] * t4249;
+  const Real t4250 = carried[40] * t4249;
 
   // hind_right_thigh: joint force
-  const Real t4251 = constant<Real>(3.51L) * carried[18];
-  carried[549] = t4251;
+  const Real t4251 = constant<Real>(3.51L) * carried[39];
+  carried[544] = t4251;
 
   // hind_right_hip: joint force
-  const Real t4252 = t4251 * carried[18];
+  const Real t4252 = t4251 * carried[39];
   const Real t4253 = t4250 + t4252;
-  carried[552] = t4253;
+  carried[545] = t4253;
   const Real t4254 = t4253 + constant<Real>(11.55L);
 
   // hind_left_hip: wrench
-  const Real t4255 = carried[13] * constant<Real>(1.3L);
+  const Real t4255 = carried[34] * constant<Real>(1.3L);
 
   // hind_left_thigh: joint force
-  const Real t4256 = t4255 + carried[584];
+  const Real t4256 = t4255 + carried[566];
   carried[626] = t4256;
 
   // hind_left_hip: joint force
-  const Real t4257 = t4256 * carried[13];
+  const Real t4257 = t4256 * carried[34];
 
   // hind_left_thigh: joint force
-  const Real t4258 = constant<Real>(3.51L) * carried[12];
+  const Real t4258 = constant<Real>(3.51L) * carried[33];
   carried[627] = t4258;
 
   // hind_left_hip: joint force
-  const Real t4259 = t4258 * carried[12];
+  const Real t4259 = t4258 * carried[33];
   const Real t4260 = t4257 + t4259;
   carried[628] = t4260;
   const Real t4261 = t4254 + t4260;
 
   // front_right_hip: wrench
-  const Real t4262 = constant<Real>(1.3L) * carried[7];
+  const Real t4262 = constant<Real>(1.3L) * carried[28];
 
   // front_right_thigh: joint force
-  const Real t4263 = carried[426] + t4262;
+  const Real t4263 = carried[438] + t4262;
   carried[629] = t4263;
 
   // front_right_hip: joint force
-  const Real t4264 = t4263 * carried[7];
+  const Real t4264 = t4263 * carried[28];
 
   // front_right_thigh: joint force
-  const Real t4265 = carried[6] * constant<Real>(3.51L);
+  const Real t4265 = carried[27] * constant<Real>(3.51L);
   carried[630] = t4265;
 
   // front_right_hip: joint force
-  const Real t4266 = t4265 * carried[6];
+  const Real t4266 = t4265 * carried[27];
   const Real t4267 = t4264 + t4266;
   carried[631] = t4267;
   const Real t4268 = t4261 + t4267;
 
   // front_left_hip: wrench
-  const Real t4269 = constant<Real>(1.3L) * carried[1];
+  const Real t4269 = constant<Real>(1.3L) * carried[22];
 
   // front_left_thigh: joint force
-  const Real t4270 = carried[84] + t4269;
+  const Real t4270 = carried[16] + t4269;
   carried[632] = t4270;
 
   // front_left_hip: joint force
-  const Real t4271 = t4270 * carried[1];
+  const Real t4271 = t4270 * carried[22];
 
   // front_left_thigh: joint force
-  const Real t4272 = constant<Real>(3.51L) * carried[0];
+  const Real t4272 = constant<Real>(3.51L) * carried[21];
   carried[633] = t4272;
 
   // front_left_hip: joint force
-  const Real t4273 = t4272 * carried[0];
+  const Real t4273 = t4272 * carried[21];
   const Real t4274 = t4271 + t4273;
   carried[634] = t4274;
   const Real t4275 = t4268 + t4274;
 
   // reduced mass matrix
-  const Real t4276 = carried[45] * carried[132];
+  const Real t4276 = carried[66] * carried[129];
   const Real t4277 = t4275 - t4276;
-  const Real t4278 = carried[307] * carried[51];
+  const Real t4278 = carried[252] * carried[72];
   const Real t4279 = t4278 + t4277;
-  const Real t4280 = carried[231] * carried[54];
+  const Real t4280 = carried[173] * carried[75];
   const Real t4281 = t4279 + t4280;
-  const Real t4282 = carried[463] * carried[158];
+  const Real t4282 = carried[442] * carried[179];
   const Real t4283 = t4281 - t4282;
-  const Real t4284 = carried[556] * carried[164];
+  const Real t4284 = carried[549] * carried[185];
   const Real t4285 = t4283 + t4284;
-  const Real t4286 = carried[554] * carried[167];
+  const Real t4286 = carried[547] * carried[188];
   const Real t4287 = t4285 - t4286;
-  const Real t4288 = carried[233] * carried[592];
+  const Real t4288 = carried[254] * carried[573];
   const Real t4289 = t4287 - t4288;
-  const Real t4290 = carried[239] * carried[597];
+  const Real t4290 = carried[260] * carried[587];
   const Real t4291 = t4290 + t4289;
-  const Real t4292 = carried[242] * carried[595];
+  const Real t4292 = carried[263] * carried[583];
   const Real t4293 = t4292 + t4291;
-  const Real t4294 = carried[325] * carried[610];
+  const Real t4294 = carried[346] * carried[610];
   const Real t4295 = t4293 - t4294;
-  const Real t4296 = carried[106] * carried[615];
+  const Real t4296 = carried[127] * carried[615];
   const Real t4297 = t4295 + t4296;
-  const Real t4298 = carried[222] * carried[613];
+  const Real t4298 = carried[243] * carried[613];
   const Real t4299 = t4297 - t4298;
-  const Real t4300 = carried[45] * carried[95];
-  const Real t4301 = carried[132] - t4300;
-  const Real t4302 = carried[574] * carried[51];
+  const Real t4300 = carried[66] * carried[116];
+  const Real t4301 = carried[129] - t4300;
+  const Real t4302 = carried[586] * carried[72];
   const Real t4303 = t4302 + t4301;
-  const Real t4304 = carried[566] * carried[54];
+  const Real t4304 = carried[578] * carried[75];
   const Real t4305 = t4304 + t4303;
   carried[635] = t4305;
-  const Real t4306 = carried[45] * t4305;
+  const Real t4306 = carried[66] * t4305;
   const Real t4307 = t4299 - t4306;
-  const Real t4308 = carried[112] * carried[54];
-  const Real t4309 = carried[45] * carried[574];
-  const Real t4310 = carried[307] - t4309;
-  const Real t4311 = carried[299] * carried[51];
+  const Real t4308 = carried[133] * carried[75];
+  const Real t4309 = carried[66] * carried[586];
+  const Real t4310 = carried[252] - t4309;
+  const Real t4311 = carried[320] * carried[72];
   const Real t4312 = t4311 + t4310;
   const Real t4313 = t4308 + t4312;
   carried[636] = t4313;
-  const Real t4314 = t4313 * carried[51];
+  const Real t4314 = t4313 * carried[72];
   const Real t4315 = t4314 + t4307;
-  const Real t4316 = carried[53] * constant<Real>(0.05178848L);
-  const Real t4317 = carried[112] * carried[51];
-  const Real t4318 = carried[45] * carried[566];
-  const Real t4319 = carried[231] - t4318;
+  const Real t4316 = carried[74] * constant<Real>(0.05178848L);
+  const Real t4317 = carried[133] * carried[72];
+  const Real t4318 = carried[66] * carried[578];
+  const Real t4319 = carried[173] - t4318;
   const Real t4320 = t4319 + t4317;
   const Real t4321 = t4320 + t4316;
   carried[637] = t4321;
-  const Real t4322 = t4321 * carried[54];
+  const Real t4322 = t4321 * carried[75];
   const Real t4323 = t4322 + t4315;
-  const Real t4324 = carried[158] * carried[24];
-  const Real t4325 = carried[463] - t4324;
-  const Real t4326 = carried[582] * carried[164];
+  const Real t4324 = carried[179] * carried[9];
+  const Real t4325 = carried[442] - t4324;
+  const Real t4326 = carried[594] * carried[185];
   const Real t4327 = t4325 + t4326;
-  const Real t4328 = carried[576] * carried[167];
+  const Real t4328 = carried[588] * carried[188];
   const Real t4329 = t4327 - t4328;
   carried[638] = t4329;
-  const Real t4330 = t4329 * carried[158];
+  const Real t4330 = t4329 * carried[179];
   const Real t4331 = t4323 - t4330;
-  const Real t4332 = carried[28] * carried[167];
-  const Real t4333 = carried[158] * carried[582];
-  const Real t4334 = carried[556] - t4333;
-  const Real t4335 = carried[164] * carried[38];
+  const Real t4332 = carried[11] * carried[188];
+  const Real t4333 = carried[179] * carried[594];
+  const Real t4334 = carried[549] - t4333;
+  const Real t4335 = carried[185] * carried[45];
   const Real t4336 = t4334 + t4335;
   const Real t4337 = t4336 - t4332;
   carried[639] = t4337;
-  const Real t4338 = t4337 * carried[164];
+  const Real t4338 = t4337 * carried[185];
   const Real t4339 = t4331 + t4338;
-  const Real t4340 = carried[166] * constant<Real>(0.05178848L);
-  const Real t4341 = carried[164] * carried[28];
-  const Real t4342 = carried[576] * carried[158];
-  const Real t4343 = carried[554] - t4342;
+  const Real t4340 = carried[187] * constant<Real>(0.05178848L);
+  const Real t4341 = carried[185] * carried[11];
+  const Real t4342 = carried[588] * carried[179];
+  const Real t4343 = carried[547] - t4342;
   const Real t4344 = t4343 + t4341;
   const Real t4345 = t4344 - t4340;
   carried[640] = t4345;
-  const Real t4346 = t4345 * carried[167];
+  const Real t4346 = t4345 * carried[188];
   const Real t4347 = t4339 - t4346;
-  const Real t4348 = carried[233] * carried[466];
-  const Real t4349 = carried[592] - t4348;
-  const Real t4350 = carried[291] * carried[239];
+  const Real t4348 = carried[254] * carried[472];
+  const Real t4349 = carried[573] - t4348;
+  const Real t4350 = carried[220] * carried[260];
   const Real t4351 = t4350 + t4349;
-  const Real t4352 = carried[242] * carried[198];
+  const Real t4352 = carried[263] * carried[172];
   const Real t4353 = t4351 + t4352;
   carried[641] = t4353;
-  const Real t4354 = carried[233] * t4353;
+  const Real t4354 = carried[254] * t4353;
   const Real t4355 = t4347 - t4354;
-  const Real t4356 = carried[242] * carried[503];
-  const Real t4357 = carried[233] * carried[291];
-  const Real t4358 = carried[597] - t4357;
-  const Real t4359 = carried[239] * carried[504];
+  const Real t4356 = carried[263] * carried[487];
+  const Real t4357 = carried[254] * carried[220];
+  const Real t4358 = carried[587] - t4357;
+  const Real t4359 = carried[260] * carried[494];
   const Real t4360 = t4358 + t4359;
   const Real t4361 = t4356 + t4360;
   carried[642] = t4361;
-  const Real t4362 = t4361 * carried[239];
+  const Real t4362 = t4361 * carried[260];
   const Real t4363 = t4355 + t4362;
-  const Real t4364 = carried[241] * constant<Real>(0.05178848L);
-  const Real t4365 = carried[503] * carried[239];
-  const Real t4366 = carried[233] * carried[198];
-  const Real t4367 = carried[595] - t4366;
+  const Real t4364 = carried[262] * constant<Real>(0.05178848L);
+  const Real t4365 = carried[487] * carried[260];
+  const Real t4366 = carried[254] * carried[172];
+  const Real t4367 = carried[583] - t4366;
   const Real t4368 = t4365 + t4367;
   const Real t4369 = t4364 + t4368;
   carried[643] = t4369;
-  const Real t4370 = carried[242] * t4369;
+  const Real t4370 = carried[263] * t4369;
   const Real t4371 = t4370 + t4363;
-  const Real t4372 = carried[382] * carried[325];
+  const Real t4372 = carried[370] * carried[346];
   const Real t4373 = carried[610] - t4372;
-  const Real t4374 = carried[106] * carried[355];
+  const Real t4374 = carried[127] * carried[232];
   const Real t4375 = t4374 + t4373;
-  const Real t4376 = carried[222] * carried[351];
+  const Real t4376 = carried[243] * carried[13];
   const Real t4377 = t4375 - t4376;
   carried[644] = t4377;
-  const Real t4378 = t4377 * carried[325];
+  const Real t4378 = t4377 * carried[346];
   const Real t4379 = t4371 - t4378;
-  const Real t4380 = carried[222] * carried[454];
-  const Real t4381 = carried[325] * carried[355];
+  const Real t4380 = carried[243] * carried[373];
+  const Real t4381 = carried[346] * carried[232];
   const Real t4382 = carried[615] - t4381;
-  const Real t4383 = carried[456] * carried[106];
+  const Real t4383 = carried[376] * carried[127];
   const Real t4384 = t4382 + t4383;
   const Real t4385 = t4384 - t4380;
   carried[645] = t4385;
-  const Real t4386 = carried[106] * t4385;
+  const Real t4386 = carried[127] * t4385;
   const Real t4387 = t4379 + t4386;
-  const Real t4388 = carried[214] * constant<Real>(0.05178848L);
-  const Real t4389 = carried[106] * carried[454];
-  const Real t4390 = carried[351] * carried[325];
+  const Real t4388 = carried[235] * constant<Real>(0.05178848L);
+  const Real t4389 = carried[127] * carried[373];
+  const Real t4390 = carried[13] * carried[346];
   const Real t4391 = carried[613] - t4390;
   const Real t4392 = t4389 + t4391;
   const Real t4393 = t4392 - t4388;
   carried[646] = t4393;
-  const Real t4394 = carried[222] * t4393;
+  const Real t4394 = carried[243] * t4393;
   const Real t4395 = t4387 - t4394;
 
   // reduced accelerations
@@ -9721,44 +9735,44 @@ template <class Real>
   carried[647] = t4399;
 
   // hind_right_hip: joint force
-  const Real t4400 = carried[529] * constant<Real>(0.06L);
-  const Real t4401 = carried[371] - t4400;
+  const Real t4400 = carried[524] * constant<Real>(0.06L);
+  const Real t4401 = carried[392] - t4400;
   const Real t4402 = constant<Real>(-0.1412L) + t4401;
 
   // hind_left_hip: joint force
-  const Real t4403 = carried[530] * constant<Real>(0.06L);
-  const Real t4404 = carried[290] + t4403;
+  const Real t4403 = carried[525] * constant<Real>(0.06L);
+  const Real t4404 = carried[311] + t4403;
   const Real t4405 = t4404 + t4402;
 
   // front_right_hip: joint force
-  const Real t4406 = carried[531] * constant<Real>(0.06L);
-  const Real t4407 = carried[113] - t4406;
+  const Real t4406 = carried[526] * constant<Real>(0.06L);
+  const Real t4407 = carried[134] - t4406;
   const Real t4408 = t4405 + t4407;
 
   // front_left_hip: joint force
-  const Real t4409 = constant<Real>(0.06L) * carried[532];
-  const Real t4410 = t4409 + carried[134];
+  const Real t4409 = constant<Real>(0.06L) * carried[527];
+  const Real t4410 = t4409 + carried[155];
   const Real t4411 = t4410 + t4408;
 
   // front_left_shank: wrench
-  const Real t4412 = constant<Real>(0.51L) * carried[61];
-  const Real t4413 = carried[570] + t4412;
+  const Real t4412 = constant<Real>(0.51L) * carried[82];
+  const Real t4413 = carried[582] + t4412;
 
   // front_left_shank: joint force
-  const Real t4414 = t4413 * carried[4];
+  const Real t4414 = t4413 * carried[25];
 
   // front_left_shank: wrench
-  const Real t4415 = constant<Real>(0.51L) * carried[59];
-  const Real t4416 = carried[568] + t4415;
+  const Real t4415 = constant<Real>(0.51L) * carried[80];
+  const Real t4416 = carried[580] + t4415;
 
   // front_left_shank: joint force
-  const Real t4417 = t4416 * carried[5];
+  const Real t4417 = t4416 * carried[26];
   const Real t4418 = t4414 + t4417;
   const Real t4419 = t4418 * constant<Real>(0.012L);
 
   // front_left_shank: wrench
-  const Real t4420 = constant<Real>(0.51L) * carried[55];
-  const Real t4421 = t4420 + carried[86];
+  const Real t4420 = constant<Real>(0.51L) * carried[76];
+  const Real t4421 = t4420 + carried[107];
   carried[648] = t4421;
 
   // front_left_shank: joint force
@@ -9766,99 +9780,99 @@ template <class Real>
   const Real t4423 = t4419 + t4422;
 
   // front_left_shank: wrench
-  const Real t4424 = carried[59] * constant<Real>(0.00042L);
-  const Real t4425 = carried[55] * constant<Real>(0.0687L);
+  const Real t4424 = carried[80] * constant<Real>(0.00042L);
+  const Real t4425 = carried[76] * constant<Real>(0.0687L);
   const Real t4426 = t4424 + t4425;
-  const Real t4427 = carried[88] + t4426;
+  const Real t4427 = carried[109] + t4426;
 
   // front_left_shank: joint force
-  const Real t4428 = t4427 * carried[5];
+  const Real t4428 = t4427 * carried[26];
 
   // front_left_shank: wrench
-  const Real t4429 = carried[61] * constant<Real>(0.00042L);
-  const Real t4430 = constant<Real>(0.00252L) * carried[55];
+  const Real t4429 = carried[82] * constant<Real>(0.00042L);
+  const Real t4430 = constant<Real>(0.00252L) * carried[76];
   const Real t4431 = t4430 + t4429;
-  const Real t4432 = carried[87] + t4431;
+  const Real t4432 = carried[108] + t4431;
 
   // front_left_shank: joint force
-  const Real t4433 = t4432 * carried[4];
+  const Real t4433 = t4432 * carried[25];
   const Real t4434 = t4428 + t4433;
   const Real t4435 = t4423 + t4434;
 
   // front_left_thigh: wrench
-  const Real t4436 = constant<Real>(0.0272L) * carried[57];
+  const Real t4436 = constant<Real>(0.0272L) * carried[78];
 
   // front_left_thigh: wrench
-  const Real t4437 = constant<Real>(0.005304L) * carried[0];
+  const Real t4437 = constant<Real>(0.005304L) * carried[21];
 
   // front_left_thigh: wrench
   const Real t4438 = t4437 - t4436;
-  const Real t4439 = t4438 + carried[89];
+  const Real t4439 = t4438 + carried[110];
 
   // front_left_shank: joint force
   const Real t4440 = t4439 + t4435;
   carried[649] = t4440;
 
   // front_left_thigh: joint force
-  const Real t4441 = t4440 * carried[3];
+  const Real t4441 = t4440 * carried[24];
 
   // front_left_shank: joint force
-  const Real t4442 = t4432 * carried[5];
-  const Real t4443 = t4427 * carried[4];
+  const Real t4442 = t4432 * carried[26];
+  const Real t4443 = t4427 * carried[25];
   const Real t4444 = t4442 - t4443;
-  const Real t4445 = t4416 * carried[4];
-  const Real t4446 = t4413 * carried[5];
+  const Real t4445 = t4416 * carried[25];
+  const Real t4446 = t4413 * carried[26];
   const Real t4447 = t4445 - t4446;
   const Real t4448 = t4447 * constant<Real>(0.012L);
   const Real t4449 = t4444 - t4448;
 
   // front_left_thigh: wrench
-  const Real t4450 = constant<Real>(0.0272L) * carried[58];
+  const Real t4450 = constant<Real>(0.0272L) * carried[79];
 
   // front_left_thigh: wrench
-  const Real t4451 = constant<Real>(0.000306L) * carried[0];
+  const Real t4451 = constant<Real>(0.000306L) * carried[21];
 
   // front_left_thigh: wrench
   const Real t4452 = t4451 + t4450;
-  const Real t4453 = carried[90] - t4452;
+  const Real t4453 = carried[111] - t4452;
 
   // front_left_shank: joint force
   const Real t4454 = t4449 + t4453;
   carried[650] = t4454;
 
   // front_left_thigh: joint force
-  const Real t4455 = t4454 * carried[2];
+  const Real t4455 = t4454 * carried[23];
   const Real t4456 = t4455 + t4441;
 
   // front_left_thigh: wrench
-  const Real t4457 = constant<Real>(1.7L) * carried[57];
-  const Real t4458 = t4457 - carried[488];
+  const Real t4457 = constant<Real>(1.7L) * carried[78];
+  const Real t4458 = t4457 - carried[482];
 
   // front_left_shank: joint force
   const Real t4459 = t4418 + t4458;
   carried[651] = t4459;
 
   // front_left_thigh: joint force
-  const Real t4460 = carried[3] * t4459;
+  const Real t4460 = carried[24] * t4459;
 
   // front_left_thigh: wrench
-  const Real t4461 = constant<Real>(1.7L) * carried[58];
-  const Real t4462 = carried[26] - t4461;
+  const Real t4461 = constant<Real>(1.7L) * carried[79];
+  const Real t4462 = carried[1] - t4461;
 
   // front_left_shank: joint force
   const Real t4463 = t4447 + t4462;
   carried[652] = t4463;
 
   // front_left_thigh: joint force
-  const Real t4464 = carried[2] * t4463;
+  const Real t4464 = carried[23] * t4463;
   const Real t4465 = t4460 - t4464;
   carried[653] = t4465;
   const Real t4466 = constant<Real>(0.075L) * t4465;
   const Real t4467 = t4456 + t4466;
 
   // front_left_hip: wrench
-  const Real t4468 = constant<Real>(0.001638L) * carried[1];
-  const Real t4469 = constant<Real>(0.000078L) * carried[0];
+  const Real t4468 = constant<Real>(0.001638L) * carried[22];
+  const Real t4469 = constant<Real>(0.000078L) * carried[21];
   const Real t4470 = t4468 - t4469;
 
   // front_left_hip: wrench
@@ -9869,7 +9883,7 @@ template <class Real>
   carried[654] = t4472;
 
   // reduced mass matrix
-  const Real t4473 = t4472 * carried[27];
+  const Real t4473 = t4472 * carried[48];
   const Real t4474 = t4411 - t4473;
   carried[655] = t4474;
 
@@ -9878,7 +9892,7 @@ template <class Real>
   carried[656] = t4475;
 
   // front_left_shank: wrench
-  const Real t4476 = carried[61] * constant<Real>(0.0687L);
+  const Real t4476 = carried[82] * constant<Real>(0.0687L);
   carried[657] = t4476;
 }
 
@@ -9886,71 +9900,71 @@ template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_16(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_left_shank: wrench
-  const Real t4477 = constant<Real>(0.00252L) * carried[59];
+  const Real t4477 = constant<Real>(0.00252L) * carried[80];
   const Real t4478 = carried[657] - t4477;
-  const Real t4479 = carried[565] + t4478;
-  carried[26] = t4479;
+  const Real t4479 = carried[577] + t4478;
+  carried[1] = t4479;
 
   // front_left_shank: joint force
   const Real t4480 = t4479 - carried[656];
 
   // front_left_thigh: wrench
-  const Real t4481 = constant<Real>(0.0884L) * carried[58];
-  const Real t4482 = constant<Real>(0.0051L) * carried[57];
+  const Real t4481 = constant<Real>(0.0884L) * carried[79];
+  const Real t4482 = constant<Real>(0.0051L) * carried[78];
   const Real t4483 = t4481 + t4482;
-  const Real t4484 = carried[573] + t4483;
+  const Real t4484 = carried[585] + t4483;
 
   // front_left_shank: joint force
   const Real t4485 = t4484 + t4480;
-  carried[53] = t4485;
+  carried[16] = t4485;
 
   // reduced mass matrix
-  const Real t4486 = t4485 * carried[35];
+  const Real t4486 = t4485 * carried[56];
   const Real t4487 = t4486 + carried[655];
-  const Real t4488 = t4479 * carried[40];
+  const Real t4488 = t4479 * carried[61];
   const Real t4489 = t4487 + t4488;
 
   // front_right_thigh: acceleration
-  const Real t4490 = constant<Real>(-0.075L) - carried[170];
-  const Real t4491 = t4490 * carried[8];
+  const Real t4490 = constant<Real>(-0.075L) - carried[191];
+  const Real t4491 = t4490 * carried[29];
 
   // front_right_shank: acceleration
-  const Real t4492 = carried[171] - t4491;
-  const Real t4493 = t4492 * carried[10];
+  const Real t4492 = carried[192] - t4491;
+  const Real t4493 = t4492 * carried[31];
 
   // front_right_thigh: acceleration
-  const Real t4494 = t4490 * carried[9];
+  const Real t4494 = t4490 * carried[30];
 
   // front_right_shank: acceleration
-  const Real t4495 = t4494 - carried[172];
-  const Real t4496 = t4495 * carried[11];
+  const Real t4495 = t4494 - carried[193];
+  const Real t4496 = t4495 * carried[32];
   const Real t4497 = t4493 + t4496;
 
   // front_right_shank: wrench
   const Real t4498 = constant<Real>(0.51L) * t4497;
-  const Real t4499 = t4498 - carried[578];
+  const Real t4499 = t4498 - carried[590];
 
   // front_right_shank: joint force
-  const Real t4500 = t4499 * carried[11];
+  const Real t4500 = t4499 * carried[32];
 
   // front_right_shank: acceleration
-  const Real t4501 = t4492 * carried[11];
-  const Real t4502 = t4495 * carried[10];
+  const Real t4501 = t4492 * carried[32];
+  const Real t4502 = t4495 * carried[31];
   const Real t4503 = t4501 - t4502;
 
   // front_right_shank: wrench
   const Real t4504 = constant<Real>(0.51L) * t4503;
-  const Real t4505 = t4504 + carried[579];
+  const Real t4505 = t4504 + carried[591];
 
   // front_right_shank: joint force
-  const Real t4506 = carried[10] * t4505;
+  const Real t4506 = carried[31] * t4505;
   const Real t4507 = t4500 - t4506;
   const Real t4508 = t4507 * constant<Real>(0.012L);
 
   // front_right_shank: wrench
-  const Real t4509 = constant<Real>(0.51L) * carried[168];
-  const Real t4510 = t4509 + carried[585];
-  carried[55] = t4510;
+  const Real t4509 = constant<Real>(0.51L) * carried[189];
+  const Real t4510 = t4509 + carried[597];
+  carried[74] = t4510;
 
   // front_right_shank: joint force
   const Real t4511 = constant<Real>(0.24L) * t4510;
@@ -9958,21 +9972,21 @@ template <class Real>
 
   // front_right_shank: wrench
   const Real t4513 = t4503 * constant<Real>(0.00042L);
-  const Real t4514 = constant<Real>(0.00252L) * carried[168];
+  const Real t4514 = constant<Real>(0.00252L) * carried[189];
   const Real t4515 = t4513 + t4514;
-  const Real t4516 = carried[586] + t4515;
+  const Real t4516 = carried[598] + t4515;
 
   // front_right_shank: joint force
-  const Real t4517 = t4516 * carried[10];
+  const Real t4517 = t4516 * carried[31];
 
   // front_right_shank: wrench
   const Real t4518 = t4497 * constant<Real>(0.00042L);
-  const Real t4519 = constant<Real>(0.0687L) * carried[168];
+  const Real t4519 = constant<Real>(0.0687L) * carried[189];
   const Real t4520 = t4519 - t4518;
-  const Real t4521 = carried[587] + t4520;
+  const Real t4521 = carried[599] + t4520;
 
   // front_right_shank: joint force
-  const Real t4522 = carried[11] * t4521;
+  const Real t4522 = carried[32] * t4521;
   const Real t4523 = t4517 + t4522;
   const Real t4524 = t4512 + t4523;
 
@@ -9980,26 +9994,26 @@ template <class Real>
   const Real t4525 = constant<Real>(0.0272L) * t4494;
 
   // front_right_thigh: wrench
-  const Real t4526 = carried[6] * constant<Real>(0.005304L);
+  const Real t4526 = carried[27] * constant<Real>(0.005304L);
 
   // front_right_thigh: wrench
   const Real t4527 = t4525 - t4526;
-  const Real t4528 = t4527 + carried[588];
+  const Real t4528 = t4527 + carried[600];
 
   // front_right_shank: joint force
   const Real t4529 = t4528 + t4524;
-  carried[61] = t4529;
+  carried[76] = t4529;
 
   // front_right_thigh: joint force
-  const Real t4530 = t4529 * carried[9];
+  const Real t4530 = t4529 * carried[30];
 
   // front_right_shank: joint force
-  const Real t4531 = t4499 * carried[10];
-  const Real t4532 = carried[11] * t4505;
+  const Real t4531 = t4499 * carried[31];
+  const Real t4532 = carried[32] * t4505;
   const Real t4533 = t4531 + t4532;
   const Real t4534 = constant<Real>(0.012L) * t4533;
-  const Real t4535 = t4516 * carried[11];
-  const Real t4536 = carried[10] * t4521;
+  const Real t4535 = t4516 * carried[32];
+  const Real t4536 = carried[31] * t4521;
   const Real t4537 = t4535 - t4536;
   const Real t4538 = t4534 + t4537;
 
@@ -10007,49 +10021,49 @@ template <class Real>
   const Real t4539 = constant<Real>(0.0272L) * t4491;
 
   // front_right_thigh: wrench
-  const Real t4540 = carried[6] * constant<Real>(0.000306L);
+  const Real t4540 = carried[27] * constant<Real>(0.000306L);
 
   // front_right_thigh: wrench
   const Real t4541 = t4539 + t4540;
-  const Real t4542 = t4541 + carried[589];
+  const Real t4542 = t4541 + carried[601];
 
   // front_right_shank: joint force
   const Real t4543 = t4538 + t4542;
-  carried[84] = t4543;
+  carried[82] = t4543;
 
   // front_right_thigh: joint force
-  const Real t4544 = t4543 * carried[8];
+  const Real t4544 = t4543 * carried[29];
   const Real t4545 = t4544 + t4530;
 
   // front_right_thigh: wrench
   const Real t4546 = constant<Real>(1.7L) * t4494;
-  const Real t4547 = t4546 + carried[304];
+  const Real t4547 = t4546 + carried[47];
 
   // front_right_shank: joint force
   const Real t4548 = t4507 + t4547;
-  carried[86] = t4548;
+  carried[107] = t4548;
 
   // front_right_thigh: joint force
-  const Real t4549 = t4548 * carried[9];
+  const Real t4549 = t4548 * carried[30];
 
   // front_right_thigh: wrench
   const Real t4550 = constant<Real>(1.7L) * t4491;
-  const Real t4551 = t4550 + carried[300];
+  const Real t4551 = t4550 + carried[19];
 
   // front_right_shank: joint force
   const Real t4552 = t4533 - t4551;
-  carried[87] = t4552;
+  carried[108] = t4552;
 
   // front_right_thigh: joint force
-  const Real t4553 = t4552 * carried[8];
+  const Real t4553 = t4552 * carried[29];
   const Real t4554 = t4549 - t4553;
-  carried[88] = t4554;
+  carried[109] = t4554;
   const Real t4555 = constant<Real>(0.075L) * t4554;
   const Real t4556 = t4545 - t4555;
 
   // front_right_hip: wrench
-  const Real t4557 = carried[6] * constant<Real>(0.000078L);
-  const Real t4558 = constant<Real>(0.001638L) * carried[7];
+  const Real t4557 = carried[27] * constant<Real>(0.000078L);
+  const Real t4558 = constant<Real>(0.001638L) * carried[28];
   const Real t4559 = t4557 + t4558;
 
   // front_right_hip: wrench
@@ -10057,10 +10071,10 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t4561 = t4556 + t4560;
-  carried[89] = t4561;
+  carried[110] = t4561;
 
   // reduced mass matrix
-  const Real t4562 = carried[140] * t4561;
+  const Real t4562 = carried[161] * t4561;
   const Real t4563 = t4489 - t4562;
 
   // front_right_shank: joint force
@@ -10070,8 +10084,8 @@ template <class Real>
   const Real t4565 = t4503 * constant<Real>(0.0687L);
   const Real t4566 = t4497 * constant<Real>(0.00252L);
   const Real t4567 = t4565 + t4566;
-  const Real t4568 = carried[558] - t4567;
-  carried[90] = t4568;
+  const Real t4568 = carried[570] - t4567;
+  carried[111] = t4568;
 
   // front_right_shank: joint force
   const Real t4569 = t4568 - t4564;
@@ -10080,137 +10094,137 @@ template <class Real>
   const Real t4570 = constant<Real>(0.0051L) * t4494;
   const Real t4571 = t4491 * constant<Real>(0.0884L);
   const Real t4572 = t4570 + t4571;
-  const Real t4573 = carried[581] + t4572;
+  const Real t4573 = carried[593] + t4572;
 
   // front_right_shank: joint force
   const Real t4574 = t4569 + t4573;
-  carried[113] = t4574;
+  carried[134] = t4574;
 
   // reduced mass matrix
-  const Real t4575 = t4574 * carried[148];
+  const Real t4575 = t4574 * carried[169];
   const Real t4576 = t4575 + t4563;
-  const Real t4577 = carried[153] * t4568;
+  const Real t4577 = carried[174] * t4568;
   const Real t4578 = t4577 + t4576;
 
   // hind_left_shank: wrench
-  const Real t4579 = constant<Real>(0.51L) * carried[249];
-  const Real t4580 = t4579 + carried[201];
+  const Real t4579 = constant<Real>(0.51L) * carried[270];
+  const Real t4580 = t4579 + carried[217];
 
   // hind_left_shank: joint force
-  const Real t4581 = t4580 * carried[16];
+  const Real t4581 = t4580 * carried[37];
 
   // hind_left_shank: wrench
-  const Real t4582 = constant<Real>(0.51L) * carried[247];
-  const Real t4583 = t4582 + carried[199];
+  const Real t4582 = constant<Real>(0.51L) * carried[268];
+  const Real t4583 = t4582 + carried[215];
 
   // hind_left_shank: joint force
-  const Real t4584 = t4583 * carried[17];
+  const Real t4584 = t4583 * carried[38];
   const Real t4585 = t4581 + t4584;
   const Real t4586 = constant<Real>(0.012L) * t4585;
 
   // hind_left_shank: wrench
-  const Real t4587 = constant<Real>(0.51L) * carried[243];
-  const Real t4588 = carried[408] + t4587;
-  carried[134] = t4588;
+  const Real t4587 = constant<Real>(0.51L) * carried[264];
+  const Real t4588 = carried[296] + t4587;
+  carried[155] = t4588;
 
   // hind_left_shank: joint force
   const Real t4589 = constant<Real>(0.24L) * t4588;
   const Real t4590 = t4589 + t4586;
 
   // hind_left_shank: wrench
-  const Real t4591 = carried[249] * constant<Real>(0.00042L);
-  const Real t4592 = constant<Real>(0.00252L) * carried[243];
+  const Real t4591 = carried[270] * constant<Real>(0.00042L);
+  const Real t4592 = constant<Real>(0.00252L) * carried[264];
   const Real t4593 = t4591 + t4592;
-  const Real t4594 = t4593 + carried[451];
+  const Real t4594 = t4593 + carried[313];
 
   // hind_left_shank: joint force
-  const Real t4595 = t4594 * carried[16];
+  const Real t4595 = t4594 * carried[37];
 
   // hind_left_shank: wrench
-  const Real t4596 = carried[247] * constant<Real>(0.00042L);
-  const Real t4597 = constant<Real>(0.0687L) * carried[243];
+  const Real t4596 = carried[268] * constant<Real>(0.00042L);
+  const Real t4597 = constant<Real>(0.0687L) * carried[264];
   const Real t4598 = t4596 + t4597;
-  const Real t4599 = t4598 + carried[410];
+  const Real t4599 = t4598 + carried[312];
 
   // hind_left_shank: joint force
-  const Real t4600 = carried[17] * t4599;
+  const Real t4600 = carried[38] * t4599;
   const Real t4601 = t4595 + t4600;
   const Real t4602 = t4601 + t4590;
 
   // hind_left_thigh: wrench
-  const Real t4603 = constant<Real>(0.0272L) * carried[245];
+  const Real t4603 = constant<Real>(0.0272L) * carried[266];
 
   // hind_left_thigh: wrench
-  const Real t4604 = constant<Real>(0.005304L) * carried[12];
+  const Real t4604 = constant<Real>(0.005304L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t4605 = t4604 - t4603;
-  const Real t4606 = t4605 + carried[452];
+  const Real t4606 = t4605 + carried[429];
 
   // hind_left_shank: joint force
   const Real t4607 = t4602 + t4606;
-  carried[166] = t4607;
+  carried[173] = t4607;
 
   // hind_left_thigh: joint force
-  const Real t4608 = carried[15] * t4607;
+  const Real t4608 = carried[36] * t4607;
 
   // hind_left_shank: joint force
-  const Real t4609 = t4594 * carried[17];
-  const Real t4610 = t4599 * carried[16];
+  const Real t4609 = t4594 * carried[38];
+  const Real t4610 = t4599 * carried[37];
   const Real t4611 = t4609 - t4610;
-  const Real t4612 = t4583 * carried[16];
-  const Real t4613 = carried[17] * t4580;
+  const Real t4612 = t4583 * carried[37];
+  const Real t4613 = carried[38] * t4580;
   const Real t4614 = t4612 - t4613;
   const Real t4615 = t4614 * constant<Real>(0.012L);
   const Real t4616 = t4611 - t4615;
 
   // hind_left_thigh: wrench
-  const Real t4617 = constant<Real>(0.0272L) * carried[246];
+  const Real t4617 = constant<Real>(0.0272L) * carried[267];
 
   // hind_left_thigh: wrench
-  const Real t4618 = constant<Real>(0.000306L) * carried[12];
+  const Real t4618 = constant<Real>(0.000306L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t4619 = t4618 + t4617;
-  const Real t4620 = carried[453] - t4619;
+  const Real t4620 = carried[431] - t4619;
 
   // hind_left_shank: joint force
   const Real t4621 = t4620 + t4616;
-  carried[214] = t4621;
+  carried[187] = t4621;
 
   // hind_left_thigh: joint force
-  const Real t4622 = carried[14] * t4621;
+  const Real t4622 = carried[35] * t4621;
   const Real t4623 = t4608 + t4622;
 
   // hind_left_thigh: wrench
-  const Real t4624 = constant<Real>(1.7L) * carried[245];
-  const Real t4625 = t4624 - carried[383];
+  const Real t4624 = constant<Real>(1.7L) * carried[266];
+  const Real t4625 = t4624 - carried[334];
 
   // hind_left_shank: joint force
   const Real t4626 = t4625 + t4585;
-  carried[231] = t4626;
+  carried[235] = t4626;
 
   // hind_left_thigh: joint force
-  const Real t4627 = carried[15] * t4626;
+  const Real t4627 = carried[36] * t4626;
 
   // hind_left_thigh: wrench
-  const Real t4628 = constant<Real>(1.7L) * carried[246];
-  const Real t4629 = carried[386] - t4628;
+  const Real t4628 = constant<Real>(1.7L) * carried[267];
+  const Real t4629 = carried[345] - t4628;
 
   // hind_left_shank: joint force
   const Real t4630 = t4614 + t4629;
-  carried[241] = t4630;
+  carried[262] = t4630;
 
   // hind_left_thigh: joint force
-  const Real t4631 = carried[14] * t4630;
+  const Real t4631 = carried[35] * t4630;
   const Real t4632 = t4627 - t4631;
-  carried[290] = t4632;
+  carried[311] = t4632;
   const Real t4633 = constant<Real>(0.075L) * t4632;
   const Real t4634 = t4633 + t4623;
 
   // hind_left_hip: wrench
-  const Real t4635 = constant<Real>(0.001638L) * carried[13];
-  const Real t4636 = constant<Real>(0.000078L) * carried[12];
+  const Real t4635 = constant<Real>(0.001638L) * carried[34];
+  const Real t4636 = constant<Real>(0.000078L) * carried[33];
   const Real t4637 = t4635 - t4636;
 
   // hind_left_hip: wrench
@@ -10218,82 +10232,82 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t4639 = t4634 + t4638;
-  carried[371] = t4639;
+  carried[392] = t4639;
 
   // reduced mass matrix
-  const Real t4640 = t4639 * carried[215];
+  const Real t4640 = t4639 * carried[236];
   const Real t4641 = t4578 - t4640;
 
   // hind_left_shank: joint force
   const Real t4642 = t4614 * constant<Real>(0.24L);
 
   // hind_left_shank: wrench
-  const Real t4643 = constant<Real>(0.0687L) * carried[249];
-  const Real t4644 = carried[247] * constant<Real>(0.00252L);
+  const Real t4643 = constant<Real>(0.0687L) * carried[270];
+  const Real t4644 = carried[268] * constant<Real>(0.00252L);
   const Real t4645 = t4643 - t4644;
-  const Real t4646 = carried[196] + t4645;
-  carried[426] = t4646;
+  const Real t4646 = carried[162] + t4645;
+  carried[395] = t4646;
 
   // hind_left_shank: joint force
   const Real t4647 = t4646 - t4642;
 
   // hind_left_thigh: wrench
-  const Real t4648 = constant<Real>(0.0884L) * carried[246];
-  const Real t4649 = constant<Real>(0.0051L) * carried[245];
+  const Real t4648 = constant<Real>(0.0884L) * carried[267];
+  const Real t4649 = constant<Real>(0.0051L) * carried[266];
   const Real t4650 = t4648 + t4649;
-  const Real t4651 = carried[275] + t4650;
+  const Real t4651 = carried[219] + t4650;
 
   // hind_left_shank: joint force
   const Real t4652 = t4647 + t4651;
   carried[438] = t4652;
 
   // reduced mass matrix
-  const Real t4653 = t4652 * carried[223];
+  const Real t4653 = t4652 * carried[244];
   const Real t4654 = t4641 + t4653;
-  const Real t4655 = t4646 * carried[228];
+  const Real t4655 = t4646 * carried[249];
   const Real t4656 = t4655 + t4654;
 
   // hind_right_thigh: acceleration
-  const Real t4657 = constant<Real>(-0.075L) - carried[253];
-  const Real t4658 = t4657 * carried[21];
+  const Real t4657 = constant<Real>(-0.075L) - carried[274];
+  const Real t4658 = t4657 * carried[42];
 
   // hind_right_shank: acceleration
-  const Real t4659 = t4658 - carried[263];
-  const Real t4660 = carried[23] * t4659;
+  const Real t4659 = t4658 - carried[284];
+  const Real t4660 = carried[44] * t4659;
 
   // hind_right_thigh: acceleration
-  const Real t4661 = carried[20] * t4657;
+  const Real t4661 = carried[41] * t4657;
 
   // hind_right_shank: acceleration
-  const Real t4662 = carried[256] - t4661;
-  const Real t4663 = carried[22] * t4662;
+  const Real t4662 = carried[277] - t4661;
+  const Real t4663 = carried[43] * t4662;
   const Real t4664 = t4660 + t4663;
 
   // hind_right_shank: wrench
   const Real t4665 = constant<Real>(0.51L) * t4664;
-  const Real t4666 = t4665 - carried[353];
+  const Real t4666 = t4665 - carried[15];
 
   // hind_right_shank: joint force
-  const Real t4667 = carried[23] * t4666;
+  const Real t4667 = carried[44] * t4666;
 
   // hind_right_shank: acceleration
-  const Real t4668 = carried[23] * t4662;
-  const Real t4669 = t4659 * carried[22];
+  const Real t4668 = carried[44] * t4662;
+  const Real t4669 = t4659 * carried[43];
   const Real t4670 = t4668 - t4669;
 
   // hind_right_shank: wrench
   const Real t4671 = constant<Real>(0.51L) * t4670;
-  const Real t4672 = carried[352] + t4671;
+  const Real t4672 = carried[14] + t4671;
 
   // hind_right_shank: joint force
-  const Real t4673 = carried[22] * t4672;
+  const Real t4673 = carried[43] * t4672;
   const Real t4674 = t4667 - t4673;
   const Real t4675 = t4674 * constant<Real>(0.012L);
 
   // hind_right_shank: wrench
-  const Real t4676 = constant<Real>(0.51L) * carried[224];
-  const Real t4677 = t4676 + carried[357];
-  carried[449] = t4677;
+  const Real t4676 = constant<Real>(0.51L) * carried[245];
+  const Real t4677 = t4676 + carried[237];
+  carried[459] = t4677;
 
   // hind_right_shank: joint force
   const Real t4678 = t4677 * constant<Real>(0.24L);
@@ -10301,21 +10315,21 @@ template <class Real>
 
   // hind_right_shank: wrench
   const Real t4680 = t4664 * constant<Real>(0.00042L);
-  const Real t4681 = carried[224] * constant<Real>(0.0687L);
+  const Real t4681 = carried[245] * constant<Real>(0.0687L);
   const Real t4682 = t4681 - t4680;
-  const Real t4683 = t4682 + carried[372];
+  const Real t4683 = t4682 + carried[247];
 
   // hind_right_shank: joint force
-  const Real t4684 = carried[23] * t4683;
+  const Real t4684 = carried[44] * t4683;
 
   // hind_right_shank: wrench
   const Real t4685 = t4670 * constant<Real>(0.00042L);
-  const Real t4686 = carried[224] * constant<Real>(0.00252L);
+  const Real t4686 = carried[245] * constant<Real>(0.00252L);
   const Real t4687 = t4686 + t4685;
-  const Real t4688 = t4687 + carried[373];
+  const Real t4688 = t4687 + carried[291];
 
   // hind_right_shank: joint force
-  const Real t4689 = carried[22] * t4688;
+  const Real t4689 = carried[43] * t4688;
   const Real t4690 = t4684 + t4689;
   const Real t4691 = t4679 + t4690;
 
@@ -10323,26 +10337,26 @@ template <class Real>
   const Real t4692 = t4658 * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t4693 = constant<Real>(0.005304L) * carried[18];
+  const Real t4693 = constant<Real>(0.005304L) * carried[39];
 
   // hind_right_thigh: wrench
   const Real t4694 = t4692 - t4693;
-  const Real t4695 = carried[375] + t4694;
+  const Real t4695 = carried[295] + t4694;
 
   // hind_right_shank: joint force
   const Real t4696 = t4691 + t4695;
-  carried[481] = t4696;
+  carried[470] = t4696;
 
   // hind_right_thigh: joint force
-  const Real t4697 = t4696 * carried[21];
+  const Real t4697 = t4696 * carried[42];
 
   // hind_right_shank: joint force
-  const Real t4698 = carried[23] * t4672;
-  const Real t4699 = carried[22] * t4666;
+  const Real t4698 = carried[44] * t4672;
+  const Real t4699 = carried[43] * t4666;
   const Real t4700 = t4698 + t4699;
   const Real t4701 = t4700 * constant<Real>(0.012L);
-  const Real t4702 = carried[23] * t4688;
-  const Real t4703 = t4683 * carried[22];
+  const Real t4702 = carried[44] * t4688;
+  const Real t4703 = t4683 * carried[43];
   const Real t4704 = t4702 - t4703;
   const Real t4705 = t4701 + t4704;
 
@@ -10350,49 +10364,49 @@ template <class Real>
   const Real t4706 = constant<Real>(0.0272L) * t4661;
 
   // hind_right_thigh: wrench
-  const Real t4707 = constant<Real>(0.000306L) * carried[18];
+  const Real t4707 = constant<Real>(0.000306L) * carried[39];
 
   // hind_right_thigh: wrench
   const Real t4708 = t4706 + t4707;
-  const Real t4709 = carried[378] + t4708;
+  const Real t4709 = carried[336] + t4708;
 
   // hind_right_shank: joint force
   const Real t4710 = t4705 + t4709;
-  carried[487] = t4710;
+  carried[482] = t4710;
 
   // hind_right_thigh: joint force
-  const Real t4711 = t4710 * carried[20];
+  const Real t4711 = t4710 * carried[41];
   const Real t4712 = t4711 + t4697;
 
   // hind_right_thigh: wrench
   const Real t4713 = t4658 * constant<Real>(1.7L);
-  const Real t4714 = t4713 + carried[420];
+  const Real t4714 = t4713 + carried[436];
 
   // hind_right_shank: joint force
   const Real t4715 = t4714 + t4674;
-  carried[488] = t4715;
+  carried[502] = t4715;
 
   // hind_right_thigh: joint force
-  const Real t4716 = t4715 * carried[21];
+  const Real t4716 = t4715 * carried[42];
 
   // hind_right_thigh: wrench
   const Real t4717 = constant<Real>(1.7L) * t4661;
-  const Real t4718 = carried[418] + t4717;
+  const Real t4718 = carried[412] + t4717;
 
   // hind_right_shank: joint force
   const Real t4719 = t4700 - t4718;
-  carried[498] = t4719;
+  carried[510] = t4719;
 
   // hind_right_thigh: joint force
-  const Real t4720 = carried[20] * t4719;
+  const Real t4720 = carried[41] * t4719;
   const Real t4721 = t4716 - t4720;
-  carried[545] = t4721;
+  carried[547] = t4721;
   const Real t4722 = constant<Real>(0.075L) * t4721;
   const Real t4723 = t4712 - t4722;
 
   // hind_right_hip: wrench
-  const Real t4724 = constant<Real>(0.000078L) * carried[18];
-  const Real t4725 = constant<Real>(0.001638L) * carried[19];
+  const Real t4724 = constant<Real>(0.000078L) * carried[39];
+  const Real t4725 = constant<Real>(0.001638L) * carried[40];
   const Real t4726 = t4724 + t4725;
 
   // hind_right_hip: wrench
@@ -10400,10 +10414,10 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t4728 = t4727 + t4723;
-  carried[554] = t4728;
+  carried[557] = t4728;
 
   // reduced mass matrix
-  const Real t4729 = t4728 * carried[306];
+  const Real t4729 = t4728 * carried[327];
   const Real t4730 = t4656 - t4729;
 
   // hind_right_shank: joint force
@@ -10413,8 +10427,8 @@ template <class Real>
   const Real t4732 = t4670 * constant<Real>(0.0687L);
   const Real t4733 = constant<Real>(0.00252L) * t4664;
   const Real t4734 = t4732 + t4733;
-  const Real t4735 = carried[315] - t4734;
-  carried[557] = t4735;
+  const Real t4735 = carried[12] - t4734;
+  carried[566] = t4735;
 
   // hind_right_shank: joint force
   const Real t4736 = t4735 - t4731;
@@ -10423,241 +10437,241 @@ template <class Real>
   const Real t4737 = t4658 * constant<Real>(0.0051L);
   const Real t4738 = t4661 * constant<Real>(0.0884L);
   const Real t4739 = t4737 + t4738;
-  const Real t4740 = carried[354] + t4739;
+  const Real t4740 = carried[229] + t4739;
 
   // hind_right_shank: joint force
   const Real t4741 = t4740 + t4736;
-  carried[559] = t4741;
+  carried[569] = t4741;
 
   // reduced mass matrix
-  const Real t4742 = carried[314] * t4741;
+  const Real t4742 = carried[335] * t4741;
   const Real t4743 = t4730 + t4742;
-  const Real t4744 = t4735 * carried[319];
+  const Real t4744 = t4735 * carried[340];
   const Real t4745 = t4743 + t4744;
-  const Real t4746 = carried[490] * carried[56];
+  const Real t4746 = carried[486] * carried[77];
   const Real t4747 = t4745 - t4746;
-  const Real t4748 = carried[493] * carried[60];
+  const Real t4748 = carried[488] * carried[81];
   const Real t4749 = t4747 + t4748;
-  const Real t4750 = carried[494] * carried[63];
+  const Real t4750 = carried[489] * carried[84];
   const Real t4751 = t4749 + t4750;
-  const Real t4752 = carried[169] * carried[495];
+  const Real t4752 = carried[190] * carried[496];
   const Real t4753 = t4751 - t4752;
-  const Real t4754 = carried[515] * carried[173];
+  const Real t4754 = carried[513] * carried[194];
   const Real t4755 = t4754 + t4753;
-  const Real t4756 = carried[521] * carried[175];
+  const Real t4756 = carried[515] * carried[196];
   const Real t4757 = t4756 + t4755;
-  const Real t4758 = carried[244] * carried[522];
+  const Real t4758 = carried[265] * carried[516];
   const Real t4759 = t4757 - t4758;
-  const Real t4760 = carried[523] * carried[248];
+  const Real t4760 = carried[517] * carried[269];
   const Real t4761 = t4759 + t4760;
-  const Real t4762 = carried[524] * carried[251];
+  const Real t4762 = carried[518] * carried[272];
   const Real t4763 = t4761 + t4762;
-  const Real t4764 = carried[252] * carried[525];
+  const Real t4764 = carried[273] * carried[519];
   const Real t4765 = t4763 - t4764;
-  const Real t4766 = carried[526] * carried[265];
+  const Real t4766 = carried[521] * carried[286];
   const Real t4767 = t4766 + t4765;
-  const Real t4768 = carried[330] * carried[527];
+  const Real t4768 = carried[351] * carried[522];
   const Real t4769 = t4767 + t4768;
-  carried[568] = t4769;
+  carried[571] = t4769;
 
   // hind_right_hip: joint force
   const Real t4770 = carried[616] * constant<Real>(0.06L);
-  const Real t4771 = carried[425] - t4770;
+  const Real t4771 = carried[441] - t4770;
 
   // hind_left_hip: joint force
   const Real t4772 = carried[617] * constant<Real>(0.06L);
-  const Real t4773 = carried[391] + t4772;
+  const Real t4773 = carried[407] + t4772;
   const Real t4774 = t4771 + t4773;
-  carried[570] = t4774;
+  carried[580] = t4774;
 
   // front_right_hip: joint force
   const Real t4775 = carried[618] * constant<Real>(0.06L);
-  const Real t4776 = carried[324] - t4775;
-  carried[584] = t4776;
+  const Real t4776 = carried[321] - t4775;
+  carried[582] = t4776;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_17(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_right_hip: joint force
-  const Real t4777 = carried[570] + carried[584];
+  const Real t4777 = carried[580] + carried[582];
 
   // front_left_hip: joint force
   const Real t4778 = carried[619] * constant<Real>(0.06L);
-  const Real t4779 = t4778 + carried[297];
+  const Real t4779 = t4778 + carried[18];
   const Real t4780 = t4777 + t4779;
 
   // reduced mass matrix
-  const Real t4781 = carried[53] * carried[42];
+  const Real t4781 = carried[16] * carried[63];
   const Real t4782 = t4781 + t4780;
-  const Real t4783 = carried[26] * carried[44];
+  const Real t4783 = carried[1] * carried[65];
   const Real t4784 = t4783 + t4782;
-  const Real t4785 = carried[113] * carried[155];
+  const Real t4785 = carried[134] * carried[176];
   const Real t4786 = t4784 + t4785;
-  const Real t4787 = carried[157] * carried[90];
+  const Real t4787 = carried[178] * carried[111];
   const Real t4788 = t4786 + t4787;
-  const Real t4789 = carried[438] * carried[230];
+  const Real t4789 = carried[438] * carried[251];
   const Real t4790 = t4789 + t4788;
-  const Real t4791 = carried[426] * carried[232];
+  const Real t4791 = carried[395] * carried[253];
   const Real t4792 = t4790 + t4791;
-  const Real t4793 = carried[559] * carried[321];
+  const Real t4793 = carried[569] * carried[342];
   const Real t4794 = t4793 + t4792;
-  const Real t4795 = carried[323] * carried[557];
+  const Real t4795 = carried[344] * carried[566];
   const Real t4796 = t4794 + t4795;
-  const Real t4797 = carried[56] * carried[507];
+  const Real t4797 = carried[77] * carried[490];
   const Real t4798 = t4796 - t4797;
-  const Real t4799 = carried[509] * carried[60];
+  const Real t4799 = carried[491] * carried[81];
   const Real t4800 = t4799 + t4798;
-  const Real t4801 = carried[510] * carried[63];
+  const Real t4801 = carried[503] * carried[84];
   const Real t4802 = t4801 + t4800;
-  const Real t4803 = carried[169] * carried[511];
+  const Real t4803 = carried[190] * carried[506];
   const Real t4804 = t4802 - t4803;
-  const Real t4805 = carried[512] * carried[173];
+  const Real t4805 = carried[507] * carried[194];
   const Real t4806 = t4804 + t4805;
-  const Real t4807 = carried[175] * carried[514];
+  const Real t4807 = carried[196] * carried[509];
   const Real t4808 = t4806 + t4807;
-  const Real t4809 = carried[244] * carried[43];
+  const Real t4809 = carried[265] * carried[64];
   const Real t4810 = t4808 - t4809;
-  const Real t4811 = carried[138] * carried[248];
+  const Real t4811 = carried[159] * carried[269];
   const Real t4812 = t4811 + t4810;
-  const Real t4813 = carried[251] * carried[154];
+  const Real t4813 = carried[272] * carried[175];
   const Real t4814 = t4812 + t4813;
-  const Real t4815 = carried[252] * carried[156];
+  const Real t4815 = carried[273] * carried[177];
   const Real t4816 = t4814 - t4815;
-  const Real t4817 = carried[213] * carried[265];
+  const Real t4817 = carried[222] * carried[286];
   const Real t4818 = t4816 + t4817;
-  const Real t4819 = carried[330] * carried[229];
+  const Real t4819 = carried[351] * carried[233];
   const Real t4820 = t4819 + t4818;
-  carried[57] = t4820;
+  carried[12] = t4820;
 
   // reduced accelerations
-  const Real t4821 = carried[432] * t4820;
-  const Real t4822 = carried[568] - t4821;
-  carried[58] = t4822;
+  const Real t4821 = carried[450] * t4820;
+  const Real t4822 = carried[571] - t4821;
+  carried[14] = t4822;
   const Real t4823 = carried[622] * t4822;
 
   // hind_right_hip: joint force
-  const Real t4824 = carried[552] * constant<Real>(0.06L);
+  const Real t4824 = carried[545] * constant<Real>(0.06L);
   const Real t4825 = carried[610] - t4824;
   const Real t4826 = t4825 + constant<Real>(-0.011L);
 
   // hind_left_hip: joint force
   const Real t4827 = carried[628] * constant<Real>(0.06L);
-  const Real t4828 = t4827 + carried[592];
+  const Real t4828 = t4827 + carried[573];
   const Real t4829 = t4828 + t4826;
 
   // front_right_hip: joint force
   const Real t4830 = constant<Real>(0.06L) * carried[631];
-  const Real t4831 = carried[463] - t4830;
+  const Real t4831 = carried[442] - t4830;
   const Real t4832 = t4829 + t4831;
 
   // front_left_hip: joint force
   const Real t4833 = constant<Real>(0.06L) * carried[634];
-  const Real t4834 = t4833 + carried[132];
+  const Real t4834 = t4833 + carried[129];
   const Real t4835 = t4834 + t4832;
 
   // reduced mass matrix
-  const Real t4836 = carried[45] * carried[654];
+  const Real t4836 = carried[66] * carried[654];
   const Real t4837 = t4835 - t4836;
-  const Real t4838 = carried[53] * carried[51];
+  const Real t4838 = carried[16] * carried[72];
   const Real t4839 = t4837 + t4838;
-  const Real t4840 = carried[26] * carried[54];
+  const Real t4840 = carried[1] * carried[75];
   const Real t4841 = t4839 + t4840;
-  const Real t4842 = carried[158] * carried[89];
+  const Real t4842 = carried[179] * carried[110];
   const Real t4843 = t4841 - t4842;
-  const Real t4844 = carried[113] * carried[164];
+  const Real t4844 = carried[134] * carried[185];
   const Real t4845 = t4844 + t4843;
-  const Real t4846 = carried[90] * carried[167];
+  const Real t4846 = carried[111] * carried[188];
   const Real t4847 = t4845 - t4846;
-  const Real t4848 = carried[233] * carried[371];
+  const Real t4848 = carried[254] * carried[392];
   const Real t4849 = t4847 - t4848;
-  const Real t4850 = carried[438] * carried[239];
+  const Real t4850 = carried[438] * carried[260];
   const Real t4851 = t4849 + t4850;
-  const Real t4852 = carried[242] * carried[426];
+  const Real t4852 = carried[263] * carried[395];
   const Real t4853 = t4852 + t4851;
-  const Real t4854 = carried[554] * carried[325];
+  const Real t4854 = carried[557] * carried[346];
   const Real t4855 = t4853 - t4854;
-  const Real t4856 = carried[559] * carried[106];
+  const Real t4856 = carried[569] * carried[127];
   const Real t4857 = t4856 + t4855;
-  const Real t4858 = carried[222] * carried[557];
+  const Real t4858 = carried[243] * carried[566];
   const Real t4859 = t4857 - t4858;
-  const Real t4860 = carried[56] * carried[635];
+  const Real t4860 = carried[77] * carried[635];
   const Real t4861 = t4859 - t4860;
-  const Real t4862 = carried[636] * carried[60];
+  const Real t4862 = carried[636] * carried[81];
   const Real t4863 = t4861 + t4862;
-  const Real t4864 = carried[637] * carried[63];
+  const Real t4864 = carried[637] * carried[84];
   const Real t4865 = t4863 + t4864;
-  const Real t4866 = carried[169] * carried[638];
+  const Real t4866 = carried[190] * carried[638];
   const Real t4867 = t4865 - t4866;
-  const Real t4868 = carried[639] * carried[173];
+  const Real t4868 = carried[639] * carried[194];
   const Real t4869 = t4868 + t4867;
-  const Real t4870 = carried[640] * carried[175];
+  const Real t4870 = carried[640] * carried[196];
   const Real t4871 = t4870 + t4869;
-  const Real t4872 = carried[244] * carried[641];
+  const Real t4872 = carried[265] * carried[641];
   const Real t4873 = t4871 - t4872;
-  const Real t4874 = carried[642] * carried[248];
+  const Real t4874 = carried[642] * carried[269];
   const Real t4875 = t4873 + t4874;
-  const Real t4876 = carried[251] * carried[643];
+  const Real t4876 = carried[272] * carried[643];
   const Real t4877 = t4875 + t4876;
-  const Real t4878 = carried[644] * carried[252];
+  const Real t4878 = carried[644] * carried[273];
   const Real t4879 = t4877 - t4878;
-  const Real t4880 = carried[645] * carried[265];
+  const Real t4880 = carried[645] * carried[286];
   const Real t4881 = t4879 + t4880;
-  const Real t4882 = carried[330] * carried[646];
+  const Real t4882 = carried[351] * carried[646];
   const Real t4883 = t4881 + t4882;
 
   // reduced accelerations
   const Real t4884 = carried[533] * t4820;
   const Real t4885 = t4883 - t4884;
   const Real t4886 = t4885 - t4823;
-  carried[59] = t4886;
+  carried[15] = t4886;
   const Real t4887 = carried[647] * t4886;
-  carried[168] = t4887;
+  carried[19] = t4887;
   const Real t4888 = t4887 * carried[539];
-  const Real t4889 = t4822 * carried[528];
-  carried[170] = t4889;
-  const Real t4890 = carried[460] * t4889;
+  const Real t4889 = t4822 * carried[523];
+  carried[47] = t4889;
+  const Real t4890 = carried[453] * t4889;
 
   // reduced forces
-  const Real t4891 = carried[26] * carried[118];
-  const Real t4892 = carried[116] * carried[53];
-  const Real t4893 = carried[654] * carried[100];
+  const Real t4891 = carried[1] * carried[139];
+  const Real t4892 = carried[137] * carried[16];
+  const Real t4893 = carried[654] * carried[121];
   const Real t4894 = t4893 + t4892;
   const Real t4895 = t4894 - t4891;
-  const Real t4896 = carried[85] * carried[89];
+  const Real t4896 = carried[106] * carried[110];
   const Real t4897 = t4895 + t4896;
-  const Real t4898 = carried[204] * carried[113];
+  const Real t4898 = carried[225] * carried[134];
   const Real t4899 = t4898 + t4897;
-  const Real t4900 = carried[209] * carried[90];
+  const Real t4900 = carried[230] * carried[111];
   const Real t4901 = t4899 - t4900;
-  const Real t4902 = carried[277] * carried[371];
+  const Real t4902 = carried[298] * carried[392];
   const Real t4903 = t4901 + t4902;
-  const Real t4904 = carried[293] * carried[438];
+  const Real t4904 = carried[314] * carried[438];
   const Real t4905 = t4903 + t4904;
-  const Real t4906 = carried[426] * carried[298];
+  const Real t4906 = carried[395] * carried[319];
   const Real t4907 = t4905 - t4906;
-  const Real t4908 = carried[554] * carried[358];
+  const Real t4908 = carried[557] * carried[379];
   const Real t4909 = t4907 + t4908;
-  const Real t4910 = carried[380] * carried[559];
+  const Real t4910 = carried[401] * carried[569];
   const Real t4911 = t4910 + t4909;
-  const Real t4912 = carried[276] * carried[557];
+  const Real t4912 = carried[297] * carried[566];
   const Real t4913 = t4911 - t4912;
 
   // hind_right_hip: joint force
-  const Real t4914 = carried[274] * constant<Real>(0.06L);
-  const Real t4915 = carried[270] - t4914;
+  const Real t4914 = carried[17] * constant<Real>(0.06L);
+  const Real t4915 = carried[8] - t4914;
 
   // trunk: wrench
-  const Real t4916 = constant<Real>(0.017759037L) * carried[407];
-  const Real t4917 = carried[409] * constant<Real>(0.000691L);
+  const Real t4916 = constant<Real>(0.017759037L) * carried[428];
+  const Real t4917 = carried[430] * constant<Real>(0.000691L);
   const Real t4918 = t4916 - t4917;
-  const Real t4919 = constant<Real>(0.005104L) * carried[398];
+  const Real t4919 = constant<Real>(0.005104L) * carried[419];
   const Real t4920 = t4918 - t4919;
-  const Real t4921 = carried[395] - carried[394];
+  const Real t4921 = carried[416] - carried[415];
   const Real t4922 = t4921 * constant<Real>(0.000406L);
   const Real t4923 = t4920 + t4922;
-  const Real t4924 = constant<Real>(0.1412L) * carried[405];
-  const Real t4925 = constant<Real>(0.011L) * carried[406];
+  const Real t4924 = constant<Real>(0.1412L) * carried[426];
+  const Real t4925 = constant<Real>(0.011L) * carried[427];
   const Real t4926 = t4924 + t4925;
   const Real t4927 = t4923 - t4926;
 
@@ -10665,362 +10679,362 @@ template <class Real>
   const Real t4928 = t4915 + t4927;
 
   // hind_left_hip: joint force
-  const Real t4929 = carried[317] * constant<Real>(0.06L);
-  const Real t4930 = t4929 + carried[194];
+  const Real t4929 = carried[318] * constant<Real>(0.06L);
+  const Real t4930 = t4929 + carried[158];
   const Real t4931 = t4930 + t4928;
 
   // front_right_hip: joint force
-  const Real t4932 = constant<Real>(0.06L) * carried[390];
-  const Real t4933 = carried[546] - t4932;
+  const Real t4932 = constant<Real>(0.06L) * carried[406];
+  const Real t4933 = carried[558] - t4932;
   const Real t4934 = t4931 + t4933;
 
   // front_left_hip: joint force
-  const Real t4935 = carried[424] * constant<Real>(0.06L);
-  const Real t4936 = carried[564] + t4935;
+  const Real t4935 = carried[440] * constant<Real>(0.06L);
+  const Real t4936 = carried[576] + t4935;
   const Real t4937 = t4934 + t4936;
 
   // reduced forces
   const Real t4938 = t4937 + t4913;
-  const Real t4939 = carried[111] * carried[56];
+  const Real t4939 = carried[132] * carried[77];
   const Real t4940 = t4938 + t4939;
-  const Real t4941 = carried[399] * carried[60];
+  const Real t4941 = carried[420] * carried[81];
   const Real t4942 = t4941 - t4940;
-  const Real t4943 = carried[403] * carried[63];
+  const Real t4943 = carried[424] * carried[84];
   const Real t4944 = t4943 + t4942;
-  const Real t4945 = carried[169] * carried[25];
+  const Real t4945 = carried[190] * carried[10];
   const Real t4946 = t4944 - t4945;
-  const Real t4947 = carried[173] * carried[136];
+  const Real t4947 = carried[194] * carried[49];
   const Real t4948 = t4946 + t4947;
-  const Real t4949 = carried[175] * carried[137];
+  const Real t4949 = carried[196] * carried[59];
   const Real t4950 = t4948 + t4949;
-  const Real t4951 = carried[244] * carried[473];
+  const Real t4951 = carried[265] * carried[473];
   const Real t4952 = t4950 - t4951;
-  const Real t4953 = carried[211] * carried[248];
+  const Real t4953 = carried[2] * carried[269];
   const Real t4954 = t4953 + t4952;
-  const Real t4955 = carried[251] * carried[212];
+  const Real t4955 = carried[272] * carried[5];
   const Real t4956 = t4955 + t4954;
-  const Real t4957 = carried[252] * carried[404];
+  const Real t4957 = carried[273] * carried[371];
   const Real t4958 = t4956 - t4957;
-  const Real t4959 = carried[458] * carried[265];
+  const Real t4959 = carried[396] * carried[286];
   const Real t4960 = t4959 + t4958;
-  const Real t4961 = carried[330] * carried[459];
+  const Real t4961 = carried[351] * carried[397];
   const Real t4962 = t4960 + t4961;
 
   // reduced accelerations
-  const Real t4963 = carried[429] * t4820;
-  carried[171] = t4963;
-  const Real t4964 = carried[496] * t4963;
+  const Real t4963 = carried[425] * t4820;
+  carried[78] = t4963;
+  const Real t4964 = carried[466] * t4963;
   const Real t4965 = t4962 - t4964;
   const Real t4966 = t4965 - t4890;
   const Real t4967 = t4966 - t4888;
-  carried[172] = t4967;
+  carried[79] = t4967;
 
   // hind_right_thigh: joint force
-  const Real t4968 = carried[481] * carried[20];
-  const Real t4969 = carried[487] * carried[21];
+  const Real t4968 = carried[470] * carried[41];
+  const Real t4969 = carried[482] * carried[42];
   const Real t4970 = t4969 - t4968;
-  const Real t4971 = carried[20] * carried[488];
-  const Real t4972 = carried[498] * carried[21];
+  const Real t4971 = carried[41] * carried[502];
+  const Real t4972 = carried[510] * carried[42];
   const Real t4973 = t4971 + t4972;
-  carried[196] = t4973;
+  carried[80] = t4973;
   const Real t4974 = constant<Real>(0.075L) * t4973;
   const Real t4975 = t4970 + t4974;
 
   // hind_right_hip: wrench
-  const Real t4976 = constant<Real>(0.000312L) * carried[18];
+  const Real t4976 = constant<Real>(0.000312L) * carried[39];
 
   // hind_right_hip: wrench
   const Real t4977 = constant<Real>(-5.2e-6L) - t4976;
 
   // hind_right_thigh: joint force
   const Real t4978 = t4977 + t4975;
-  carried[199] = t4978;
+  carried[162] = t4978;
 
   // hind_right_hip: joint force
-  const Real t4979 = carried[18] * t4978;
+  const Real t4979 = carried[39] * t4978;
 
   // hind_right_hip: wrench
-  const Real t4980 = constant<Real>(0.000312L) * carried[19];
+  const Real t4980 = constant<Real>(0.000312L) * carried[40];
 
   // hind_right_hip: wrench
   const Real t4981 = constant<Real>(0.0001392L) + t4980;
 
   // hind_right_thigh: joint force
-  const Real t4982 = carried[559] + t4981;
-  carried[201] = t4982;
+  const Real t4982 = carried[569] + t4981;
+  carried[189] = t4982;
 
   // hind_right_hip: joint force
-  const Real t4983 = t4982 * carried[19];
+  const Real t4983 = t4982 * carried[40];
   const Real t4984 = t4983 - t4979;
 
   // hind_right_hip: wrench
-  const Real t4985 = carried[19] * constant<Real>(0.078L);
+  const Real t4985 = carried[40] * constant<Real>(0.078L);
 
   // hind_right_hip: wrench
   const Real t4986 = constant<Real>(-0.0273L) - t4985;
 
   // hind_right_thigh: joint force
-  const Real t4987 = t4986 + carried[545];
-  carried[224] = t4987;
+  const Real t4987 = t4986 + carried[547];
+  carried[191] = t4987;
 
   // hind_right_hip: joint force
-  const Real t4988 = t4987 * carried[19];
+  const Real t4988 = t4987 * carried[40];
 
   // hind_right_thigh: wrench
-  const Real t4989 = carried[428] - carried[427];
+  const Real t4989 = carried[444] - carried[443];
 
   // hind_right_thigh: wrench
-  const Real t4990 = constant<Real>(0.102L) * carried[18];
+  const Real t4990 = constant<Real>(0.102L) * carried[39];
 
   // hind_right_thigh: wrench
   const Real t4991 = t4989 - t4990;
 
   // hind_right_shank: joint force
-  const Real t4992 = carried[449] + t4991;
+  const Real t4992 = carried[459] + t4991;
 
   // hind_right_hip: wrench
-  const Real t4993 = carried[18] * constant<Real>(0.078L);
+  const Real t4993 = carried[39] * constant<Real>(0.078L);
 
   // hind_right_hip: wrench
   const Real t4994 = constant<Real>(-0.0013L) - t4993;
 
   // hind_right_thigh: joint force
   const Real t4995 = t4994 + t4992;
-  carried[243] = t4995;
+  carried[192] = t4995;
 
   // hind_right_hip: joint force
-  const Real t4996 = t4995 * carried[18];
+  const Real t4996 = t4995 * carried[39];
   const Real t4997 = t4996 + t4988;
-  carried[245] = t4997;
+  carried[193] = t4997;
   const Real t4998 = t4997 * constant<Real>(0.21L);
   const Real t4999 = t4984 + t4998;
   const Real t5000 = constant<Real>(0.000691L) + t4999;
 
   // hind_left_thigh: joint force
-  const Real t5001 = carried[14] * carried[166];
-  const Real t5002 = carried[15] * carried[214];
+  const Real t5001 = carried[35] * carried[173];
+  const Real t5002 = carried[36] * carried[187];
   const Real t5003 = t5002 - t5001;
-  const Real t5004 = carried[14] * carried[231];
-  const Real t5005 = carried[15] * carried[241];
+  const Real t5004 = carried[35] * carried[235];
+  const Real t5005 = carried[36] * carried[262];
   const Real t5006 = t5004 + t5005;
-  carried[246] = t5006;
+  carried[215] = t5006;
   const Real t5007 = constant<Real>(0.075L) * t5006;
   const Real t5008 = t5003 - t5007;
 
   // hind_left_hip: wrench
-  const Real t5009 = constant<Real>(0.000312L) * carried[12];
+  const Real t5009 = constant<Real>(0.000312L) * carried[33];
 
   // hind_left_hip: wrench
   const Real t5010 = constant<Real>(-5.2e-6L) + t5009;
 
   // hind_left_thigh: joint force
   const Real t5011 = t5008 + t5010;
-  carried[247] = t5011;
+  carried[217] = t5011;
 
   // hind_left_hip: joint force
-  const Real t5012 = t5011 * carried[12];
+  const Real t5012 = t5011 * carried[33];
 
   // hind_left_hip: wrench
-  const Real t5013 = constant<Real>(0.000312L) * carried[13];
+  const Real t5013 = constant<Real>(0.000312L) * carried[34];
 
   // hind_left_hip: wrench
   const Real t5014 = constant<Real>(-0.0001392L) - t5013;
 
   // hind_left_thigh: joint force
   const Real t5015 = carried[438] + t5014;
-  carried[249] = t5015;
+  carried[219] = t5015;
 
   // hind_left_hip: joint force
-  const Real t5016 = carried[13] * t5015;
+  const Real t5016 = carried[34] * t5015;
   const Real t5017 = t5016 - t5012;
 
   // hind_left_hip: wrench
-  const Real t5018 = carried[13] * constant<Real>(0.078L);
+  const Real t5018 = carried[34] * constant<Real>(0.078L);
 
   // hind_left_hip: wrench
   const Real t5019 = constant<Real>(0.0273L) + t5018;
 
   // hind_left_thigh: joint force
-  const Real t5020 = carried[290] + t5019;
-  carried[253] = t5020;
+  const Real t5020 = carried[311] + t5019;
+  carried[229] = t5020;
 
   // hind_left_hip: joint force
-  const Real t5021 = t5020 * carried[13];
+  const Real t5021 = t5020 * carried[34];
 
   // hind_left_thigh: wrench
-  const Real t5022 = carried[416] - carried[415];
+  const Real t5022 = carried[410] - carried[409];
 
   // hind_left_thigh: wrench
-  const Real t5023 = constant<Real>(0.102L) * carried[12];
+  const Real t5023 = constant<Real>(0.102L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t5024 = t5022 + t5023;
 
   // hind_left_shank: joint force
-  const Real t5025 = t5024 + carried[134];
+  const Real t5025 = t5024 + carried[155];
 
   // hind_left_hip: wrench
-  const Real t5026 = constant<Real>(0.078L) * carried[12];
+  const Real t5026 = constant<Real>(0.078L) * carried[33];
 
   // hind_left_hip: wrench
   const Real t5027 = constant<Real>(-0.0013L) + t5026;
 
   // hind_left_thigh: joint force
   const Real t5028 = t5027 + t5025;
-  carried[256] = t5028;
+  carried[237] = t5028;
 
   // hind_left_hip: joint force
-  const Real t5029 = t5028 * carried[12];
+  const Real t5029 = t5028 * carried[33];
   const Real t5030 = t5029 + t5021;
-  carried[263] = t5030;
+  carried[245] = t5030;
   const Real t5031 = t5030 * constant<Real>(0.21L);
   const Real t5032 = t5017 + t5031;
   const Real t5033 = t5000 + t5032;
 
   // front_right_thigh: joint force
-  const Real t5034 = carried[8] * carried[61];
-  const Real t5035 = carried[84] * carried[9];
+  const Real t5034 = carried[29] * carried[76];
+  const Real t5035 = carried[82] * carried[30];
   const Real t5036 = t5035 - t5034;
-  const Real t5037 = carried[86] * carried[8];
-  const Real t5038 = carried[87] * carried[9];
+  const Real t5037 = carried[107] * carried[29];
+  const Real t5038 = carried[108] * carried[30];
   const Real t5039 = t5037 + t5038;
-  carried[275] = t5039;
+  carried[247] = t5039;
   const Real t5040 = constant<Real>(0.075L) * t5039;
   const Real t5041 = t5040 + t5036;
 
   // front_right_hip: wrench
-  const Real t5042 = carried[6] * constant<Real>(0.000312L);
+  const Real t5042 = carried[27] * constant<Real>(0.000312L);
 
   // front_right_hip: wrench
   const Real t5043 = constant<Real>(5.2e-6L) + t5042;
 
   // front_right_thigh: joint force
   const Real t5044 = t5041 + t5043;
-  carried[300] = t5044;
+  carried[264] = t5044;
 
   // front_right_hip: joint force
-  const Real t5045 = t5044 * carried[6];
+  const Real t5045 = t5044 * carried[27];
 
   // front_right_hip: wrench
-  const Real t5046 = constant<Real>(0.000312L) * carried[7];
+  const Real t5046 = constant<Real>(0.000312L) * carried[28];
 
   // front_right_hip: wrench
   const Real t5047 = constant<Real>(-0.0001392L) - t5046;
 
   // front_right_thigh: joint force
-  const Real t5048 = carried[113] + t5047;
-  carried[304] = t5048;
+  const Real t5048 = carried[134] + t5047;
+  carried[266] = t5048;
 
   // front_right_hip: joint force
-  const Real t5049 = t5048 * carried[7];
+  const Real t5049 = t5048 * carried[28];
   const Real t5050 = t5049 - t5045;
 
   // front_right_hip: wrench
-  const Real t5051 = constant<Real>(0.078L) * carried[7];
+  const Real t5051 = constant<Real>(0.078L) * carried[28];
 
   // front_right_hip: wrench
   const Real t5052 = constant<Real>(-0.0273L) - t5051;
 
   // front_right_thigh: joint force
-  const Real t5053 = t5052 + carried[88];
-  carried[315] = t5053;
+  const Real t5053 = t5052 + carried[109];
+  carried[267] = t5053;
 
   // front_right_hip: joint force
-  const Real t5054 = t5053 * carried[7];
+  const Real t5054 = t5053 * carried[28];
 
   // front_right_thigh: wrench
-  const Real t5055 = carried[350] - carried[349];
+  const Real t5055 = carried[326] - carried[325];
 
   // front_right_thigh: wrench
-  const Real t5056 = carried[6] * constant<Real>(0.102L);
+  const Real t5056 = carried[27] * constant<Real>(0.102L);
 
   // front_right_thigh: wrench
   const Real t5057 = t5055 - t5056;
 
   // front_right_shank: joint force
-  const Real t5058 = t5057 + carried[55];
+  const Real t5058 = t5057 + carried[74];
 
   // front_right_hip: wrench
-  const Real t5059 = carried[6] * constant<Real>(0.078L);
+  const Real t5059 = carried[27] * constant<Real>(0.078L);
 
   // front_right_hip: wrench
   const Real t5060 = constant<Real>(-0.0013L) - t5059;
 
   // front_right_thigh: joint force
   const Real t5061 = t5060 + t5058;
-  carried[324] = t5061;
+  carried[268] = t5061;
 
   // front_right_hip: joint force
-  const Real t5062 = carried[6] * t5061;
+  const Real t5062 = carried[27] * t5061;
   const Real t5063 = t5054 + t5062;
-  carried[352] = t5063;
+  carried[270] = t5063;
   const Real t5064 = constant<Real>(0.21L) * t5063;
   const Real t5065 = t5050 - t5064;
   const Real t5066 = t5033 + t5065;
-  carried[353] = t5066;
+  carried[274] = t5066;
 
   // front_left_thigh: joint force
-  const Real t5067 = carried[649] * carried[2];
-  const Real t5068 = carried[650] * carried[3];
+  const Real t5067 = carried[649] * carried[23];
+  const Real t5068 = carried[650] * carried[24];
   const Real t5069 = t5068 - t5067;
-  const Real t5070 = carried[651] * carried[2];
-  const Real t5071 = carried[3] * carried[652];
+  const Real t5070 = carried[651] * carried[23];
+  const Real t5071 = carried[24] * carried[652];
   const Real t5072 = t5070 + t5071;
-  carried[354] = t5072;
+  carried[277] = t5072;
   const Real t5073 = constant<Real>(0.075L) * t5072;
   const Real t5074 = t5069 - t5073;
-  carried[357] = t5074;
+  carried[284] = t5074;
 
   // front_left_hip: wrench
-  const Real t5075 = constant<Real>(0.000312L) * carried[0];
+  const Real t5075 = constant<Real>(0.000312L) * carried[21];
 
   // front_left_hip: wrench
   const Real t5076 = constant<Real>(5.2e-6L) - t5075;
-  carried[372] = t5076;
+  carried[291] = t5076;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_18(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // front_left_thigh: joint force
-  const Real t5077 = carried[357] + carried[372];
-  carried[55] = t5077;
+  const Real t5077 = carried[284] + carried[291];
+  carried[8] = t5077;
 
   // front_left_hip: joint force
-  const Real t5078 = t5077 * carried[0];
+  const Real t5078 = t5077 * carried[21];
 
   // front_left_hip: wrench
-  const Real t5079 = constant<Real>(0.000312L) * carried[1];
+  const Real t5079 = constant<Real>(0.000312L) * carried[22];
 
   // front_left_hip: wrench
   const Real t5080 = t5079 + constant<Real>(0.0001392L);
 
   // front_left_thigh: joint force
-  const Real t5081 = carried[53] + t5080;
-  carried[61] = t5081;
+  const Real t5081 = carried[16] + t5080;
+  carried[18] = t5081;
 
   // front_left_hip: joint force
-  const Real t5082 = t5081 * carried[1];
+  const Real t5082 = t5081 * carried[22];
   const Real t5083 = t5082 - t5078;
 
   // front_left_hip: wrench
-  const Real t5084 = carried[1] * constant<Real>(0.078L);
+  const Real t5084 = carried[22] * constant<Real>(0.078L);
 
   // front_left_hip: wrench
   const Real t5085 = t5084 + constant<Real>(0.0273L);
 
   // front_left_thigh: joint force
   const Real t5086 = t5085 + carried[653];
-  carried[84] = t5086;
+  carried[74] = t5086;
 
   // front_left_hip: joint force
-  const Real t5087 = t5086 * carried[1];
+  const Real t5087 = t5086 * carried[22];
 
   // front_left_thigh: wrench
-  const Real t5088 = carried[468] - carried[467];
+  const Real t5088 = carried[478] - carried[477];
 
   // front_left_thigh: wrench
-  const Real t5089 = constant<Real>(0.102L) * carried[0];
+  const Real t5089 = constant<Real>(0.102L) * carried[21];
 
   // front_left_thigh: wrench
   const Real t5090 = t5088 + t5089;
@@ -11029,61 +11043,61 @@ template <class Real>
   const Real t5091 = t5090 + carried[648];
 
   // front_left_hip: wrench
-  const Real t5092 = carried[0] * constant<Real>(0.078L);
+  const Real t5092 = carried[21] * constant<Real>(0.078L);
 
   // front_left_hip: wrench
   const Real t5093 = constant<Real>(-0.0013L) + t5092;
 
   // front_left_thigh: joint force
   const Real t5094 = t5091 + t5093;
-  carried[86] = t5094;
+  carried[76] = t5094;
 
   // front_left_hip: joint force
-  const Real t5095 = t5094 * carried[0];
+  const Real t5095 = t5094 * carried[21];
   const Real t5096 = t5095 + t5087;
-  carried[87] = t5096;
+  carried[82] = t5096;
   const Real t5097 = t5096 * constant<Real>(0.21L);
   const Real t5098 = t5083 - t5097;
-  const Real t5099 = t5098 + carried[353];
+  const Real t5099 = t5098 + carried[274];
 
   // front_left_shank: acceleration
-  const Real t5100 = carried[69] - carried[70];
-  const Real t5101 = carried[68] + t5100;
-  const Real t5102 = t5101 * carried[4];
-  const Real t5103 = t5102 + carried[67];
+  const Real t5100 = carried[90] - carried[91];
+  const Real t5101 = carried[89] + t5100;
+  const Real t5102 = t5101 * carried[25];
+  const Real t5103 = t5102 + carried[88];
 
   // front_left_shank: wrench
   const Real t5104 = t5103 * constant<Real>(0.51L);
-  const Real t5105 = carried[122] - carried[123];
+  const Real t5105 = carried[143] - carried[144];
   const Real t5106 = t5104 + t5105;
 
   // front_left_shank: joint force
-  const Real t5107 = t5106 * carried[5];
+  const Real t5107 = t5106 * carried[26];
 
   // front_left_shank: acceleration
-  const Real t5108 = t5101 * carried[5];
-  const Real t5109 = t5108 - carried[72];
+  const Real t5108 = t5101 * carried[26];
+  const Real t5109 = t5108 - carried[93];
 
   // front_left_shank: wrench
   const Real t5110 = constant<Real>(0.51L) * t5109;
 
   // front_left_shank: acceleration
-  const Real t5111 = carried[32] - carried[30];
+  const Real t5111 = carried[53] - carried[51];
 
   // front_left_shank: wrench
   const Real t5112 = t5111 * constant<Real>(0.00042L);
-  const Real t5113 = t5112 - carried[124];
+  const Real t5113 = t5112 - carried[145];
   const Real t5114 = t5113 + t5110;
 
   // front_left_shank: joint force
-  const Real t5115 = t5114 * carried[4];
+  const Real t5115 = t5114 * carried[25];
   const Real t5116 = t5107 - t5115;
   const Real t5117 = constant<Real>(0.012L) * t5116;
 
   // front_left_shank: wrench
-  const Real t5118 = constant<Real>(0.51L) * carried[64];
-  const Real t5119 = t5118 + carried[119];
-  carried[88] = t5119;
+  const Real t5118 = constant<Real>(0.51L) * carried[85];
+  const Real t5119 = t5118 + carried[140];
+  carried[107] = t5119;
 
   // front_left_shank: joint force
   const Real t5120 = constant<Real>(0.24L) * t5119;
@@ -11091,122 +11105,122 @@ template <class Real>
 
   // front_left_shank: wrench
   const Real t5122 = t5109 * constant<Real>(0.00042L);
-  const Real t5123 = constant<Real>(0.00252L) * carried[64];
+  const Real t5123 = constant<Real>(0.00252L) * carried[85];
   const Real t5124 = t5123 - t5122;
-  const Real t5125 = carried[37] * constant<Real>(0.0004672L);
-  const Real t5126 = carried[33] * constant<Real>(0.00007492L);
+  const Real t5125 = carried[58] * constant<Real>(0.0004672L);
+  const Real t5126 = carried[54] * constant<Real>(0.00007492L);
   const Real t5127 = t5125 + t5126;
-  const Real t5128 = constant<Real>(0.0000562L) * carried[1];
+  const Real t5128 = constant<Real>(0.0000562L) * carried[22];
   const Real t5129 = t5127 + t5128;
   const Real t5130 = t5129 + t5124;
 
   // front_left_shank: joint force
-  const Real t5131 = t5130 * carried[4];
+  const Real t5131 = t5130 * carried[25];
 
   // front_left_shank: wrench
   const Real t5132 = t5103 * constant<Real>(0.00042L);
-  const Real t5133 = carried[64] * constant<Real>(0.0687L);
+  const Real t5133 = carried[85] * constant<Real>(0.0687L);
   const Real t5134 = t5132 + t5133;
-  const Real t5135 = constant<Real>(0.01292242L) * carried[37];
-  const Real t5136 = carried[1] * constant<Real>(2.52e-6L);
+  const Real t5135 = constant<Real>(0.01292242L) * carried[58];
+  const Real t5136 = carried[22] * constant<Real>(2.52e-6L);
   const Real t5137 = t5135 - t5136;
-  const Real t5138 = carried[33] * constant<Real>(0.0004672L);
+  const Real t5138 = carried[54] * constant<Real>(0.0004672L);
   const Real t5139 = t5137 + t5138;
   const Real t5140 = t5139 + t5134;
 
   // front_left_shank: joint force
-  const Real t5141 = t5140 * carried[5];
+  const Real t5141 = t5140 * carried[26];
   const Real t5142 = t5131 + t5141;
   const Real t5143 = t5121 + t5142;
 
   // front_left_thigh: wrench
-  const Real t5144 = constant<Real>(0.0272L) * carried[66];
+  const Real t5144 = constant<Real>(0.0272L) * carried[87];
 
   // front_left_thigh: wrench
-  const Real t5145 = carried[0] * constant<Real>(0.018564L);
+  const Real t5145 = carried[21] * constant<Real>(0.018564L);
 
   // front_left_thigh: wrench
   const Real t5146 = t5145 + t5144;
-  const Real t5147 = constant<Real>(0.013546L) * carried[29];
-  const Real t5148 = constant<Real>(8.4e-6L) * carried[1];
+  const Real t5147 = constant<Real>(0.013546L) * carried[50];
+  const Real t5148 = constant<Real>(8.4e-6L) * carried[22];
   const Real t5149 = t5147 + t5148;
-  const Real t5150 = carried[31] * constant<Real>(0.0003348L);
+  const Real t5150 = carried[52] * constant<Real>(0.0003348L);
   const Real t5151 = t5149 - t5150;
   const Real t5152 = t5151 - t5146;
 
   // front_left_shank: joint force
   const Real t5153 = t5143 + t5152;
-  carried[132] = t5153;
+  carried[108] = t5153;
 
   // front_left_thigh: joint force
-  const Real t5154 = t5153 * carried[3];
+  const Real t5154 = t5153 * carried[24];
 
   // front_left_shank: joint force
-  const Real t5155 = t5130 * carried[5];
-  const Real t5156 = carried[4] * t5140;
+  const Real t5155 = t5130 * carried[26];
+  const Real t5156 = carried[25] * t5140;
   const Real t5157 = t5155 - t5156;
-  const Real t5158 = carried[4] * t5106;
-  const Real t5159 = t5114 * carried[5];
+  const Real t5158 = carried[25] * t5106;
+  const Real t5159 = t5114 * carried[26];
   const Real t5160 = t5158 + t5159;
   const Real t5161 = constant<Real>(0.012L) * t5160;
   const Real t5162 = t5157 - t5161;
 
   // front_left_thigh: wrench
-  const Real t5163 = carried[68] * constant<Real>(0.0272L);
+  const Real t5163 = carried[89] * constant<Real>(0.0272L);
 
   // front_left_thigh: wrench
-  const Real t5164 = constant<Real>(0.001071L) * carried[0];
+  const Real t5164 = constant<Real>(0.001071L) * carried[21];
 
   // front_left_thigh: wrench
   const Real t5165 = t5163 + t5164;
-  const Real t5166 = carried[29] * constant<Real>(0.0003348L);
-  const Real t5167 = constant<Real>(0.0014985L) * carried[31];
+  const Real t5166 = carried[50] * constant<Real>(0.0003348L);
+  const Real t5167 = constant<Real>(0.0014985L) * carried[52];
   const Real t5168 = t5166 - t5167;
-  const Real t5169 = constant<Real>(0.0025144L) * carried[1];
+  const Real t5169 = constant<Real>(0.0025144L) * carried[22];
   const Real t5170 = t5168 - t5169;
   const Real t5171 = t5170 + t5165;
 
   // front_left_shank: joint force
   const Real t5172 = t5162 + t5171;
-  carried[134] = t5172;
+  carried[109] = t5172;
 
   // front_left_thigh: joint force
-  const Real t5173 = carried[2] * t5172;
+  const Real t5173 = carried[23] * t5172;
   const Real t5174 = t5173 + t5154;
 
   // front_left_thigh: wrench
-  const Real t5175 = constant<Real>(1.7L) * carried[66];
-  const Real t5176 = carried[128] - carried[127];
+  const Real t5175 = constant<Real>(1.7L) * carried[87];
+  const Real t5176 = carried[149] - carried[148];
   const Real t5177 = t5176 + t5175;
 
   // front_left_shank: joint force
   const Real t5178 = t5177 + t5116;
-  carried[166] = t5178;
+  carried[129] = t5178;
 
   // front_left_thigh: joint force
-  const Real t5179 = t5178 * carried[3];
+  const Real t5179 = t5178 * carried[24];
 
   // front_left_thigh: wrench
-  const Real t5180 = carried[68] * constant<Real>(1.7L);
-  const Real t5181 = t5180 - carried[125];
+  const Real t5180 = carried[89] * constant<Real>(1.7L);
+  const Real t5181 = t5180 - carried[146];
 
   // front_left_shank: joint force
   const Real t5182 = t5160 + t5181;
-  carried[194] = t5182;
+  carried[155] = t5182;
 
   // front_left_thigh: joint force
-  const Real t5183 = carried[2] * t5182;
+  const Real t5183 = carried[23] * t5182;
   const Real t5184 = t5179 - t5183;
-  carried[214] = t5184;
+  carried[158] = t5184;
   const Real t5185 = constant<Real>(0.075L) * t5184;
   const Real t5186 = t5185 + t5174;
 
   // front_left_hip: wrench
-  const Real t5187 = constant<Real>(0.000273L) * carried[0];
-  const Real t5188 = constant<Real>(0.005733L) * carried[1];
+  const Real t5187 = constant<Real>(0.000273L) * carried[21];
+  const Real t5188 = constant<Real>(0.005733L) * carried[22];
   const Real t5189 = t5187 - t5188;
-  const Real t5190 = constant<Real>(0.0001392L) * carried[1];
-  const Real t5191 = constant<Real>(5.2e-6L) * carried[0];
+  const Real t5190 = constant<Real>(0.0001392L) * carried[22];
+  const Real t5191 = constant<Real>(5.2e-6L) * carried[21];
 
   // front_left_hip: wrench
   const Real t5192 = t5190 - t5191;
@@ -11214,10 +11228,10 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t5194 = t5186 + t5193;
-  carried[231] = t5194;
+  carried[173] = t5194;
 
   // reduced mass matrix
-  const Real t5195 = t5194 * carried[56];
+  const Real t5195 = t5194 * carried[77];
   const Real t5196 = t5099 - t5195;
 
   // front_left_shank: joint force
@@ -11228,187 +11242,187 @@ template <class Real>
   const Real t5199 = t5103 * constant<Real>(0.00252L);
   const Real t5200 = t5198 + t5199;
   const Real t5201 = constant<Real>(0.0000562L) * t5111;
-  const Real t5202 = constant<Real>(0.01294712L) * carried[1];
+  const Real t5202 = constant<Real>(0.01294712L) * carried[22];
   const Real t5203 = t5202 - t5201;
-  const Real t5204 = carried[37] * constant<Real>(2.52e-6L);
+  const Real t5204 = carried[58] * constant<Real>(2.52e-6L);
   const Real t5205 = t5203 - t5204;
   const Real t5206 = t5205 - t5200;
-  carried[241] = t5206;
+  carried[187] = t5206;
 
   // front_left_shank: joint force
   const Real t5207 = t5206 - t5197;
 
   // front_left_thigh: wrench
-  const Real t5208 = constant<Real>(0.0051L) * carried[66];
-  const Real t5209 = carried[68] * constant<Real>(0.0884L);
+  const Real t5208 = constant<Real>(0.0051L) * carried[87];
+  const Real t5209 = carried[89] * constant<Real>(0.0884L);
   const Real t5210 = t5208 - t5209;
-  const Real t5211 = constant<Real>(0.0025144L) * carried[31];
-  const Real t5212 = constant<Real>(0.0134661L) * carried[1];
+  const Real t5211 = constant<Real>(0.0025144L) * carried[52];
+  const Real t5212 = constant<Real>(0.0134661L) * carried[22];
   const Real t5213 = t5211 + t5212;
-  const Real t5214 = constant<Real>(8.4e-6L) * carried[29];
+  const Real t5214 = constant<Real>(8.4e-6L) * carried[50];
   const Real t5215 = t5213 + t5214;
   const Real t5216 = t5215 + t5210;
 
   // front_left_shank: joint force
   const Real t5217 = t5216 + t5207;
-  carried[270] = t5217;
+  carried[235] = t5217;
 
   // reduced mass matrix
-  const Real t5218 = t5217 * carried[60];
+  const Real t5218 = t5217 * carried[81];
   const Real t5219 = t5196 + t5218;
-  const Real t5220 = t5206 * carried[63];
+  const Real t5220 = t5206 * carried[84];
   const Real t5221 = t5219 + t5220;
 
   // front_right_shank: wrench
-  const Real t5222 = constant<Real>(0.51L) * carried[180];
-  const Real t5223 = t5222 - carried[92];
+  const Real t5222 = constant<Real>(0.51L) * carried[201];
+  const Real t5223 = t5222 - carried[113];
 
   // front_right_shank: joint force
-  const Real t5224 = carried[11] * t5223;
+  const Real t5224 = carried[32] * t5223;
 
   // front_right_shank: wrench
-  const Real t5225 = constant<Real>(0.51L) * carried[182];
+  const Real t5225 = constant<Real>(0.51L) * carried[203];
 
   // front_right_shank: acceleration
-  const Real t5226 = carried[145] - carried[143];
+  const Real t5226 = carried[166] - carried[164];
 
   // front_right_shank: wrench
   const Real t5227 = t5226 * constant<Real>(0.00042L);
-  const Real t5228 = t5227 + carried[91];
+  const Real t5228 = t5227 + carried[112];
   const Real t5229 = t5225 - t5228;
 
   // front_right_shank: joint force
-  const Real t5230 = carried[10] * t5229;
+  const Real t5230 = carried[31] * t5229;
   const Real t5231 = t5224 - t5230;
   const Real t5232 = t5231 * constant<Real>(0.012L);
 
   // front_right_shank: wrench
-  const Real t5233 = constant<Real>(0.51L) * carried[176];
-  const Real t5234 = t5233 + carried[205];
-  carried[290] = t5234;
+  const Real t5233 = constant<Real>(0.51L) * carried[197];
+  const Real t5234 = t5233 + carried[226];
+  carried[262] = t5234;
 
   // front_right_shank: joint force
   const Real t5235 = constant<Real>(0.24L) * t5234;
   const Real t5236 = t5235 - t5232;
 
   // front_right_shank: wrench
-  const Real t5237 = carried[182] * constant<Real>(0.00042L);
-  const Real t5238 = constant<Real>(0.00252L) * carried[176];
+  const Real t5237 = carried[203] * constant<Real>(0.00042L);
+  const Real t5238 = constant<Real>(0.00252L) * carried[197];
   const Real t5239 = t5238 + t5237;
-  const Real t5240 = carried[150] * constant<Real>(0.0004672L);
-  const Real t5241 = constant<Real>(0.00007492L) * carried[146];
+  const Real t5240 = carried[171] * constant<Real>(0.0004672L);
+  const Real t5241 = constant<Real>(0.00007492L) * carried[167];
   const Real t5242 = t5240 + t5241;
-  const Real t5243 = constant<Real>(0.0000562L) * carried[7];
+  const Real t5243 = constant<Real>(0.0000562L) * carried[28];
   const Real t5244 = t5242 - t5243;
   const Real t5245 = t5244 + t5239;
 
   // front_right_shank: joint force
-  const Real t5246 = carried[10] * t5245;
+  const Real t5246 = carried[31] * t5245;
 
   // front_right_shank: wrench
-  const Real t5247 = carried[180] * constant<Real>(0.00042L);
-  const Real t5248 = carried[176] * constant<Real>(0.0687L);
+  const Real t5247 = carried[201] * constant<Real>(0.00042L);
+  const Real t5248 = carried[197] * constant<Real>(0.0687L);
   const Real t5249 = t5248 - t5247;
-  const Real t5250 = constant<Real>(0.01292242L) * carried[150];
-  const Real t5251 = constant<Real>(2.52e-6L) * carried[7];
+  const Real t5250 = constant<Real>(0.01292242L) * carried[171];
+  const Real t5251 = constant<Real>(2.52e-6L) * carried[28];
   const Real t5252 = t5251 + t5250;
-  const Real t5253 = constant<Real>(0.0004672L) * carried[146];
+  const Real t5253 = constant<Real>(0.0004672L) * carried[167];
   const Real t5254 = t5252 + t5253;
   const Real t5255 = t5254 + t5249;
 
   // front_right_shank: joint force
-  const Real t5256 = carried[11] * t5255;
+  const Real t5256 = carried[32] * t5255;
   const Real t5257 = t5246 + t5256;
   const Real t5258 = t5236 + t5257;
 
   // front_right_thigh: wrench
-  const Real t5259 = constant<Real>(0.0272L) * carried[179];
+  const Real t5259 = constant<Real>(0.0272L) * carried[200];
 
   // front_right_thigh: wrench
-  const Real t5260 = carried[6] * constant<Real>(0.018564L);
+  const Real t5260 = carried[27] * constant<Real>(0.018564L);
 
   // front_right_thigh: wrench
   const Real t5261 = t5259 + t5260;
-  const Real t5262 = constant<Real>(0.013546L) * carried[142];
-  const Real t5263 = constant<Real>(8.4e-6L) * carried[7];
+  const Real t5262 = constant<Real>(0.013546L) * carried[163];
+  const Real t5263 = constant<Real>(8.4e-6L) * carried[28];
   const Real t5264 = t5262 - t5263;
-  const Real t5265 = carried[144] * constant<Real>(0.0003348L);
+  const Real t5265 = carried[165] * constant<Real>(0.0003348L);
   const Real t5266 = t5264 - t5265;
   const Real t5267 = t5266 - t5261;
 
   // front_right_shank: joint force
   const Real t5268 = t5258 + t5267;
-  carried[297] = t5268;
+  carried[295] = t5268;
 
   // front_right_thigh: joint force
-  const Real t5269 = t5268 * carried[9];
+  const Real t5269 = t5268 * carried[30];
 
   // front_right_shank: joint force
-  const Real t5270 = carried[10] * t5223;
-  const Real t5271 = carried[11] * t5229;
+  const Real t5270 = carried[31] * t5223;
+  const Real t5271 = carried[32] * t5229;
   const Real t5272 = t5270 + t5271;
   const Real t5273 = t5272 * constant<Real>(0.012L);
-  const Real t5274 = carried[11] * t5245;
-  const Real t5275 = carried[10] * t5255;
+  const Real t5274 = carried[32] * t5245;
+  const Real t5275 = carried[31] * t5255;
   const Real t5276 = t5274 - t5275;
   const Real t5277 = t5273 + t5276;
 
   // front_right_thigh: wrench
-  const Real t5278 = constant<Real>(0.0272L) * carried[178];
+  const Real t5278 = constant<Real>(0.0272L) * carried[199];
 
   // front_right_thigh: wrench
-  const Real t5279 = constant<Real>(0.001071L) * carried[6];
+  const Real t5279 = constant<Real>(0.001071L) * carried[27];
 
   // front_right_thigh: wrench
   const Real t5280 = t5279 - t5278;
-  const Real t5281 = carried[142] * constant<Real>(0.0003348L);
-  const Real t5282 = carried[144] * constant<Real>(0.0014985L);
+  const Real t5281 = carried[163] * constant<Real>(0.0003348L);
+  const Real t5282 = carried[165] * constant<Real>(0.0014985L);
   const Real t5283 = t5281 - t5282;
-  const Real t5284 = constant<Real>(0.0025144L) * carried[7];
+  const Real t5284 = constant<Real>(0.0025144L) * carried[28];
   const Real t5285 = t5284 + t5283;
   const Real t5286 = t5285 + t5280;
 
   // front_right_shank: joint force
   const Real t5287 = t5286 + t5277;
-  carried[349] = t5287;
+  carried[296] = t5287;
 
   // front_right_thigh: joint force
-  const Real t5288 = carried[8] * t5287;
+  const Real t5288 = carried[29] * t5287;
   const Real t5289 = t5288 + t5269;
 
   // front_right_thigh: wrench
-  const Real t5290 = constant<Real>(1.7L) * carried[179];
-  const Real t5291 = carried[102] - t5290;
+  const Real t5290 = constant<Real>(1.7L) * carried[200];
+  const Real t5291 = carried[123] - t5290;
 
   // front_right_shank: joint force
   const Real t5292 = t5291 + t5231;
-  carried[350] = t5292;
+  carried[311] = t5292;
 
   // front_right_thigh: joint force
-  const Real t5293 = t5292 * carried[9];
+  const Real t5293 = t5292 * carried[30];
 
   // front_right_thigh: wrench
-  const Real t5294 = constant<Real>(1.7L) * carried[178];
-  const Real t5295 = carried[93] - carried[94];
+  const Real t5294 = constant<Real>(1.7L) * carried[199];
+  const Real t5295 = carried[114] - carried[115];
   const Real t5296 = t5295 + t5294;
 
   // front_right_shank: joint force
   const Real t5297 = t5272 + t5296;
-  carried[373] = t5297;
+  carried[312] = t5297;
 
   // front_right_thigh: joint force
-  const Real t5298 = t5297 * carried[8];
+  const Real t5298 = t5297 * carried[29];
   const Real t5299 = t5293 - t5298;
-  carried[375] = t5299;
+  carried[313] = t5299;
   const Real t5300 = constant<Real>(0.075L) * t5299;
   const Real t5301 = t5289 - t5300;
 
   // front_right_hip: wrench
-  const Real t5302 = carried[6] * constant<Real>(0.000273L);
-  const Real t5303 = constant<Real>(0.005733L) * carried[7];
+  const Real t5302 = carried[27] * constant<Real>(0.000273L);
+  const Real t5303 = constant<Real>(0.005733L) * carried[28];
   const Real t5304 = t5302 + t5303;
-  const Real t5305 = carried[6] * constant<Real>(5.2e-6L);
-  const Real t5306 = constant<Real>(0.0001392L) * carried[7];
+  const Real t5305 = carried[27] * constant<Real>(5.2e-6L);
+  const Real t5306 = constant<Real>(0.0001392L) * carried[28];
 
   // front_right_hip: wrench
   const Real t5307 = t5305 + t5306;
@@ -11416,234 +11430,234 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t5309 = t5308 + t5301;
-  carried[378] = t5309;
+  carried[321] = t5309;
 
   // reduced mass matrix
-  const Real t5310 = t5309 * carried[169];
+  const Real t5310 = t5309 * carried[190];
   const Real t5311 = t5221 - t5310;
 
   // front_right_shank: joint force
   const Real t5312 = t5272 * constant<Real>(0.24L);
 
   // front_right_shank: wrench
-  const Real t5313 = carried[182] * constant<Real>(0.0687L);
-  const Real t5314 = constant<Real>(0.00252L) * carried[180];
+  const Real t5313 = carried[203] * constant<Real>(0.0687L);
+  const Real t5314 = constant<Real>(0.00252L) * carried[201];
   const Real t5315 = t5313 + t5314;
   const Real t5316 = constant<Real>(0.0000562L) * t5226;
-  const Real t5317 = constant<Real>(0.01294712L) * carried[7];
+  const Real t5317 = constant<Real>(0.01294712L) * carried[28];
   const Real t5318 = t5317 + t5316;
-  const Real t5319 = carried[150] * constant<Real>(2.52e-6L);
+  const Real t5319 = carried[171] * constant<Real>(2.52e-6L);
   const Real t5320 = t5319 + t5318;
   const Real t5321 = t5320 - t5315;
-  carried[383] = t5321;
+  carried[325] = t5321;
 
   // front_right_shank: joint force
   const Real t5322 = t5321 - t5312;
 
   // front_right_thigh: wrench
-  const Real t5323 = constant<Real>(0.0884L) * carried[178];
-  const Real t5324 = constant<Real>(0.0051L) * carried[179];
+  const Real t5323 = constant<Real>(0.0884L) * carried[199];
+  const Real t5324 = constant<Real>(0.0051L) * carried[200];
   const Real t5325 = t5323 + t5324;
-  const Real t5326 = carried[144] * constant<Real>(0.0025144L);
-  const Real t5327 = constant<Real>(0.0134661L) * carried[7];
+  const Real t5326 = carried[165] * constant<Real>(0.0025144L);
+  const Real t5327 = constant<Real>(0.0134661L) * carried[28];
   const Real t5328 = t5327 - t5326;
-  const Real t5329 = constant<Real>(8.4e-6L) * carried[142];
+  const Real t5329 = constant<Real>(8.4e-6L) * carried[163];
   const Real t5330 = t5328 - t5329;
   const Real t5331 = t5330 - t5325;
 
   // front_right_shank: joint force
   const Real t5332 = t5322 + t5331;
-  carried[386] = t5332;
+  carried[326] = t5332;
 
   // reduced mass matrix
-  const Real t5333 = t5332 * carried[173];
+  const Real t5333 = t5332 * carried[194];
   const Real t5334 = t5333 + t5311;
-  const Real t5335 = carried[175] * t5321;
+  const Real t5335 = carried[196] * t5321;
   const Real t5336 = t5334 + t5335;
-  carried[391] = t5336;
+  carried[334] = t5336;
 
   // hind_left_shank: acceleration
-  const Real t5337 = carried[260] - carried[261];
-  const Real t5338 = carried[259] + t5337;
-  const Real t5339 = t5338 * carried[16];
-  const Real t5340 = carried[258] + t5339;
-  carried[408] = t5340;
+  const Real t5337 = carried[281] - carried[282];
+  const Real t5338 = carried[280] + t5337;
+  const Real t5339 = t5338 * carried[37];
+  const Real t5340 = carried[279] + t5339;
+  carried[336] = t5340;
 
   // hind_left_shank: wrench
   const Real t5341 = constant<Real>(0.51L) * t5340;
-  const Real t5342 = carried[278] - carried[279];
+  const Real t5342 = carried[299] - carried[300];
   const Real t5343 = t5342 + t5341;
-  carried[410] = t5343;
+  carried[345] = t5343;
 
   // hind_left_shank: joint force
-  const Real t5344 = t5343 * carried[17];
+  const Real t5344 = t5343 * carried[38];
 
   // hind_left_shank: acceleration
-  const Real t5345 = t5338 * carried[17];
-  const Real t5346 = t5345 - carried[264];
-  carried[415] = t5346;
+  const Real t5345 = t5338 * carried[38];
+  const Real t5346 = t5345 - carried[285];
+  carried[407] = t5346;
 
   // hind_left_shank: wrench
   const Real t5347 = constant<Real>(0.51L) * t5346;
 
   // hind_left_shank: acceleration
-  const Real t5348 = carried[220] - carried[218];
-  carried[416] = t5348;
+  const Real t5348 = carried[241] - carried[239];
+  carried[409] = t5348;
 
   // hind_left_shank: wrench
   const Real t5349 = t5348 * constant<Real>(0.00042L);
-  const Real t5350 = t5349 - carried[280];
+  const Real t5350 = t5349 - carried[301];
   const Real t5351 = t5350 + t5347;
-  carried[418] = t5351;
+  carried[410] = t5351;
 
   // hind_left_shank: joint force
-  const Real t5352 = t5351 * carried[16];
+  const Real t5352 = t5351 * carried[37];
   const Real t5353 = t5344 - t5352;
-  carried[420] = t5353;
+  carried[412] = t5353;
   const Real t5354 = t5353 * constant<Real>(0.012L);
 
   // hind_left_shank: wrench
-  const Real t5355 = constant<Real>(0.51L) * carried[254];
-  const Real t5356 = carried[294] + t5355;
-  carried[425] = t5356;
+  const Real t5355 = constant<Real>(0.51L) * carried[275];
+  const Real t5356 = carried[315] + t5355;
+  carried[429] = t5356;
 
   // hind_left_shank: joint force
   const Real t5357 = t5356 * constant<Real>(0.24L);
   const Real t5358 = t5354 + t5357;
-  carried[427] = t5358;
+  carried[431] = t5358;
 
   // hind_left_shank: wrench
   const Real t5359 = t5346 * constant<Real>(0.00042L);
-  const Real t5360 = carried[254] * constant<Real>(0.00252L);
+  const Real t5360 = carried[275] * constant<Real>(0.00252L);
   const Real t5361 = t5360 - t5359;
-  const Real t5362 = carried[225] * constant<Real>(0.0004672L);
-  const Real t5363 = constant<Real>(0.00007492L) * carried[221];
+  const Real t5362 = carried[246] * constant<Real>(0.0004672L);
+  const Real t5363 = constant<Real>(0.00007492L) * carried[242];
   const Real t5364 = t5362 + t5363;
-  const Real t5365 = constant<Real>(0.0000562L) * carried[13];
+  const Real t5365 = constant<Real>(0.0000562L) * carried[34];
   const Real t5366 = t5365 + t5364;
   const Real t5367 = t5366 + t5361;
-  carried[428] = t5367;
+  carried[436] = t5367;
 
   // hind_left_shank: joint force
-  const Real t5368 = t5367 * carried[16];
-  carried[449] = t5368;
+  const Real t5368 = t5367 * carried[37];
+  carried[441] = t5368;
 
   // hind_left_shank: wrench
   const Real t5369 = t5340 * constant<Real>(0.00042L);
-  const Real t5370 = carried[254] * constant<Real>(0.0687L);
+  const Real t5370 = carried[275] * constant<Real>(0.0687L);
   const Real t5371 = t5369 + t5370;
-  carried[451] = t5371;
-  const Real t5372 = constant<Real>(0.01292242L) * carried[225];
-  const Real t5373 = carried[13] * constant<Real>(2.52e-6L);
+  carried[442] = t5371;
+  const Real t5372 = constant<Real>(0.01292242L) * carried[246];
+  const Real t5373 = carried[34] * constant<Real>(2.52e-6L);
   const Real t5374 = t5372 - t5373;
-  const Real t5375 = constant<Real>(0.0004672L) * carried[221];
+  const Real t5375 = constant<Real>(0.0004672L) * carried[242];
   const Real t5376 = t5374 + t5375;
-  carried[452] = t5376;
+  carried[443] = t5376;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_19(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_left_shank: wrench
-  const Real t5377 = carried[452] + carried[451];
+  const Real t5377 = carried[443] + carried[442];
 
   // hind_left_shank: joint force
-  const Real t5378 = t5377 * carried[17];
-  const Real t5379 = carried[449] + t5378;
-  const Real t5380 = t5379 + carried[427];
+  const Real t5378 = t5377 * carried[38];
+  const Real t5379 = carried[441] + t5378;
+  const Real t5380 = t5379 + carried[431];
 
   // hind_left_thigh: wrench
-  const Real t5381 = carried[257] * constant<Real>(0.0272L);
+  const Real t5381 = carried[278] * constant<Real>(0.0272L);
 
   // hind_left_thigh: wrench
-  const Real t5382 = constant<Real>(0.018564L) * carried[12];
+  const Real t5382 = constant<Real>(0.018564L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t5383 = t5382 - t5381;
-  const Real t5384 = constant<Real>(0.013546L) * carried[217];
-  const Real t5385 = constant<Real>(8.4e-6L) * carried[13];
+  const Real t5384 = constant<Real>(0.013546L) * carried[238];
+  const Real t5385 = constant<Real>(8.4e-6L) * carried[34];
   const Real t5386 = t5385 + t5384;
-  const Real t5387 = carried[219] * constant<Real>(0.0003348L);
+  const Real t5387 = carried[240] * constant<Real>(0.0003348L);
   const Real t5388 = t5386 - t5387;
   const Real t5389 = t5383 + t5388;
 
   // hind_left_shank: joint force
   const Real t5390 = t5389 + t5380;
-  carried[29] = t5390;
+  carried[50] = t5390;
 
   // hind_left_thigh: joint force
-  const Real t5391 = t5390 * carried[15];
+  const Real t5391 = t5390 * carried[36];
 
   // hind_left_shank: joint force
-  const Real t5392 = carried[428] * carried[17];
-  const Real t5393 = t5377 * carried[16];
+  const Real t5392 = carried[436] * carried[38];
+  const Real t5393 = t5377 * carried[37];
   const Real t5394 = t5392 - t5393;
-  const Real t5395 = carried[418] * carried[17];
-  const Real t5396 = carried[410] * carried[16];
+  const Real t5395 = carried[410] * carried[38];
+  const Real t5396 = carried[345] * carried[37];
   const Real t5397 = t5395 + t5396;
   const Real t5398 = t5397 * constant<Real>(0.012L);
   const Real t5399 = t5394 - t5398;
 
   // hind_left_thigh: wrench
-  const Real t5400 = constant<Real>(0.0272L) * carried[259];
+  const Real t5400 = constant<Real>(0.0272L) * carried[280];
 
   // hind_left_thigh: wrench
-  const Real t5401 = constant<Real>(0.001071L) * carried[12];
+  const Real t5401 = constant<Real>(0.001071L) * carried[33];
 
   // hind_left_thigh: wrench
   const Real t5402 = t5400 - t5401;
-  const Real t5403 = carried[217] * constant<Real>(0.0003348L);
-  const Real t5404 = constant<Real>(0.0014985L) * carried[219];
+  const Real t5403 = carried[238] * constant<Real>(0.0003348L);
+  const Real t5404 = constant<Real>(0.0014985L) * carried[240];
   const Real t5405 = t5403 - t5404;
-  const Real t5406 = constant<Real>(0.0025144L) * carried[13];
+  const Real t5406 = constant<Real>(0.0025144L) * carried[34];
   const Real t5407 = t5405 - t5406;
   const Real t5408 = t5407 + t5402;
 
   // hind_left_shank: joint force
   const Real t5409 = t5399 + t5408;
-  carried[30] = t5409;
+  carried[51] = t5409;
 
   // hind_left_thigh: joint force
-  const Real t5410 = carried[14] * t5409;
+  const Real t5410 = carried[35] * t5409;
   const Real t5411 = t5410 + t5391;
 
   // hind_left_thigh: wrench
-  const Real t5412 = carried[257] * constant<Real>(1.7L);
-  const Real t5413 = carried[284] - carried[283];
+  const Real t5412 = carried[278] * constant<Real>(1.7L);
+  const Real t5413 = carried[305] - carried[304];
   const Real t5414 = t5413 + t5412;
 
   // hind_left_shank: joint force
-  const Real t5415 = t5414 + carried[420];
-  carried[31] = t5415;
+  const Real t5415 = t5414 + carried[412];
+  carried[52] = t5415;
 
   // hind_left_thigh: joint force
-  const Real t5416 = carried[15] * t5415;
+  const Real t5416 = carried[36] * t5415;
 
   // hind_left_thigh: wrench
-  const Real t5417 = constant<Real>(1.7L) * carried[259];
-  const Real t5418 = t5417 - carried[281];
+  const Real t5417 = constant<Real>(1.7L) * carried[280];
+  const Real t5418 = t5417 - carried[302];
 
   // hind_left_shank: joint force
   const Real t5419 = t5397 + t5418;
-  carried[32] = t5419;
+  carried[53] = t5419;
 
   // hind_left_thigh: joint force
-  const Real t5420 = carried[14] * t5419;
+  const Real t5420 = carried[35] * t5419;
   const Real t5421 = t5416 - t5420;
-  carried[33] = t5421;
+  carried[54] = t5421;
   const Real t5422 = constant<Real>(0.075L) * t5421;
   const Real t5423 = t5422 + t5411;
 
   // hind_left_hip: wrench
-  const Real t5424 = constant<Real>(5.2e-6L) * carried[12];
-  const Real t5425 = carried[13] * constant<Real>(0.0001392L);
+  const Real t5424 = constant<Real>(5.2e-6L) * carried[33];
+  const Real t5425 = carried[34] * constant<Real>(0.0001392L);
 
   // hind_left_hip: wrench
   const Real t5426 = t5424 - t5425;
 
   // hind_left_hip: wrench
-  const Real t5427 = carried[13] * constant<Real>(0.005733L);
-  const Real t5428 = constant<Real>(0.000273L) * carried[12];
+  const Real t5427 = carried[34] * constant<Real>(0.005733L);
+  const Real t5428 = constant<Real>(0.000273L) * carried[33];
   const Real t5429 = t5427 - t5428;
 
   // hind_left_hip: wrench
@@ -11651,205 +11665,205 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t5431 = t5430 + t5423;
-  carried[37] = t5431;
+  carried[58] = t5431;
 
   // reduced mass matrix
-  const Real t5432 = t5431 * carried[244];
-  const Real t5433 = carried[391] - t5432;
+  const Real t5432 = t5431 * carried[265];
+  const Real t5433 = carried[334] - t5432;
 
   // hind_left_shank: joint force
   const Real t5434 = t5397 * constant<Real>(0.24L);
 
   // hind_left_shank: wrench
-  const Real t5435 = carried[415] * constant<Real>(0.0687L);
-  const Real t5436 = constant<Real>(0.00252L) * carried[408];
+  const Real t5435 = carried[407] * constant<Real>(0.0687L);
+  const Real t5436 = constant<Real>(0.00252L) * carried[336];
   const Real t5437 = t5435 + t5436;
-  const Real t5438 = constant<Real>(0.0000562L) * carried[416];
-  const Real t5439 = carried[13] * constant<Real>(0.01294712L);
+  const Real t5438 = constant<Real>(0.0000562L) * carried[409];
+  const Real t5439 = carried[34] * constant<Real>(0.01294712L);
   const Real t5440 = t5439 - t5438;
-  const Real t5441 = carried[225] * constant<Real>(2.52e-6L);
+  const Real t5441 = carried[246] * constant<Real>(2.52e-6L);
   const Real t5442 = t5440 - t5441;
   const Real t5443 = t5442 - t5437;
-  carried[64] = t5443;
+  carried[85] = t5443;
 
   // hind_left_shank: joint force
   const Real t5444 = t5443 - t5434;
 
   // hind_left_thigh: wrench
-  const Real t5445 = constant<Real>(0.0051L) * carried[257];
-  const Real t5446 = carried[259] * constant<Real>(0.0884L);
+  const Real t5445 = constant<Real>(0.0051L) * carried[278];
+  const Real t5446 = carried[280] * constant<Real>(0.0884L);
   const Real t5447 = t5445 - t5446;
-  const Real t5448 = constant<Real>(0.0025144L) * carried[219];
-  const Real t5449 = constant<Real>(0.0134661L) * carried[13];
+  const Real t5448 = constant<Real>(0.0025144L) * carried[240];
+  const Real t5449 = constant<Real>(0.0134661L) * carried[34];
   const Real t5450 = t5449 + t5448;
-  const Real t5451 = constant<Real>(8.4e-6L) * carried[217];
+  const Real t5451 = constant<Real>(8.4e-6L) * carried[238];
   const Real t5452 = t5450 + t5451;
   const Real t5453 = t5452 + t5447;
 
   // hind_left_shank: joint force
   const Real t5454 = t5444 + t5453;
-  carried[66] = t5454;
+  carried[87] = t5454;
 
   // reduced mass matrix
-  const Real t5455 = t5454 * carried[248];
+  const Real t5455 = t5454 * carried[269];
   const Real t5456 = t5455 + t5433;
-  const Real t5457 = carried[251] * t5443;
+  const Real t5457 = carried[272] * t5443;
   const Real t5458 = t5456 + t5457;
 
   // hind_right_shank: wrench
-  const Real t5459 = constant<Real>(0.51L) * carried[335];
-  const Real t5460 = t5459 - carried[359];
+  const Real t5459 = constant<Real>(0.51L) * carried[356];
+  const Real t5460 = t5459 - carried[380];
 
   // hind_right_shank: joint force
-  const Real t5461 = carried[23] * t5460;
+  const Real t5461 = carried[44] * t5460;
 
   // hind_right_shank: wrench
-  const Real t5462 = constant<Real>(0.51L) * carried[337];
+  const Real t5462 = constant<Real>(0.51L) * carried[358];
 
   // hind_right_shank: acceleration
-  const Real t5463 = carried[311] - carried[309];
+  const Real t5463 = carried[332] - carried[330];
 
   // hind_right_shank: wrench
   const Real t5464 = t5463 * constant<Real>(0.00042L);
-  const Real t5465 = carried[360] + t5464;
+  const Real t5465 = carried[381] + t5464;
   const Real t5466 = t5462 + t5465;
 
   // hind_right_shank: joint force
-  const Real t5467 = t5466 * carried[22];
+  const Real t5467 = t5466 * carried[43];
   const Real t5468 = t5461 + t5467;
   const Real t5469 = constant<Real>(0.012L) * t5468;
 
   // hind_right_shank: wrench
-  const Real t5470 = constant<Real>(0.51L) * carried[331];
-  const Real t5471 = t5470 + carried[381];
-  carried[67] = t5471;
+  const Real t5470 = constant<Real>(0.51L) * carried[352];
+  const Real t5471 = t5470 + carried[402];
+  carried[88] = t5471;
 
   // hind_right_shank: joint force
   const Real t5472 = constant<Real>(0.24L) * t5471;
   const Real t5473 = t5472 - t5469;
 
   // hind_right_shank: wrench
-  const Real t5474 = carried[335] * constant<Real>(0.00042L);
-  const Real t5475 = carried[331] * constant<Real>(0.0687L);
+  const Real t5474 = carried[356] * constant<Real>(0.00042L);
+  const Real t5475 = carried[352] * constant<Real>(0.0687L);
   const Real t5476 = t5475 - t5474;
-  const Real t5477 = constant<Real>(0.01292242L) * carried[316];
-  const Real t5478 = carried[19] * constant<Real>(2.52e-6L);
+  const Real t5477 = constant<Real>(0.01292242L) * carried[337];
+  const Real t5478 = carried[40] * constant<Real>(2.52e-6L);
   const Real t5479 = t5477 + t5478;
-  const Real t5480 = carried[312] * constant<Real>(0.0004672L);
+  const Real t5480 = carried[333] * constant<Real>(0.0004672L);
   const Real t5481 = t5479 + t5480;
   const Real t5482 = t5481 + t5476;
 
   // hind_right_shank: joint force
-  const Real t5483 = carried[23] * t5482;
+  const Real t5483 = carried[44] * t5482;
 
   // hind_right_shank: wrench
-  const Real t5484 = carried[337] * constant<Real>(0.00042L);
-  const Real t5485 = carried[331] * constant<Real>(0.00252L);
+  const Real t5484 = carried[358] * constant<Real>(0.00042L);
+  const Real t5485 = carried[352] * constant<Real>(0.00252L);
   const Real t5486 = t5485 - t5484;
-  const Real t5487 = carried[312] * constant<Real>(0.00007492L);
-  const Real t5488 = constant<Real>(0.0004672L) * carried[316];
+  const Real t5487 = carried[333] * constant<Real>(0.00007492L);
+  const Real t5488 = constant<Real>(0.0004672L) * carried[337];
   const Real t5489 = t5487 + t5488;
-  const Real t5490 = constant<Real>(0.0000562L) * carried[19];
+  const Real t5490 = constant<Real>(0.0000562L) * carried[40];
   const Real t5491 = t5489 - t5490;
   const Real t5492 = t5491 + t5486;
 
   // hind_right_shank: joint force
-  const Real t5493 = t5492 * carried[22];
+  const Real t5493 = t5492 * carried[43];
   const Real t5494 = t5483 + t5493;
   const Real t5495 = t5494 + t5473;
 
   // hind_right_thigh: wrench
-  const Real t5496 = constant<Real>(0.0272L) * carried[333];
+  const Real t5496 = constant<Real>(0.0272L) * carried[354];
 
   // hind_right_thigh: wrench
-  const Real t5497 = carried[18] * constant<Real>(0.018564L);
+  const Real t5497 = carried[39] * constant<Real>(0.018564L);
 
   // hind_right_thigh: wrench
   const Real t5498 = t5497 + t5496;
-  const Real t5499 = constant<Real>(0.013546L) * carried[308];
-  const Real t5500 = constant<Real>(8.4e-6L) * carried[19];
+  const Real t5499 = constant<Real>(0.013546L) * carried[329];
+  const Real t5500 = constant<Real>(8.4e-6L) * carried[40];
   const Real t5501 = t5499 - t5500;
-  const Real t5502 = carried[310] * constant<Real>(0.0003348L);
+  const Real t5502 = carried[331] * constant<Real>(0.0003348L);
   const Real t5503 = t5501 - t5502;
   const Real t5504 = t5498 + t5503;
 
   // hind_right_shank: joint force
   const Real t5505 = t5504 + t5495;
-  carried[68] = t5505;
+  carried[89] = t5505;
 
   // hind_right_thigh: joint force
-  const Real t5506 = carried[21] * t5505;
+  const Real t5506 = carried[42] * t5505;
 
   // hind_right_shank: joint force
-  const Real t5507 = carried[23] * t5492;
-  const Real t5508 = t5482 * carried[22];
+  const Real t5507 = carried[44] * t5492;
+  const Real t5508 = t5482 * carried[43];
   const Real t5509 = t5507 - t5508;
-  const Real t5510 = t5460 * carried[22];
-  const Real t5511 = carried[23] * t5466;
+  const Real t5510 = t5460 * carried[43];
+  const Real t5511 = carried[44] * t5466;
   const Real t5512 = t5510 - t5511;
   const Real t5513 = t5512 * constant<Real>(0.012L);
   const Real t5514 = t5509 + t5513;
 
   // hind_right_thigh: wrench
-  const Real t5515 = carried[334] * constant<Real>(0.0272L);
+  const Real t5515 = carried[355] * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t5516 = constant<Real>(0.001071L) * carried[18];
+  const Real t5516 = constant<Real>(0.001071L) * carried[39];
 
   // hind_right_thigh: wrench
   const Real t5517 = t5515 - t5516;
-  const Real t5518 = carried[308] * constant<Real>(0.0003348L);
-  const Real t5519 = constant<Real>(0.0014985L) * carried[310];
+  const Real t5518 = carried[329] * constant<Real>(0.0003348L);
+  const Real t5519 = constant<Real>(0.0014985L) * carried[331];
   const Real t5520 = t5518 - t5519;
-  const Real t5521 = constant<Real>(0.0025144L) * carried[19];
+  const Real t5521 = constant<Real>(0.0025144L) * carried[40];
   const Real t5522 = t5521 + t5520;
   const Real t5523 = t5522 + t5517;
 
   // hind_right_shank: joint force
   const Real t5524 = t5514 + t5523;
-  carried[69] = t5524;
+  carried[90] = t5524;
 
   // hind_right_thigh: joint force
-  const Real t5525 = carried[20] * t5524;
+  const Real t5525 = carried[41] * t5524;
   const Real t5526 = t5525 + t5506;
 
   // hind_right_thigh: wrench
-  const Real t5527 = constant<Real>(1.7L) * carried[333];
-  const Real t5528 = t5527 + carried[364];
+  const Real t5527 = constant<Real>(1.7L) * carried[354];
+  const Real t5528 = t5527 + carried[385];
 
   // hind_right_shank: joint force
   const Real t5529 = t5528 + t5468;
-  carried[70] = t5529;
+  carried[91] = t5529;
 
   // hind_right_thigh: joint force
-  const Real t5530 = carried[21] * t5529;
+  const Real t5530 = carried[42] * t5529;
 
   // hind_right_thigh: wrench
-  const Real t5531 = carried[334] * constant<Real>(1.7L);
-  const Real t5532 = carried[361] - carried[362];
+  const Real t5531 = carried[355] * constant<Real>(1.7L);
+  const Real t5532 = carried[382] - carried[383];
   const Real t5533 = t5532 - t5531;
 
   // hind_right_shank: joint force
   const Real t5534 = t5533 + t5512;
-  carried[72] = t5534;
+  carried[93] = t5534;
 
   // hind_right_thigh: joint force
-  const Real t5535 = carried[20] * t5534;
+  const Real t5535 = carried[41] * t5534;
   const Real t5536 = t5530 - t5535;
-  carried[91] = t5536;
+  carried[112] = t5536;
   const Real t5537 = constant<Real>(0.075L) * t5536;
   const Real t5538 = t5526 - t5537;
 
   // hind_right_hip: wrench
-  const Real t5539 = constant<Real>(5.2e-6L) * carried[18];
-  const Real t5540 = constant<Real>(0.0001392L) * carried[19];
+  const Real t5539 = constant<Real>(5.2e-6L) * carried[39];
+  const Real t5540 = constant<Real>(0.0001392L) * carried[40];
 
   // hind_right_hip: wrench
   const Real t5541 = t5539 + t5540;
 
   // hind_right_hip: wrench
-  const Real t5542 = constant<Real>(0.005733L) * carried[19];
-  const Real t5543 = constant<Real>(0.000273L) * carried[18];
+  const Real t5542 = constant<Real>(0.005733L) * carried[40];
+  const Real t5543 = constant<Real>(0.000273L) * carried[39];
   const Real t5544 = t5542 + t5543;
 
   // hind_right_hip: wrench
@@ -11857,828 +11871,828 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t5546 = t5545 + t5538;
-  carried[92] = t5546;
+  carried[113] = t5546;
 
   // reduced mass matrix
-  const Real t5547 = t5546 * carried[252];
+  const Real t5547 = t5546 * carried[273];
   const Real t5548 = t5458 - t5547;
 
   // hind_right_shank: joint force
   const Real t5549 = t5512 * constant<Real>(0.24L);
 
   // hind_right_shank: wrench
-  const Real t5550 = carried[337] * constant<Real>(0.0687L);
-  const Real t5551 = carried[335] * constant<Real>(0.00252L);
+  const Real t5550 = carried[358] * constant<Real>(0.0687L);
+  const Real t5551 = carried[356] * constant<Real>(0.00252L);
   const Real t5552 = t5550 - t5551;
   const Real t5553 = constant<Real>(0.0000562L) * t5463;
-  const Real t5554 = constant<Real>(0.01294712L) * carried[19];
+  const Real t5554 = constant<Real>(0.01294712L) * carried[40];
   const Real t5555 = t5554 + t5553;
-  const Real t5556 = carried[316] * constant<Real>(2.52e-6L);
+  const Real t5556 = carried[337] * constant<Real>(2.52e-6L);
   const Real t5557 = t5555 + t5556;
   const Real t5558 = t5557 + t5552;
-  carried[93] = t5558;
+  carried[114] = t5558;
 
   // hind_right_shank: joint force
   const Real t5559 = t5558 - t5549;
 
   // hind_right_thigh: wrench
-  const Real t5560 = constant<Real>(0.0051L) * carried[333];
-  const Real t5561 = carried[334] * constant<Real>(0.0884L);
+  const Real t5560 = constant<Real>(0.0051L) * carried[354];
+  const Real t5561 = carried[355] * constant<Real>(0.0884L);
   const Real t5562 = t5560 + t5561;
-  const Real t5563 = constant<Real>(0.0025144L) * carried[310];
-  const Real t5564 = constant<Real>(0.0134661L) * carried[19];
+  const Real t5563 = constant<Real>(0.0025144L) * carried[331];
+  const Real t5564 = constant<Real>(0.0134661L) * carried[40];
   const Real t5565 = t5564 - t5563;
-  const Real t5566 = carried[308] * constant<Real>(8.4e-6L);
+  const Real t5566 = carried[329] * constant<Real>(8.4e-6L);
   const Real t5567 = t5565 - t5566;
   const Real t5568 = t5567 + t5562;
 
   // hind_right_shank: joint force
   const Real t5569 = t5568 + t5559;
-  carried[94] = t5569;
+  carried[115] = t5569;
 
   // reduced mass matrix
-  const Real t5570 = t5569 * carried[265];
+  const Real t5570 = t5569 * carried[286];
   const Real t5571 = t5570 + t5548;
-  const Real t5572 = carried[330] * t5558;
+  const Real t5572 = carried[351] * t5558;
   const Real t5573 = t5571 + t5572;
-  const Real t5574 = carried[95] * carried[56];
+  const Real t5574 = carried[116] * carried[77];
   const Real t5575 = carried[654] - t5574;
-  const Real t5576 = carried[574] * carried[60];
+  const Real t5576 = carried[586] * carried[81];
   const Real t5577 = t5576 + t5575;
-  const Real t5578 = carried[566] * carried[63];
+  const Real t5578 = carried[578] * carried[84];
   const Real t5579 = t5577 + t5578;
-  carried[102] = t5579;
-  const Real t5580 = t5579 * carried[65];
+  carried[123] = t5579;
+  const Real t5580 = t5579 * carried[86];
   const Real t5581 = t5573 - t5580;
-  const Real t5582 = carried[574] * carried[56];
-  const Real t5583 = carried[53] - t5582;
-  const Real t5584 = carried[299] * carried[60];
+  const Real t5582 = carried[586] * carried[77];
+  const Real t5583 = carried[16] - t5582;
+  const Real t5584 = carried[320] * carried[81];
   const Real t5585 = t5583 + t5584;
-  const Real t5586 = carried[112] * carried[63];
+  const Real t5586 = carried[133] * carried[84];
   const Real t5587 = t5585 + t5586;
-  carried[119] = t5587;
-  const Real t5588 = t5587 * carried[71];
+  carried[140] = t5587;
+  const Real t5588 = t5587 * carried[92];
   const Real t5589 = t5581 + t5588;
-  const Real t5590 = carried[62] * constant<Real>(0.05178848L);
-  const Real t5591 = carried[56] * carried[566];
-  const Real t5592 = carried[26] - t5591;
-  const Real t5593 = carried[112] * carried[60];
+  const Real t5590 = carried[83] * constant<Real>(0.05178848L);
+  const Real t5591 = carried[77] * carried[578];
+  const Real t5592 = carried[1] - t5591;
+  const Real t5593 = carried[133] * carried[81];
   const Real t5594 = t5592 + t5593;
   const Real t5595 = t5594 + t5590;
-  carried[122] = t5595;
-  const Real t5596 = t5595 * carried[74];
+  carried[143] = t5595;
+  const Real t5596 = t5595 * carried[95];
   const Real t5597 = t5596 + t5589;
-  const Real t5598 = carried[169] * carried[24];
-  const Real t5599 = carried[89] - t5598;
-  const Real t5600 = carried[582] * carried[173];
+  const Real t5598 = carried[190] * carried[9];
+  const Real t5599 = carried[110] - t5598;
+  const Real t5600 = carried[594] * carried[194];
   const Real t5601 = t5600 + t5599;
-  const Real t5602 = carried[576] * carried[175];
+  const Real t5602 = carried[588] * carried[196];
   const Real t5603 = t5602 + t5601;
-  carried[123] = t5603;
-  const Real t5604 = t5603 * carried[177];
+  carried[144] = t5603;
+  const Real t5604 = t5603 * carried[198];
   const Real t5605 = t5597 - t5604;
-  const Real t5606 = carried[169] * carried[582];
-  const Real t5607 = carried[113] - t5606;
-  const Real t5608 = carried[173] * carried[38];
+  const Real t5606 = carried[190] * carried[594];
+  const Real t5607 = carried[134] - t5606;
+  const Real t5608 = carried[194] * carried[45];
   const Real t5609 = t5607 + t5608;
-  const Real t5610 = carried[28] * carried[175];
+  const Real t5610 = carried[11] * carried[196];
   const Real t5611 = t5609 + t5610;
-  carried[124] = t5611;
-  const Real t5612 = carried[181] * t5611;
+  carried[145] = t5611;
+  const Real t5612 = carried[202] * t5611;
   const Real t5613 = t5605 + t5612;
-  const Real t5614 = carried[174] * constant<Real>(0.05178848L);
-  const Real t5615 = carried[173] * carried[28];
-  const Real t5616 = carried[576] * carried[169];
-  const Real t5617 = carried[90] - t5616;
+  const Real t5614 = carried[195] * constant<Real>(0.05178848L);
+  const Real t5615 = carried[194] * carried[11];
+  const Real t5616 = carried[588] * carried[190];
+  const Real t5617 = carried[111] - t5616;
   const Real t5618 = t5615 + t5617;
   const Real t5619 = t5618 + t5614;
-  carried[125] = t5619;
-  const Real t5620 = carried[184] * t5619;
+  carried[146] = t5619;
+  const Real t5620 = carried[205] * t5619;
   const Real t5621 = t5613 + t5620;
-  const Real t5622 = carried[244] * carried[466];
-  const Real t5623 = carried[371] - t5622;
-  const Real t5624 = carried[291] * carried[248];
+  const Real t5622 = carried[265] * carried[472];
+  const Real t5623 = carried[392] - t5622;
+  const Real t5624 = carried[220] * carried[269];
   const Real t5625 = t5623 + t5624;
-  const Real t5626 = carried[251] * carried[198];
+  const Real t5626 = carried[272] * carried[172];
   const Real t5627 = t5625 + t5626;
-  carried[127] = t5627;
-  const Real t5628 = t5627 * carried[255];
+  carried[148] = t5627;
+  const Real t5628 = t5627 * carried[276];
   const Real t5629 = t5621 - t5628;
-  const Real t5630 = carried[291] * carried[244];
+  const Real t5630 = carried[220] * carried[265];
   const Real t5631 = carried[438] - t5630;
-  const Real t5632 = carried[248] * carried[504];
+  const Real t5632 = carried[269] * carried[494];
   const Real t5633 = t5631 + t5632;
-  const Real t5634 = carried[251] * carried[503];
+  const Real t5634 = carried[272] * carried[487];
   const Real t5635 = t5634 + t5633;
-  carried[128] = t5635;
-  const Real t5636 = t5635 * carried[262];
+  carried[149] = t5635;
+  const Real t5636 = t5635 * carried[283];
   const Real t5637 = t5629 + t5636;
-  const Real t5638 = carried[250] * constant<Real>(0.05178848L);
-  const Real t5639 = carried[503] * carried[248];
-  const Real t5640 = carried[198] * carried[244];
-  const Real t5641 = carried[426] - t5640;
+  const Real t5638 = carried[271] * constant<Real>(0.05178848L);
+  const Real t5639 = carried[487] * carried[269];
+  const Real t5640 = carried[172] * carried[265];
+  const Real t5641 = carried[395] - t5640;
   const Real t5642 = t5639 + t5641;
   const Real t5643 = t5642 + t5638;
-  carried[142] = t5643;
-  const Real t5644 = t5643 * carried[105];
+  carried[163] = t5643;
+  const Real t5644 = t5643 * carried[126];
   const Real t5645 = t5644 + t5637;
-  const Real t5646 = carried[382] * carried[252];
-  const Real t5647 = carried[554] - t5646;
-  const Real t5648 = carried[265] * carried[355];
+  const Real t5646 = carried[370] * carried[273];
+  const Real t5647 = carried[557] - t5646;
+  const Real t5648 = carried[286] * carried[232];
   const Real t5649 = t5648 + t5647;
-  const Real t5650 = carried[330] * carried[351];
+  const Real t5650 = carried[351] * carried[13];
   const Real t5651 = t5650 + t5649;
-  carried[143] = t5651;
-  const Real t5652 = carried[332] * t5651;
+  carried[164] = t5651;
+  const Real t5652 = carried[353] * t5651;
   const Real t5653 = t5645 - t5652;
-  const Real t5654 = carried[252] * carried[355];
-  const Real t5655 = carried[559] - t5654;
-  const Real t5656 = carried[456] * carried[265];
+  const Real t5654 = carried[273] * carried[232];
+  const Real t5655 = carried[569] - t5654;
+  const Real t5656 = carried[376] * carried[286];
   const Real t5657 = t5656 + t5655;
-  const Real t5658 = carried[330] * carried[454];
+  const Real t5658 = carried[351] * carried[373];
   const Real t5659 = t5658 + t5657;
-  carried[144] = t5659;
-  const Real t5660 = carried[336] * t5659;
+  carried[165] = t5659;
+  const Real t5660 = carried[357] * t5659;
   const Real t5661 = t5653 + t5660;
-  const Real t5662 = constant<Real>(0.05178848L) * carried[266];
-  const Real t5663 = carried[351] * carried[252];
-  const Real t5664 = carried[557] - t5663;
-  const Real t5665 = carried[454] * carried[265];
+  const Real t5662 = constant<Real>(0.05178848L) * carried[287];
+  const Real t5663 = carried[13] * carried[273];
+  const Real t5664 = carried[566] - t5663;
+  const Real t5665 = carried[373] * carried[286];
   const Real t5666 = t5664 + t5665;
   const Real t5667 = t5666 + t5662;
-  carried[145] = t5667;
-  const Real t5668 = carried[339] * t5667;
+  carried[166] = t5667;
+  const Real t5668 = carried[360] * t5667;
   const Real t5669 = t5661 - t5668;
-  carried[146] = t5669;
+  carried[167] = t5669;
 
   // hind_right_thigh: joint force
-  const Real t5670 = carried[421] * carried[21];
-  const Real t5671 = carried[419] * carried[20];
+  const Real t5670 = carried[437] * carried[42];
+  const Real t5671 = carried[435] * carried[41];
   const Real t5672 = t5670 - t5671;
-  const Real t5673 = constant<Real>(0.075L) * carried[320];
+  const Real t5673 = constant<Real>(0.075L) * carried[323];
   const Real t5674 = t5672 + t5673;
   const Real t5675 = t5674 + constant<Real>(0.0273L);
-  carried[150] = t5675;
+  carried[171] = t5675;
 
   // hind_right_hip: joint force
-  const Real t5676 = t5675 * carried[18];
-  carried[176] = t5676;
+  const Real t5676 = t5675 * carried[39];
+  carried[197] = t5676;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_20(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_right_thigh: joint force
-  const Real t5677 = carried[430] + constant<Real>(0.0013L);
-  carried[62] = t5677;
+  const Real t5677 = carried[445] + constant<Real>(0.0013L);
+  carried[83] = t5677;
 
   // hind_right_hip: joint force
-  const Real t5678 = carried[19] * t5677;
-  const Real t5679 = t5678 - carried[176];
+  const Real t5678 = carried[40] * t5677;
+  const Real t5679 = t5678 - carried[197];
   const Real t5680 = carried[616] * constant<Real>(0.21L);
   const Real t5681 = t5679 + t5680;
   const Real t5682 = constant<Real>(0.1412L) + t5681;
 
   // hind_left_thigh: joint force
-  const Real t5683 = carried[15] * carried[385];
-  const Real t5684 = carried[14] * carried[387];
+  const Real t5683 = carried[36] * carried[338];
+  const Real t5684 = carried[35] * carried[347];
   const Real t5685 = t5683 - t5684;
-  const Real t5686 = constant<Real>(0.075L) * carried[292];
+  const Real t5686 = constant<Real>(0.075L) * carried[234];
   const Real t5687 = t5685 - t5686;
   const Real t5688 = constant<Real>(-0.0273L) + t5687;
-  carried[174] = t5688;
+  carried[195] = t5688;
 
   // hind_left_hip: joint force
-  const Real t5689 = t5688 * carried[12];
+  const Real t5689 = t5688 * carried[33];
 
   // hind_left_thigh: joint force
-  const Real t5690 = constant<Real>(0.0013L) + carried[417];
-  carried[178] = t5690;
+  const Real t5690 = constant<Real>(0.0013L) + carried[411];
+  carried[199] = t5690;
 
   // hind_left_hip: joint force
-  const Real t5691 = carried[13] * t5690;
+  const Real t5691 = carried[34] * t5690;
   const Real t5692 = t5691 - t5689;
   const Real t5693 = constant<Real>(0.21L) * carried[617];
   const Real t5694 = t5692 + t5693;
   const Real t5695 = t5694 + t5682;
 
   // front_right_thigh: joint force
-  const Real t5696 = carried[9] * carried[305];
-  const Real t5697 = carried[301] * carried[8];
+  const Real t5696 = carried[30] * carried[62];
+  const Real t5697 = carried[20] * carried[29];
   const Real t5698 = t5696 - t5697;
-  const Real t5699 = constant<Real>(0.075L) * carried[356];
+  const Real t5699 = constant<Real>(0.075L) * carried[341];
   const Real t5700 = t5698 + t5699;
   const Real t5701 = t5700 + constant<Real>(0.0273L);
-  carried[179] = t5701;
+  carried[200] = t5701;
 
   // front_right_hip: joint force
-  const Real t5702 = carried[6] * t5701;
+  const Real t5702 = carried[27] * t5701;
 
   // front_right_thigh: joint force
-  const Real t5703 = constant<Real>(0.0013L) + carried[376];
-  carried[180] = t5703;
+  const Real t5703 = constant<Real>(0.0013L) + carried[328];
+  carried[201] = t5703;
 
   // front_right_hip: joint force
-  const Real t5704 = t5703 * carried[7];
+  const Real t5704 = t5703 * carried[28];
   const Real t5705 = t5704 - t5702;
   const Real t5706 = carried[618] * constant<Real>(0.21L);
   const Real t5707 = t5705 - t5706;
   const Real t5708 = t5707 + t5695;
 
   // front_left_thigh: joint force
-  const Real t5709 = carried[3] * carried[489];
-  const Real t5710 = carried[2] * carried[41];
+  const Real t5709 = carried[24] * carried[484];
+  const Real t5710 = carried[23] * carried[3];
   const Real t5711 = t5709 - t5710;
-  const Real t5712 = constant<Real>(0.075L) * carried[377];
+  const Real t5712 = constant<Real>(0.075L) * carried[375];
   const Real t5713 = t5711 - t5712;
   const Real t5714 = constant<Real>(-0.0273L) + t5713;
-  carried[182] = t5714;
+  carried[203] = t5714;
 
   // front_left_hip: joint force
-  const Real t5715 = t5714 * carried[0];
+  const Real t5715 = t5714 * carried[21];
 
   // front_left_thigh: joint force
-  const Real t5716 = constant<Real>(0.0013L) + carried[469];
-  carried[205] = t5716;
+  const Real t5716 = constant<Real>(0.0013L) + carried[479];
+  carried[226] = t5716;
 
   // front_left_hip: joint force
-  const Real t5717 = t5716 * carried[1];
+  const Real t5717 = t5716 * carried[22];
   const Real t5718 = t5717 - t5715;
   const Real t5719 = carried[619] * constant<Real>(0.21L);
   const Real t5720 = t5718 - t5719;
   const Real t5721 = t5720 + t5708;
 
   // reduced mass matrix
-  const Real t5722 = carried[270] * carried[42];
+  const Real t5722 = carried[235] * carried[63];
   const Real t5723 = t5721 + t5722;
-  const Real t5724 = carried[44] * carried[241];
+  const Real t5724 = carried[65] * carried[187];
   const Real t5725 = t5723 + t5724;
-  const Real t5726 = carried[386] * carried[155];
+  const Real t5726 = carried[326] * carried[176];
   const Real t5727 = t5725 + t5726;
-  const Real t5728 = carried[157] * carried[383];
+  const Real t5728 = carried[178] * carried[325];
   const Real t5729 = t5728 + t5727;
-  const Real t5730 = carried[230] * carried[66];
+  const Real t5730 = carried[251] * carried[87];
   const Real t5731 = t5730 + t5729;
-  const Real t5732 = carried[232] * carried[64];
+  const Real t5732 = carried[253] * carried[85];
   const Real t5733 = t5731 + t5732;
-  const Real t5734 = carried[321] * carried[94];
+  const Real t5734 = carried[342] * carried[115];
   const Real t5735 = t5734 + t5733;
-  const Real t5736 = carried[323] * carried[93];
+  const Real t5736 = carried[344] * carried[114];
   const Real t5737 = t5735 + t5736;
-  const Real t5738 = carried[507] * carried[65];
+  const Real t5738 = carried[490] * carried[86];
   const Real t5739 = t5737 - t5738;
-  const Real t5740 = carried[509] * carried[71];
+  const Real t5740 = carried[491] * carried[92];
   const Real t5741 = t5739 + t5740;
-  const Real t5742 = carried[510] * carried[74];
+  const Real t5742 = carried[503] * carried[95];
   const Real t5743 = t5741 + t5742;
-  const Real t5744 = carried[177] * carried[511];
+  const Real t5744 = carried[198] * carried[506];
   const Real t5745 = t5743 - t5744;
-  const Real t5746 = carried[512] * carried[181];
+  const Real t5746 = carried[507] * carried[202];
   const Real t5747 = t5746 + t5745;
-  const Real t5748 = carried[514] * carried[184];
+  const Real t5748 = carried[509] * carried[205];
   const Real t5749 = t5747 + t5748;
-  const Real t5750 = carried[255] * carried[43];
+  const Real t5750 = carried[276] * carried[64];
   const Real t5751 = t5749 - t5750;
-  const Real t5752 = carried[138] * carried[262];
+  const Real t5752 = carried[159] * carried[283];
   const Real t5753 = t5751 + t5752;
-  const Real t5754 = carried[154] * carried[105];
+  const Real t5754 = carried[175] * carried[126];
   const Real t5755 = t5753 + t5754;
-  const Real t5756 = carried[332] * carried[156];
+  const Real t5756 = carried[353] * carried[177];
   const Real t5757 = t5755 - t5756;
-  const Real t5758 = carried[336] * carried[213];
+  const Real t5758 = carried[357] * carried[222];
   const Real t5759 = t5758 + t5757;
-  const Real t5760 = carried[339] * carried[229];
+  const Real t5760 = carried[360] * carried[233];
   const Real t5761 = t5759 - t5760;
-  carried[217] = t5761;
+  carried[238] = t5761;
 
   // reduced accelerations
-  const Real t5762 = t5761 * carried[171];
-  const Real t5763 = carried[146] - t5762;
+  const Real t5762 = t5761 * carried[78];
+  const Real t5763 = carried[167] - t5762;
 
   // hind_left_thigh: joint force
-  const Real t5764 = carried[14] * carried[282];
-  const Real t5765 = carried[15] * carried[285];
+  const Real t5764 = carried[35] * carried[303];
+  const Real t5765 = carried[36] * carried[306];
   const Real t5766 = t5765 - t5764;
-  const Real t5767 = carried[14] * carried[286];
-  const Real t5768 = carried[15] * carried[287];
+  const Real t5767 = carried[35] * carried[307];
+  const Real t5768 = carried[36] * carried[308];
   const Real t5769 = t5767 + t5768;
-  carried[218] = t5769;
+  carried[239] = t5769;
   const Real t5770 = constant<Real>(0.075L) * t5769;
   const Real t5771 = t5766 - t5770;
 
   // hind_left_hip: wrench
-  const Real t5772 = carried[13] * constant<Real>(0.0052L);
+  const Real t5772 = carried[34] * constant<Real>(0.0052L);
 
   // hind_left_thigh: joint force
   const Real t5773 = t5772 + t5771;
-  carried[219] = t5773;
+  carried[240] = t5773;
 
   // hind_left_hip: joint force
-  const Real t5774 = t5773 * carried[12];
+  const Real t5774 = t5773 * carried[33];
 
   // hind_left_hip: wrench
-  const Real t5775 = constant<Real>(0.0052L) * carried[12];
+  const Real t5775 = constant<Real>(0.0052L) * carried[33];
 
   // hind_left_thigh: joint force
-  const Real t5776 = t5775 - carried[296];
-  carried[220] = t5776;
+  const Real t5776 = t5775 - carried[317];
+  carried[241] = t5776;
 
   // hind_left_hip: joint force
-  const Real t5777 = t5776 * carried[13];
+  const Real t5777 = t5776 * carried[34];
   const Real t5778 = t5777 - t5774;
-  const Real t5779 = constant<Real>(0.21L) * carried[530];
+  const Real t5779 = constant<Real>(0.21L) * carried[525];
   const Real t5780 = t5778 + t5779;
 
   // hind_right_thigh: joint force
-  const Real t5781 = carried[20] * carried[363];
-  const Real t5782 = carried[365] * carried[21];
+  const Real t5781 = carried[41] * carried[384];
+  const Real t5782 = carried[386] * carried[42];
   const Real t5783 = t5782 - t5781;
-  const Real t5784 = carried[21] * carried[367];
-  const Real t5785 = carried[366] * carried[20];
+  const Real t5784 = carried[42] * carried[388];
+  const Real t5785 = carried[387] * carried[41];
   const Real t5786 = t5784 + t5785;
-  carried[221] = t5786;
+  carried[242] = t5786;
   const Real t5787 = constant<Real>(0.075L) * t5786;
   const Real t5788 = t5787 + t5783;
 
   // hind_right_hip: wrench
-  const Real t5789 = constant<Real>(0.0052L) * carried[19];
+  const Real t5789 = constant<Real>(0.0052L) * carried[40];
 
   // hind_right_thigh: joint force
   const Real t5790 = t5788 + t5789;
-  carried[225] = t5790;
+  carried[246] = t5790;
 
   // hind_right_hip: joint force
-  const Real t5791 = t5790 * carried[18];
+  const Real t5791 = t5790 * carried[39];
 
   // hind_right_hip: wrench
-  const Real t5792 = constant<Real>(0.0052L) * carried[18];
+  const Real t5792 = constant<Real>(0.0052L) * carried[39];
 
   // hind_right_thigh: joint force
-  const Real t5793 = t5792 - carried[99];
-  carried[250] = t5793;
+  const Real t5793 = t5792 - carried[120];
+  carried[271] = t5793;
 
   // hind_right_hip: joint force
-  const Real t5794 = t5793 * carried[19];
+  const Real t5794 = t5793 * carried[40];
   const Real t5795 = t5794 - t5791;
-  const Real t5796 = carried[529] * constant<Real>(0.21L);
+  const Real t5796 = carried[524] * constant<Real>(0.21L);
   const Real t5797 = t5795 + t5796;
 
   // hind_left_hip: joint force
   const Real t5798 = t5780 + t5797;
 
   // front_right_thigh: joint force
-  const Real t5799 = carried[101] * carried[8];
-  const Real t5800 = carried[103] * carried[9];
+  const Real t5799 = carried[122] * carried[29];
+  const Real t5800 = carried[124] * carried[30];
   const Real t5801 = t5800 - t5799;
-  const Real t5802 = carried[104] * carried[8];
-  const Real t5803 = carried[9] * carried[107];
+  const Real t5802 = carried[125] * carried[29];
+  const Real t5803 = carried[30] * carried[128];
   const Real t5804 = t5802 + t5803;
-  carried[254] = t5804;
+  carried[274] = t5804;
   const Real t5805 = constant<Real>(0.075L) * t5804;
   const Real t5806 = t5801 + t5805;
 
   // front_right_hip: wrench
-  const Real t5807 = constant<Real>(0.0052L) * carried[7];
+  const Real t5807 = constant<Real>(0.0052L) * carried[28];
 
   // front_right_thigh: joint force
   const Real t5808 = t5806 - t5807;
-  carried[257] = t5808;
+  carried[275] = t5808;
 
   // front_right_hip: joint force
-  const Real t5809 = carried[6] * t5808;
+  const Real t5809 = carried[27] * t5808;
 
   // front_right_hip: wrench
-  const Real t5810 = carried[6] * constant<Real>(0.0052L);
+  const Real t5810 = carried[27] * constant<Real>(0.0052L);
 
   // front_right_thigh: joint force
-  const Real t5811 = t5810 + carried[207];
-  carried[258] = t5811;
+  const Real t5811 = t5810 + carried[228];
+  carried[278] = t5811;
 
   // front_right_hip: joint force
-  const Real t5812 = carried[7] * t5811;
+  const Real t5812 = carried[28] * t5811;
   const Real t5813 = t5809 + t5812;
-  const Real t5814 = constant<Real>(0.21L) * carried[531];
+  const Real t5814 = constant<Real>(0.21L) * carried[526];
   const Real t5815 = t5813 + t5814;
   const Real t5816 = t5798 - t5815;
 
   // front_left_thigh: joint force
-  const Real t5817 = carried[126] * carried[2];
-  const Real t5818 = carried[129] * carried[3];
+  const Real t5817 = carried[147] * carried[23];
+  const Real t5818 = carried[150] * carried[24];
   const Real t5819 = t5818 - t5817;
-  const Real t5820 = carried[3] * carried[131];
-  const Real t5821 = carried[2] * carried[130];
+  const Real t5820 = carried[24] * carried[152];
+  const Real t5821 = carried[23] * carried[151];
   const Real t5822 = t5820 + t5821;
-  carried[259] = t5822;
+  carried[279] = t5822;
   const Real t5823 = constant<Real>(0.075L) * t5822;
   const Real t5824 = t5819 - t5823;
 
   // front_left_hip: wrench
-  const Real t5825 = constant<Real>(0.0052L) * carried[1];
+  const Real t5825 = constant<Real>(0.0052L) * carried[22];
 
   // front_left_thigh: joint force
   const Real t5826 = t5824 - t5825;
-  carried[260] = t5826;
+  carried[280] = t5826;
 
   // front_left_hip: joint force
-  const Real t5827 = t5826 * carried[0];
+  const Real t5827 = t5826 * carried[21];
 
   // front_left_hip: wrench
-  const Real t5828 = constant<Real>(0.0052L) * carried[0];
+  const Real t5828 = constant<Real>(0.0052L) * carried[21];
 
   // front_left_thigh: joint force
-  const Real t5829 = carried[121] + t5828;
-  carried[261] = t5829;
+  const Real t5829 = carried[142] + t5828;
+  carried[281] = t5829;
 
   // front_left_hip: joint force
-  const Real t5830 = carried[1] * t5829;
+  const Real t5830 = carried[22] * t5829;
   const Real t5831 = t5827 + t5830;
-  const Real t5832 = constant<Real>(0.21L) * carried[532];
+  const Real t5832 = constant<Real>(0.21L) * carried[527];
   const Real t5833 = t5831 + t5832;
   const Real t5834 = t5816 - t5833;
 
   // reduced mass matrix
-  const Real t5835 = carried[231] * carried[27];
+  const Real t5835 = carried[173] * carried[48];
   const Real t5836 = t5834 - t5835;
-  const Real t5837 = carried[270] * carried[35];
+  const Real t5837 = carried[235] * carried[56];
   const Real t5838 = t5836 + t5837;
-  const Real t5839 = carried[40] * carried[241];
+  const Real t5839 = carried[61] * carried[187];
   const Real t5840 = t5838 + t5839;
-  const Real t5841 = carried[378] * carried[140];
+  const Real t5841 = carried[321] * carried[161];
   const Real t5842 = t5840 - t5841;
-  const Real t5843 = carried[386] * carried[148];
+  const Real t5843 = carried[326] * carried[169];
   const Real t5844 = t5843 + t5842;
-  const Real t5845 = carried[153] * carried[383];
+  const Real t5845 = carried[174] * carried[325];
   const Real t5846 = t5845 + t5844;
-  const Real t5847 = carried[37] * carried[215];
+  const Real t5847 = carried[58] * carried[236];
   const Real t5848 = t5846 - t5847;
-  const Real t5849 = carried[66] * carried[223];
+  const Real t5849 = carried[87] * carried[244];
   const Real t5850 = t5849 + t5848;
-  const Real t5851 = carried[228] * carried[64];
+  const Real t5851 = carried[249] * carried[85];
   const Real t5852 = t5850 + t5851;
-  const Real t5853 = carried[306] * carried[92];
+  const Real t5853 = carried[327] * carried[113];
   const Real t5854 = t5852 - t5853;
-  const Real t5855 = carried[314] * carried[94];
+  const Real t5855 = carried[335] * carried[115];
   const Real t5856 = t5854 + t5855;
-  const Real t5857 = carried[93] * carried[319];
+  const Real t5857 = carried[114] * carried[340];
   const Real t5858 = t5857 + t5856;
-  const Real t5859 = carried[490] * carried[65];
+  const Real t5859 = carried[486] * carried[86];
   const Real t5860 = t5858 - t5859;
-  const Real t5861 = carried[493] * carried[71];
+  const Real t5861 = carried[488] * carried[92];
   const Real t5862 = t5860 + t5861;
-  const Real t5863 = carried[494] * carried[74];
+  const Real t5863 = carried[489] * carried[95];
   const Real t5864 = t5863 + t5862;
-  const Real t5865 = carried[177] * carried[495];
+  const Real t5865 = carried[198] * carried[496];
   const Real t5866 = t5864 - t5865;
-  const Real t5867 = carried[515] * carried[181];
+  const Real t5867 = carried[513] * carried[202];
   const Real t5868 = t5866 + t5867;
-  const Real t5869 = carried[521] * carried[184];
+  const Real t5869 = carried[515] * carried[205];
   const Real t5870 = t5869 + t5868;
-  const Real t5871 = carried[255] * carried[522];
+  const Real t5871 = carried[276] * carried[516];
   const Real t5872 = t5870 - t5871;
-  const Real t5873 = carried[523] * carried[262];
+  const Real t5873 = carried[517] * carried[283];
   const Real t5874 = t5873 + t5872;
-  const Real t5875 = carried[524] * carried[105];
+  const Real t5875 = carried[518] * carried[126];
   const Real t5876 = t5874 + t5875;
-  const Real t5877 = carried[332] * carried[525];
+  const Real t5877 = carried[353] * carried[519];
   const Real t5878 = t5876 - t5877;
-  const Real t5879 = carried[526] * carried[336];
+  const Real t5879 = carried[521] * carried[357];
   const Real t5880 = t5879 + t5878;
-  const Real t5881 = carried[339] * carried[527];
+  const Real t5881 = carried[360] * carried[522];
   const Real t5882 = t5880 - t5881;
 
   // reduced accelerations
-  const Real t5883 = t5761 * carried[432];
+  const Real t5883 = t5761 * carried[450];
   const Real t5884 = t5882 - t5883;
-  carried[264] = t5884;
-  const Real t5885 = t5884 * carried[170];
+  carried[282] = t5884;
+  const Real t5885 = t5884 * carried[47];
   const Real t5886 = t5763 - t5885;
-  carried[266] = t5886;
+  carried[284] = t5886;
 
   // hind_right_thigh: joint force
-  const Real t5887 = carried[602] * carried[20];
-  const Real t5888 = carried[605] * carried[21];
+  const Real t5887 = carried[602] * carried[41];
+  const Real t5888 = carried[605] * carried[42];
   const Real t5889 = t5888 - t5887;
-  const Real t5890 = carried[607] * carried[21];
-  const Real t5891 = carried[20] * carried[606];
+  const Real t5890 = carried[607] * carried[42];
+  const Real t5891 = carried[41] * carried[606];
   const Real t5892 = t5890 + t5891;
-  carried[278] = t5892;
+  carried[285] = t5892;
   const Real t5893 = constant<Real>(0.075L) * t5892;
   const Real t5894 = t5893 + t5889;
   const Real t5895 = t5894 + t5792;
-  carried[279] = t5895;
+  carried[287] = t5895;
 
   // hind_right_hip: joint force
-  const Real t5896 = t5895 * carried[18];
+  const Real t5896 = t5895 * carried[39];
 
   // hind_right_thigh: joint force
   const Real t5897 = carried[615] - t5789;
-  carried[280] = t5897;
+  carried[291] = t5897;
 
   // hind_right_hip: joint force
-  const Real t5898 = t5897 * carried[19];
+  const Real t5898 = t5897 * carried[40];
   const Real t5899 = t5898 - t5896;
-  const Real t5900 = carried[552] * constant<Real>(0.21L);
+  const Real t5900 = carried[545] * constant<Real>(0.21L);
   const Real t5901 = t5900 + t5899;
   const Real t5902 = t5901 + constant<Real>(-0.0515L);
 
   // hind_left_thigh: joint force
-  const Real t5903 = carried[14] * carried[572];
-  const Real t5904 = carried[15] * carried[577];
+  const Real t5903 = carried[35] * carried[559];
+  const Real t5904 = carried[36] * carried[561];
   const Real t5905 = t5904 - t5903;
-  const Real t5906 = carried[14] * carried[580];
-  const Real t5907 = carried[15] * carried[583];
+  const Real t5906 = carried[35] * carried[564];
+  const Real t5907 = carried[36] * carried[565];
   const Real t5908 = t5906 + t5907;
-  carried[281] = t5908;
+  carried[299] = t5908;
   const Real t5909 = constant<Real>(0.075L) * t5908;
   const Real t5910 = t5905 - t5909;
   const Real t5911 = t5910 + t5775;
-  carried[283] = t5911;
+  carried[300] = t5911;
 
   // hind_left_hip: joint force
-  const Real t5912 = t5911 * carried[12];
+  const Real t5912 = t5911 * carried[33];
 
   // hind_left_thigh: joint force
-  const Real t5913 = carried[597] - t5772;
-  carried[284] = t5913;
+  const Real t5913 = carried[587] - t5772;
+  carried[301] = t5913;
 
   // hind_left_hip: joint force
-  const Real t5914 = t5913 * carried[13];
+  const Real t5914 = t5913 * carried[34];
   const Real t5915 = t5914 - t5912;
   const Real t5916 = carried[628] * constant<Real>(0.21L);
   const Real t5917 = t5915 + t5916;
   const Real t5918 = t5902 + t5917;
 
   // front_right_thigh: joint force
-  const Real t5919 = carried[368] * carried[8];
-  const Real t5920 = carried[414] * carried[9];
+  const Real t5919 = carried[374] * carried[29];
+  const Real t5920 = carried[403] * carried[30];
   const Real t5921 = t5920 - t5919;
-  const Real t5922 = carried[422] * carried[8];
-  const Real t5923 = carried[423] * carried[9];
+  const Real t5922 = carried[404] * carried[29];
+  const Real t5923 = carried[408] * carried[30];
   const Real t5924 = t5922 + t5923;
-  carried[294] = t5924;
+  carried[302] = t5924;
   const Real t5925 = constant<Real>(0.075L) * t5924;
   const Real t5926 = t5921 + t5925;
   const Real t5927 = t5926 - t5810;
-  carried[308] = t5927;
+  carried[304] = t5927;
 
   // front_right_hip: joint force
-  const Real t5928 = carried[6] * t5927;
+  const Real t5928 = carried[27] * t5927;
 
   // front_right_thigh: joint force
-  const Real t5929 = t5807 + carried[556];
-  carried[309] = t5929;
+  const Real t5929 = t5807 + carried[549];
+  carried[305] = t5929;
 
   // front_right_hip: joint force
-  const Real t5930 = t5929 * carried[7];
+  const Real t5930 = t5929 * carried[28];
   const Real t5931 = t5930 - t5928;
   const Real t5932 = constant<Real>(0.21L) * carried[631];
   const Real t5933 = t5931 - t5932;
   const Real t5934 = t5933 + t5918;
 
   // front_left_thigh: joint force
-  const Real t5935 = carried[2] * carried[538];
-  const Real t5936 = carried[542] * carried[3];
+  const Real t5935 = carried[23] * carried[538];
+  const Real t5936 = carried[541] * carried[24];
   const Real t5937 = t5936 - t5935;
-  const Real t5938 = carried[3] * carried[39];
-  const Real t5939 = carried[2] * carried[548];
+  const Real t5938 = carried[24] * carried[4];
+  const Real t5939 = carried[23] * carried[543];
   const Real t5940 = t5938 + t5939;
-  carried[310] = t5940;
+  carried[315] = t5940;
   const Real t5941 = constant<Real>(0.075L) * t5940;
   const Real t5942 = t5937 - t5941;
   const Real t5943 = t5942 - t5828;
-  carried[311] = t5943;
+  carried[329] = t5943;
 
   // front_left_hip: joint force
-  const Real t5944 = t5943 * carried[0];
+  const Real t5944 = t5943 * carried[21];
 
   // front_left_thigh: joint force
-  const Real t5945 = carried[307] + t5825;
-  carried[312] = t5945;
+  const Real t5945 = carried[252] + t5825;
+  carried[330] = t5945;
 
   // front_left_hip: joint force
-  const Real t5946 = t5945 * carried[1];
+  const Real t5946 = t5945 * carried[22];
   const Real t5947 = t5946 - t5944;
   const Real t5948 = constant<Real>(0.21L) * carried[634];
   const Real t5949 = t5947 - t5948;
   const Real t5950 = t5949 + t5934;
 
   // reduced mass matrix
-  const Real t5951 = carried[45] * carried[231];
+  const Real t5951 = carried[66] * carried[173];
   const Real t5952 = t5950 - t5951;
-  const Real t5953 = carried[270] * carried[51];
+  const Real t5953 = carried[235] * carried[72];
   const Real t5954 = t5953 + t5952;
-  const Real t5955 = carried[54] * carried[241];
+  const Real t5955 = carried[75] * carried[187];
   const Real t5956 = t5954 + t5955;
-  const Real t5957 = carried[378] * carried[158];
+  const Real t5957 = carried[321] * carried[179];
   const Real t5958 = t5956 - t5957;
-  const Real t5959 = carried[386] * carried[164];
+  const Real t5959 = carried[326] * carried[185];
   const Real t5960 = t5959 + t5958;
-  const Real t5961 = carried[167] * carried[383];
+  const Real t5961 = carried[188] * carried[325];
   const Real t5962 = t5960 - t5961;
-  const Real t5963 = carried[233] * carried[37];
+  const Real t5963 = carried[254] * carried[58];
   const Real t5964 = t5962 - t5963;
-  const Real t5965 = carried[239] * carried[66];
+  const Real t5965 = carried[260] * carried[87];
   const Real t5966 = t5965 + t5964;
-  const Real t5967 = carried[242] * carried[64];
+  const Real t5967 = carried[263] * carried[85];
   const Real t5968 = t5966 + t5967;
-  const Real t5969 = carried[325] * carried[92];
+  const Real t5969 = carried[346] * carried[113];
   const Real t5970 = t5968 - t5969;
-  const Real t5971 = carried[106] * carried[94];
+  const Real t5971 = carried[127] * carried[115];
   const Real t5972 = t5970 + t5971;
-  const Real t5973 = carried[222] * carried[93];
+  const Real t5973 = carried[243] * carried[114];
   const Real t5974 = t5972 - t5973;
-  const Real t5975 = carried[635] * carried[65];
+  const Real t5975 = carried[635] * carried[86];
   const Real t5976 = t5974 - t5975;
-  carried[316] = t5976;
+  carried[331] = t5976;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_21(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced mass matrix
-  const Real t5977 = carried[636] * carried[71];
-  const Real t5978 = t5977 + carried[316];
-  const Real t5979 = carried[637] * carried[74];
+  const Real t5977 = carried[636] * carried[92];
+  const Real t5978 = t5977 + carried[331];
+  const Real t5979 = carried[637] * carried[95];
   const Real t5980 = t5978 + t5979;
-  const Real t5981 = carried[638] * carried[177];
+  const Real t5981 = carried[638] * carried[198];
   const Real t5982 = t5980 - t5981;
-  const Real t5983 = carried[639] * carried[181];
+  const Real t5983 = carried[639] * carried[202];
   const Real t5984 = t5983 + t5982;
-  const Real t5985 = carried[640] * carried[184];
+  const Real t5985 = carried[640] * carried[205];
   const Real t5986 = t5984 + t5985;
-  const Real t5987 = carried[641] * carried[255];
+  const Real t5987 = carried[641] * carried[276];
   const Real t5988 = t5986 - t5987;
-  const Real t5989 = carried[642] * carried[262];
+  const Real t5989 = carried[642] * carried[283];
   const Real t5990 = t5989 + t5988;
-  const Real t5991 = carried[643] * carried[105];
+  const Real t5991 = carried[643] * carried[126];
   const Real t5992 = t5990 + t5991;
-  const Real t5993 = carried[332] * carried[644];
+  const Real t5993 = carried[353] * carried[644];
   const Real t5994 = t5992 - t5993;
-  const Real t5995 = carried[336] * carried[645];
+  const Real t5995 = carried[357] * carried[645];
   const Real t5996 = t5995 + t5994;
-  const Real t5997 = carried[339] * carried[646];
+  const Real t5997 = carried[360] * carried[646];
   const Real t5998 = t5996 - t5997;
 
   // reduced accelerations
-  const Real t5999 = carried[217] * carried[533];
+  const Real t5999 = carried[238] * carried[533];
   const Real t6000 = t5998 - t5999;
-  const Real t6001 = carried[622] * carried[264];
+  const Real t6001 = carried[622] * carried[282];
   const Real t6002 = t6000 - t6001;
-  carried[39] = t6002;
-  const Real t6003 = carried[168] * t6002;
-  const Real t6004 = carried[266] - t6003;
-  carried[41] = t6004;
+  carried[3] = t6002;
+  const Real t6003 = carried[19] * t6002;
+  const Real t6004 = carried[284] - t6003;
+  carried[4] = t6004;
 
   // hind_right_hip: joint force
-  const Real t6005 = carried[245] * constant<Real>(0.06L);
-  const Real t6006 = carried[554] - t6005;
+  const Real t6005 = carried[193] * constant<Real>(0.06L);
+  const Real t6006 = carried[557] - t6005;
   const Real t6007 = t6006 + constant<Real>(0.059001467L);
 
   // hind_left_hip: joint force
-  const Real t6008 = carried[263] * constant<Real>(0.06L);
-  const Real t6009 = carried[371] + t6008;
+  const Real t6008 = carried[245] * constant<Real>(0.06L);
+  const Real t6009 = carried[392] + t6008;
   const Real t6010 = t6007 + t6009;
 
   // front_right_hip: joint force
-  const Real t6011 = carried[352] * constant<Real>(0.06L);
-  const Real t6012 = carried[89] - t6011;
+  const Real t6011 = carried[270] * constant<Real>(0.06L);
+  const Real t6012 = carried[110] - t6011;
   const Real t6013 = t6012 + t6010;
 
   // front_left_hip: joint force
-  const Real t6014 = carried[87] * constant<Real>(0.06L);
+  const Real t6014 = carried[82] * constant<Real>(0.06L);
   const Real t6015 = carried[654] + t6014;
   const Real t6016 = t6015 + t6013;
 
   // reduced mass matrix
-  const Real t6017 = carried[56] * carried[654];
+  const Real t6017 = carried[77] * carried[654];
   const Real t6018 = t6016 - t6017;
-  const Real t6019 = carried[53] * carried[60];
+  const Real t6019 = carried[16] * carried[81];
   const Real t6020 = t6018 + t6019;
-  const Real t6021 = carried[26] * carried[63];
+  const Real t6021 = carried[1] * carried[84];
   const Real t6022 = t6020 + t6021;
-  const Real t6023 = carried[169] * carried[89];
+  const Real t6023 = carried[190] * carried[110];
   const Real t6024 = t6022 - t6023;
-  const Real t6025 = carried[113] * carried[173];
+  const Real t6025 = carried[134] * carried[194];
   const Real t6026 = t6024 + t6025;
-  const Real t6027 = carried[90] * carried[175];
+  const Real t6027 = carried[111] * carried[196];
   const Real t6028 = t6026 + t6027;
-  const Real t6029 = carried[371] * carried[244];
+  const Real t6029 = carried[392] * carried[265];
   const Real t6030 = t6028 - t6029;
-  const Real t6031 = carried[438] * carried[248];
+  const Real t6031 = carried[438] * carried[269];
   const Real t6032 = t6031 + t6030;
-  const Real t6033 = carried[251] * carried[426];
+  const Real t6033 = carried[272] * carried[395];
   const Real t6034 = t6033 + t6032;
-  const Real t6035 = carried[554] * carried[252];
+  const Real t6035 = carried[557] * carried[273];
   const Real t6036 = t6034 - t6035;
-  const Real t6037 = carried[559] * carried[265];
+  const Real t6037 = carried[569] * carried[286];
   const Real t6038 = t6037 + t6036;
-  const Real t6039 = carried[330] * carried[557];
+  const Real t6039 = carried[351] * carried[566];
   const Real t6040 = t6039 + t6038;
-  const Real t6041 = carried[102] * carried[56];
+  const Real t6041 = carried[123] * carried[77];
   const Real t6042 = t6040 - t6041;
-  const Real t6043 = carried[119] * carried[60];
+  const Real t6043 = carried[140] * carried[81];
   const Real t6044 = t6042 + t6043;
-  const Real t6045 = carried[122] * carried[63];
+  const Real t6045 = carried[143] * carried[84];
   const Real t6046 = t6044 + t6045;
-  const Real t6047 = carried[169] * carried[123];
+  const Real t6047 = carried[190] * carried[144];
   const Real t6048 = t6046 - t6047;
-  const Real t6049 = carried[173] * carried[124];
+  const Real t6049 = carried[194] * carried[145];
   const Real t6050 = t6049 + t6048;
-  const Real t6051 = carried[175] * carried[125];
+  const Real t6051 = carried[196] * carried[146];
   const Real t6052 = t6050 + t6051;
-  const Real t6053 = carried[127] * carried[244];
+  const Real t6053 = carried[148] * carried[265];
   const Real t6054 = t6052 - t6053;
-  const Real t6055 = carried[128] * carried[248];
+  const Real t6055 = carried[149] * carried[269];
   const Real t6056 = t6054 + t6055;
-  const Real t6057 = carried[142] * carried[251];
+  const Real t6057 = carried[163] * carried[272];
   const Real t6058 = t6057 + t6056;
-  const Real t6059 = carried[143] * carried[252];
+  const Real t6059 = carried[164] * carried[273];
   const Real t6060 = t6058 - t6059;
-  const Real t6061 = carried[144] * carried[265];
+  const Real t6061 = carried[165] * carried[286];
   const Real t6062 = t6060 + t6061;
-  const Real t6063 = carried[330] * carried[145];
+  const Real t6063 = carried[351] * carried[166];
   const Real t6064 = t6062 + t6063;
 
   // reduced accelerations
-  const Real t6065 = carried[57] * carried[171];
+  const Real t6065 = carried[12] * carried[78];
   const Real t6066 = t6064 - t6065;
-  const Real t6067 = carried[58] * carried[170];
+  const Real t6067 = carried[14] * carried[47];
   const Real t6068 = t6066 - t6067;
-  const Real t6069 = carried[59] * carried[168];
+  const Real t6069 = carried[15] * carried[19];
   const Real t6070 = t6068 - t6069;
   const Real t6071 = constant<Real>(1.0L) / t6070;
-  carried[99] = t6071;
+  carried[20] = t6071;
   const Real t6072 = t6071 * t6004;
-  carried[101] = t6072;
-  const Real t6073 = t6072 * carried[172];
-  carried[103] = t6073;
+  carried[62] = t6072;
+  const Real t6073 = t6072 * carried[79];
+  carried[120] = t6073;
   const Real t6074 = carried[647] * t6002;
-  carried[104] = t6074;
+  carried[122] = t6074;
   const Real t6075 = t6074 * carried[539];
-  carried[107] = t6075;
-  const Real t6076 = carried[264] * carried[528];
-  carried[121] = t6076;
-  const Real t6077 = carried[460] * t6076;
-  carried[126] = t6077;
+  carried[124] = t6075;
+  const Real t6076 = carried[282] * carried[523];
+  carried[125] = t6076;
+  const Real t6077 = carried[453] * t6076;
+  carried[128] = t6077;
 
   // reduced forces
-  const Real t6078 = carried[241] * carried[118];
-  const Real t6079 = carried[116] * carried[270];
-  const Real t6080 = carried[231] * carried[100];
+  const Real t6078 = carried[187] * carried[139];
+  const Real t6079 = carried[137] * carried[235];
+  const Real t6080 = carried[173] * carried[121];
   const Real t6081 = t6079 + t6080;
   const Real t6082 = t6081 - t6078;
-  const Real t6083 = carried[378] * carried[85];
+  const Real t6083 = carried[321] * carried[106];
   const Real t6084 = t6083 + t6082;
-  const Real t6085 = carried[386] * carried[204];
+  const Real t6085 = carried[326] * carried[225];
   const Real t6086 = t6085 + t6084;
-  const Real t6087 = carried[209] * carried[383];
+  const Real t6087 = carried[230] * carried[325];
   const Real t6088 = t6086 - t6087;
-  const Real t6089 = carried[277] * carried[37];
+  const Real t6089 = carried[298] * carried[58];
   const Real t6090 = t6088 + t6089;
-  const Real t6091 = carried[293] * carried[66];
+  const Real t6091 = carried[314] * carried[87];
   const Real t6092 = t6090 + t6091;
-  const Real t6093 = carried[64] * carried[298];
+  const Real t6093 = carried[85] * carried[319];
   const Real t6094 = t6092 - t6093;
-  const Real t6095 = carried[92] * carried[358];
+  const Real t6095 = carried[113] * carried[379];
   const Real t6096 = t6095 + t6094;
-  const Real t6097 = carried[380] * carried[94];
+  const Real t6097 = carried[401] * carried[115];
   const Real t6098 = t6096 + t6097;
-  const Real t6099 = carried[276] * carried[93];
+  const Real t6099 = carried[297] * carried[114];
   const Real t6100 = t6098 - t6099;
-  carried[129] = t6100;
+  carried[142] = t6100;
 
   // hind_right_thigh: joint force
-  const Real t6101 = carried[216] * carried[20];
-  const Real t6102 = carried[21] * carried[226];
+  const Real t6101 = carried[6] * carried[41];
+  const Real t6102 = carried[42] * carried[7];
   const Real t6103 = t6102 - t6101;
-  const Real t6104 = constant<Real>(0.075L) * carried[431];
+  const Real t6104 = constant<Real>(0.075L) * carried[446];
   const Real t6105 = t6103 + t6104;
 
   // hind_right_hip: wrench
-  const Real t6106 = constant<Real>(0.0006175L) * carried[392];
-  const Real t6107 = carried[303] * constant<Real>(0.0022841L);
+  const Real t6106 = constant<Real>(0.0006175L) * carried[413];
+  const Real t6107 = carried[324] * constant<Real>(0.0022841L);
   const Real t6108 = t6106 + t6107;
 
   // hind_right_hip: wrench
-  const Real t6109 = carried[413] * constant<Real>(5.2e-6L);
+  const Real t6109 = carried[434] * constant<Real>(5.2e-6L);
   const Real t6110 = t6109 - t6108;
 
   // hind_right_hip: wrench
-  const Real t6111 = carried[433] * constant<Real>(0.0000473L);
+  const Real t6111 = carried[447] * constant<Real>(0.0000473L);
 
   // hind_right_hip: wrench
   const Real t6112 = t6110 + t6111;
 
   // hind_right_hip: wrench
-  const Real t6113 = carried[436] - carried[437];
+  const Real t6113 = carried[457] - carried[458];
   const Real t6114 = t6113 * constant<Real>(0.0001392L);
 
   // hind_right_hip: wrench
   const Real t6115 = t6112 + t6114;
 
   // hind_right_hip: wrench
-  const Real t6116 = carried[443] * constant<Real>(0.0052L);
-  const Real t6117 = constant<Real>(0.0273L) * carried[401];
+  const Real t6116 = carried[464] * constant<Real>(0.0052L);
+  const Real t6117 = constant<Real>(0.0273L) * carried[422];
   const Real t6118 = t6116 + t6117;
 
   // hind_right_hip: wrench
@@ -12686,58 +12700,58 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t6120 = t6105 + t6119;
-  carried[130] = t6120;
+  carried[147] = t6120;
 
   // hind_right_hip: joint force
-  const Real t6121 = t6120 * carried[18];
+  const Real t6121 = t6120 * carried[39];
 
   // hind_right_hip: wrench
-  const Real t6122 = constant<Real>(0.0000195L) * carried[434];
-  const Real t6123 = constant<Real>(0.0016471L) * carried[384];
+  const Real t6122 = constant<Real>(0.0000195L) * carried[455];
+  const Real t6123 = constant<Real>(0.0016471L) * carried[405];
   const Real t6124 = t6123 - t6122;
-  const Real t6125 = carried[393] * constant<Real>(0.0000473L);
+  const Real t6125 = carried[414] * constant<Real>(0.0000473L);
   const Real t6126 = t6124 - t6125;
 
   // hind_right_hip: wrench
-  const Real t6127 = carried[413] * constant<Real>(0.0001392L);
+  const Real t6127 = carried[434] * constant<Real>(0.0001392L);
   const Real t6128 = t6126 + t6127;
 
   // hind_right_hip: wrench
-  const Real t6129 = carried[442] - carried[436];
+  const Real t6129 = carried[463] - carried[457];
   const Real t6130 = t6129 * constant<Real>(5.2e-6L);
 
   // hind_right_hip: wrench
   const Real t6131 = t6128 - t6130;
 
   // hind_right_hip: wrench
-  const Real t6132 = carried[412] * constant<Real>(0.0052L);
-  const Real t6133 = constant<Real>(0.0013L) * carried[401];
+  const Real t6132 = carried[433] * constant<Real>(0.0052L);
+  const Real t6133 = constant<Real>(0.0013L) * carried[422];
   const Real t6134 = t6133 - t6132;
 
   // hind_right_hip: wrench
   const Real t6135 = t6131 + t6134;
 
   // hind_right_thigh: joint force
-  const Real t6136 = t6135 + carried[457];
-  carried[131] = t6136;
+  const Real t6136 = t6135 + carried[378];
+  carried[150] = t6136;
 
   // hind_right_hip: joint force
-  const Real t6137 = t6136 * carried[19];
+  const Real t6137 = t6136 * carried[40];
   const Real t6138 = t6137 - t6121;
-  const Real t6139 = carried[274] * constant<Real>(0.21L);
+  const Real t6139 = carried[17] * constant<Real>(0.21L);
   const Real t6140 = t6138 + t6139;
 
   // trunk: wrench
-  const Real t6141 = carried[398] * constant<Real>(0.000406L);
-  const Real t6142 = carried[409] * constant<Real>(0.149214453L);
+  const Real t6141 = carried[419] * constant<Real>(0.000406L);
+  const Real t6142 = carried[430] * constant<Real>(0.149214453L);
   const Real t6143 = t6141 + t6142;
-  const Real t6144 = constant<Real>(0.000691L) * carried[407];
+  const Real t6144 = constant<Real>(0.000691L) * carried[428];
   const Real t6145 = t6144 - t6143;
-  const Real t6146 = carried[394] - carried[402];
+  const Real t6146 = carried[415] - carried[423];
   const Real t6147 = constant<Real>(0.005104L) * t6146;
   const Real t6148 = t6145 - t6147;
-  const Real t6149 = constant<Real>(0.1412L) * carried[400];
-  const Real t6150 = constant<Real>(0.0515L) * carried[406];
+  const Real t6149 = constant<Real>(0.1412L) * carried[421];
+  const Real t6150 = constant<Real>(0.0515L) * carried[427];
   const Real t6151 = t6149 - t6150;
   const Real t6152 = t6148 + t6151;
 
@@ -12745,37 +12759,37 @@ template <class Real>
   const Real t6153 = t6152 + t6140;
 
   // hind_left_thigh: joint force
-  const Real t6154 = carried[14] * carried[141];
-  const Real t6155 = carried[151] * carried[15];
+  const Real t6154 = carried[35] * carried[138];
+  const Real t6155 = carried[157] * carried[36];
   const Real t6156 = t6155 - t6154;
-  const Real t6157 = constant<Real>(0.075L) * carried[439];
+  const Real t6157 = constant<Real>(0.075L) * carried[449];
   const Real t6158 = t6156 - t6157;
 
   // hind_left_hip: wrench
-  const Real t6159 = constant<Real>(0.0006175L) * carried[471];
-  const Real t6160 = carried[455] * constant<Real>(0.0022841L);
+  const Real t6159 = constant<Real>(0.0006175L) * carried[492];
+  const Real t6160 = carried[476] * constant<Real>(0.0022841L);
   const Real t6161 = t6159 + t6160;
 
   // hind_left_hip: wrench
-  const Real t6162 = constant<Real>(5.2e-6L) * carried[480];
+  const Real t6162 = constant<Real>(5.2e-6L) * carried[501];
   const Real t6163 = t6162 - t6161;
 
   // hind_left_hip: wrench
-  const Real t6164 = carried[440] * constant<Real>(0.0000473L);
+  const Real t6164 = carried[451] * constant<Real>(0.0000473L);
 
   // hind_left_hip: wrench
   const Real t6165 = t6163 - t6164;
 
   // hind_left_hip: wrench
-  const Real t6166 = carried[485] - carried[486];
+  const Real t6166 = carried[393] - carried[394];
   const Real t6167 = t6166 * constant<Real>(0.0001392L);
 
   // hind_left_hip: wrench
   const Real t6168 = t6165 - t6167;
 
   // hind_left_hip: wrench
-  const Real t6169 = constant<Real>(0.0052L) * carried[492];
-  const Real t6170 = carried[474] * constant<Real>(0.0273L);
+  const Real t6169 = constant<Real>(0.0052L) * carried[400];
+  const Real t6170 = carried[495] * constant<Real>(0.0273L);
   const Real t6171 = t6169 - t6170;
 
   // hind_left_hip: wrench
@@ -12783,80 +12797,80 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t6173 = t6158 + t6172;
-  carried[146] = t6173;
+  carried[151] = t6173;
 
   // hind_left_hip: joint force
-  const Real t6174 = t6173 * carried[12];
+  const Real t6174 = t6173 * carried[33];
 
   // hind_left_hip: wrench
-  const Real t6175 = carried[472] * constant<Real>(0.0000473L);
-  const Real t6176 = constant<Real>(0.0000195L) * carried[379];
-  const Real t6177 = constant<Real>(0.0016471L) * carried[462];
+  const Real t6175 = carried[493] * constant<Real>(0.0000473L);
+  const Real t6176 = constant<Real>(0.0000195L) * carried[377];
+  const Real t6177 = constant<Real>(0.0016471L) * carried[483];
   const Real t6178 = t6177 - t6176;
   const Real t6179 = t6175 + t6178;
 
   // hind_left_hip: wrench
-  const Real t6180 = constant<Real>(0.0001392L) * carried[480];
+  const Real t6180 = constant<Real>(0.0001392L) * carried[501];
   const Real t6181 = t6179 - t6180;
 
   // hind_left_hip: wrench
-  const Real t6182 = carried[491] - carried[485];
+  const Real t6182 = carried[399] - carried[393];
   const Real t6183 = t6182 * constant<Real>(5.2e-6L);
 
   // hind_left_hip: wrench
   const Real t6184 = t6181 - t6183;
 
   // hind_left_hip: wrench
-  const Real t6185 = carried[479] * constant<Real>(0.0052L);
-  const Real t6186 = constant<Real>(0.0013L) * carried[474];
+  const Real t6185 = carried[500] * constant<Real>(0.0052L);
+  const Real t6186 = constant<Real>(0.0013L) * carried[495];
   const Real t6187 = t6186 - t6185;
 
   // hind_left_hip: wrench
   const Real t6188 = t6187 + t6184;
 
   // hind_left_thigh: joint force
-  const Real t6189 = t6188 + carried[208];
-  carried[176] = t6189;
+  const Real t6189 = t6188 + carried[0];
+  carried[152] = t6189;
 
   // hind_left_hip: joint force
-  const Real t6190 = carried[13] * t6189;
+  const Real t6190 = carried[34] * t6189;
   const Real t6191 = t6190 - t6174;
-  const Real t6192 = carried[317] * constant<Real>(0.21L);
+  const Real t6192 = carried[318] * constant<Real>(0.21L);
   const Real t6193 = t6192 + t6191;
   const Real t6194 = t6193 + t6153;
 
   // front_right_thigh: joint force
-  const Real t6195 = carried[8] * carried[411];
-  const Real t6196 = carried[500] * carried[9];
+  const Real t6195 = carried[29] * carried[432];
+  const Real t6196 = carried[512] * carried[30];
   const Real t6197 = t6196 - t6195;
-  const Real t6198 = constant<Real>(0.075L) * carried[444];
+  const Real t6198 = constant<Real>(0.075L) * carried[454];
   const Real t6199 = t6198 + t6197;
 
   // front_right_hip: wrench
-  const Real t6200 = constant<Real>(0.0006175L) * carried[516];
-  const Real t6201 = carried[502] * constant<Real>(0.0022841L);
+  const Real t6200 = constant<Real>(0.0006175L) * carried[528];
+  const Real t6201 = carried[514] * constant<Real>(0.0022841L);
   const Real t6202 = t6201 - t6200;
 
   // front_right_hip: wrench
-  const Real t6203 = carried[520] * constant<Real>(5.2e-6L);
+  const Real t6203 = carried[532] * constant<Real>(5.2e-6L);
   const Real t6204 = t6202 - t6203;
 
   // front_right_hip: wrench
-  const Real t6205 = carried[445] * constant<Real>(0.0000473L);
+  const Real t6205 = carried[456] * constant<Real>(0.0000473L);
 
   // front_right_hip: wrench
   const Real t6206 = t6205 + t6204;
 
   // front_right_hip: wrench
-  const Real t6207 = carried[543] - carried[544];
+  const Real t6207 = carried[555] - carried[556];
   const Real t6208 = constant<Real>(0.0001392L) * t6207;
 
   // front_right_hip: wrench
   const Real t6209 = t6206 - t6208;
 
   // front_right_hip: wrench
-  const Real t6210 = carried[551] * constant<Real>(0.0052L);
-  const Real t6211 = carried[518] * constant<Real>(0.0273L);
+  const Real t6210 = carried[563] * constant<Real>(0.0052L);
+  const Real t6211 = carried[530] * constant<Real>(0.0273L);
   const Real t6212 = t6211 - t6210;
 
   // front_right_hip: wrench
@@ -12864,80 +12878,80 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t6214 = t6213 + t6199;
-  carried[207] = t6214;
+  carried[167] = t6214;
 
   // front_right_hip: joint force
-  const Real t6215 = carried[6] * t6214;
+  const Real t6215 = carried[27] * t6214;
 
   // front_right_hip: wrench
-  const Real t6216 = constant<Real>(0.0000195L) * carried[541];
-  const Real t6217 = constant<Real>(0.0016471L) * carried[508];
+  const Real t6216 = constant<Real>(0.0000195L) * carried[553];
+  const Real t6217 = constant<Real>(0.0016471L) * carried[520];
   const Real t6218 = t6216 + t6217;
-  const Real t6219 = carried[517] * constant<Real>(0.0000473L);
+  const Real t6219 = carried[529] * constant<Real>(0.0000473L);
   const Real t6220 = t6218 + t6219;
 
   // front_right_hip: wrench
-  const Real t6221 = carried[520] * constant<Real>(0.0001392L);
+  const Real t6221 = carried[532] * constant<Real>(0.0001392L);
   const Real t6222 = t6221 + t6220;
 
   // front_right_hip: wrench
-  const Real t6223 = carried[550] - carried[543];
+  const Real t6223 = carried[562] - carried[555];
   const Real t6224 = constant<Real>(5.2e-6L) * t6223;
 
   // front_right_hip: wrench
   const Real t6225 = t6224 - t6222;
 
   // front_right_hip: wrench
-  const Real t6226 = carried[519] * constant<Real>(0.0052L);
-  const Real t6227 = constant<Real>(0.0013L) * carried[518];
+  const Real t6226 = carried[531] * constant<Real>(0.0052L);
+  const Real t6227 = constant<Real>(0.0013L) * carried[530];
   const Real t6228 = t6227 + t6226;
 
   // front_right_hip: wrench
   const Real t6229 = t6225 + t6228;
 
   // front_right_thigh: joint force
-  const Real t6230 = t6229 + carried[117];
-  carried[282] = t6230;
+  const Real t6230 = t6229 + carried[46];
+  carried[197] = t6230;
 
   // front_right_hip: joint force
-  const Real t6231 = t6230 * carried[7];
+  const Real t6231 = t6230 * carried[28];
   const Real t6232 = t6231 - t6215;
-  const Real t6233 = constant<Real>(0.21L) * carried[390];
+  const Real t6233 = constant<Real>(0.21L) * carried[406];
   const Real t6234 = t6232 - t6233;
   const Real t6235 = t6194 + t6234;
 
   // front_left_thigh: joint force
-  const Real t6236 = carried[562] * carried[2];
-  const Real t6237 = carried[3] * carried[563];
+  const Real t6236 = carried[574] * carried[23];
+  const Real t6237 = carried[24] * carried[575];
   const Real t6238 = t6237 - t6236;
-  const Real t6239 = constant<Real>(0.075L) * carried[447];
+  const Real t6239 = constant<Real>(0.075L) * carried[461];
   const Real t6240 = t6238 - t6239;
 
   // front_left_hip: wrench
-  const Real t6241 = constant<Real>(0.0006175L) * carried[203];
-  const Real t6242 = carried[115] * constant<Real>(0.0022841L);
+  const Real t6241 = constant<Real>(0.0006175L) * carried[224];
+  const Real t6242 = carried[136] * constant<Real>(0.0022841L);
   const Real t6243 = t6242 - t6241;
 
   // front_left_hip: wrench
-  const Real t6244 = carried[273] * constant<Real>(5.2e-6L);
+  const Real t6244 = carried[294] * constant<Real>(5.2e-6L);
   const Real t6245 = t6243 - t6244;
 
   // front_left_hip: wrench
-  const Real t6246 = carried[448] * constant<Real>(0.0000473L);
+  const Real t6246 = carried[462] * constant<Real>(0.0000473L);
 
   // front_left_hip: wrench
   const Real t6247 = t6245 - t6246;
 
   // front_left_hip: wrench
-  const Real t6248 = carried[477] - carried[478];
+  const Real t6248 = carried[498] - carried[499];
   const Real t6249 = t6248 * constant<Real>(0.0001392L);
 
   // front_left_hip: wrench
   const Real t6250 = t6247 + t6249;
 
   // front_left_hip: wrench
-  const Real t6251 = constant<Real>(0.0052L) * carried[484];
-  const Real t6252 = carried[271] * constant<Real>(0.0273L);
+  const Real t6251 = constant<Real>(0.0052L) * carried[505];
+  const Real t6252 = carried[292] * constant<Real>(0.0273L);
   const Real t6253 = t6251 + t6252;
 
   // front_left_hip: wrench
@@ -12945,656 +12959,656 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t6255 = t6240 + t6254;
-  carried[285] = t6255;
+  carried[228] = t6255;
 
   // front_left_hip: joint force
-  const Real t6256 = t6255 * carried[0];
+  const Real t6256 = t6255 * carried[21];
 
   // front_left_hip: wrench
-  const Real t6257 = carried[269] * constant<Real>(0.0000473L);
-  const Real t6258 = constant<Real>(0.0000195L) * carried[476];
-  const Real t6259 = carried[197] * constant<Real>(0.0016471L);
+  const Real t6257 = carried[290] * constant<Real>(0.0000473L);
+  const Real t6258 = constant<Real>(0.0000195L) * carried[497];
+  const Real t6259 = carried[218] * constant<Real>(0.0016471L);
   const Real t6260 = t6258 + t6259;
   const Real t6261 = t6257 - t6260;
 
   // front_left_hip: wrench
-  const Real t6262 = carried[273] * constant<Real>(0.0001392L);
+  const Real t6262 = carried[294] * constant<Real>(0.0001392L);
   const Real t6263 = t6262 + t6261;
 
   // front_left_hip: wrench
-  const Real t6264 = carried[483] - carried[477];
+  const Real t6264 = carried[504] - carried[498];
   const Real t6265 = constant<Real>(5.2e-6L) * t6264;
 
   // front_left_hip: wrench
   const Real t6266 = t6265 + t6263;
 
   // front_left_hip: wrench
-  const Real t6267 = carried[272] * constant<Real>(0.0052L);
-  const Real t6268 = constant<Real>(0.0013L) * carried[271];
+  const Real t6267 = carried[293] * constant<Real>(0.0052L);
+  const Real t6268 = constant<Real>(0.0013L) * carried[292];
   const Real t6269 = t6267 + t6268;
 
   // front_left_hip: wrench
   const Real t6270 = t6269 + t6266;
 
   // front_left_thigh: joint force
-  const Real t6271 = t6270 + carried[397];
-  carried[286] = t6271;
+  const Real t6271 = t6270 + carried[418];
+  carried[234] = t6271;
 
   // front_left_hip: joint force
-  const Real t6272 = carried[1] * t6271;
+  const Real t6272 = carried[22] * t6271;
   const Real t6273 = t6272 - t6256;
-  const Real t6274 = carried[424] * constant<Real>(0.21L);
+  const Real t6274 = carried[440] * constant<Real>(0.21L);
   const Real t6275 = t6273 - t6274;
   const Real t6276 = t6235 + t6275;
-  carried[287] = t6276;
+  carried[252] = t6276;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_22(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced forces
-  const Real t6277 = carried[129] + carried[287];
-  const Real t6278 = carried[111] * carried[65];
+  const Real t6277 = carried[142] + carried[252];
+  const Real t6278 = carried[132] * carried[86];
   const Real t6279 = t6277 + t6278;
-  const Real t6280 = carried[399] * carried[71];
+  const Real t6280 = carried[420] * carried[92];
   const Real t6281 = t6280 - t6279;
-  const Real t6282 = carried[403] * carried[74];
+  const Real t6282 = carried[424] * carried[95];
   const Real t6283 = t6282 + t6281;
-  const Real t6284 = carried[177] * carried[25];
+  const Real t6284 = carried[198] * carried[10];
   const Real t6285 = t6283 - t6284;
-  const Real t6286 = carried[181] * carried[136];
+  const Real t6286 = carried[202] * carried[49];
   const Real t6287 = t6285 + t6286;
-  const Real t6288 = carried[137] * carried[184];
+  const Real t6288 = carried[59] * carried[205];
   const Real t6289 = t6287 + t6288;
-  const Real t6290 = carried[255] * carried[473];
+  const Real t6290 = carried[276] * carried[473];
   const Real t6291 = t6289 - t6290;
-  const Real t6292 = carried[211] * carried[262];
+  const Real t6292 = carried[2] * carried[283];
   const Real t6293 = t6291 + t6292;
-  const Real t6294 = carried[105] * carried[212];
+  const Real t6294 = carried[126] * carried[5];
   const Real t6295 = t6294 + t6293;
-  const Real t6296 = carried[332] * carried[404];
+  const Real t6296 = carried[353] * carried[371];
   const Real t6297 = t6295 - t6296;
-  const Real t6298 = carried[336] * carried[458];
+  const Real t6298 = carried[357] * carried[396];
   const Real t6299 = t6297 + t6298;
-  const Real t6300 = carried[339] * carried[459];
+  const Real t6300 = carried[360] * carried[397];
   const Real t6301 = t6299 - t6300;
 
   // reduced accelerations
-  const Real t6302 = carried[217] * carried[429];
-  carried[26] = t6302;
-  const Real t6303 = t6302 * carried[496];
+  const Real t6302 = carried[238] * carried[425];
+  carried[0] = t6302;
+  const Real t6303 = t6302 * carried[466];
   const Real t6304 = t6301 - t6303;
-  const Real t6305 = t6304 - carried[126];
-  const Real t6306 = t6305 - carried[107];
-  const Real t6307 = t6306 - carried[103];
-  carried[53] = t6307;
-  const Real t6308 = carried[101] * carried[41];
-  carried[57] = t6308;
+  const Real t6305 = t6304 - carried[128];
+  const Real t6306 = t6305 - carried[124];
+  const Real t6307 = t6306 - carried[120];
+  carried[1] = t6307;
+  const Real t6308 = carried[62] * carried[4];
+  carried[6] = t6308;
 
   // hind_right_thigh: joint force
-  const Real t6309 = carried[20] * carried[68];
-  const Real t6310 = carried[69] * carried[21];
+  const Real t6309 = carried[41] * carried[89];
+  const Real t6310 = carried[90] * carried[42];
   const Real t6311 = t6310 - t6309;
-  const Real t6312 = carried[20] * carried[70];
-  const Real t6313 = carried[72] * carried[21];
+  const Real t6312 = carried[41] * carried[91];
+  const Real t6313 = carried[93] * carried[42];
   const Real t6314 = t6312 + t6313;
-  carried[58] = t6314;
+  carried[7] = t6314;
   const Real t6315 = constant<Real>(0.075L) * t6314;
   const Real t6316 = t6315 + t6311;
 
   // hind_right_hip: wrench
-  const Real t6317 = carried[19] * constant<Real>(0.0000473L);
-  carried[59] = t6317;
-  const Real t6318 = carried[18] * constant<Real>(0.0022841L);
+  const Real t6317 = carried[40] * constant<Real>(0.0000473L);
+  carried[12] = t6317;
+  const Real t6318 = carried[39] * constant<Real>(0.0022841L);
 
   // hind_right_hip: wrench
   const Real t6319 = t6317 - t6318;
 
   // hind_right_hip: wrench
-  const Real t6320 = constant<Real>(0.001092L) * carried[18];
-  carried[87] = t6320;
+  const Real t6320 = constant<Real>(0.001092L) * carried[39];
+  carried[14] = t6320;
 
   // hind_right_hip: wrench
   const Real t6321 = t6320 + t6319;
 
   // hind_right_thigh: joint force
   const Real t6322 = t6321 + t6316;
-  carried[89] = t6322;
+  carried[15] = t6322;
 
   // hind_right_hip: joint force
-  const Real t6323 = t6322 * carried[18];
+  const Real t6323 = t6322 * carried[39];
 
   // hind_right_hip: wrench
-  const Real t6324 = constant<Real>(0.0016471L) * carried[19];
-  const Real t6325 = carried[18] * constant<Real>(0.0000473L);
-  carried[90] = t6325;
+  const Real t6324 = constant<Real>(0.0016471L) * carried[40];
+  const Real t6325 = carried[39] * constant<Real>(0.0000473L);
+  carried[16] = t6325;
   const Real t6326 = t6324 - t6325;
-  const Real t6327 = constant<Real>(0.001092L) * carried[19];
-  carried[113] = t6327;
+  const Real t6327 = constant<Real>(0.001092L) * carried[40];
+  carried[17] = t6327;
 
   // hind_right_hip: wrench
   const Real t6328 = t6326 - t6327;
 
   // hind_right_thigh: joint force
-  const Real t6329 = t6328 + carried[94];
-  carried[115] = t6329;
+  const Real t6329 = t6328 + carried[115];
+  carried[46] = t6329;
 
   // hind_right_hip: joint force
-  const Real t6330 = t6329 * carried[19];
+  const Real t6330 = t6329 * carried[40];
   const Real t6331 = t6330 - t6323;
 
   // hind_right_hip: wrench
-  const Real t6332 = constant<Real>(0.2678L) * carried[19];
-  carried[117] = t6332;
+  const Real t6332 = constant<Real>(0.2678L) * carried[40];
+  carried[82] = t6332;
 
   // hind_right_thigh: joint force
-  const Real t6333 = t6332 + carried[91];
-  carried[141] = t6333;
+  const Real t6333 = t6332 + carried[112];
+  carried[110] = t6333;
 
   // hind_right_hip: joint force
-  const Real t6334 = t6333 * carried[19];
+  const Real t6334 = t6333 * carried[40];
 
   // hind_right_thigh: wrench
-  const Real t6335 = carried[18] * constant<Real>(0.357L);
+  const Real t6335 = carried[39] * constant<Real>(0.357L);
 
   // hind_right_thigh: wrench
-  const Real t6336 = t6335 + carried[98];
+  const Real t6336 = t6335 + carried[119];
 
   // hind_right_shank: joint force
-  const Real t6337 = t6336 + carried[67];
+  const Real t6337 = t6336 + carried[88];
 
   // hind_right_hip: wrench
-  const Real t6338 = constant<Real>(0.2678L) * carried[18];
-  carried[151] = t6338;
+  const Real t6338 = constant<Real>(0.2678L) * carried[39];
+  carried[111] = t6338;
 
   // hind_right_thigh: joint force
   const Real t6339 = t6337 + t6338;
-  carried[197] = t6339;
+  carried[134] = t6339;
 
   // hind_right_hip: joint force
-  const Real t6340 = t6339 * carried[18];
+  const Real t6340 = t6339 * carried[39];
   const Real t6341 = t6340 + t6334;
   const Real t6342 = constant<Real>(0.21L) * t6341;
   const Real t6343 = t6342 + t6331;
   const Real t6344 = constant<Real>(0.190456883L) + t6343;
 
   // hind_left_thigh: joint force
-  const Real t6345 = carried[29] * carried[14];
-  const Real t6346 = carried[15] * carried[30];
+  const Real t6345 = carried[50] * carried[35];
+  const Real t6346 = carried[36] * carried[51];
   const Real t6347 = t6346 - t6345;
-  const Real t6348 = carried[14] * carried[31];
-  const Real t6349 = carried[15] * carried[32];
+  const Real t6348 = carried[35] * carried[52];
+  const Real t6349 = carried[36] * carried[53];
   const Real t6350 = t6348 + t6349;
-  carried[203] = t6350;
+  carried[136] = t6350;
   const Real t6351 = constant<Real>(0.075L) * t6350;
   const Real t6352 = t6347 - t6351;
 
   // hind_left_hip: wrench
-  const Real t6353 = constant<Real>(0.0022841L) * carried[12];
-  const Real t6354 = carried[13] * constant<Real>(0.0000473L);
-  carried[208] = t6354;
+  const Real t6353 = constant<Real>(0.0022841L) * carried[33];
+  const Real t6354 = carried[34] * constant<Real>(0.0000473L);
+  carried[138] = t6354;
 
   // hind_left_hip: wrench
   const Real t6355 = t6353 + t6354;
 
   // hind_left_hip: wrench
-  const Real t6356 = constant<Real>(0.001092L) * carried[12];
-  carried[216] = t6356;
+  const Real t6356 = constant<Real>(0.001092L) * carried[33];
+  carried[157] = t6356;
 
   // hind_left_hip: wrench
   const Real t6357 = t6356 - t6355;
 
   // hind_left_thigh: joint force
   const Real t6358 = t6352 + t6357;
-  carried[226] = t6358;
+  carried[193] = t6358;
 
   // hind_left_hip: joint force
-  const Real t6359 = t6358 * carried[12];
+  const Real t6359 = t6358 * carried[33];
 
   // hind_left_hip: wrench
-  const Real t6360 = carried[12] * constant<Real>(0.0000473L);
-  carried[245] = t6360;
-  const Real t6361 = constant<Real>(0.0016471L) * carried[13];
+  const Real t6360 = carried[33] * constant<Real>(0.0000473L);
+  carried[218] = t6360;
+  const Real t6361 = constant<Real>(0.0016471L) * carried[34];
   const Real t6362 = t6360 + t6361;
-  const Real t6363 = constant<Real>(0.001092L) * carried[13];
-  carried[263] = t6363;
+  const Real t6363 = constant<Real>(0.001092L) * carried[34];
+  carried[224] = t6363;
 
   // hind_left_hip: wrench
   const Real t6364 = t6362 - t6363;
 
   // hind_left_thigh: joint force
-  const Real t6365 = t6364 + carried[66];
-  carried[266] = t6365;
+  const Real t6365 = t6364 + carried[87];
+  carried[245] = t6365;
 
   // hind_left_hip: joint force
-  const Real t6366 = t6365 * carried[13];
+  const Real t6366 = t6365 * carried[34];
   const Real t6367 = t6366 - t6359;
 
   // hind_left_hip: wrench
-  const Real t6368 = carried[13] * constant<Real>(0.2678L);
-  carried[269] = t6368;
+  const Real t6368 = carried[34] * constant<Real>(0.2678L);
+  carried[270] = t6368;
 
   // hind_left_thigh: joint force
-  const Real t6369 = t6368 + carried[33];
-  carried[271] = t6369;
+  const Real t6369 = t6368 + carried[54];
+  carried[284] = t6369;
 
   // hind_left_hip: joint force
-  const Real t6370 = t6369 * carried[13];
+  const Real t6370 = t6369 * carried[34];
 
   // hind_left_thigh: wrench
-  const Real t6371 = carried[12] * constant<Real>(0.357L);
+  const Real t6371 = carried[33] * constant<Real>(0.357L);
 
   // hind_left_thigh: wrench
-  const Real t6372 = carried[295] + t6371;
+  const Real t6372 = carried[316] + t6371;
 
   // hind_left_shank: joint force
-  const Real t6373 = carried[425] + t6372;
+  const Real t6373 = carried[429] + t6372;
 
   // hind_left_hip: wrench
-  const Real t6374 = constant<Real>(0.2678L) * carried[12];
-  carried[272] = t6374;
+  const Real t6374 = constant<Real>(0.2678L) * carried[33];
+  carried[290] = t6374;
 
   // hind_left_thigh: joint force
   const Real t6375 = t6374 + t6373;
-  carried[273] = t6375;
+  carried[292] = t6375;
 
   // hind_left_hip: joint force
-  const Real t6376 = t6375 * carried[12];
+  const Real t6376 = t6375 * carried[33];
   const Real t6377 = t6376 + t6370;
   const Real t6378 = constant<Real>(0.21L) * t6377;
   const Real t6379 = t6367 + t6378;
   const Real t6380 = t6379 + t6344;
 
   // front_right_thigh: joint force
-  const Real t6381 = carried[297] * carried[8];
-  const Real t6382 = carried[9] * carried[349];
+  const Real t6381 = carried[295] * carried[29];
+  const Real t6382 = carried[30] * carried[296];
   const Real t6383 = t6382 - t6381;
-  const Real t6384 = carried[8] * carried[350];
-  const Real t6385 = carried[373] * carried[9];
+  const Real t6384 = carried[29] * carried[311];
+  const Real t6385 = carried[312] * carried[30];
   const Real t6386 = t6384 + t6385;
-  carried[274] = t6386;
+  carried[293] = t6386;
   const Real t6387 = constant<Real>(0.075L) * t6386;
   const Real t6388 = t6387 + t6383;
 
   // front_right_hip: wrench
-  const Real t6389 = carried[7] * constant<Real>(0.0000473L);
-  carried[292] = t6389;
-  const Real t6390 = carried[6] * constant<Real>(0.0022841L);
+  const Real t6389 = carried[28] * constant<Real>(0.0000473L);
+  carried[294] = t6389;
+  const Real t6390 = carried[27] * constant<Real>(0.0022841L);
 
   // front_right_hip: wrench
   const Real t6391 = t6389 - t6390;
 
   // front_right_hip: wrench
-  const Real t6392 = carried[6] * constant<Real>(0.001092L);
-  carried[296] = t6392;
+  const Real t6392 = carried[27] * constant<Real>(0.001092L);
+  carried[303] = t6392;
 
   // front_right_hip: wrench
   const Real t6393 = t6391 + t6392;
 
   // front_right_thigh: joint force
   const Real t6394 = t6388 + t6393;
-  carried[301] = t6394;
+  carried[306] = t6394;
 
   // front_right_hip: joint force
-  const Real t6395 = carried[6] * t6394;
+  const Real t6395 = carried[27] * t6394;
 
   // front_right_hip: wrench
-  const Real t6396 = constant<Real>(0.0016471L) * carried[7];
-  const Real t6397 = carried[6] * constant<Real>(0.0000473L);
-  carried[303] = t6397;
+  const Real t6396 = constant<Real>(0.0016471L) * carried[28];
+  const Real t6397 = carried[27] * constant<Real>(0.0000473L);
+  carried[307] = t6397;
   const Real t6398 = t6396 - t6397;
-  const Real t6399 = constant<Real>(0.001092L) * carried[7];
-  carried[305] = t6399;
+  const Real t6399 = constant<Real>(0.001092L) * carried[28];
+  carried[308] = t6399;
 
   // front_right_hip: wrench
   const Real t6400 = t6398 - t6399;
 
   // front_right_thigh: joint force
-  const Real t6401 = carried[386] + t6400;
-  carried[307] = t6401;
+  const Real t6401 = carried[326] + t6400;
+  carried[317] = t6401;
 
   // front_right_hip: joint force
-  const Real t6402 = t6401 * carried[7];
+  const Real t6402 = t6401 * carried[28];
   const Real t6403 = t6402 - t6395;
 
   // front_right_hip: wrench
-  const Real t6404 = constant<Real>(0.2678L) * carried[7];
-  carried[316] = t6404;
+  const Real t6404 = constant<Real>(0.2678L) * carried[28];
+  carried[318] = t6404;
 
   // front_right_thigh: joint force
-  const Real t6405 = carried[375] - t6404;
-  carried[317] = t6405;
+  const Real t6405 = carried[313] - t6404;
+  carried[324] = t6405;
 
   // front_right_hip: joint force
-  const Real t6406 = t6405 * carried[7];
+  const Real t6406 = t6405 * carried[28];
 
   // front_right_thigh: wrench
-  const Real t6407 = carried[6] * constant<Real>(0.357L);
+  const Real t6407 = carried[27] * constant<Real>(0.357L);
 
   // front_right_thigh: wrench
-  const Real t6408 = carried[206] - t6407;
+  const Real t6408 = carried[227] - t6407;
 
   // front_right_shank: joint force
-  const Real t6409 = t6408 + carried[290];
+  const Real t6409 = t6408 + carried[262];
 
   // front_right_hip: wrench
-  const Real t6410 = carried[6] * constant<Real>(0.2678L);
-  carried[331] = t6410;
+  const Real t6410 = carried[27] * constant<Real>(0.2678L);
+  carried[328] = t6410;
 
   // front_right_thigh: joint force
   const Real t6411 = t6409 - t6410;
-  carried[333] = t6411;
+  carried[331] = t6411;
 
   // front_right_hip: joint force
-  const Real t6412 = carried[6] * t6411;
+  const Real t6412 = carried[27] * t6411;
   const Real t6413 = t6412 + t6406;
   const Real t6414 = constant<Real>(0.21L) * t6413;
   const Real t6415 = t6403 - t6414;
   const Real t6416 = t6380 + t6415;
 
   // front_left_thigh: joint force
-  const Real t6417 = carried[132] * carried[2];
-  const Real t6418 = carried[3] * carried[134];
+  const Real t6417 = carried[108] * carried[23];
+  const Real t6418 = carried[24] * carried[109];
   const Real t6419 = t6418 - t6417;
-  const Real t6420 = carried[166] * carried[2];
-  const Real t6421 = carried[3] * carried[194];
+  const Real t6420 = carried[129] * carried[23];
+  const Real t6421 = carried[24] * carried[155];
   const Real t6422 = t6420 + t6421;
-  carried[334] = t6422;
+  carried[332] = t6422;
   const Real t6423 = constant<Real>(0.075L) * t6422;
   const Real t6424 = t6419 - t6423;
 
   // front_left_hip: wrench
-  const Real t6425 = carried[1] * constant<Real>(0.0000473L);
-  carried[335] = t6425;
-  const Real t6426 = carried[0] * constant<Real>(0.0022841L);
+  const Real t6425 = carried[22] * constant<Real>(0.0000473L);
+  carried[333] = t6425;
+  const Real t6426 = carried[21] * constant<Real>(0.0022841L);
 
   // front_left_hip: wrench
   const Real t6427 = t6425 + t6426;
 
   // front_left_hip: wrench
-  const Real t6428 = constant<Real>(0.001092L) * carried[0];
-  carried[337] = t6428;
+  const Real t6428 = constant<Real>(0.001092L) * carried[21];
+  carried[334] = t6428;
 
   // front_left_hip: wrench
   const Real t6429 = t6428 - t6427;
 
   // front_left_thigh: joint force
   const Real t6430 = t6424 + t6429;
-  carried[352] = t6430;
+  carried[336] = t6430;
 
   // front_left_hip: joint force
-  const Real t6431 = t6430 * carried[0];
+  const Real t6431 = t6430 * carried[21];
 
   // front_left_hip: wrench
-  const Real t6432 = constant<Real>(0.0016471L) * carried[1];
-  const Real t6433 = carried[0] * constant<Real>(0.0000473L);
-  carried[353] = t6433;
+  const Real t6432 = constant<Real>(0.0016471L) * carried[22];
+  const Real t6433 = carried[21] * constant<Real>(0.0000473L);
+  carried[337] = t6433;
   const Real t6434 = t6432 + t6433;
-  const Real t6435 = constant<Real>(0.001092L) * carried[1];
-  carried[356] = t6435;
+  const Real t6435 = constant<Real>(0.001092L) * carried[22];
+  carried[338] = t6435;
 
   // front_left_hip: wrench
   const Real t6436 = t6434 - t6435;
 
   // front_left_thigh: joint force
-  const Real t6437 = carried[270] + t6436;
-  carried[357] = t6437;
+  const Real t6437 = carried[235] + t6436;
+  carried[341] = t6437;
 
   // front_left_hip: joint force
-  const Real t6438 = t6437 * carried[1];
+  const Real t6438 = t6437 * carried[22];
   const Real t6439 = t6438 - t6431;
 
   // front_left_hip: wrench
-  const Real t6440 = constant<Real>(0.2678L) * carried[1];
-  carried[359] = t6440;
+  const Real t6440 = constant<Real>(0.2678L) * carried[22];
+  carried[345] = t6440;
 
   // front_left_thigh: joint force
-  const Real t6441 = carried[214] - t6440;
-  carried[360] = t6441;
+  const Real t6441 = carried[158] - t6440;
+  carried[347] = t6441;
 
   // front_left_hip: joint force
-  const Real t6442 = carried[1] * t6441;
+  const Real t6442 = carried[22] * t6441;
 
   // front_left_thigh: wrench
-  const Real t6443 = carried[0] * constant<Real>(0.357L);
+  const Real t6443 = carried[21] * constant<Real>(0.357L);
 
   // front_left_thigh: wrench
-  const Real t6444 = carried[120] - t6443;
+  const Real t6444 = carried[141] - t6443;
 
   // front_left_shank: joint force
-  const Real t6445 = t6444 + carried[88];
+  const Real t6445 = t6444 + carried[107];
 
   // front_left_hip: wrench
-  const Real t6446 = constant<Real>(0.2678L) * carried[0];
-  carried[361] = t6446;
+  const Real t6446 = constant<Real>(0.2678L) * carried[21];
+  carried[352] = t6446;
 
   // front_left_thigh: joint force
   const Real t6447 = t6445 - t6446;
-  carried[362] = t6447;
+  carried[354] = t6447;
 
   // front_left_hip: joint force
-  const Real t6448 = t6447 * carried[0];
+  const Real t6448 = t6447 * carried[21];
   const Real t6449 = t6448 + t6442;
   const Real t6450 = t6449 * constant<Real>(0.21L);
   const Real t6451 = t6439 - t6450;
   const Real t6452 = t6416 + t6451;
 
   // reduced mass matrix
-  const Real t6453 = carried[231] * carried[65];
+  const Real t6453 = carried[173] * carried[86];
   const Real t6454 = t6452 - t6453;
-  const Real t6455 = carried[270] * carried[71];
+  const Real t6455 = carried[235] * carried[92];
   const Real t6456 = t6455 + t6454;
-  const Real t6457 = carried[74] * carried[241];
+  const Real t6457 = carried[95] * carried[187];
   const Real t6458 = t6456 + t6457;
-  const Real t6459 = carried[378] * carried[177];
+  const Real t6459 = carried[321] * carried[198];
   const Real t6460 = t6458 - t6459;
-  const Real t6461 = carried[386] * carried[181];
+  const Real t6461 = carried[326] * carried[202];
   const Real t6462 = t6460 + t6461;
-  const Real t6463 = carried[184] * carried[383];
+  const Real t6463 = carried[205] * carried[325];
   const Real t6464 = t6462 + t6463;
-  const Real t6465 = carried[37] * carried[255];
+  const Real t6465 = carried[58] * carried[276];
   const Real t6466 = t6464 - t6465;
-  const Real t6467 = carried[262] * carried[66];
+  const Real t6467 = carried[283] * carried[87];
   const Real t6468 = t6466 + t6467;
-  const Real t6469 = carried[105] * carried[64];
+  const Real t6469 = carried[126] * carried[85];
   const Real t6470 = t6468 + t6469;
-  const Real t6471 = carried[332] * carried[92];
+  const Real t6471 = carried[353] * carried[113];
   const Real t6472 = t6470 - t6471;
-  const Real t6473 = carried[336] * carried[94];
+  const Real t6473 = carried[357] * carried[115];
   const Real t6474 = t6472 + t6473;
-  const Real t6475 = carried[339] * carried[93];
+  const Real t6475 = carried[360] * carried[114];
   const Real t6476 = t6474 - t6475;
-  const Real t6477 = carried[95] * carried[65];
-  const Real t6478 = carried[231] - t6477;
-  const Real t6479 = carried[574] * carried[71];
+  const Real t6477 = carried[116] * carried[86];
+  const Real t6478 = carried[173] - t6477;
+  const Real t6479 = carried[586] * carried[92];
   const Real t6480 = t6479 + t6478;
-  const Real t6481 = carried[566] * carried[74];
+  const Real t6481 = carried[578] * carried[95];
   const Real t6482 = t6481 + t6480;
-  carried[363] = t6482;
-  const Real t6483 = t6482 * carried[65];
+  carried[355] = t6482;
+  const Real t6483 = t6482 * carried[86];
   const Real t6484 = t6476 - t6483;
-  const Real t6485 = carried[574] * carried[65];
-  const Real t6486 = carried[270] - t6485;
-  const Real t6487 = carried[299] * carried[71];
+  const Real t6485 = carried[586] * carried[86];
+  const Real t6486 = carried[235] - t6485;
+  const Real t6487 = carried[320] * carried[92];
   const Real t6488 = t6487 + t6486;
-  const Real t6489 = carried[112] * carried[74];
+  const Real t6489 = carried[133] * carried[95];
   const Real t6490 = t6488 + t6489;
-  carried[364] = t6490;
-  const Real t6491 = t6490 * carried[71];
+  carried[356] = t6490;
+  const Real t6491 = t6490 * carried[92];
   const Real t6492 = t6491 + t6484;
-  const Real t6493 = carried[73] * constant<Real>(0.05178848L);
-  const Real t6494 = carried[112] * carried[71];
-  const Real t6495 = carried[566] * carried[65];
-  const Real t6496 = carried[241] - t6495;
+  const Real t6493 = carried[94] * constant<Real>(0.05178848L);
+  const Real t6494 = carried[133] * carried[92];
+  const Real t6495 = carried[578] * carried[86];
+  const Real t6496 = carried[187] - t6495;
   const Real t6497 = t6494 + t6496;
   const Real t6498 = t6497 + t6493;
-  carried[365] = t6498;
-  const Real t6499 = carried[74] * t6498;
+  carried[358] = t6498;
+  const Real t6499 = carried[95] * t6498;
   const Real t6500 = t6492 + t6499;
-  const Real t6501 = carried[177] * carried[24];
-  const Real t6502 = carried[378] - t6501;
-  const Real t6503 = carried[181] * carried[582];
+  const Real t6501 = carried[198] * carried[9];
+  const Real t6502 = carried[321] - t6501;
+  const Real t6503 = carried[202] * carried[594];
   const Real t6504 = t6503 + t6502;
-  const Real t6505 = carried[576] * carried[184];
+  const Real t6505 = carried[588] * carried[205];
   const Real t6506 = t6504 + t6505;
-  carried[366] = t6506;
-  const Real t6507 = t6506 * carried[177];
+  carried[374] = t6506;
+  const Real t6507 = t6506 * carried[198];
   const Real t6508 = t6500 - t6507;
-  const Real t6509 = carried[177] * carried[582];
-  const Real t6510 = carried[386] - t6509;
-  const Real t6511 = carried[181] * carried[38];
+  const Real t6509 = carried[198] * carried[594];
+  const Real t6510 = carried[326] - t6509;
+  const Real t6511 = carried[202] * carried[45];
   const Real t6512 = t6510 + t6511;
-  const Real t6513 = carried[28] * carried[184];
+  const Real t6513 = carried[11] * carried[205];
   const Real t6514 = t6513 + t6512;
-  carried[367] = t6514;
-  const Real t6515 = t6514 * carried[181];
+  carried[375] = t6514;
+  const Real t6515 = t6514 * carried[202];
   const Real t6516 = t6508 + t6515;
-  const Real t6517 = carried[183] * constant<Real>(0.05178848L);
-  const Real t6518 = carried[576] * carried[177];
-  const Real t6519 = carried[383] - t6518;
-  const Real t6520 = carried[181] * carried[28];
+  const Real t6517 = carried[204] * constant<Real>(0.05178848L);
+  const Real t6518 = carried[588] * carried[198];
+  const Real t6519 = carried[325] - t6518;
+  const Real t6520 = carried[202] * carried[11];
   const Real t6521 = t6519 + t6520;
   const Real t6522 = t6521 + t6517;
-  carried[368] = t6522;
-  const Real t6523 = t6522 * carried[184];
+  carried[377] = t6522;
+  const Real t6523 = t6522 * carried[205];
   const Real t6524 = t6523 + t6516;
-  const Real t6525 = carried[466] * carried[255];
-  const Real t6526 = carried[37] - t6525;
-  const Real t6527 = carried[291] * carried[262];
+  const Real t6525 = carried[472] * carried[276];
+  const Real t6526 = carried[58] - t6525;
+  const Real t6527 = carried[220] * carried[283];
   const Real t6528 = t6527 + t6526;
-  const Real t6529 = carried[198] * carried[105];
+  const Real t6529 = carried[172] * carried[126];
   const Real t6530 = t6529 + t6528;
-  carried[371] = t6530;
-  const Real t6531 = carried[255] * t6530;
+  carried[378] = t6530;
+  const Real t6531 = carried[276] * t6530;
   const Real t6532 = t6524 - t6531;
-  const Real t6533 = carried[291] * carried[255];
-  const Real t6534 = carried[66] - t6533;
-  const Real t6535 = carried[262] * carried[504];
+  const Real t6533 = carried[220] * carried[276];
+  const Real t6534 = carried[87] - t6533;
+  const Real t6535 = carried[283] * carried[494];
   const Real t6536 = t6534 + t6535;
-  const Real t6537 = carried[105] * carried[503];
+  const Real t6537 = carried[126] * carried[487];
   const Real t6538 = t6536 + t6537;
-  carried[372] = t6538;
-  const Real t6539 = carried[262] * t6538;
+  carried[380] = t6538;
+  const Real t6539 = carried[283] * t6538;
   const Real t6540 = t6539 + t6532;
-  const Real t6541 = constant<Real>(0.05178848L) * carried[97];
-  const Real t6542 = carried[198] * carried[255];
-  const Real t6543 = carried[64] - t6542;
-  const Real t6544 = carried[503] * carried[262];
+  const Real t6541 = constant<Real>(0.05178848L) * carried[118];
+  const Real t6542 = carried[172] * carried[276];
+  const Real t6543 = carried[85] - t6542;
+  const Real t6544 = carried[487] * carried[283];
   const Real t6545 = t6543 + t6544;
   const Real t6546 = t6545 + t6541;
-  carried[376] = t6546;
-  const Real t6547 = carried[105] * t6546;
+  carried[381] = t6546;
+  const Real t6547 = carried[126] * t6546;
   const Real t6548 = t6547 + t6540;
-  const Real t6549 = carried[332] * carried[382];
-  const Real t6550 = carried[92] - t6549;
-  const Real t6551 = carried[336] * carried[355];
+  const Real t6549 = carried[353] * carried[370];
+  const Real t6550 = carried[113] - t6549;
+  const Real t6551 = carried[357] * carried[232];
   const Real t6552 = t6551 + t6550;
-  const Real t6553 = carried[339] * carried[351];
+  const Real t6553 = carried[360] * carried[13];
   const Real t6554 = t6552 - t6553;
-  carried[377] = t6554;
-  const Real t6555 = carried[332] * t6554;
+  carried[382] = t6554;
+  const Real t6555 = carried[353] * t6554;
   const Real t6556 = t6548 - t6555;
-  const Real t6557 = carried[332] * carried[355];
-  const Real t6558 = carried[94] - t6557;
-  const Real t6559 = carried[456] * carried[336];
+  const Real t6557 = carried[353] * carried[232];
+  const Real t6558 = carried[115] - t6557;
+  const Real t6559 = carried[376] * carried[357];
   const Real t6560 = t6559 + t6558;
-  const Real t6561 = carried[339] * carried[454];
+  const Real t6561 = carried[360] * carried[373];
   const Real t6562 = t6560 - t6561;
-  carried[379] = t6562;
-  const Real t6563 = t6562 * carried[336];
+  carried[383] = t6562;
+  const Real t6563 = t6562 * carried[357];
   const Real t6564 = t6563 + t6556;
-  const Real t6565 = carried[338] * constant<Real>(0.05178848L);
-  const Real t6566 = carried[336] * carried[454];
-  const Real t6567 = carried[332] * carried[351];
-  const Real t6568 = carried[93] - t6567;
+  const Real t6565 = carried[359] * constant<Real>(0.05178848L);
+  const Real t6566 = carried[357] * carried[373];
+  const Real t6567 = carried[353] * carried[13];
+  const Real t6568 = carried[114] - t6567;
   const Real t6569 = t6566 + t6568;
   const Real t6570 = t6569 - t6565;
-  carried[381] = t6570;
-  const Real t6571 = carried[339] * t6570;
+  carried[384] = t6570;
+  const Real t6571 = carried[360] * t6570;
   const Real t6572 = t6564 - t6571;
 
   // reduced accelerations
-  const Real t6573 = carried[217] * t6302;
+  const Real t6573 = carried[238] * t6302;
   const Real t6574 = t6572 - t6573;
-  const Real t6575 = carried[264] * carried[121];
+  const Real t6575 = carried[282] * carried[125];
   const Real t6576 = t6574 - t6575;
-  carried[384] = t6576;
+  carried[385] = t6576;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_23(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced accelerations
-  const Real t6577 = carried[104] * carried[39];
-  const Real t6578 = carried[384] - t6577;
-  const Real t6579 = t6578 - carried[57];
+  const Real t6577 = carried[122] * carried[3];
+  const Real t6578 = carried[385] - t6577;
+  const Real t6579 = t6578 - carried[6];
   const Real t6580 = constant<Real>(1.0L) / t6579;
-  carried[29] = t6580;
+  carried[4] = t6580;
 
   // hind_right_hip: joint force
-  const Real t6581 = carried[19] * carried[199];
-  const Real t6582 = carried[201] * carried[18];
+  const Real t6581 = carried[40] * carried[162];
+  const Real t6582 = carried[189] * carried[39];
   const Real t6583 = t6582 + t6581;
-  const Real t6584 = carried[224] * carried[18];
-  const Real t6585 = carried[243] * carried[19];
+  const Real t6584 = carried[191] * carried[39];
+  const Real t6585 = carried[192] * carried[40];
   const Real t6586 = t6585 - t6584;
   const Real t6587 = constant<Real>(0.21L) * t6586;
-  const Real t6588 = constant<Real>(0.06L) * carried[196];
+  const Real t6588 = constant<Real>(0.06L) * carried[80];
   const Real t6589 = t6588 - t6587;
   const Real t6590 = t6583 + t6589;
   const Real t6591 = t6590 + constant<Real>(-0.005104L);
 
   // hind_left_hip: joint force
-  const Real t6592 = carried[13] * carried[247];
-  const Real t6593 = carried[249] * carried[12];
+  const Real t6592 = carried[34] * carried[217];
+  const Real t6593 = carried[219] * carried[33];
   const Real t6594 = t6593 + t6592;
-  const Real t6595 = carried[253] * carried[12];
-  const Real t6596 = carried[256] * carried[13];
+  const Real t6595 = carried[229] * carried[33];
+  const Real t6596 = carried[237] * carried[34];
   const Real t6597 = t6596 - t6595;
   const Real t6598 = constant<Real>(0.21L) * t6597;
-  const Real t6599 = carried[246] * constant<Real>(0.06L);
+  const Real t6599 = carried[215] * constant<Real>(0.06L);
   const Real t6600 = t6598 + t6599;
   const Real t6601 = t6594 - t6600;
   const Real t6602 = t6591 + t6601;
 
   // front_right_hip: joint force
-  const Real t6603 = carried[300] * carried[7];
-  const Real t6604 = carried[6] * carried[304];
+  const Real t6603 = carried[264] * carried[28];
+  const Real t6604 = carried[27] * carried[266];
   const Real t6605 = t6604 + t6603;
-  const Real t6606 = carried[6] * carried[315];
-  const Real t6607 = carried[324] * carried[7];
+  const Real t6606 = carried[27] * carried[267];
+  const Real t6607 = carried[268] * carried[28];
   const Real t6608 = t6607 - t6606;
   const Real t6609 = t6608 * constant<Real>(0.21L);
-  const Real t6610 = carried[275] * constant<Real>(0.06L);
+  const Real t6610 = carried[247] * constant<Real>(0.06L);
   const Real t6611 = t6610 + t6609;
   const Real t6612 = t6605 + t6611;
   const Real t6613 = t6612 + t6602;
 
   // front_left_hip: joint force
-  const Real t6614 = carried[1] * carried[55];
-  const Real t6615 = carried[61] * carried[0];
+  const Real t6614 = carried[22] * carried[8];
+  const Real t6615 = carried[18] * carried[21];
   const Real t6616 = t6614 + t6615;
-  const Real t6617 = carried[84] * carried[0];
-  const Real t6618 = carried[86] * carried[1];
+  const Real t6617 = carried[74] * carried[21];
+  const Real t6618 = carried[76] * carried[22];
   const Real t6619 = t6618 - t6617;
   const Real t6620 = t6619 * constant<Real>(0.21L);
-  const Real t6621 = carried[354] * constant<Real>(0.06L);
+  const Real t6621 = carried[277] * constant<Real>(0.06L);
   const Real t6622 = t6620 - t6621;
   const Real t6623 = t6622 + t6616;
   const Real t6624 = t6623 + t6613;
 
   // front_left_shank: wrench
-  const Real t6625 = constant<Real>(0.51L) * carried[77];
+  const Real t6625 = constant<Real>(0.51L) * carried[98];
   const Real t6626 = t6625 - carried[534];
 
   // front_left_shank: joint force
-  const Real t6627 = carried[5] * t6626;
+  const Real t6627 = carried[26] * t6626;
 
   // front_left_shank: wrench
-  const Real t6628 = constant<Real>(0.51L) * carried[81];
+  const Real t6628 = constant<Real>(0.51L) * carried[102];
 
   // front_left_shank: acceleration
-  const Real t6629 = carried[49] - carried[47];
+  const Real t6629 = carried[70] - carried[68];
 
   // front_left_shank: wrench
   const Real t6630 = t6629 * constant<Real>(0.00042L);
@@ -13602,142 +13616,142 @@ template <class Real>
   const Real t6632 = t6631 + t6628;
 
   // front_left_shank: joint force
-  const Real t6633 = t6632 * carried[4];
+  const Real t6633 = t6632 * carried[25];
   const Real t6634 = t6627 - t6633;
   const Real t6635 = t6634 * constant<Real>(0.012L);
 
   // front_left_shank: wrench
-  const Real t6636 = carried[227] - carried[152];
-  const Real t6637 = constant<Real>(0.51L) * carried[78];
+  const Real t6636 = carried[153] - carried[135];
+  const Real t6637 = constant<Real>(0.51L) * carried[99];
   const Real t6638 = t6637 + t6636;
-  carried[30] = t6638;
+  carried[50] = t6638;
 
   // front_left_shank: joint force
   const Real t6639 = constant<Real>(0.24L) * t6638;
   const Real t6640 = t6635 + t6639;
 
   // front_left_shank: wrench
-  const Real t6641 = carried[77] * constant<Real>(0.00042L);
-  const Real t6642 = carried[78] * constant<Real>(0.0687L);
+  const Real t6641 = carried[98] * constant<Real>(0.00042L);
+  const Real t6642 = carried[99] * constant<Real>(0.0687L);
   const Real t6643 = t6642 + t6641;
-  const Real t6644 = constant<Real>(0.01292242L) * carried[52];
-  const Real t6645 = carried[0] * constant<Real>(2.52e-6L);
+  const Real t6644 = constant<Real>(0.01292242L) * carried[73];
+  const Real t6645 = carried[21] * constant<Real>(2.52e-6L);
   const Real t6646 = t6645 + t6644;
-  const Real t6647 = carried[50] * constant<Real>(0.0004672L);
+  const Real t6647 = carried[71] * constant<Real>(0.0004672L);
   const Real t6648 = t6647 - t6646;
   const Real t6649 = t6643 + t6648;
 
   // front_left_shank: joint force
-  const Real t6650 = t6649 * carried[5];
+  const Real t6650 = t6649 * carried[26];
 
   // front_left_shank: wrench
-  const Real t6651 = carried[81] * constant<Real>(0.00042L);
-  const Real t6652 = carried[78] * constant<Real>(0.00252L);
+  const Real t6651 = carried[102] * constant<Real>(0.00042L);
+  const Real t6652 = carried[99] * constant<Real>(0.00252L);
   const Real t6653 = t6652 - t6651;
-  const Real t6654 = carried[50] * constant<Real>(0.00007492L);
-  const Real t6655 = constant<Real>(0.0004672L) * carried[52];
+  const Real t6654 = carried[71] * constant<Real>(0.00007492L);
+  const Real t6655 = constant<Real>(0.0004672L) * carried[73];
   const Real t6656 = t6654 - t6655;
-  const Real t6657 = constant<Real>(0.0000562L) * carried[0];
+  const Real t6657 = constant<Real>(0.0000562L) * carried[21];
   const Real t6658 = t6656 + t6657;
   const Real t6659 = t6653 + t6658;
 
   // front_left_shank: joint force
-  const Real t6660 = carried[4] * t6659;
+  const Real t6660 = carried[25] * t6659;
   const Real t6661 = t6650 + t6660;
   const Real t6662 = t6661 + t6640;
 
   // front_left_thigh: wrench
-  const Real t6663 = constant<Real>(0.0272L) * carried[76];
+  const Real t6663 = constant<Real>(0.0272L) * carried[97];
 
   // front_left_thigh: wrench
-  const Real t6664 = carried[1] * constant<Real>(0.018564L);
+  const Real t6664 = carried[22] * constant<Real>(0.018564L);
 
   // front_left_thigh: wrench
   const Real t6665 = t6664 - t6663;
-  const Real t6666 = constant<Real>(0.013546L) * carried[48];
-  const Real t6667 = constant<Real>(8.4e-6L) * carried[0];
+  const Real t6666 = constant<Real>(0.013546L) * carried[69];
+  const Real t6667 = constant<Real>(8.4e-6L) * carried[21];
   const Real t6668 = t6667 - t6666;
-  const Real t6669 = carried[46] * constant<Real>(0.0003348L);
+  const Real t6669 = carried[67] * constant<Real>(0.0003348L);
   const Real t6670 = t6668 + t6669;
   const Real t6671 = t6665 + t6670;
 
   // front_left_shank: joint force
   const Real t6672 = t6671 + t6662;
-  carried[31] = t6672;
+  carried[51] = t6672;
 
   // front_left_thigh: joint force
-  const Real t6673 = t6672 * carried[3];
+  const Real t6673 = t6672 * carried[24];
 
   // front_left_shank: joint force
-  const Real t6674 = t6659 * carried[5];
-  const Real t6675 = t6649 * carried[4];
+  const Real t6674 = t6659 * carried[26];
+  const Real t6675 = t6649 * carried[25];
   const Real t6676 = t6674 - t6675;
-  const Real t6677 = carried[4] * t6626;
-  const Real t6678 = t6632 * carried[5];
+  const Real t6677 = carried[25] * t6626;
+  const Real t6678 = t6632 * carried[26];
   const Real t6679 = t6677 + t6678;
   const Real t6680 = t6679 * constant<Real>(0.012L);
   const Real t6681 = t6676 - t6680;
 
   // front_left_thigh: wrench
-  const Real t6682 = constant<Real>(0.0272L) * carried[75];
+  const Real t6682 = constant<Real>(0.0272L) * carried[96];
 
   // front_left_thigh: wrench
-  const Real t6683 = constant<Real>(0.001071L) * carried[1];
+  const Real t6683 = constant<Real>(0.001071L) * carried[22];
 
   // front_left_thigh: wrench
   const Real t6684 = t6682 - t6683;
-  const Real t6685 = carried[46] * constant<Real>(0.0014985L);
-  const Real t6686 = carried[48] * constant<Real>(0.0003348L);
+  const Real t6685 = carried[67] * constant<Real>(0.0014985L);
+  const Real t6686 = carried[69] * constant<Real>(0.0003348L);
   const Real t6687 = t6685 - t6686;
-  const Real t6688 = constant<Real>(0.0025144L) * carried[0];
+  const Real t6688 = constant<Real>(0.0025144L) * carried[21];
   const Real t6689 = t6687 - t6688;
   const Real t6690 = t6689 + t6684;
 
   // front_left_shank: joint force
   const Real t6691 = t6681 + t6690;
-  carried[32] = t6691;
+  carried[52] = t6691;
 
   // front_left_thigh: joint force
-  const Real t6692 = t6691 * carried[2];
+  const Real t6692 = t6691 * carried[23];
   const Real t6693 = t6673 + t6692;
 
   // front_left_thigh: wrench
-  const Real t6694 = constant<Real>(1.7L) * carried[76];
+  const Real t6694 = constant<Real>(1.7L) * carried[97];
   const Real t6695 = t6694 + carried[540];
 
   // front_left_shank: joint force
   const Real t6696 = t6634 + t6695;
-  carried[33] = t6696;
+  carried[53] = t6696;
 
   // front_left_thigh: joint force
-  const Real t6697 = t6696 * carried[3];
+  const Real t6697 = t6696 * carried[24];
 
   // front_left_thigh: wrench
-  const Real t6698 = constant<Real>(1.7L) * carried[75];
+  const Real t6698 = constant<Real>(1.7L) * carried[96];
   const Real t6699 = carried[536] - carried[537];
   const Real t6700 = t6698 + t6699;
 
   // front_left_shank: joint force
   const Real t6701 = t6679 + t6700;
-  carried[37] = t6701;
+  carried[54] = t6701;
 
   // front_left_thigh: joint force
-  const Real t6702 = t6701 * carried[2];
+  const Real t6702 = t6701 * carried[23];
   const Real t6703 = t6697 - t6702;
-  carried[41] = t6703;
+  carried[58] = t6703;
   const Real t6704 = constant<Real>(0.075L) * t6703;
   const Real t6705 = t6704 + t6693;
 
   // front_left_hip: wrench
-  const Real t6706 = constant<Real>(5.2e-6L) * carried[1];
-  const Real t6707 = constant<Real>(0.0001392L) * carried[0];
+  const Real t6706 = constant<Real>(5.2e-6L) * carried[22];
+  const Real t6707 = constant<Real>(0.0001392L) * carried[21];
 
   // front_left_hip: wrench
   const Real t6708 = t6706 + t6707;
 
   // front_left_hip: wrench
-  const Real t6709 = constant<Real>(0.005733L) * carried[0];
-  const Real t6710 = constant<Real>(0.000273L) * carried[1];
+  const Real t6709 = constant<Real>(0.005733L) * carried[21];
+  const Real t6710 = constant<Real>(0.000273L) * carried[22];
   const Real t6711 = t6709 + t6710;
 
   // front_left_hip: wrench
@@ -13745,203 +13759,203 @@ template <class Real>
 
   // front_left_thigh: joint force
   const Real t6713 = t6705 + t6712;
-  carried[64] = t6713;
+  carried[85] = t6713;
 
   // reduced mass matrix
-  const Real t6714 = carried[56] * t6713;
+  const Real t6714 = carried[77] * t6713;
   const Real t6715 = t6624 - t6714;
 
   // front_left_shank: joint force
   const Real t6716 = t6679 * constant<Real>(0.24L);
 
   // front_left_shank: wrench
-  const Real t6717 = carried[81] * constant<Real>(0.0687L);
-  const Real t6718 = constant<Real>(0.00252L) * carried[77];
+  const Real t6717 = carried[102] * constant<Real>(0.0687L);
+  const Real t6718 = constant<Real>(0.00252L) * carried[98];
   const Real t6719 = t6717 + t6718;
   const Real t6720 = t6629 * constant<Real>(0.0000562L);
-  const Real t6721 = constant<Real>(0.01294712L) * carried[0];
+  const Real t6721 = constant<Real>(0.01294712L) * carried[21];
   const Real t6722 = t6721 - t6720;
-  const Real t6723 = carried[52] * constant<Real>(2.52e-6L);
+  const Real t6723 = carried[73] * constant<Real>(2.52e-6L);
   const Real t6724 = t6722 + t6723;
   const Real t6725 = t6724 - t6719;
-  carried[66] = t6725;
+  carried[87] = t6725;
 
   // front_left_shank: joint force
   const Real t6726 = t6725 - t6716;
 
   // front_left_thigh: wrench
-  const Real t6727 = constant<Real>(0.0051L) * carried[76];
-  const Real t6728 = carried[75] * constant<Real>(0.0884L);
+  const Real t6727 = constant<Real>(0.0051L) * carried[97];
+  const Real t6728 = carried[96] * constant<Real>(0.0884L);
   const Real t6729 = t6727 - t6728;
-  const Real t6730 = constant<Real>(0.0025144L) * carried[46];
-  const Real t6731 = constant<Real>(0.0134661L) * carried[0];
+  const Real t6730 = constant<Real>(0.0025144L) * carried[67];
+  const Real t6731 = constant<Real>(0.0134661L) * carried[21];
   const Real t6732 = t6731 - t6730;
-  const Real t6733 = constant<Real>(8.4e-6L) * carried[48];
+  const Real t6733 = constant<Real>(8.4e-6L) * carried[69];
   const Real t6734 = t6732 - t6733;
   const Real t6735 = t6729 + t6734;
 
   // front_left_shank: joint force
   const Real t6736 = t6735 + t6726;
-  carried[67] = t6736;
+  carried[88] = t6736;
 
   // reduced mass matrix
-  const Real t6737 = t6736 * carried[60];
+  const Real t6737 = t6736 * carried[81];
   const Real t6738 = t6737 + t6715;
-  const Real t6739 = t6725 * carried[63];
+  const Real t6739 = t6725 * carried[84];
   const Real t6740 = t6739 + t6738;
 
   // front_right_shank: wrench
-  const Real t6741 = constant<Real>(0.51L) * carried[187];
-  const Real t6742 = carried[313] - carried[318];
+  const Real t6741 = constant<Real>(0.51L) * carried[208];
+  const Real t6742 = carried[309] - carried[322];
   const Real t6743 = t6742 + t6741;
 
   // front_right_shank: joint force
-  const Real t6744 = carried[11] * t6743;
+  const Real t6744 = carried[32] * t6743;
 
   // front_right_shank: wrench
-  const Real t6745 = constant<Real>(0.51L) * carried[191];
+  const Real t6745 = constant<Real>(0.51L) * carried[212];
 
   // front_right_shank: acceleration
-  const Real t6746 = carried[162] - carried[160];
+  const Real t6746 = carried[183] - carried[181];
 
   // front_right_shank: wrench
   const Real t6747 = t6746 * constant<Real>(0.00042L);
-  const Real t6748 = t6747 + carried[322];
+  const Real t6748 = t6747 + carried[339];
   const Real t6749 = t6745 - t6748;
 
   // front_right_shank: joint force
-  const Real t6750 = t6749 * carried[10];
+  const Real t6750 = t6749 * carried[31];
   const Real t6751 = t6744 - t6750;
   const Real t6752 = t6751 * constant<Real>(0.012L);
 
   // front_right_shank: wrench
-  const Real t6753 = carried[553] - carried[513];
-  const Real t6754 = constant<Real>(0.51L) * carried[188];
+  const Real t6753 = carried[546] - carried[508];
+  const Real t6754 = constant<Real>(0.51L) * carried[209];
   const Real t6755 = t6753 + t6754;
-  carried[68] = t6755;
+  carried[89] = t6755;
 
   // front_right_shank: joint force
   const Real t6756 = t6755 * constant<Real>(0.24L);
   const Real t6757 = t6756 - t6752;
 
   // front_right_shank: wrench
-  const Real t6758 = carried[191] * constant<Real>(0.00042L);
-  const Real t6759 = constant<Real>(0.00252L) * carried[188];
+  const Real t6758 = carried[212] * constant<Real>(0.00042L);
+  const Real t6759 = constant<Real>(0.00252L) * carried[209];
   const Real t6760 = t6759 + t6758;
-  const Real t6761 = constant<Real>(0.00007492L) * carried[163];
-  const Real t6762 = constant<Real>(0.0004672L) * carried[165];
+  const Real t6761 = constant<Real>(0.00007492L) * carried[184];
+  const Real t6762 = constant<Real>(0.0004672L) * carried[186];
   const Real t6763 = t6761 - t6762;
-  const Real t6764 = carried[6] * constant<Real>(0.0000562L);
+  const Real t6764 = carried[27] * constant<Real>(0.0000562L);
   const Real t6765 = t6763 - t6764;
   const Real t6766 = t6765 + t6760;
 
   // front_right_shank: joint force
-  const Real t6767 = carried[10] * t6766;
+  const Real t6767 = carried[31] * t6766;
 
   // front_right_shank: wrench
-  const Real t6768 = carried[187] * constant<Real>(0.00042L);
-  const Real t6769 = carried[188] * constant<Real>(0.0687L);
+  const Real t6768 = carried[208] * constant<Real>(0.00042L);
+  const Real t6769 = carried[209] * constant<Real>(0.0687L);
   const Real t6770 = t6769 - t6768;
-  const Real t6771 = constant<Real>(0.01292242L) * carried[165];
-  const Real t6772 = carried[6] * constant<Real>(2.52e-6L);
+  const Real t6771 = constant<Real>(0.01292242L) * carried[186];
+  const Real t6772 = carried[27] * constant<Real>(2.52e-6L);
   const Real t6773 = t6772 - t6771;
-  const Real t6774 = constant<Real>(0.0004672L) * carried[163];
+  const Real t6774 = constant<Real>(0.0004672L) * carried[184];
   const Real t6775 = t6774 + t6773;
   const Real t6776 = t6770 + t6775;
 
   // front_right_shank: joint force
-  const Real t6777 = carried[11] * t6776;
+  const Real t6777 = carried[32] * t6776;
   const Real t6778 = t6767 + t6777;
   const Real t6779 = t6778 + t6757;
 
   // front_right_thigh: wrench
-  const Real t6780 = constant<Real>(0.0272L) * carried[185];
+  const Real t6780 = constant<Real>(0.0272L) * carried[206];
 
   // front_right_thigh: wrench
-  const Real t6781 = constant<Real>(0.018564L) * carried[7];
+  const Real t6781 = constant<Real>(0.018564L) * carried[28];
 
   // front_right_thigh: wrench
   const Real t6782 = t6780 + t6781;
-  const Real t6783 = constant<Real>(0.013546L) * carried[161];
-  const Real t6784 = carried[6] * constant<Real>(8.4e-6L);
+  const Real t6783 = constant<Real>(0.013546L) * carried[182];
+  const Real t6784 = carried[27] * constant<Real>(8.4e-6L);
   const Real t6785 = t6784 + t6783;
-  const Real t6786 = carried[159] * constant<Real>(0.0003348L);
+  const Real t6786 = carried[180] * constant<Real>(0.0003348L);
   const Real t6787 = t6786 - t6785;
   const Real t6788 = t6787 + t6782;
 
   // front_right_shank: joint force
   const Real t6789 = t6788 + t6779;
-  carried[69] = t6789;
+  carried[90] = t6789;
 
   // front_right_thigh: joint force
-  const Real t6790 = t6789 * carried[9];
+  const Real t6790 = t6789 * carried[30];
 
   // front_right_shank: joint force
-  const Real t6791 = carried[11] * t6766;
-  const Real t6792 = t6776 * carried[10];
+  const Real t6791 = carried[32] * t6766;
+  const Real t6792 = t6776 * carried[31];
   const Real t6793 = t6791 - t6792;
-  const Real t6794 = carried[10] * t6743;
-  const Real t6795 = t6749 * carried[11];
+  const Real t6794 = carried[31] * t6743;
+  const Real t6795 = t6749 * carried[32];
   const Real t6796 = t6794 + t6795;
   const Real t6797 = constant<Real>(0.012L) * t6796;
   const Real t6798 = t6793 + t6797;
 
   // front_right_thigh: wrench
-  const Real t6799 = constant<Real>(0.0272L) * carried[186];
+  const Real t6799 = constant<Real>(0.0272L) * carried[207];
 
   // front_right_thigh: wrench
-  const Real t6800 = constant<Real>(0.001071L) * carried[7];
+  const Real t6800 = constant<Real>(0.001071L) * carried[28];
 
   // front_right_thigh: wrench
   const Real t6801 = t6799 + t6800;
-  const Real t6802 = carried[159] * constant<Real>(0.0014985L);
-  const Real t6803 = carried[161] * constant<Real>(0.0003348L);
+  const Real t6802 = carried[180] * constant<Real>(0.0014985L);
+  const Real t6803 = carried[182] * constant<Real>(0.0003348L);
   const Real t6804 = t6802 - t6803;
-  const Real t6805 = carried[6] * constant<Real>(0.0025144L);
+  const Real t6805 = carried[27] * constant<Real>(0.0025144L);
   const Real t6806 = t6804 + t6805;
   const Real t6807 = t6806 - t6801;
 
   // front_right_shank: joint force
   const Real t6808 = t6807 + t6798;
-  carried[70] = t6808;
+  carried[91] = t6808;
 
   // front_right_thigh: joint force
-  const Real t6809 = t6808 * carried[8];
+  const Real t6809 = t6808 * carried[29];
   const Real t6810 = t6790 + t6809;
 
   // front_right_thigh: wrench
-  const Real t6811 = constant<Real>(1.7L) * carried[185];
-  const Real t6812 = carried[389] - carried[388];
+  const Real t6811 = constant<Real>(1.7L) * carried[206];
+  const Real t6812 = carried[398] - carried[389];
   const Real t6813 = t6812 + t6811;
 
   // front_right_shank: joint force
   const Real t6814 = t6751 + t6813;
-  carried[72] = t6814;
+  carried[93] = t6814;
 
   // front_right_thigh: joint force
-  const Real t6815 = carried[9] * t6814;
+  const Real t6815 = carried[30] * t6814;
 
   // front_right_thigh: wrench
-  const Real t6816 = constant<Real>(1.7L) * carried[186];
-  const Real t6817 = t6816 - carried[326];
+  const Real t6816 = constant<Real>(1.7L) * carried[207];
+  const Real t6817 = t6816 - carried[343];
 
   // front_right_shank: joint force
   const Real t6818 = t6817 + t6796;
-  carried[73] = t6818;
+  carried[94] = t6818;
 
   // front_right_thigh: joint force
-  const Real t6819 = t6818 * carried[8];
+  const Real t6819 = t6818 * carried[29];
   const Real t6820 = t6815 - t6819;
-  carried[88] = t6820;
+  carried[107] = t6820;
   const Real t6821 = constant<Real>(0.075L) * t6820;
   const Real t6822 = t6810 - t6821;
 
   // front_right_hip: wrench
-  const Real t6823 = carried[6] * constant<Real>(0.005733L);
-  const Real t6824 = constant<Real>(0.000273L) * carried[7];
+  const Real t6823 = carried[27] * constant<Real>(0.005733L);
+  const Real t6824 = constant<Real>(0.000273L) * carried[28];
   const Real t6825 = t6823 - t6824;
-  const Real t6826 = constant<Real>(5.2e-6L) * carried[7];
-  const Real t6827 = carried[6] * constant<Real>(0.0001392L);
+  const Real t6826 = constant<Real>(5.2e-6L) * carried[28];
+  const Real t6827 = carried[27] * constant<Real>(0.0001392L);
 
   // front_right_hip: wrench
   const Real t6828 = t6826 - t6827;
@@ -13949,215 +13963,215 @@ template <class Real>
 
   // front_right_thigh: joint force
   const Real t6830 = t6822 + t6829;
-  carried[91] = t6830;
+  carried[108] = t6830;
 
   // reduced mass matrix
-  const Real t6831 = carried[169] * t6830;
+  const Real t6831 = carried[190] * t6830;
   const Real t6832 = t6740 - t6831;
 
   // front_right_shank: joint force
   const Real t6833 = constant<Real>(0.24L) * t6796;
 
   // front_right_shank: wrench
-  const Real t6834 = carried[191] * constant<Real>(0.0687L);
-  const Real t6835 = carried[187] * constant<Real>(0.00252L);
+  const Real t6834 = carried[212] * constant<Real>(0.0687L);
+  const Real t6835 = carried[208] * constant<Real>(0.00252L);
   const Real t6836 = t6834 + t6835;
   const Real t6837 = constant<Real>(0.0000562L) * t6746;
-  const Real t6838 = carried[6] * constant<Real>(0.01294712L);
+  const Real t6838 = carried[27] * constant<Real>(0.01294712L);
   const Real t6839 = t6838 + t6837;
-  const Real t6840 = constant<Real>(2.52e-6L) * carried[165];
+  const Real t6840 = constant<Real>(2.52e-6L) * carried[186];
   const Real t6841 = t6839 - t6840;
   const Real t6842 = t6841 - t6836;
-  carried[92] = t6842;
+  carried[109] = t6842;
 
   // front_right_shank: joint force
   const Real t6843 = t6842 - t6833;
 
   // front_right_thigh: wrench
-  const Real t6844 = constant<Real>(0.0051L) * carried[185];
-  const Real t6845 = carried[186] * constant<Real>(0.0884L);
+  const Real t6844 = constant<Real>(0.0051L) * carried[206];
+  const Real t6845 = carried[207] * constant<Real>(0.0884L);
   const Real t6846 = t6844 - t6845;
-  const Real t6847 = carried[159] * constant<Real>(0.0025144L);
-  const Real t6848 = carried[6] * constant<Real>(0.0134661L);
+  const Real t6847 = carried[180] * constant<Real>(0.0025144L);
+  const Real t6848 = carried[27] * constant<Real>(0.0134661L);
   const Real t6849 = t6848 + t6847;
-  const Real t6850 = constant<Real>(8.4e-6L) * carried[161];
+  const Real t6850 = constant<Real>(8.4e-6L) * carried[182];
   const Real t6851 = t6850 + t6849;
   const Real t6852 = t6846 + t6851;
 
   // front_right_shank: joint force
   const Real t6853 = t6843 + t6852;
-  carried[93] = t6853;
+  carried[112] = t6853;
 
   // reduced mass matrix
-  const Real t6854 = t6853 * carried[173];
+  const Real t6854 = t6853 * carried[194];
   const Real t6855 = t6854 + t6832;
-  const Real t6856 = carried[175] * t6842;
+  const Real t6856 = carried[196] * t6842;
   const Real t6857 = t6856 + t6855;
-  carried[94] = t6857;
+  carried[113] = t6857;
 
   // hind_left_shank: wrench
-  const Real t6858 = constant<Real>(0.51L) * carried[147];
-  const Real t6859 = t6858 - carried[567];
-  carried[97] = t6859;
+  const Real t6858 = constant<Real>(0.51L) * carried[168];
+  const Real t6859 = t6858 - carried[551];
+  carried[114] = t6859;
 
   // hind_left_shank: joint force
-  const Real t6860 = t6859 * carried[17];
+  const Real t6860 = t6859 * carried[38];
 
   // hind_left_shank: wrench
-  const Real t6861 = constant<Real>(0.51L) * carried[202];
+  const Real t6861 = constant<Real>(0.51L) * carried[223];
 
   // hind_left_shank: acceleration
-  const Real t6862 = carried[237] - carried[235];
-  carried[98] = t6862;
+  const Real t6862 = carried[258] - carried[256];
+  carried[115] = t6862;
 
   // hind_left_shank: wrench
   const Real t6863 = t6862 * constant<Real>(0.00042L);
-  const Real t6864 = t6863 - carried[561];
+  const Real t6864 = t6863 - carried[550];
   const Real t6865 = t6864 + t6861;
-  carried[103] = t6865;
+  carried[118] = t6865;
 
   // hind_left_shank: joint force
-  const Real t6866 = carried[16] * t6865;
+  const Real t6866 = carried[37] * t6865;
   const Real t6867 = t6860 - t6866;
-  carried[107] = t6867;
+  carried[119] = t6867;
   const Real t6868 = t6867 * constant<Real>(0.012L);
 
   // hind_left_shank: wrench
-  const Real t6869 = carried[594] - carried[593];
-  const Real t6870 = constant<Real>(0.51L) * carried[149];
+  const Real t6869 = carried[581] - carried[579];
+  const Real t6870 = constant<Real>(0.51L) * carried[170];
   const Real t6871 = t6869 - t6870;
   carried[120] = t6871;
 
   // hind_left_shank: joint force
   const Real t6872 = constant<Real>(0.24L) * t6871;
   const Real t6873 = t6872 + t6868;
-  carried[126] = t6873;
+  carried[124] = t6873;
 
   // hind_left_shank: wrench
-  const Real t6874 = carried[147] * constant<Real>(0.00042L);
-  const Real t6875 = carried[149] * constant<Real>(0.0687L);
+  const Real t6874 = carried[168] * constant<Real>(0.00042L);
+  const Real t6875 = carried[170] * constant<Real>(0.0687L);
   const Real t6876 = t6874 - t6875;
-  carried[129] = t6876;
+  carried[128] = t6876;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_24(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // hind_left_shank: wrench
-  const Real t6877 = constant<Real>(0.01292242L) * carried[240];
-  const Real t6878 = constant<Real>(2.52e-6L) * carried[12];
+  const Real t6877 = constant<Real>(0.01292242L) * carried[261];
+  const Real t6878 = constant<Real>(2.52e-6L) * carried[33];
   const Real t6879 = t6878 + t6877;
-  const Real t6880 = carried[238] * constant<Real>(0.0004672L);
+  const Real t6880 = carried[259] * constant<Real>(0.0004672L);
   const Real t6881 = t6880 - t6879;
-  const Real t6882 = t6881 + carried[129];
+  const Real t6882 = t6881 + carried[128];
 
   // hind_left_shank: joint force
-  const Real t6883 = carried[17] * t6882;
+  const Real t6883 = carried[38] * t6882;
 
   // hind_left_shank: wrench
-  const Real t6884 = carried[202] * constant<Real>(0.00042L);
-  const Real t6885 = constant<Real>(0.00252L) * carried[149];
+  const Real t6884 = carried[223] * constant<Real>(0.00042L);
+  const Real t6885 = constant<Real>(0.00252L) * carried[170];
   const Real t6886 = t6885 + t6884;
-  const Real t6887 = constant<Real>(0.00007492L) * carried[238];
-  const Real t6888 = carried[240] * constant<Real>(0.0004672L);
+  const Real t6887 = constant<Real>(0.00007492L) * carried[259];
+  const Real t6888 = carried[261] * constant<Real>(0.0004672L);
   const Real t6889 = t6887 - t6888;
-  const Real t6890 = constant<Real>(0.0000562L) * carried[12];
+  const Real t6890 = constant<Real>(0.0000562L) * carried[33];
   const Real t6891 = t6890 + t6889;
   const Real t6892 = t6891 - t6886;
 
   // hind_left_shank: joint force
-  const Real t6893 = t6892 * carried[16];
+  const Real t6893 = t6892 * carried[37];
   const Real t6894 = t6883 + t6893;
-  const Real t6895 = t6894 + carried[126];
+  const Real t6895 = t6894 + carried[124];
 
   // hind_left_thigh: wrench
-  const Real t6896 = carried[139] * constant<Real>(0.0272L);
+  const Real t6896 = carried[160] * constant<Real>(0.0272L);
 
   // hind_left_thigh: wrench
-  const Real t6897 = carried[13] * constant<Real>(0.018564L);
+  const Real t6897 = carried[34] * constant<Real>(0.018564L);
 
   // hind_left_thigh: wrench
   const Real t6898 = t6896 + t6897;
-  const Real t6899 = constant<Real>(0.013546L) * carried[236];
-  const Real t6900 = constant<Real>(8.4e-6L) * carried[12];
+  const Real t6899 = constant<Real>(0.013546L) * carried[257];
+  const Real t6900 = constant<Real>(8.4e-6L) * carried[33];
   const Real t6901 = t6900 - t6899;
-  const Real t6902 = carried[234] * constant<Real>(0.0003348L);
+  const Real t6902 = carried[255] * constant<Real>(0.0003348L);
   const Real t6903 = t6902 + t6901;
   const Real t6904 = t6903 - t6898;
 
   // hind_left_shank: joint force
   const Real t6905 = t6904 + t6895;
-  carried[4] = t6905;
+  carried[3] = t6905;
 
   // hind_left_thigh: joint force
-  const Real t6906 = carried[15] * t6905;
+  const Real t6906 = carried[36] * t6905;
 
   // hind_left_shank: joint force
-  const Real t6907 = carried[17] * t6892;
-  const Real t6908 = carried[16] * t6882;
+  const Real t6907 = carried[38] * t6892;
+  const Real t6908 = carried[37] * t6882;
   const Real t6909 = t6907 - t6908;
-  const Real t6910 = carried[97] * carried[16];
-  const Real t6911 = carried[17] * carried[103];
+  const Real t6910 = carried[114] * carried[37];
+  const Real t6911 = carried[38] * carried[118];
   const Real t6912 = t6910 + t6911;
   const Real t6913 = t6912 * constant<Real>(0.012L);
   const Real t6914 = t6909 - t6913;
 
   // hind_left_thigh: wrench
-  const Real t6915 = constant<Real>(0.0272L) * carried[135];
+  const Real t6915 = constant<Real>(0.0272L) * carried[156];
 
   // hind_left_thigh: wrench
-  const Real t6916 = constant<Real>(0.001071L) * carried[13];
+  const Real t6916 = constant<Real>(0.001071L) * carried[34];
 
   // hind_left_thigh: wrench
   const Real t6917 = t6915 + t6916;
-  const Real t6918 = carried[234] * constant<Real>(0.0014985L);
-  const Real t6919 = carried[236] * constant<Real>(0.0003348L);
+  const Real t6918 = carried[255] * constant<Real>(0.0014985L);
+  const Real t6919 = carried[257] * constant<Real>(0.0003348L);
   const Real t6920 = t6918 - t6919;
-  const Real t6921 = constant<Real>(0.0025144L) * carried[12];
+  const Real t6921 = constant<Real>(0.0025144L) * carried[33];
   const Real t6922 = t6920 - t6921;
   const Real t6923 = t6922 + t6917;
 
   // hind_left_shank: joint force
   const Real t6924 = t6914 + t6923;
-  carried[5] = t6924;
+  carried[6] = t6924;
 
   // hind_left_thigh: joint force
-  const Real t6925 = carried[14] * t6924;
+  const Real t6925 = carried[35] * t6924;
   const Real t6926 = t6906 + t6925;
 
   // hind_left_thigh: wrench
-  const Real t6927 = carried[139] * constant<Real>(1.7L);
-  const Real t6928 = carried[575] + t6927;
+  const Real t6927 = carried[160] * constant<Real>(1.7L);
+  const Real t6928 = carried[560] + t6927;
 
   // hind_left_shank: joint force
-  const Real t6929 = carried[107] + t6928;
-  carried[10] = t6929;
+  const Real t6929 = carried[119] + t6928;
+  carried[8] = t6929;
 
   // hind_left_thigh: joint force
-  const Real t6930 = carried[15] * t6929;
+  const Real t6930 = carried[36] * t6929;
 
   // hind_left_thigh: wrench
-  const Real t6931 = constant<Real>(1.7L) * carried[135];
-  const Real t6932 = carried[569] - carried[571];
+  const Real t6931 = constant<Real>(1.7L) * carried[156];
+  const Real t6932 = carried[552] - carried[554];
   const Real t6933 = t6931 + t6932;
 
   // hind_left_shank: joint force
   const Real t6934 = t6912 + t6933;
-  carried[11] = t6934;
+  carried[18] = t6934;
 
   // hind_left_thigh: joint force
-  const Real t6935 = carried[14] * t6934;
+  const Real t6935 = carried[35] * t6934;
   const Real t6936 = t6930 - t6935;
-  carried[39] = t6936;
+  carried[25] = t6936;
   const Real t6937 = constant<Real>(0.075L) * t6936;
   const Real t6938 = t6926 + t6937;
 
   // hind_left_hip: wrench
-  const Real t6939 = constant<Real>(0.000273L) * carried[13];
-  const Real t6940 = constant<Real>(0.005733L) * carried[12];
+  const Real t6939 = constant<Real>(0.000273L) * carried[34];
+  const Real t6940 = constant<Real>(0.005733L) * carried[33];
   const Real t6941 = t6939 + t6940;
-  const Real t6942 = constant<Real>(0.0001392L) * carried[12];
-  const Real t6943 = constant<Real>(5.2e-6L) * carried[13];
+  const Real t6942 = constant<Real>(0.0001392L) * carried[33];
+  const Real t6943 = constant<Real>(5.2e-6L) * carried[34];
 
   // hind_left_hip: wrench
   const Real t6944 = t6942 + t6943;
@@ -14165,207 +14179,207 @@ template <class Real>
 
   // hind_left_thigh: joint force
   const Real t6946 = t6938 + t6945;
-  carried[46] = t6946;
+  carried[26] = t6946;
 
   // reduced mass matrix
-  const Real t6947 = t6946 * carried[244];
-  const Real t6948 = carried[94] - t6947;
+  const Real t6947 = t6946 * carried[265];
+  const Real t6948 = carried[113] - t6947;
 
   // hind_left_shank: joint force
   const Real t6949 = t6912 * constant<Real>(0.24L);
 
   // hind_left_shank: wrench
-  const Real t6950 = carried[202] * constant<Real>(0.0687L);
-  const Real t6951 = carried[147] * constant<Real>(0.00252L);
+  const Real t6950 = carried[223] * constant<Real>(0.0687L);
+  const Real t6951 = carried[168] * constant<Real>(0.00252L);
   const Real t6952 = t6950 + t6951;
-  const Real t6953 = constant<Real>(0.0000562L) * carried[98];
-  const Real t6954 = constant<Real>(0.01294712L) * carried[12];
+  const Real t6953 = constant<Real>(0.0000562L) * carried[115];
+  const Real t6954 = constant<Real>(0.01294712L) * carried[33];
   const Real t6955 = t6954 - t6953;
-  const Real t6956 = carried[240] * constant<Real>(2.52e-6L);
+  const Real t6956 = carried[261] * constant<Real>(2.52e-6L);
   const Real t6957 = t6956 + t6955;
   const Real t6958 = t6957 - t6952;
-  carried[47] = t6958;
+  carried[31] = t6958;
 
   // hind_left_shank: joint force
   const Real t6959 = t6958 - t6949;
 
   // hind_left_thigh: wrench
-  const Real t6960 = constant<Real>(0.0051L) * carried[139];
-  const Real t6961 = constant<Real>(0.0884L) * carried[135];
+  const Real t6960 = constant<Real>(0.0051L) * carried[160];
+  const Real t6961 = constant<Real>(0.0884L) * carried[156];
   const Real t6962 = t6960 - t6961;
-  const Real t6963 = carried[234] * constant<Real>(0.0025144L);
-  const Real t6964 = constant<Real>(0.0134661L) * carried[12];
+  const Real t6963 = carried[255] * constant<Real>(0.0025144L);
+  const Real t6964 = constant<Real>(0.0134661L) * carried[33];
   const Real t6965 = t6964 - t6963;
-  const Real t6966 = constant<Real>(8.4e-6L) * carried[236];
+  const Real t6966 = constant<Real>(8.4e-6L) * carried[257];
   const Real t6967 = t6965 - t6966;
   const Real t6968 = t6962 + t6967;
 
   // hind_left_shank: joint force
   const Real t6969 = t6959 + t6968;
-  carried[48] = t6969;
+  carried[32] = t6969;
 
   // reduced mass matrix
-  const Real t6970 = carried[248] * t6969;
+  const Real t6970 = carried[269] * t6969;
   const Real t6971 = t6948 + t6970;
-  const Real t6972 = carried[251] * t6958;
+  const Real t6972 = carried[272] * t6958;
   const Real t6973 = t6971 + t6972;
 
   // hind_right_shank: wrench
-  const Real t6974 = constant<Real>(0.51L) * carried[342];
-  const Real t6975 = carried[599] - carried[600];
+  const Real t6974 = constant<Real>(0.51L) * carried[363];
+  const Real t6975 = carried[592] - carried[595];
   const Real t6976 = t6974 + t6975;
 
   // hind_right_shank: joint force
-  const Real t6977 = carried[23] * t6976;
+  const Real t6977 = carried[44] * t6976;
 
   // hind_right_shank: wrench
-  const Real t6978 = constant<Real>(0.51L) * carried[346];
+  const Real t6978 = constant<Real>(0.51L) * carried[367];
 
   // hind_right_shank: acceleration
-  const Real t6979 = carried[36] - carried[328];
+  const Real t6979 = carried[57] - carried[349];
 
   // hind_right_shank: wrench
   const Real t6980 = t6979 * constant<Real>(0.00042L);
-  const Real t6981 = carried[598] + t6980;
+  const Real t6981 = carried[589] + t6980;
   const Real t6982 = t6978 - t6981;
 
   // hind_right_shank: joint force
-  const Real t6983 = t6982 * carried[22];
+  const Real t6983 = t6982 * carried[43];
   const Real t6984 = t6977 - t6983;
   const Real t6985 = t6984 * constant<Real>(0.012L);
 
   // hind_right_shank: wrench
   const Real t6986 = carried[612] - carried[611];
-  const Real t6987 = constant<Real>(0.51L) * carried[343];
+  const Real t6987 = constant<Real>(0.51L) * carried[364];
   const Real t6988 = t6986 - t6987;
-  carried[49] = t6988;
+  carried[67] = t6988;
 
   // hind_right_shank: joint force
   const Real t6989 = t6988 * constant<Real>(0.24L);
   const Real t6990 = t6989 - t6985;
 
   // hind_right_shank: wrench
-  const Real t6991 = carried[346] * constant<Real>(0.00042L);
-  const Real t6992 = constant<Real>(0.00252L) * carried[343];
+  const Real t6991 = carried[367] * constant<Real>(0.00042L);
+  const Real t6992 = constant<Real>(0.00252L) * carried[364];
   const Real t6993 = t6991 - t6992;
-  const Real t6994 = constant<Real>(0.00007492L) * carried[96];
-  const Real t6995 = carried[210] * constant<Real>(0.0004672L);
+  const Real t6994 = constant<Real>(0.00007492L) * carried[117];
+  const Real t6995 = carried[231] * constant<Real>(0.0004672L);
   const Real t6996 = t6994 - t6995;
-  const Real t6997 = constant<Real>(0.0000562L) * carried[18];
+  const Real t6997 = constant<Real>(0.0000562L) * carried[39];
   const Real t6998 = t6996 - t6997;
   const Real t6999 = t6998 + t6993;
 
   // hind_right_shank: joint force
-  const Real t7000 = t6999 * carried[22];
+  const Real t7000 = t6999 * carried[43];
 
   // hind_right_shank: wrench
-  const Real t7001 = carried[342] * constant<Real>(0.00042L);
-  const Real t7002 = carried[343] * constant<Real>(0.0687L);
+  const Real t7001 = carried[363] * constant<Real>(0.00042L);
+  const Real t7002 = carried[364] * constant<Real>(0.0687L);
   const Real t7003 = t7001 + t7002;
-  const Real t7004 = constant<Real>(0.01292242L) * carried[210];
-  const Real t7005 = carried[18] * constant<Real>(2.52e-6L);
+  const Real t7004 = constant<Real>(0.01292242L) * carried[231];
+  const Real t7005 = carried[39] * constant<Real>(2.52e-6L);
   const Real t7006 = t7005 - t7004;
-  const Real t7007 = constant<Real>(0.0004672L) * carried[96];
+  const Real t7007 = constant<Real>(0.0004672L) * carried[117];
   const Real t7008 = t7006 + t7007;
   const Real t7009 = t7008 - t7003;
 
   // hind_right_shank: joint force
-  const Real t7010 = carried[23] * t7009;
+  const Real t7010 = carried[44] * t7009;
   const Real t7011 = t7000 + t7010;
   const Real t7012 = t6990 + t7011;
 
   // hind_right_thigh: wrench
-  const Real t7013 = carried[340] * constant<Real>(0.0272L);
+  const Real t7013 = carried[361] * constant<Real>(0.0272L);
 
   // hind_right_thigh: wrench
-  const Real t7014 = carried[19] * constant<Real>(0.018564L);
+  const Real t7014 = carried[40] * constant<Real>(0.018564L);
 
   // hind_right_thigh: wrench
   const Real t7015 = t7013 - t7014;
-  const Real t7016 = constant<Real>(0.013546L) * carried[329];
-  const Real t7017 = constant<Real>(8.4e-6L) * carried[18];
+  const Real t7016 = constant<Real>(0.013546L) * carried[350];
+  const Real t7017 = constant<Real>(8.4e-6L) * carried[39];
   const Real t7018 = t7017 + t7016;
-  const Real t7019 = carried[327] * constant<Real>(0.0003348L);
+  const Real t7019 = carried[348] * constant<Real>(0.0003348L);
   const Real t7020 = t7019 - t7018;
   const Real t7021 = t7015 + t7020;
 
   // hind_right_shank: joint force
   const Real t7022 = t7012 + t7021;
-  carried[50] = t7022;
+  carried[68] = t7022;
 
   // hind_right_thigh: joint force
-  const Real t7023 = carried[21] * t7022;
+  const Real t7023 = carried[42] * t7022;
 
   // hind_right_shank: joint force
-  const Real t7024 = carried[23] * t6999;
-  const Real t7025 = t7009 * carried[22];
+  const Real t7024 = carried[44] * t6999;
+  const Real t7025 = t7009 * carried[43];
   const Real t7026 = t7024 - t7025;
-  const Real t7027 = t6982 * carried[23];
-  const Real t7028 = t6976 * carried[22];
+  const Real t7027 = t6982 * carried[44];
+  const Real t7028 = t6976 * carried[43];
   const Real t7029 = t7027 + t7028;
   const Real t7030 = t7029 * constant<Real>(0.012L);
   const Real t7031 = t7026 + t7030;
 
   // hind_right_thigh: wrench
-  const Real t7032 = constant<Real>(0.0272L) * carried[341];
+  const Real t7032 = constant<Real>(0.0272L) * carried[362];
 
   // hind_right_thigh: wrench
-  const Real t7033 = constant<Real>(0.001071L) * carried[19];
+  const Real t7033 = constant<Real>(0.001071L) * carried[40];
 
   // hind_right_thigh: wrench
   const Real t7034 = t7033 - t7032;
-  const Real t7035 = carried[327] * constant<Real>(0.0014985L);
-  const Real t7036 = carried[329] * constant<Real>(0.0003348L);
+  const Real t7035 = carried[348] * constant<Real>(0.0014985L);
+  const Real t7036 = carried[350] * constant<Real>(0.0003348L);
   const Real t7037 = t7035 - t7036;
-  const Real t7038 = constant<Real>(0.0025144L) * carried[18];
+  const Real t7038 = constant<Real>(0.0025144L) * carried[39];
   const Real t7039 = t7037 + t7038;
   const Real t7040 = t7039 + t7034;
 
   // hind_right_shank: joint force
   const Real t7041 = t7040 + t7031;
-  carried[52] = t7041;
+  carried[69] = t7041;
 
   // hind_right_thigh: joint force
-  const Real t7042 = t7041 * carried[20];
+  const Real t7042 = t7041 * carried[41];
   const Real t7043 = t7023 + t7042;
 
   // hind_right_thigh: wrench
-  const Real t7044 = carried[340] * constant<Real>(1.7L);
+  const Real t7044 = carried[361] * constant<Real>(1.7L);
   const Real t7045 = carried[604] - carried[603];
   const Real t7046 = t7045 + t7044;
 
   // hind_right_shank: joint force
   const Real t7047 = t6984 + t7046;
-  carried[55] = t7047;
+  carried[70] = t7047;
 
   // hind_right_thigh: joint force
-  const Real t7048 = t7047 * carried[21];
+  const Real t7048 = t7047 * carried[42];
 
   // hind_right_thigh: wrench
-  const Real t7049 = constant<Real>(1.7L) * carried[341];
-  const Real t7050 = t7049 - carried[601];
+  const Real t7049 = constant<Real>(1.7L) * carried[362];
+  const Real t7050 = t7049 - carried[596];
 
   // hind_right_shank: joint force
   const Real t7051 = t7029 + t7050;
-  carried[57] = t7051;
+  carried[71] = t7051;
 
   // hind_right_thigh: joint force
-  const Real t7052 = carried[20] * t7051;
+  const Real t7052 = carried[41] * t7051;
   const Real t7053 = t7048 - t7052;
-  carried[61] = t7053;
+  carried[73] = t7053;
   const Real t7054 = constant<Real>(0.075L) * t7053;
   const Real t7055 = t7043 - t7054;
 
   // hind_right_hip: wrench
-  const Real t7056 = constant<Real>(0.0001392L) * carried[18];
-  const Real t7057 = constant<Real>(5.2e-6L) * carried[19];
+  const Real t7056 = constant<Real>(0.0001392L) * carried[39];
+  const Real t7057 = constant<Real>(5.2e-6L) * carried[40];
 
   // hind_right_hip: wrench
   const Real t7058 = t7056 - t7057;
 
   // hind_right_hip: wrench
-  const Real t7059 = constant<Real>(0.000273L) * carried[19];
-  const Real t7060 = constant<Real>(0.005733L) * carried[18];
+  const Real t7059 = constant<Real>(0.000273L) * carried[40];
+  const Real t7060 = constant<Real>(0.005733L) * carried[39];
   const Real t7061 = t7059 - t7060;
 
   // hind_right_hip: wrench
@@ -14373,23 +14387,23 @@ template <class Real>
 
   // hind_right_thigh: joint force
   const Real t7063 = t7062 + t7055;
-  carried[75] = t7063;
+  carried[74] = t7063;
 
   // reduced mass matrix
-  const Real t7064 = t7063 * carried[252];
+  const Real t7064 = t7063 * carried[273];
   const Real t7065 = t6973 - t7064;
 
   // hind_right_shank: joint force
   const Real t7066 = t7029 * constant<Real>(0.24L);
 
   // hind_right_shank: wrench
-  const Real t7067 = carried[346] * constant<Real>(0.0687L);
-  const Real t7068 = constant<Real>(0.00252L) * carried[342];
+  const Real t7067 = carried[367] * constant<Real>(0.0687L);
+  const Real t7068 = constant<Real>(0.00252L) * carried[363];
   const Real t7069 = t7067 + t7068;
   const Real t7070 = constant<Real>(0.0000562L) * t6979;
-  const Real t7071 = constant<Real>(0.01294712L) * carried[18];
+  const Real t7071 = constant<Real>(0.01294712L) * carried[39];
   const Real t7072 = t7070 + t7071;
-  const Real t7073 = carried[210] * constant<Real>(2.52e-6L);
+  const Real t7073 = carried[231] * constant<Real>(2.52e-6L);
   const Real t7074 = t7072 - t7073;
   const Real t7075 = t7074 - t7069;
   carried[76] = t7075;
@@ -14398,59 +14412,59 @@ template <class Real>
   const Real t7076 = t7075 - t7066;
 
   // hind_right_thigh: wrench
-  const Real t7077 = constant<Real>(0.0051L) * carried[340];
-  const Real t7078 = constant<Real>(0.0884L) * carried[341];
+  const Real t7077 = constant<Real>(0.0051L) * carried[361];
+  const Real t7078 = constant<Real>(0.0884L) * carried[362];
   const Real t7079 = t7077 - t7078;
-  const Real t7080 = carried[327] * constant<Real>(0.0025144L);
-  const Real t7081 = constant<Real>(0.0134661L) * carried[18];
+  const Real t7080 = carried[348] * constant<Real>(0.0025144L);
+  const Real t7081 = constant<Real>(0.0134661L) * carried[39];
   const Real t7082 = t7080 + t7081;
-  const Real t7083 = constant<Real>(8.4e-6L) * carried[329];
+  const Real t7083 = constant<Real>(8.4e-6L) * carried[350];
   const Real t7084 = t7083 + t7082;
   const Real t7085 = t7084 + t7079;
 
   // hind_right_shank: joint force
   const Real t7086 = t7085 + t7076;
-  carried[77] = t7086;
+  carried[80] = t7086;
 
   // reduced mass matrix
-  const Real t7087 = t7086 * carried[265];
+  const Real t7087 = t7086 * carried[286];
   const Real t7088 = t7065 + t7087;
-  const Real t7089 = carried[330] * t7075;
+  const Real t7089 = carried[351] * t7075;
   const Real t7090 = t7088 + t7089;
-  const Real t7091 = carried[79] * carried[102];
+  const Real t7091 = carried[100] * carried[123];
   const Real t7092 = t7090 - t7091;
-  const Real t7093 = carried[119] * carried[80];
+  const Real t7093 = carried[140] * carried[101];
   const Real t7094 = t7093 + t7092;
-  const Real t7095 = carried[122] * carried[83];
+  const Real t7095 = carried[143] * carried[104];
   const Real t7096 = t7095 + t7094;
-  const Real t7097 = carried[123] * carried[189];
+  const Real t7097 = carried[144] * carried[210];
   const Real t7098 = t7096 - t7097;
-  const Real t7099 = carried[190] * carried[124];
+  const Real t7099 = carried[211] * carried[145];
   const Real t7100 = t7098 + t7099;
-  const Real t7101 = carried[193] * carried[125];
+  const Real t7101 = carried[214] * carried[146];
   const Real t7102 = t7101 + t7100;
-  const Real t7103 = carried[127] * carried[195];
+  const Real t7103 = carried[148] * carried[216];
   const Real t7104 = t7102 + t7103;
-  const Real t7105 = carried[128] * carried[200];
+  const Real t7105 = carried[149] * carried[221];
   const Real t7106 = t7105 + t7104;
-  const Real t7107 = carried[142] * carried[268];
+  const Real t7107 = carried[163] * carried[289];
   const Real t7108 = t7107 + t7106;
-  const Real t7109 = carried[143] * carried[344];
+  const Real t7109 = carried[164] * carried[365];
   const Real t7110 = t7109 + t7108;
-  const Real t7111 = carried[144] * carried[345];
+  const Real t7111 = carried[165] * carried[366];
   const Real t7112 = t7110 + t7111;
-  const Real t7113 = carried[145] * carried[348];
+  const Real t7113 = carried[166] * carried[369];
   const Real t7114 = t7112 + t7113;
-  carried[78] = t7114;
+  carried[96] = t7114;
 
   // hind_right_hip: joint force
-  const Real t7115 = carried[150] * carried[19];
-  const Real t7116 = carried[18] * carried[62];
+  const Real t7115 = carried[171] * carried[40];
+  const Real t7116 = carried[39] * carried[83];
   const Real t7117 = t7115 + t7116;
-  const Real t7118 = carried[501] * constant<Real>(0.21L);
+  const Real t7118 = carried[468] * constant<Real>(0.21L);
 
   // hind_right_thigh: joint force
-  const Real t7119 = carried[320] + constant<Real>(1.3L);
+  const Real t7119 = carried[323] + constant<Real>(1.3L);
 
   // hind_right_hip: joint force
   const Real t7120 = t7119 * constant<Real>(0.06L);
@@ -14459,313 +14473,313 @@ template <class Real>
   const Real t7123 = t7122 + constant<Real>(0.011L);
 
   // hind_left_hip: joint force
-  const Real t7124 = carried[13] * carried[174];
-  const Real t7125 = carried[178] * carried[12];
+  const Real t7124 = carried[34] * carried[195];
+  const Real t7125 = carried[199] * carried[33];
   const Real t7126 = t7124 + t7125;
-  const Real t7127 = carried[497] * constant<Real>(0.21L);
-  const Real t7128 = carried[302] * constant<Real>(0.06L);
+  const Real t7127 = carried[467] * constant<Real>(0.21L);
+  const Real t7128 = carried[250] * constant<Real>(0.06L);
   const Real t7129 = t7127 - t7128;
   const Real t7130 = t7126 + t7129;
   const Real t7131 = t7123 + t7130;
 
   // front_right_hip: joint force
-  const Real t7132 = carried[179] * carried[7];
-  const Real t7133 = carried[6] * carried[180];
+  const Real t7132 = carried[200] * carried[28];
+  const Real t7133 = carried[27] * carried[201];
   const Real t7134 = t7132 + t7133;
-  const Real t7135 = carried[374] * constant<Real>(0.06L);
-  const Real t7136 = constant<Real>(0.21L) * carried[505];
+  const Real t7135 = carried[372] * constant<Real>(0.06L);
+  const Real t7136 = constant<Real>(0.21L) * carried[469];
   const Real t7137 = t7135 - t7136;
   const Real t7138 = t7134 + t7137;
   const Real t7139 = t7138 + t7131;
 
   // front_left_hip: joint force
-  const Real t7140 = carried[182] * carried[1];
-  const Real t7141 = carried[205] * carried[0];
+  const Real t7140 = carried[203] * carried[22];
+  const Real t7141 = carried[226] * carried[21];
   const Real t7142 = t7141 + t7140;
-  const Real t7143 = carried[506] * constant<Real>(0.21L);
-  const Real t7144 = constant<Real>(0.06L) * carried[396];
+  const Real t7143 = carried[474] * constant<Real>(0.21L);
+  const Real t7144 = constant<Real>(0.06L) * carried[417];
   const Real t7145 = t7143 + t7144;
   const Real t7146 = t7142 - t7145;
   const Real t7147 = t7139 + t7146;
 
   // reduced mass matrix
-  const Real t7148 = carried[67] * carried[42];
+  const Real t7148 = carried[88] * carried[63];
   const Real t7149 = t7147 + t7148;
-  const Real t7150 = carried[44] * carried[66];
+  const Real t7150 = carried[65] * carried[87];
   const Real t7151 = t7150 + t7149;
-  const Real t7152 = carried[93] * carried[155];
+  const Real t7152 = carried[112] * carried[176];
   const Real t7153 = t7152 + t7151;
-  const Real t7154 = carried[157] * carried[92];
+  const Real t7154 = carried[178] * carried[109];
   const Real t7155 = t7153 + t7154;
-  const Real t7156 = carried[230] * t6969;
+  const Real t7156 = carried[251] * t6969;
   const Real t7157 = t7155 + t7156;
-  const Real t7158 = t6958 * carried[232];
+  const Real t7158 = t6958 * carried[253];
   const Real t7159 = t7157 + t7158;
-  const Real t7160 = t7086 * carried[321];
+  const Real t7160 = t7086 * carried[342];
   const Real t7161 = t7159 + t7160;
-  const Real t7162 = t7075 * carried[323];
+  const Real t7162 = t7075 * carried[344];
   const Real t7163 = t7162 + t7161;
-  const Real t7164 = carried[79] * carried[507];
+  const Real t7164 = carried[100] * carried[490];
   const Real t7165 = t7163 - t7164;
-  const Real t7166 = carried[509] * carried[80];
+  const Real t7166 = carried[491] * carried[101];
   const Real t7167 = t7165 + t7166;
-  const Real t7168 = carried[83] * carried[510];
+  const Real t7168 = carried[104] * carried[503];
   const Real t7169 = t7168 + t7167;
-  const Real t7170 = carried[189] * carried[511];
+  const Real t7170 = carried[210] * carried[506];
   const Real t7171 = t7169 - t7170;
-  const Real t7172 = carried[190] * carried[512];
+  const Real t7172 = carried[211] * carried[507];
   const Real t7173 = t7172 + t7171;
-  const Real t7174 = carried[514] * carried[193];
+  const Real t7174 = carried[509] * carried[214];
   const Real t7175 = t7173 + t7174;
-  carried[81] = t7175;
-  const Real t7176 = carried[195] * carried[43];
-  carried[84] = t7176;
+  carried[97] = t7175;
+  const Real t7176 = carried[216] * carried[64];
+  carried[98] = t7176;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_25(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced mass matrix
-  const Real t7177 = carried[84] + carried[81];
-  const Real t7178 = carried[138] * carried[200];
+  const Real t7177 = carried[98] + carried[97];
+  const Real t7178 = carried[159] * carried[221];
   const Real t7179 = t7178 + t7177;
-  const Real t7180 = carried[268] * carried[154];
+  const Real t7180 = carried[289] * carried[175];
   const Real t7181 = t7180 + t7179;
-  const Real t7182 = carried[344] * carried[156];
+  const Real t7182 = carried[365] * carried[177];
   const Real t7183 = t7182 + t7181;
-  const Real t7184 = carried[213] * carried[345];
+  const Real t7184 = carried[222] * carried[366];
   const Real t7185 = t7183 + t7184;
-  const Real t7186 = carried[229] * carried[348];
+  const Real t7186 = carried[233] * carried[369];
   const Real t7187 = t7186 + t7185;
-  carried[16] = t7187;
+  carried[37] = t7187;
 
   // reduced accelerations
-  const Real t7188 = t7187 * carried[171];
-  const Real t7189 = carried[78] - t7188;
+  const Real t7188 = t7187 * carried[78];
+  const Real t7189 = carried[96] - t7188;
 
   // hind_right_hip: joint force
-  const Real t7190 = carried[225] * carried[19];
-  const Real t7191 = carried[250] * carried[18];
+  const Real t7190 = carried[246] * carried[40];
+  const Real t7191 = carried[271] * carried[39];
   const Real t7192 = t7191 + t7190;
-  const Real t7193 = carried[464] * constant<Real>(0.21L);
-  const Real t7194 = carried[221] * constant<Real>(0.06L);
+  const Real t7193 = carried[475] * constant<Real>(0.21L);
+  const Real t7194 = carried[242] * constant<Real>(0.06L);
   const Real t7195 = t7194 - t7193;
   const Real t7196 = t7195 + t7192;
   const Real t7197 = t7196 + constant<Real>(0.0515L);
 
   // hind_left_hip: joint force
-  const Real t7198 = carried[13] * carried[219];
-  const Real t7199 = carried[220] * carried[12];
+  const Real t7198 = carried[34] * carried[240];
+  const Real t7199 = carried[241] * carried[33];
   const Real t7200 = t7198 + t7199;
-  const Real t7201 = constant<Real>(0.21L) * carried[465];
-  const Real t7202 = constant<Real>(0.06L) * carried[218];
+  const Real t7201 = constant<Real>(0.21L) * carried[480];
+  const Real t7202 = constant<Real>(0.06L) * carried[239];
   const Real t7203 = t7202 + t7201;
   const Real t7204 = t7200 - t7203;
   const Real t7205 = t7204 + t7197;
 
   // front_right_hip: joint force
-  const Real t7206 = carried[257] * carried[7];
-  const Real t7207 = carried[6] * carried[258];
+  const Real t7206 = carried[275] * carried[28];
+  const Real t7207 = carried[27] * carried[278];
   const Real t7208 = t7206 - t7207;
-  const Real t7209 = carried[470] * constant<Real>(0.21L);
-  const Real t7210 = carried[254] * constant<Real>(0.06L);
+  const Real t7209 = carried[481] * constant<Real>(0.21L);
+  const Real t7210 = carried[274] * constant<Real>(0.06L);
   const Real t7211 = t7210 + t7209;
   const Real t7212 = t7208 + t7211;
   const Real t7213 = t7205 + t7212;
 
   // front_left_hip: joint force
-  const Real t7214 = carried[260] * carried[1];
-  const Real t7215 = carried[0] * carried[261];
+  const Real t7214 = carried[280] * carried[22];
+  const Real t7215 = carried[21] * carried[281];
   const Real t7216 = t7214 - t7215;
-  const Real t7217 = constant<Real>(0.21L) * carried[475];
-  const Real t7218 = constant<Real>(0.06L) * carried[259];
+  const Real t7217 = constant<Real>(0.21L) * carried[485];
+  const Real t7218 = constant<Real>(0.06L) * carried[279];
   const Real t7219 = t7217 - t7218;
   const Real t7220 = t7216 + t7219;
   const Real t7221 = t7213 + t7220;
 
   // reduced mass matrix
-  const Real t7222 = carried[64] * carried[27];
+  const Real t7222 = carried[85] * carried[48];
   const Real t7223 = t7221 - t7222;
-  const Real t7224 = carried[67] * carried[35];
+  const Real t7224 = carried[88] * carried[56];
   const Real t7225 = t7224 + t7223;
-  const Real t7226 = carried[40] * carried[66];
+  const Real t7226 = carried[61] * carried[87];
   const Real t7227 = t7225 + t7226;
-  const Real t7228 = carried[91] * carried[140];
+  const Real t7228 = carried[108] * carried[161];
   const Real t7229 = t7227 - t7228;
-  const Real t7230 = carried[93] * carried[148];
+  const Real t7230 = carried[112] * carried[169];
   const Real t7231 = t7229 + t7230;
-  const Real t7232 = carried[153] * carried[92];
+  const Real t7232 = carried[174] * carried[109];
   const Real t7233 = t7232 + t7231;
-  const Real t7234 = carried[46] * carried[215];
+  const Real t7234 = carried[26] * carried[236];
   const Real t7235 = t7233 - t7234;
-  const Real t7236 = carried[223] * carried[48];
+  const Real t7236 = carried[244] * carried[32];
   const Real t7237 = t7235 + t7236;
-  const Real t7238 = carried[47] * carried[228];
+  const Real t7238 = carried[31] * carried[249];
   const Real t7239 = t7237 + t7238;
-  const Real t7240 = carried[306] * carried[75];
+  const Real t7240 = carried[327] * carried[74];
   const Real t7241 = t7239 - t7240;
-  const Real t7242 = carried[314] * carried[77];
+  const Real t7242 = carried[335] * carried[80];
   const Real t7243 = t7241 + t7242;
-  const Real t7244 = carried[76] * carried[319];
+  const Real t7244 = carried[76] * carried[340];
   const Real t7245 = t7243 + t7244;
-  const Real t7246 = carried[490] * carried[79];
+  const Real t7246 = carried[486] * carried[100];
   const Real t7247 = t7245 - t7246;
-  const Real t7248 = carried[80] * carried[493];
+  const Real t7248 = carried[101] * carried[488];
   const Real t7249 = t7247 + t7248;
-  const Real t7250 = carried[83] * carried[494];
+  const Real t7250 = carried[104] * carried[489];
   const Real t7251 = t7250 + t7249;
-  const Real t7252 = carried[495] * carried[189];
+  const Real t7252 = carried[496] * carried[210];
   const Real t7253 = t7251 - t7252;
-  const Real t7254 = carried[190] * carried[515];
+  const Real t7254 = carried[211] * carried[513];
   const Real t7255 = t7254 + t7253;
-  const Real t7256 = carried[521] * carried[193];
+  const Real t7256 = carried[515] * carried[214];
   const Real t7257 = t7256 + t7255;
-  const Real t7258 = carried[195] * carried[522];
+  const Real t7258 = carried[216] * carried[516];
   const Real t7259 = t7258 + t7257;
-  const Real t7260 = carried[523] * carried[200];
+  const Real t7260 = carried[517] * carried[221];
   const Real t7261 = t7259 + t7260;
-  const Real t7262 = carried[524] * carried[268];
+  const Real t7262 = carried[518] * carried[289];
   const Real t7263 = t7262 + t7261;
-  const Real t7264 = carried[344] * carried[525];
+  const Real t7264 = carried[365] * carried[519];
   const Real t7265 = t7263 + t7264;
-  const Real t7266 = carried[526] * carried[345];
+  const Real t7266 = carried[521] * carried[366];
   const Real t7267 = t7266 + t7265;
-  const Real t7268 = carried[527] * carried[348];
+  const Real t7268 = carried[522] * carried[369];
   const Real t7269 = t7267 + t7268;
 
   // reduced accelerations
-  const Real t7270 = t7187 * carried[432];
+  const Real t7270 = t7187 * carried[450];
   const Real t7271 = t7269 - t7270;
-  carried[17] = t7271;
-  const Real t7272 = t7271 * carried[170];
+  carried[38] = t7271;
+  const Real t7272 = t7271 * carried[47];
   const Real t7273 = t7189 - t7272;
   const Real t7274 = carried[622] * t7271;
 
   // hind_right_hip: joint force
-  const Real t7275 = carried[279] * carried[19];
-  const Real t7276 = carried[280] * carried[18];
+  const Real t7275 = carried[287] * carried[40];
+  const Real t7276 = carried[291] * carried[39];
   const Real t7277 = t7276 + t7275;
-  const Real t7278 = carried[547] * carried[18];
-  const Real t7279 = carried[19] * carried[549];
+  const Real t7278 = carried[542] * carried[39];
+  const Real t7279 = carried[40] * carried[544];
   const Real t7280 = t7279 - t7278;
   const Real t7281 = t7280 * constant<Real>(0.21L);
-  const Real t7282 = carried[278] * constant<Real>(0.06L);
+  const Real t7282 = carried[285] * constant<Real>(0.06L);
   const Real t7283 = t7282 - t7281;
   const Real t7284 = t7277 + t7283;
 
   // hind_left_hip: joint force
-  const Real t7285 = carried[283] * carried[13];
-  const Real t7286 = carried[284] * carried[12];
+  const Real t7285 = carried[300] * carried[34];
+  const Real t7286 = carried[301] * carried[33];
   const Real t7287 = t7285 + t7286;
-  const Real t7288 = carried[626] * carried[12];
-  const Real t7289 = carried[627] * carried[13];
+  const Real t7288 = carried[626] * carried[33];
+  const Real t7289 = carried[627] * carried[34];
   const Real t7290 = t7289 - t7288;
   const Real t7291 = constant<Real>(0.21L) * t7290;
-  const Real t7292 = carried[281] * constant<Real>(0.06L);
+  const Real t7292 = carried[299] * constant<Real>(0.06L);
   const Real t7293 = t7291 + t7292;
   const Real t7294 = t7287 - t7293;
   const Real t7295 = t7284 + t7294;
 
   // front_right_hip: joint force
-  const Real t7296 = carried[308] * carried[7];
-  const Real t7297 = carried[6] * carried[309];
+  const Real t7296 = carried[304] * carried[28];
+  const Real t7297 = carried[27] * carried[305];
   const Real t7298 = t7297 + t7296;
-  const Real t7299 = carried[6] * carried[629];
-  const Real t7300 = carried[630] * carried[7];
+  const Real t7299 = carried[27] * carried[629];
+  const Real t7300 = carried[630] * carried[28];
   const Real t7301 = t7300 - t7299;
   const Real t7302 = constant<Real>(0.21L) * t7301;
-  const Real t7303 = carried[294] * constant<Real>(0.06L);
+  const Real t7303 = carried[302] * constant<Real>(0.06L);
   const Real t7304 = t7302 + t7303;
   const Real t7305 = t7304 + t7298;
   const Real t7306 = t7305 + t7295;
 
   // front_left_hip: joint force
-  const Real t7307 = carried[311] * carried[1];
-  const Real t7308 = carried[312] * carried[0];
+  const Real t7307 = carried[329] * carried[22];
+  const Real t7308 = carried[330] * carried[21];
   const Real t7309 = t7307 + t7308;
-  const Real t7310 = carried[632] * carried[0];
-  const Real t7311 = carried[633] * carried[1];
+  const Real t7310 = carried[632] * carried[21];
+  const Real t7311 = carried[633] * carried[22];
   const Real t7312 = t7311 - t7310;
   const Real t7313 = t7312 * constant<Real>(0.21L);
-  const Real t7314 = carried[310] * constant<Real>(0.06L);
+  const Real t7314 = carried[315] * constant<Real>(0.06L);
   const Real t7315 = t7313 - t7314;
   const Real t7316 = t7309 + t7315;
   const Real t7317 = t7316 + t7306;
 
   // reduced mass matrix
-  const Real t7318 = carried[45] * carried[64];
+  const Real t7318 = carried[66] * carried[85];
   const Real t7319 = t7317 - t7318;
-  const Real t7320 = carried[67] * carried[51];
+  const Real t7320 = carried[88] * carried[72];
   const Real t7321 = t7319 + t7320;
-  const Real t7322 = carried[54] * carried[66];
+  const Real t7322 = carried[75] * carried[87];
   const Real t7323 = t7321 + t7322;
-  const Real t7324 = carried[91] * carried[158];
+  const Real t7324 = carried[108] * carried[179];
   const Real t7325 = t7323 - t7324;
-  const Real t7326 = carried[93] * carried[164];
+  const Real t7326 = carried[112] * carried[185];
   const Real t7327 = t7325 + t7326;
-  const Real t7328 = carried[167] * carried[92];
+  const Real t7328 = carried[188] * carried[109];
   const Real t7329 = t7327 - t7328;
-  const Real t7330 = carried[233] * carried[46];
+  const Real t7330 = carried[254] * carried[26];
   const Real t7331 = t7329 - t7330;
-  const Real t7332 = carried[239] * carried[48];
+  const Real t7332 = carried[260] * carried[32];
   const Real t7333 = t7331 + t7332;
-  const Real t7334 = carried[242] * carried[47];
+  const Real t7334 = carried[263] * carried[31];
   const Real t7335 = t7334 + t7333;
-  const Real t7336 = carried[325] * carried[75];
+  const Real t7336 = carried[346] * carried[74];
   const Real t7337 = t7335 - t7336;
-  const Real t7338 = carried[77] * carried[106];
+  const Real t7338 = carried[80] * carried[127];
   const Real t7339 = t7337 + t7338;
-  const Real t7340 = carried[222] * carried[76];
+  const Real t7340 = carried[243] * carried[76];
   const Real t7341 = t7339 - t7340;
-  const Real t7342 = carried[79] * carried[635];
+  const Real t7342 = carried[100] * carried[635];
   const Real t7343 = t7341 - t7342;
-  const Real t7344 = carried[80] * carried[636];
+  const Real t7344 = carried[101] * carried[636];
   const Real t7345 = t7343 + t7344;
-  const Real t7346 = carried[83] * carried[637];
+  const Real t7346 = carried[104] * carried[637];
   const Real t7347 = t7345 + t7346;
-  const Real t7348 = carried[638] * carried[189];
+  const Real t7348 = carried[638] * carried[210];
   const Real t7349 = t7347 - t7348;
-  const Real t7350 = carried[190] * carried[639];
+  const Real t7350 = carried[211] * carried[639];
   const Real t7351 = t7349 + t7350;
-  const Real t7352 = carried[640] * carried[193];
+  const Real t7352 = carried[640] * carried[214];
   const Real t7353 = t7351 + t7352;
-  const Real t7354 = carried[195] * carried[641];
+  const Real t7354 = carried[216] * carried[641];
   const Real t7355 = t7353 + t7354;
-  const Real t7356 = carried[200] * carried[642];
+  const Real t7356 = carried[221] * carried[642];
   const Real t7357 = t7356 + t7355;
-  const Real t7358 = carried[643] * carried[268];
+  const Real t7358 = carried[643] * carried[289];
   const Real t7359 = t7357 + t7358;
-  const Real t7360 = carried[644] * carried[344];
+  const Real t7360 = carried[644] * carried[365];
   const Real t7361 = t7359 + t7360;
-  const Real t7362 = carried[645] * carried[345];
+  const Real t7362 = carried[645] * carried[366];
   const Real t7363 = t7361 + t7362;
-  const Real t7364 = carried[646] * carried[348];
+  const Real t7364 = carried[646] * carried[369];
   const Real t7365 = t7363 + t7364;
 
   // reduced accelerations
   const Real t7366 = t7187 * carried[533];
   const Real t7367 = t7365 - t7366;
   const Real t7368 = t7367 - t7274;
-  carried[22] = t7368;
-  const Real t7369 = carried[168] * t7368;
+  carried[43] = t7368;
+  const Real t7369 = carried[19] * t7368;
   const Real t7370 = t7273 - t7369;
-  carried[23] = t7370;
-  const Real t7371 = carried[101] * t7370;
+  carried[44] = t7370;
+  const Real t7371 = carried[62] * t7370;
 
   // hind_right_hip: joint force
-  const Real t7372 = carried[89] * carried[19];
-  const Real t7373 = carried[115] * carried[18];
+  const Real t7372 = carried[15] * carried[40];
+  const Real t7373 = carried[46] * carried[39];
   const Real t7374 = t7372 + t7373;
-  const Real t7375 = carried[141] * carried[18];
-  const Real t7376 = carried[197] * carried[19];
+  const Real t7375 = carried[110] * carried[39];
+  const Real t7376 = carried[134] * carried[40];
   const Real t7377 = t7376 - t7375;
   const Real t7378 = constant<Real>(0.21L) * t7377;
 
   // hind_right_hip: wrench
-  const Real t7379 = carried[370] - carried[369];
+  const Real t7379 = carried[391] - carried[390];
 
   // hind_right_thigh: joint force
-  const Real t7380 = carried[58] + t7379;
+  const Real t7380 = carried[7] + t7379;
 
   // hind_right_hip: joint force
   const Real t7381 = constant<Real>(0.06L) * t7380;
@@ -14774,16 +14788,16 @@ template <class Real>
   const Real t7384 = t7383 + constant<Real>(0.000406L);
 
   // hind_left_hip: joint force
-  const Real t7385 = carried[226] * carried[13];
-  const Real t7386 = carried[266] * carried[12];
+  const Real t7385 = carried[193] * carried[34];
+  const Real t7386 = carried[245] * carried[33];
   const Real t7387 = t7386 + t7385;
-  const Real t7388 = carried[271] * carried[12];
-  const Real t7389 = carried[13] * carried[273];
+  const Real t7388 = carried[284] * carried[33];
+  const Real t7389 = carried[34] * carried[292];
   const Real t7390 = t7389 - t7388;
   const Real t7391 = constant<Real>(0.21L) * t7390;
 
   // hind_left_thigh: joint force
-  const Real t7392 = carried[203] + carried[289];
+  const Real t7392 = carried[136] + carried[310];
 
   // hind_left_hip: joint force
   const Real t7393 = constant<Real>(0.06L) * t7392;
@@ -14792,19 +14806,19 @@ template <class Real>
   const Real t7396 = t7384 + t7395;
 
   // front_right_hip: joint force
-  const Real t7397 = carried[301] * carried[7];
-  const Real t7398 = carried[307] * carried[6];
+  const Real t7397 = carried[306] * carried[28];
+  const Real t7398 = carried[317] * carried[27];
   const Real t7399 = t7398 + t7397;
-  const Real t7400 = carried[6] * carried[317];
-  const Real t7401 = carried[333] * carried[7];
+  const Real t7400 = carried[27] * carried[324];
+  const Real t7401 = carried[331] * carried[28];
   const Real t7402 = t7401 - t7400;
   const Real t7403 = constant<Real>(0.21L) * t7402;
 
   // front_right_hip: wrench
-  const Real t7404 = carried[110] - carried[109];
+  const Real t7404 = carried[131] - carried[130];
 
   // front_right_thigh: joint force
-  const Real t7405 = t7404 + carried[274];
+  const Real t7405 = t7404 + carried[293];
 
   // front_right_hip: joint force
   const Real t7406 = t7405 * constant<Real>(0.06L);
@@ -14813,16 +14827,16 @@ template <class Real>
   const Real t7409 = t7408 + t7396;
 
   // front_left_hip: joint force
-  const Real t7410 = carried[352] * carried[1];
-  const Real t7411 = carried[357] * carried[0];
+  const Real t7410 = carried[336] * carried[22];
+  const Real t7411 = carried[341] * carried[21];
   const Real t7412 = t7410 + t7411;
-  const Real t7413 = carried[360] * carried[0];
-  const Real t7414 = carried[362] * carried[1];
+  const Real t7413 = carried[347] * carried[21];
+  const Real t7414 = carried[354] * carried[22];
   const Real t7415 = t7414 - t7413;
   const Real t7416 = t7415 * constant<Real>(0.21L);
 
   // front_left_thigh: joint force
-  const Real t7417 = carried[133] + carried[334];
+  const Real t7417 = carried[154] + carried[332];
 
   // front_left_hip: joint force
   const Real t7418 = t7417 * constant<Real>(0.06L);
@@ -14831,128 +14845,128 @@ template <class Real>
   const Real t7421 = t7409 + t7420;
 
   // reduced mass matrix
-  const Real t7422 = carried[64] * carried[65];
+  const Real t7422 = carried[85] * carried[86];
   const Real t7423 = t7421 - t7422;
-  const Real t7424 = carried[67] * carried[71];
+  const Real t7424 = carried[88] * carried[92];
   const Real t7425 = t7423 + t7424;
-  const Real t7426 = carried[74] * carried[66];
+  const Real t7426 = carried[95] * carried[87];
   const Real t7427 = t7426 + t7425;
-  const Real t7428 = carried[91] * carried[177];
+  const Real t7428 = carried[108] * carried[198];
   const Real t7429 = t7427 - t7428;
-  const Real t7430 = carried[93] * carried[181];
+  const Real t7430 = carried[112] * carried[202];
   const Real t7431 = t7430 + t7429;
-  const Real t7432 = carried[184] * carried[92];
+  const Real t7432 = carried[205] * carried[109];
   const Real t7433 = t7431 + t7432;
-  const Real t7434 = carried[46] * carried[255];
+  const Real t7434 = carried[26] * carried[276];
   const Real t7435 = t7433 - t7434;
-  const Real t7436 = carried[262] * carried[48];
+  const Real t7436 = carried[283] * carried[32];
   const Real t7437 = t7436 + t7435;
-  const Real t7438 = carried[47] * carried[105];
+  const Real t7438 = carried[31] * carried[126];
   const Real t7439 = t7438 + t7437;
-  const Real t7440 = carried[332] * carried[75];
+  const Real t7440 = carried[353] * carried[74];
   const Real t7441 = t7439 - t7440;
-  const Real t7442 = carried[77] * carried[336];
+  const Real t7442 = carried[80] * carried[357];
   const Real t7443 = t7442 + t7441;
-  const Real t7444 = carried[339] * carried[76];
+  const Real t7444 = carried[360] * carried[76];
   const Real t7445 = t7443 - t7444;
-  const Real t7446 = carried[79] * carried[363];
+  const Real t7446 = carried[100] * carried[355];
   const Real t7447 = t7445 - t7446;
-  const Real t7448 = carried[80] * carried[364];
+  const Real t7448 = carried[101] * carried[356];
   const Real t7449 = t7448 + t7447;
-  const Real t7450 = carried[83] * carried[365];
+  const Real t7450 = carried[104] * carried[358];
   const Real t7451 = t7450 + t7449;
-  const Real t7452 = carried[366] * carried[189];
+  const Real t7452 = carried[374] * carried[210];
   const Real t7453 = t7451 - t7452;
-  const Real t7454 = carried[190] * carried[367];
+  const Real t7454 = carried[211] * carried[375];
   const Real t7455 = t7453 + t7454;
-  const Real t7456 = carried[368] * carried[193];
+  const Real t7456 = carried[377] * carried[214];
   const Real t7457 = t7456 + t7455;
-  const Real t7458 = carried[195] * carried[371];
+  const Real t7458 = carried[216] * carried[378];
   const Real t7459 = t7457 + t7458;
-  const Real t7460 = carried[200] * carried[372];
+  const Real t7460 = carried[221] * carried[380];
   const Real t7461 = t7459 + t7460;
-  const Real t7462 = carried[268] * carried[376];
+  const Real t7462 = carried[289] * carried[381];
   const Real t7463 = t7462 + t7461;
-  const Real t7464 = carried[344] * carried[377];
+  const Real t7464 = carried[365] * carried[382];
   const Real t7465 = t7464 + t7463;
-  const Real t7466 = carried[379] * carried[345];
+  const Real t7466 = carried[383] * carried[366];
   const Real t7467 = t7466 + t7465;
-  const Real t7468 = carried[348] * carried[381];
+  const Real t7468 = carried[369] * carried[384];
   const Real t7469 = t7468 + t7467;
 
   // reduced accelerations
-  const Real t7470 = t7187 * carried[26];
+  const Real t7470 = t7187 * carried[0];
   const Real t7471 = t7469 - t7470;
-  const Real t7472 = t7271 * carried[121];
+  const Real t7472 = t7271 * carried[125];
   const Real t7473 = t7471 - t7472;
-  const Real t7474 = t7368 * carried[104];
+  const Real t7474 = t7368 * carried[122];
   const Real t7475 = t7473 - t7474;
   const Real t7476 = t7475 - t7371;
-  carried[36] = t7476;
+  carried[57] = t7476;
 }
 
 template <class Real>
 [[gnu::noinline]] inline void torque_driven_dynamics_block_26(Real (&__restrict carried)[658]) noexcept {
   using detail::constant;
   // reduced accelerations
-  const Real t7477 = carried[29] * carried[36];
-  carried[43] = t7477;
-  const Real t7478 = carried[53] * t7477;
-  const Real t7479 = carried[99] * carried[23];
-  carried[58] = t7479;
-  const Real t7480 = carried[172] * t7479;
-  const Real t7481 = carried[647] * carried[22];
-  carried[62] = t7481;
+  const Real t7477 = carried[4] * carried[57];
+  carried[7] = t7477;
+  const Real t7478 = carried[1] * t7477;
+  const Real t7479 = carried[20] * carried[44];
+  carried[15] = t7479;
+  const Real t7480 = carried[79] * t7479;
+  const Real t7481 = carried[647] * carried[43];
+  carried[46] = t7481;
   const Real t7482 = carried[539] * t7481;
-  const Real t7483 = carried[17] * carried[528];
-  carried[78] = t7483;
-  const Real t7484 = carried[460] * t7483;
+  const Real t7483 = carried[38] * carried[523];
+  carried[64] = t7483;
+  const Real t7484 = carried[453] * t7483;
 
   // reduced forces
-  const Real t7485 = carried[118] * carried[66];
-  const Real t7486 = carried[116] * carried[67];
-  const Real t7487 = carried[64] * carried[100];
+  const Real t7485 = carried[139] * carried[87];
+  const Real t7486 = carried[137] * carried[88];
+  const Real t7487 = carried[85] * carried[121];
   const Real t7488 = t7487 + t7486;
   const Real t7489 = t7488 - t7485;
-  const Real t7490 = carried[91] * carried[85];
+  const Real t7490 = carried[108] * carried[106];
   const Real t7491 = t7489 + t7490;
-  const Real t7492 = carried[93] * carried[204];
+  const Real t7492 = carried[112] * carried[225];
   const Real t7493 = t7492 + t7491;
-  const Real t7494 = carried[209] * carried[92];
+  const Real t7494 = carried[230] * carried[109];
   const Real t7495 = t7493 - t7494;
-  const Real t7496 = carried[277] * carried[46];
+  const Real t7496 = carried[298] * carried[26];
   const Real t7497 = t7495 + t7496;
-  const Real t7498 = carried[293] * carried[48];
+  const Real t7498 = carried[314] * carried[32];
   const Real t7499 = t7498 + t7497;
-  const Real t7500 = carried[47] * carried[298];
+  const Real t7500 = carried[31] * carried[319];
   const Real t7501 = t7499 - t7500;
-  const Real t7502 = carried[358] * carried[75];
+  const Real t7502 = carried[379] * carried[74];
   const Real t7503 = t7501 + t7502;
-  const Real t7504 = carried[380] * carried[77];
+  const Real t7504 = carried[401] * carried[80];
   const Real t7505 = t7504 + t7503;
-  const Real t7506 = carried[276] * carried[76];
+  const Real t7506 = carried[297] * carried[76];
   const Real t7507 = t7505 - t7506;
 
   // hind_right_hip: joint force
-  const Real t7508 = carried[130] * carried[19];
-  const Real t7509 = carried[131] * carried[18];
+  const Real t7508 = carried[147] * carried[40];
+  const Real t7509 = carried[150] * carried[39];
   const Real t7510 = t7509 + t7508;
-  const Real t7511 = constant<Real>(0.21L) * carried[450];
-  const Real t7512 = carried[435] * constant<Real>(0.06L);
+  const Real t7511 = constant<Real>(0.21L) * carried[471];
+  const Real t7512 = carried[448] * constant<Real>(0.06L);
   const Real t7513 = t7512 - t7511;
   const Real t7514 = t7513 + t7510;
 
   // trunk: wrench
-  const Real t7515 = constant<Real>(0.005104L) * carried[407];
-  const Real t7516 = carried[398] * constant<Real>(0.131455416L);
+  const Real t7515 = constant<Real>(0.005104L) * carried[428];
+  const Real t7516 = carried[419] * constant<Real>(0.131455416L);
   const Real t7517 = t7515 + t7516;
-  const Real t7518 = carried[409] * constant<Real>(0.000406L);
+  const Real t7518 = carried[430] * constant<Real>(0.000406L);
   const Real t7519 = t7518 + t7517;
-  const Real t7520 = carried[402] - carried[395];
+  const Real t7520 = carried[423] - carried[416];
   const Real t7521 = constant<Real>(0.000691L) * t7520;
   const Real t7522 = t7519 + t7521;
-  const Real t7523 = constant<Real>(0.011L) * carried[400];
-  const Real t7524 = constant<Real>(0.0515L) * carried[405];
+  const Real t7523 = constant<Real>(0.011L) * carried[421];
+  const Real t7524 = constant<Real>(0.0515L) * carried[426];
   const Real t7525 = t7523 + t7524;
   const Real t7526 = t7522 + t7525;
 
@@ -14960,95 +14974,95 @@ template <class Real>
   const Real t7527 = t7526 + t7514;
 
   // hind_left_hip: joint force
-  const Real t7528 = carried[13] * carried[146];
-  const Real t7529 = carried[176] * carried[12];
+  const Real t7528 = carried[34] * carried[151];
+  const Real t7529 = carried[152] * carried[33];
   const Real t7530 = t7529 + t7528;
-  const Real t7531 = carried[499] * constant<Real>(0.21L);
-  const Real t7532 = carried[441] * constant<Real>(0.06L);
+  const Real t7531 = carried[511] * constant<Real>(0.21L);
+  const Real t7532 = carried[452] * constant<Real>(0.06L);
   const Real t7533 = t7531 + t7532;
   const Real t7534 = t7530 - t7533;
   const Real t7535 = t7527 + t7534;
 
   // front_right_hip: joint force
-  const Real t7536 = carried[207] * carried[7];
-  const Real t7537 = carried[6] * carried[282];
+  const Real t7536 = carried[167] * carried[28];
+  const Real t7537 = carried[27] * carried[197];
   const Real t7538 = t7536 + t7537;
-  const Real t7539 = carried[34] * constant<Real>(0.21L);
-  const Real t7540 = carried[446] * constant<Real>(0.06L);
+  const Real t7539 = carried[55] * constant<Real>(0.21L);
+  const Real t7540 = carried[460] * constant<Real>(0.06L);
   const Real t7541 = t7540 + t7539;
   const Real t7542 = t7541 + t7538;
   const Real t7543 = t7542 + t7535;
 
   // front_left_hip: joint force
-  const Real t7544 = carried[285] * carried[1];
-  const Real t7545 = carried[0] * carried[286];
+  const Real t7544 = carried[228] * carried[22];
+  const Real t7545 = carried[21] * carried[234];
   const Real t7546 = t7544 + t7545;
-  const Real t7547 = carried[560] * constant<Real>(0.21L);
-  const Real t7548 = carried[482] * constant<Real>(0.06L);
+  const Real t7547 = carried[572] * constant<Real>(0.21L);
+  const Real t7548 = carried[465] * constant<Real>(0.06L);
   const Real t7549 = t7547 - t7548;
   const Real t7550 = t7546 + t7549;
   const Real t7551 = t7543 + t7550;
 
   // reduced forces
   const Real t7552 = t7507 + t7551;
-  const Real t7553 = carried[79] * carried[111];
+  const Real t7553 = carried[100] * carried[132];
   const Real t7554 = t7553 + t7552;
-  const Real t7555 = carried[399] * carried[80];
+  const Real t7555 = carried[420] * carried[101];
   const Real t7556 = t7555 - t7554;
-  const Real t7557 = carried[83] * carried[403];
+  const Real t7557 = carried[104] * carried[424];
   const Real t7558 = t7556 + t7557;
-  const Real t7559 = carried[189] * carried[25];
+  const Real t7559 = carried[210] * carried[10];
   const Real t7560 = t7558 - t7559;
-  const Real t7561 = carried[190] * carried[136];
+  const Real t7561 = carried[211] * carried[49];
   const Real t7562 = t7561 + t7560;
-  const Real t7563 = carried[137] * carried[193];
+  const Real t7563 = carried[59] * carried[214];
   const Real t7564 = t7563 + t7562;
-  const Real t7565 = carried[195] * carried[473];
+  const Real t7565 = carried[216] * carried[473];
   const Real t7566 = t7565 + t7564;
-  const Real t7567 = carried[211] * carried[200];
+  const Real t7567 = carried[2] * carried[221];
   const Real t7568 = t7566 + t7567;
-  const Real t7569 = carried[268] * carried[212];
+  const Real t7569 = carried[289] * carried[5];
   const Real t7570 = t7569 + t7568;
-  const Real t7571 = carried[344] * carried[404];
+  const Real t7571 = carried[365] * carried[371];
   const Real t7572 = t7570 + t7571;
-  const Real t7573 = carried[458] * carried[345];
+  const Real t7573 = carried[396] * carried[366];
   const Real t7574 = t7573 + t7572;
-  const Real t7575 = carried[459] * carried[348];
+  const Real t7575 = carried[397] * carried[369];
   const Real t7576 = t7574 + t7575;
 
   // reduced accelerations
-  const Real t7577 = carried[16] * carried[429];
-  carried[81] = t7577;
-  const Real t7578 = t7577 * carried[496];
+  const Real t7577 = carried[37] * carried[425];
+  carried[83] = t7577;
+  const Real t7578 = t7577 * carried[466];
   const Real t7579 = t7576 - t7578;
   const Real t7580 = t7579 - t7484;
   const Real t7581 = t7580 - t7482;
   const Real t7582 = t7581 - t7480;
   const Real t7583 = t7582 - t7478;
-  carried[84] = t7583;
-  const Real t7584 = carried[36] * t7477;
-  carried[86] = t7584;
-  const Real t7585 = carried[23] * t7479;
-  carried[89] = t7585;
+  carried[96] = t7583;
+  const Real t7584 = carried[57] * t7477;
+  carried[97] = t7584;
+  const Real t7585 = carried[44] * t7479;
+  carried[98] = t7585;
 
   // hind_right_thigh: joint force
-  const Real t7586 = carried[20] * carried[50];
-  const Real t7587 = carried[52] * carried[21];
+  const Real t7586 = carried[41] * carried[68];
+  const Real t7587 = carried[69] * carried[42];
   const Real t7588 = t7587 - t7586;
-  const Real t7589 = carried[57] * carried[21];
-  const Real t7590 = carried[20] * carried[55];
+  const Real t7589 = carried[71] * carried[42];
+  const Real t7590 = carried[41] * carried[70];
   const Real t7591 = t7589 + t7590;
   const Real t7592 = constant<Real>(0.075L) * t7591;
   const Real t7593 = t7588 + t7592;
 
   // hind_right_hip: wrench
-  const Real t7594 = carried[19] * constant<Real>(0.0022841L);
+  const Real t7594 = carried[40] * constant<Real>(0.0022841L);
 
   // hind_right_hip: wrench
-  const Real t7595 = carried[90] + t7594;
+  const Real t7595 = carried[16] + t7594;
 
   // hind_right_hip: wrench
-  const Real t7596 = carried[113] + constant<Real>(-0.001638L);
+  const Real t7596 = carried[17] + constant<Real>(-0.001638L);
 
   // hind_right_hip: wrench
   const Real t7597 = t7595 - t7596;
@@ -15057,43 +15071,43 @@ template <class Real>
   const Real t7598 = t7593 + t7597;
 
   // hind_right_hip: joint force
-  const Real t7599 = t7598 * carried[19];
+  const Real t7599 = t7598 * carried[40];
 
   // hind_right_hip: wrench
-  const Real t7600 = constant<Real>(0.000078L) - carried[87];
-  const Real t7601 = constant<Real>(0.0016471L) * carried[18];
-  const Real t7602 = carried[59] + t7601;
+  const Real t7600 = constant<Real>(0.000078L) - carried[14];
+  const Real t7601 = constant<Real>(0.0016471L) * carried[39];
+  const Real t7602 = carried[12] + t7601;
 
   // hind_right_hip: wrench
   const Real t7603 = t7600 + t7602;
 
   // hind_right_thigh: joint force
-  const Real t7604 = carried[77] + t7603;
+  const Real t7604 = carried[80] + t7603;
 
   // hind_right_hip: joint force
-  const Real t7605 = carried[18] * t7604;
+  const Real t7605 = carried[39] * t7604;
   const Real t7606 = t7605 + t7599;
 
   // hind_right_thigh: joint force
-  const Real t7607 = carried[151] + carried[61];
+  const Real t7607 = carried[111] + carried[73];
 
   // hind_right_hip: joint force
-  const Real t7608 = t7607 * carried[18];
+  const Real t7608 = t7607 * carried[39];
 
   // hind_right_thigh: wrench
-  const Real t7609 = carried[19] * constant<Real>(0.357L);
+  const Real t7609 = carried[40] * constant<Real>(0.357L);
 
   // hind_right_thigh: wrench
   const Real t7610 = carried[614] + t7609;
 
   // hind_right_shank: joint force
-  const Real t7611 = carried[49] - t7610;
+  const Real t7611 = carried[67] - t7610;
 
   // hind_right_thigh: joint force
-  const Real t7612 = t7611 - carried[117];
+  const Real t7612 = t7611 - carried[82];
 
   // hind_right_hip: joint force
-  const Real t7613 = t7612 * carried[19];
+  const Real t7613 = t7612 * carried[40];
   const Real t7614 = t7613 - t7608;
   const Real t7615 = t7614 * constant<Real>(0.21L);
 
@@ -15110,23 +15124,23 @@ template <class Real>
   const Real t7621 = t7620 + constant<Real>(0.20821592L);
 
   // hind_left_thigh: joint force
-  const Real t7622 = carried[14] * carried[4];
-  const Real t7623 = carried[15] * carried[5];
+  const Real t7622 = carried[35] * carried[3];
+  const Real t7623 = carried[36] * carried[6];
   const Real t7624 = t7623 - t7622;
-  const Real t7625 = carried[15] * carried[11];
-  const Real t7626 = carried[14] * carried[10];
+  const Real t7625 = carried[36] * carried[18];
+  const Real t7626 = carried[35] * carried[8];
   const Real t7627 = t7625 + t7626;
   const Real t7628 = constant<Real>(0.075L) * t7627;
   const Real t7629 = t7624 - t7628;
 
   // hind_left_hip: wrench
-  const Real t7630 = carried[13] * constant<Real>(0.0022841L);
+  const Real t7630 = carried[34] * constant<Real>(0.0022841L);
 
   // hind_left_hip: wrench
-  const Real t7631 = t7630 - carried[245];
+  const Real t7631 = t7630 - carried[218];
 
   // hind_left_hip: wrench
-  const Real t7632 = carried[263] + constant<Real>(-0.001638L);
+  const Real t7632 = carried[224] + constant<Real>(-0.001638L);
 
   // hind_left_hip: wrench
   const Real t7633 = t7631 - t7632;
@@ -15135,48 +15149,48 @@ template <class Real>
   const Real t7634 = t7633 + t7629;
 
   // hind_left_hip: joint force
-  const Real t7635 = carried[13] * t7634;
+  const Real t7635 = carried[34] * t7634;
 
   // hind_left_hip: wrench
-  const Real t7636 = constant<Real>(-0.000078L) - carried[216];
-  const Real t7637 = constant<Real>(0.0016471L) * carried[12];
-  const Real t7638 = t7637 - carried[208];
+  const Real t7636 = constant<Real>(-0.000078L) - carried[157];
+  const Real t7637 = constant<Real>(0.0016471L) * carried[33];
+  const Real t7638 = t7637 - carried[138];
 
   // hind_left_hip: wrench
   const Real t7639 = t7636 + t7638;
 
   // hind_left_thigh: joint force
-  const Real t7640 = t7639 + carried[48];
+  const Real t7640 = t7639 + carried[32];
 
   // hind_left_hip: joint force
-  const Real t7641 = t7640 * carried[12];
+  const Real t7641 = t7640 * carried[33];
   const Real t7642 = t7635 + t7641;
 
   // hind_left_thigh: joint force
-  const Real t7643 = carried[272] + carried[39];
+  const Real t7643 = carried[290] + carried[25];
 
   // hind_left_hip: joint force
-  const Real t7644 = t7643 * carried[12];
+  const Real t7644 = t7643 * carried[33];
 
   // hind_left_thigh: wrench
-  const Real t7645 = carried[13] * constant<Real>(0.357L);
+  const Real t7645 = carried[34] * constant<Real>(0.357L);
 
   // hind_left_thigh: wrench
-  const Real t7646 = t7645 + carried[596];
+  const Real t7646 = t7645 + carried[584];
 
   // hind_left_shank: joint force
   const Real t7647 = carried[120] - t7646;
 
   // hind_left_thigh: joint force
-  const Real t7648 = t7647 - carried[269];
+  const Real t7648 = t7647 - carried[270];
 
   // hind_left_hip: joint force
-  const Real t7649 = t7648 * carried[13];
+  const Real t7649 = t7648 * carried[34];
   const Real t7650 = t7649 - t7644;
   const Real t7651 = t7650 * constant<Real>(0.21L);
 
   // hind_left_hip: wrench
-  const Real t7652 = carried[591] - carried[590];
+  const Real t7652 = carried[568] - carried[567];
   const Real t7653 = constant<Real>(-0.078L) + t7652;
 
   // hind_left_thigh: joint force
@@ -15189,23 +15203,23 @@ template <class Real>
   const Real t7658 = t7657 + t7621;
 
   // front_right_thigh: joint force
-  const Real t7659 = carried[69] * carried[8];
-  const Real t7660 = carried[70] * carried[9];
+  const Real t7659 = carried[90] * carried[29];
+  const Real t7660 = carried[91] * carried[30];
   const Real t7661 = t7660 - t7659;
-  const Real t7662 = carried[8] * carried[72];
-  const Real t7663 = carried[73] * carried[9];
+  const Real t7662 = carried[29] * carried[93];
+  const Real t7663 = carried[94] * carried[30];
   const Real t7664 = t7662 + t7663;
   const Real t7665 = constant<Real>(0.075L) * t7664;
   const Real t7666 = t7665 + t7661;
 
   // front_right_hip: wrench
-  const Real t7667 = constant<Real>(0.0022841L) * carried[7];
+  const Real t7667 = constant<Real>(0.0022841L) * carried[28];
 
   // front_right_hip: wrench
-  const Real t7668 = carried[303] + t7667;
+  const Real t7668 = carried[307] + t7667;
 
   // front_right_hip: wrench
-  const Real t7669 = constant<Real>(-0.001638L) + carried[305];
+  const Real t7669 = constant<Real>(-0.001638L) + carried[308];
 
   // front_right_hip: wrench
   const Real t7670 = t7668 - t7669;
@@ -15214,48 +15228,48 @@ template <class Real>
   const Real t7671 = t7666 + t7670;
 
   // front_right_hip: joint force
-  const Real t7672 = t7671 * carried[7];
+  const Real t7672 = t7671 * carried[28];
 
   // front_right_hip: wrench
-  const Real t7673 = carried[6] * constant<Real>(0.0016471L);
-  const Real t7674 = t7673 + carried[292];
-  const Real t7675 = constant<Real>(0.000078L) - carried[296];
+  const Real t7673 = carried[27] * constant<Real>(0.0016471L);
+  const Real t7674 = t7673 + carried[294];
+  const Real t7675 = constant<Real>(0.000078L) - carried[303];
 
   // front_right_hip: wrench
   const Real t7676 = t7674 + t7675;
 
   // front_right_thigh: joint force
-  const Real t7677 = carried[93] + t7676;
+  const Real t7677 = carried[112] + t7676;
 
   // front_right_hip: joint force
-  const Real t7678 = carried[6] * t7677;
+  const Real t7678 = carried[27] * t7677;
   const Real t7679 = t7678 + t7672;
 
   // front_right_thigh: joint force
-  const Real t7680 = carried[88] - carried[331];
+  const Real t7680 = carried[107] - carried[328];
 
   // front_right_hip: joint force
-  const Real t7681 = carried[6] * t7680;
+  const Real t7681 = carried[27] * t7680;
 
   // front_right_thigh: wrench
-  const Real t7682 = carried[7] * constant<Real>(0.357L);
+  const Real t7682 = carried[28] * constant<Real>(0.357L);
 
   // front_right_thigh: wrench
-  const Real t7683 = t7682 - carried[555];
+  const Real t7683 = t7682 - carried[548];
 
   // front_right_shank: joint force
-  const Real t7684 = carried[68] + t7683;
+  const Real t7684 = carried[89] + t7683;
 
   // front_right_thigh: joint force
-  const Real t7685 = carried[316] + t7684;
+  const Real t7685 = carried[318] + t7684;
 
   // front_right_hip: joint force
-  const Real t7686 = t7685 * carried[7];
+  const Real t7686 = t7685 * carried[28];
   const Real t7687 = t7686 - t7681;
   const Real t7688 = constant<Real>(0.21L) * t7687;
 
   // front_right_hip: wrench
-  const Real t7689 = constant<Real>(0.078L) + carried[461];
+  const Real t7689 = constant<Real>(0.078L) + carried[439];
 
   // front_right_thigh: joint force
   const Real t7690 = t7689 + t7664;
@@ -15267,23 +15281,23 @@ template <class Real>
   const Real t7694 = t7658 + t7693;
 
   // front_left_thigh: joint force
-  const Real t7695 = carried[31] * carried[2];
-  const Real t7696 = carried[32] * carried[3];
+  const Real t7695 = carried[51] * carried[23];
+  const Real t7696 = carried[52] * carried[24];
   const Real t7697 = t7696 - t7695;
-  const Real t7698 = carried[3] * carried[37];
-  const Real t7699 = carried[33] * carried[2];
+  const Real t7698 = carried[24] * carried[54];
+  const Real t7699 = carried[53] * carried[23];
   const Real t7700 = t7698 + t7699;
   const Real t7701 = constant<Real>(0.075L) * t7700;
   const Real t7702 = t7697 - t7701;
 
   // front_left_hip: wrench
-  const Real t7703 = carried[1] * constant<Real>(0.0022841L);
+  const Real t7703 = carried[22] * constant<Real>(0.0022841L);
 
   // front_left_hip: wrench
-  const Real t7704 = t7703 - carried[353];
+  const Real t7704 = t7703 - carried[337];
 
   // front_left_hip: wrench
-  const Real t7705 = carried[356] + constant<Real>(-0.001638L);
+  const Real t7705 = carried[338] + constant<Real>(-0.001638L);
 
   // front_left_hip: wrench
   const Real t7706 = t7704 - t7705;
@@ -15292,48 +15306,48 @@ template <class Real>
   const Real t7707 = t7706 + t7702;
 
   // front_left_hip: joint force
-  const Real t7708 = carried[1] * t7707;
+  const Real t7708 = carried[22] * t7707;
 
   // front_left_hip: wrench
-  const Real t7709 = constant<Real>(0.0016471L) * carried[0];
-  const Real t7710 = t7709 - carried[335];
-  const Real t7711 = constant<Real>(-0.000078L) - carried[337];
+  const Real t7709 = constant<Real>(0.0016471L) * carried[21];
+  const Real t7710 = t7709 - carried[333];
+  const Real t7711 = constant<Real>(-0.000078L) - carried[334];
 
   // front_left_hip: wrench
   const Real t7712 = t7710 + t7711;
 
   // front_left_thigh: joint force
-  const Real t7713 = t7712 + carried[67];
+  const Real t7713 = t7712 + carried[88];
 
   // front_left_hip: joint force
-  const Real t7714 = t7713 * carried[0];
+  const Real t7714 = t7713 * carried[21];
   const Real t7715 = t7708 + t7714;
 
   // front_left_thigh: joint force
-  const Real t7716 = carried[41] - carried[361];
+  const Real t7716 = carried[58] - carried[352];
 
   // front_left_hip: joint force
-  const Real t7717 = t7716 * carried[0];
+  const Real t7717 = t7716 * carried[21];
 
   // front_left_thigh: wrench
-  const Real t7718 = carried[1] * constant<Real>(0.357L);
+  const Real t7718 = carried[22] * constant<Real>(0.357L);
 
   // front_left_thigh: wrench
-  const Real t7719 = t7718 - carried[288];
+  const Real t7719 = t7718 - carried[248];
 
   // front_left_shank: joint force
-  const Real t7720 = t7719 + carried[30];
+  const Real t7720 = t7719 + carried[50];
 
   // front_left_thigh: joint force
-  const Real t7721 = t7720 + carried[359];
+  const Real t7721 = t7720 + carried[345];
 
   // front_left_hip: joint force
-  const Real t7722 = t7721 * carried[1];
+  const Real t7722 = t7721 * carried[22];
   const Real t7723 = t7722 - t7717;
   const Real t7724 = t7723 * constant<Real>(0.21L);
 
   // front_left_hip: wrench
-  const Real t7725 = carried[114] - carried[108];
+  const Real t7725 = carried[105] - carried[60];
   const Real t7726 = constant<Real>(-0.078L) + t7725;
 
   // front_left_thigh: joint force
@@ -15346,369 +15360,347 @@ template <class Real>
   const Real t7731 = t7730 + t7694;
 
   // reduced mass matrix
-  const Real t7732 = carried[79] * carried[64];
+  const Real t7732 = carried[100] * carried[85];
   const Real t7733 = t7731 - t7732;
-  const Real t7734 = carried[80] * carried[67];
+  const Real t7734 = carried[101] * carried[88];
   const Real t7735 = t7734 + t7733;
-  const Real t7736 = carried[83] * carried[66];
+  const Real t7736 = carried[104] * carried[87];
   const Real t7737 = t7736 + t7735;
-  const Real t7738 = carried[91] * carried[189];
+  const Real t7738 = carried[108] * carried[210];
   const Real t7739 = t7737 - t7738;
-  const Real t7740 = carried[190] * carried[93];
+  const Real t7740 = carried[211] * carried[112];
   const Real t7741 = t7739 + t7740;
-  const Real t7742 = carried[193] * carried[92];
+  const Real t7742 = carried[214] * carried[109];
   const Real t7743 = t7741 + t7742;
-  const Real t7744 = carried[46] * carried[195];
+  const Real t7744 = carried[26] * carried[216];
   const Real t7745 = t7743 + t7744;
-  const Real t7746 = carried[200] * carried[48];
+  const Real t7746 = carried[221] * carried[32];
   const Real t7747 = t7745 + t7746;
-  const Real t7748 = carried[47] * carried[268];
+  const Real t7748 = carried[31] * carried[289];
   const Real t7749 = t7747 + t7748;
-  const Real t7750 = carried[344] * carried[75];
+  const Real t7750 = carried[365] * carried[74];
   const Real t7751 = t7749 + t7750;
-  const Real t7752 = carried[77] * carried[345];
+  const Real t7752 = carried[80] * carried[366];
   const Real t7753 = t7752 + t7751;
-  const Real t7754 = carried[76] * carried[348];
+  const Real t7754 = carried[76] * carried[369];
   const Real t7755 = t7753 + t7754;
-  const Real t7756 = carried[95] * carried[79];
-  const Real t7757 = carried[64] - t7756;
-  const Real t7758 = carried[574] * carried[80];
+  const Real t7756 = carried[116] * carried[100];
+  const Real t7757 = carried[85] - t7756;
+  const Real t7758 = carried[586] * carried[101];
   const Real t7759 = t7758 + t7757;
-  const Real t7760 = carried[566] * carried[83];
+  const Real t7760 = carried[578] * carried[104];
   const Real t7761 = t7759 + t7760;
-  const Real t7762 = carried[79] * t7761;
+  const Real t7762 = carried[100] * t7761;
   const Real t7763 = t7755 - t7762;
-  const Real t7764 = carried[574] * carried[79];
-  const Real t7765 = carried[67] - t7764;
-  const Real t7766 = carried[80] * carried[299];
+  const Real t7764 = carried[586] * carried[100];
+  const Real t7765 = carried[88] - t7764;
+  const Real t7766 = carried[101] * carried[320];
   const Real t7767 = t7766 + t7765;
-  const Real t7768 = carried[112] * carried[83];
+  const Real t7768 = carried[133] * carried[104];
   const Real t7769 = t7768 + t7767;
-  const Real t7770 = carried[80] * t7769;
+  const Real t7770 = carried[101] * t7769;
   const Real t7771 = t7770 + t7763;
-  carried[94] = t7771;
-  const Real t7772 = constant<Real>(0.05178848L) * carried[82];
-  carried[96] = t7772;
-  const Real t7773 = carried[79] * carried[566];
-  const Real t7774 = carried[66] - t7773;
-  const Real t7775 = carried[112] * carried[80];
+  carried[99] = t7771;
+  const Real t7772 = constant<Real>(0.05178848L) * carried[103];
+  carried[102] = t7772;
+  const Real t7773 = carried[100] * carried[578];
+  const Real t7774 = carried[87] - t7773;
+  const Real t7775 = carried[133] * carried[101];
   const Real t7776 = t7775 + t7774;
-  carried[97] = t7776;
+  carried[110] = t7776;
 }
 
 template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_27(Real (&__restrict carried)[658]) noexcept {
-  using detail::constant;
-  // reduced mass matrix
-  const Real t7777 = carried[97] + carried[96];
-  const Real t7778 = carried[83] * t7777;
-  const Real t7779 = t7778 + carried[94];
-  const Real t7780 = carried[189] * carried[24];
-  const Real t7781 = carried[91] - t7780;
-  const Real t7782 = carried[190] * carried[582];
-  const Real t7783 = t7781 + t7782;
-  const Real t7784 = carried[576] * carried[193];
-  const Real t7785 = t7783 + t7784;
-  const Real t7786 = carried[189] * t7785;
-  const Real t7787 = t7779 - t7786;
-  const Real t7788 = carried[189] * carried[582];
-  const Real t7789 = carried[93] - t7788;
-  const Real t7790 = carried[190] * carried[38];
-  const Real t7791 = t7789 + t7790;
-  const Real t7792 = carried[28] * carried[193];
-  const Real t7793 = t7792 + t7791;
-  const Real t7794 = carried[190] * t7793;
-  const Real t7795 = t7787 + t7794;
-  const Real t7796 = carried[192] * constant<Real>(0.05178848L);
-  const Real t7797 = carried[576] * carried[189];
-  const Real t7798 = carried[92] - t7797;
-  const Real t7799 = carried[190] * carried[28];
-  const Real t7800 = t7798 + t7799;
-  const Real t7801 = t7800 + t7796;
-  const Real t7802 = t7801 * carried[193];
-  const Real t7803 = t7802 + t7795;
-  const Real t7804 = carried[195] * carried[466];
-  const Real t7805 = t7804 + carried[46];
-  const Real t7806 = carried[291] * carried[200];
-  const Real t7807 = t7805 + t7806;
-  const Real t7808 = carried[268] * carried[198];
-  const Real t7809 = t7808 + t7807;
-  const Real t7810 = t7809 * carried[195];
-  const Real t7811 = t7810 + t7803;
-  const Real t7812 = carried[291] * carried[195];
-  const Real t7813 = t7812 + carried[48];
-  const Real t7814 = carried[200] * carried[504];
-  const Real t7815 = t7814 + t7813;
-  const Real t7816 = carried[268] * carried[503];
-  const Real t7817 = t7815 + t7816;
-  const Real t7818 = carried[200] * t7817;
-  const Real t7819 = t7811 + t7818;
-  const Real t7820 = carried[267] * constant<Real>(0.05178848L);
-  const Real t7821 = carried[195] * carried[198];
-  const Real t7822 = carried[47] + t7821;
-  const Real t7823 = carried[200] * carried[503];
-  const Real t7824 = t7822 + t7823;
-  const Real t7825 = t7824 + t7820;
-  const Real t7826 = carried[268] * t7825;
-  const Real t7827 = t7819 + t7826;
-  const Real t7828 = carried[382] * carried[344];
-  const Real t7829 = t7828 + carried[75];
-  const Real t7830 = carried[355] * carried[345];
-  const Real t7831 = t7829 + t7830;
-  const Real t7832 = carried[351] * carried[348];
-  const Real t7833 = t7832 + t7831;
-  const Real t7834 = t7833 * carried[344];
-  const Real t7835 = t7827 + t7834;
-  const Real t7836 = carried[344] * carried[355];
-  const Real t7837 = t7836 + carried[77];
-  const Real t7838 = carried[456] * carried[345];
-  const Real t7839 = t7837 + t7838;
-  const Real t7840 = carried[454] * carried[348];
-  const Real t7841 = t7839 + t7840;
-  const Real t7842 = t7841 * carried[345];
-  const Real t7843 = t7842 + t7835;
-  const Real t7844 = constant<Real>(0.05178848L) * carried[347];
-  const Real t7845 = carried[351] * carried[344];
-  const Real t7846 = carried[76] + t7845;
-  const Real t7847 = carried[454] * carried[345];
-  const Real t7848 = t7847 + t7846;
-  const Real t7849 = t7844 + t7848;
-  const Real t7850 = t7849 * carried[348];
-  const Real t7851 = t7850 + t7843;
-
-  // reduced accelerations
-  const Real t7852 = carried[16] * carried[81];
-  const Real t7853 = t7851 - t7852;
-  const Real t7854 = carried[78] * carried[17];
-  const Real t7855 = t7853 - t7854;
-  const Real t7856 = carried[22] * carried[62];
-  const Real t7857 = t7855 - t7856;
-  const Real t7858 = t7857 - carried[89];
-  const Real t7859 = t7858 - carried[86];
-  const Real t7860 = constant<Real>(1.0L) / t7859;
-  const Real t7861 = carried[84] * t7860;
-  carried[0] = t7861;
-  const Real t7862 = t7861 * carried[43];
-  const Real t7863 = carried[29] * carried[53];
-  const Real t7864 = t7863 - t7862;
-  carried[1] = t7864;
-  const Real t7865 = carried[101] * t7864;
-  const Real t7866 = carried[99] * carried[172];
-  const Real t7867 = t7866 - t7865;
-  const Real t7868 = t7861 * carried[58];
-  const Real t7869 = t7867 - t7868;
-  carried[2] = t7869;
-  const Real t7870 = carried[168] * t7869;
-  const Real t7871 = carried[647] * carried[539];
-  const Real t7872 = t7871 - t7870;
-  const Real t7873 = carried[104] * t7864;
-  const Real t7874 = t7872 - t7873;
-  const Real t7875 = t7861 * carried[62];
-  const Real t7876 = t7874 - t7875;
-  carried[3] = t7876;
-  const Real t7877 = carried[622] * t7876;
-  const Real t7878 = carried[460] * carried[528];
-  const Real t7879 = t7878 - t7877;
-  const Real t7880 = carried[170] * t7869;
-  const Real t7881 = t7879 - t7880;
-  const Real t7882 = carried[121] * t7864;
-  const Real t7883 = t7881 - t7882;
-  const Real t7884 = carried[78] * t7861;
-  const Real t7885 = t7883 - t7884;
-  carried[4] = t7885;
-  const Real t7886 = carried[432] * t7885;
-  const Real t7887 = carried[429] * carried[496];
-  const Real t7888 = t7887 - t7886;
-  const Real t7889 = carried[533] * t7876;
-  const Real t7890 = t7888 - t7889;
-  const Real t7891 = t7869 * carried[171];
-  const Real t7892 = t7890 - t7891;
-  const Real t7893 = carried[26] * t7864;
-  const Real t7894 = t7892 - t7893;
-  const Real t7895 = t7861 * carried[81];
-  const Real t7896 = t7894 - t7895;
-  carried[5] = t7896;
-
-  // accelerations
-  const Real t7897 = t7896 * carried[323];
-  const Real t7898 = t7885 * carried[319];
-  const Real t7899 = t7898 + t7897;
-  const Real t7900 = carried[222] * t7876;
-  const Real t7901 = t7899 - t7900;
-  const Real t7902 = carried[330] * t7869;
-  const Real t7903 = t7901 + t7902;
-  const Real t7904 = carried[339] * t7864;
-  const Real t7905 = t7903 - t7904;
-  const Real t7906 = t7861 * carried[348];
-  const Real t7907 = t7905 + t7906;
-  const Real t7908 = t7907 - carried[276];
-  carried[6] = t7908;
-  const Real t7909 = t7896 * carried[321];
-  const Real t7910 = carried[314] * t7885;
-  const Real t7911 = t7909 + t7910;
-  const Real t7912 = t7876 * carried[106];
-  const Real t7913 = t7912 + t7911;
-  const Real t7914 = carried[265] * t7869;
-  const Real t7915 = t7914 + t7913;
-  const Real t7916 = carried[336] * t7864;
-  const Real t7917 = t7916 + t7915;
-  const Real t7918 = t7861 * carried[345];
-  const Real t7919 = t7917 + t7918;
-  const Real t7920 = carried[380] + t7919;
-  carried[7] = t7920;
-  const Real t7921 = carried[306] * t7885;
-  const Real t7922 = t7876 * carried[325];
-  const Real t7923 = t7922 + t7921;
-  const Real t7924 = carried[252] * t7869;
-  const Real t7925 = t7924 + t7923;
-  const Real t7926 = carried[332] * t7864;
-  const Real t7927 = t7926 + t7925;
-  const Real t7928 = carried[344] * t7861;
-  const Real t7929 = t7928 - t7927;
-  const Real t7930 = t7929 + carried[358];
-  carried[8] = t7930;
-  const Real t7931 = t7896 * carried[232];
-  const Real t7932 = carried[228] * t7885;
-  const Real t7933 = t7932 + t7931;
-  const Real t7934 = carried[242] * t7876;
-  const Real t7935 = t7933 + t7934;
-  const Real t7936 = carried[251] * t7869;
-  const Real t7937 = t7935 + t7936;
-  const Real t7938 = carried[105] * t7864;
-  const Real t7939 = t7938 + t7937;
-  const Real t7940 = carried[268] * t7861;
-  const Real t7941 = t7940 + t7939;
-  const Real t7942 = t7941 - carried[298];
-  carried[9] = t7942;
-  const Real t7943 = t7896 * carried[230];
-  const Real t7944 = carried[223] * t7885;
-  const Real t7945 = t7944 + t7943;
-  const Real t7946 = t7876 * carried[239];
-  const Real t7947 = t7946 + t7945;
-  const Real t7948 = carried[248] * t7869;
-  const Real t7949 = t7948 + t7947;
-  const Real t7950 = carried[262] * t7864;
-  const Real t7951 = t7950 + t7949;
-  const Real t7952 = carried[200] * t7861;
-  const Real t7953 = t7952 + t7951;
-  const Real t7954 = t7953 + carried[293];
-  carried[10] = t7954;
-  const Real t7955 = t7885 * carried[215];
-  const Real t7956 = carried[233] * t7876;
-  const Real t7957 = t7956 + t7955;
-  const Real t7958 = carried[244] * t7869;
-  const Real t7959 = t7957 + t7958;
-  const Real t7960 = carried[255] * t7864;
-  const Real t7961 = t7959 + t7960;
-  const Real t7962 = carried[195] * t7861;
-  const Real t7963 = t7962 - t7961;
-  const Real t7964 = carried[277] + t7963;
-  carried[11] = t7964;
-  const Real t7965 = carried[157] * t7896;
-  const Real t7966 = carried[153] * t7885;
-  const Real t7967 = t7966 + t7965;
-  const Real t7968 = t7876 * carried[167];
-  const Real t7969 = t7967 - t7968;
-  const Real t7970 = carried[175] * t7869;
-  const Real t7971 = t7970 + t7969;
-  const Real t7972 = carried[184] * t7864;
-  const Real t7973 = t7971 + t7972;
-  const Real t7974 = t7861 * carried[193];
-  const Real t7975 = t7974 + t7973;
-  const Real t7976 = t7975 - carried[209];
-  carried[12] = t7976;
-  const Real t7977 = t7896 * carried[155];
-  const Real t7978 = carried[148] * t7885;
-  const Real t7979 = t7977 + t7978;
-  const Real t7980 = t7876 * carried[164];
-  const Real t7981 = t7979 + t7980;
-  const Real t7982 = carried[173] * t7869;
-  const Real t7983 = t7981 + t7982;
-  const Real t7984 = carried[181] * t7864;
-  const Real t7985 = t7984 + t7983;
-  const Real t7986 = carried[190] * t7861;
-  const Real t7987 = t7986 + t7985;
-  const Real t7988 = t7987 + carried[204];
-  carried[13] = t7988;
-  const Real t7989 = t7885 * carried[140];
-  const Real t7990 = t7876 * carried[158];
-  const Real t7991 = t7989 + t7990;
-  const Real t7992 = carried[169] * t7869;
-  const Real t7993 = t7992 + t7991;
-  const Real t7994 = carried[177] * t7864;
-  const Real t7995 = t7994 + t7993;
-  const Real t7996 = t7861 * carried[189];
-  const Real t7997 = t7996 + t7995;
-  const Real t7998 = carried[85] - t7997;
-  carried[14] = t7998;
-  const Real t7999 = carried[44] * t7896;
-  const Real t8000 = carried[40] * t7885;
-  const Real t8001 = t7999 + t8000;
-  const Real t8002 = t7876 * carried[54];
-  const Real t8003 = t8001 + t8002;
-  const Real t8004 = t7869 * carried[63];
-  const Real t8005 = t8003 + t8004;
-  const Real t8006 = carried[74] * t7864;
-  const Real t8007 = t8006 + t8005;
-  const Real t8008 = carried[83] * t7861;
-  const Real t8009 = t8007 + t8008;
-  const Real t8010 = t8009 - carried[118];
-  carried[15] = t8010;
-  const Real t8011 = t7896 * carried[42];
-  const Real t8012 = carried[35] * t7885;
-  const Real t8013 = t8012 + t8011;
-  const Real t8014 = t7876 * carried[51];
-  const Real t8015 = t8014 + t8013;
-  const Real t8016 = t7869 * carried[60];
-  const Real t8017 = t8015 + t8016;
-  const Real t8018 = t7864 * carried[71];
-  const Real t8019 = t8018 + t8017;
-  const Real t8020 = carried[80] * t7861;
-  const Real t8021 = t8020 + t8019;
-  const Real t8022 = carried[116] + t8021;
-  carried[18] = t8022;
-  const Real t8023 = t7885 * carried[27];
-  const Real t8024 = carried[45] * t7876;
-  const Real t8025 = t8024 + t8023;
-  const Real t8026 = carried[56] * t7869;
-  const Real t8027 = t8026 + t8025;
-  const Real t8028 = t7864 * carried[65];
-  const Real t8029 = t8027 + t8028;
-  const Real t8030 = carried[79] * t7861;
-  const Real t8031 = t8029 + t8030;
-  const Real t8032 = carried[100] - t8031;
-  carried[19] = t8032;
-}
-
-template <class Real>
-[[gnu::noinline]] inline void torque_driven_dynamics_block_28(Real (&w_dot)[6],
+[[gnu::noinline]] inline void torque_driven_dynamics_block_27(Real (&w_dot)[6],
                                                               Real (&eta_dot)[6],
                                                               Real (&r_a_ddot_out)[12],
                                                               Real (&__restrict carried)[658]) noexcept {
-  w_dot[0] = carried[5];
-  w_dot[1] = carried[4];
-  w_dot[2] = carried[3];
-  w_dot[3] = carried[2];
-  w_dot[4] = carried[1];
-  w_dot[5] = carried[0];
-  eta_dot[0] = carried[5];
-  eta_dot[1] = carried[4];
-  eta_dot[2] = carried[3];
-  eta_dot[3] = carried[2];
-  eta_dot[4] = carried[1];
-  eta_dot[5] = carried[0];
-  r_a_ddot_out[0] = carried[19];
-  r_a_ddot_out[1] = carried[18];
-  r_a_ddot_out[2] = carried[15];
-  r_a_ddot_out[3] = carried[14];
-  r_a_ddot_out[4] = carried[13];
-  r_a_ddot_out[5] = carried[12];
-  r_a_ddot_out[6] = carried[11];
-  r_a_ddot_out[7] = carried[10];
-  r_a_ddot_out[8] = carried[9];
-  r_a_ddot_out[9] = carried[8];
-  r_a_ddot_out[10] = carried[7];
-  r_a_ddot_out[11] = carried[6];
+  using detail::constant;
+  // reduced mass matrix
+  const Real t7777 = carried[110] + carried[102];
+  const Real t7778 = carried[104] * t7777;
+  const Real t7779 = t7778 + carried[99];
+  const Real t7780 = carried[210] * carried[9];
+  const Real t7781 = carried[108] - t7780;
+  const Real t7782 = carried[211] * carried[594];
+  const Real t7783 = t7781 + t7782;
+  const Real t7784 = carried[588] * carried[214];
+  const Real t7785 = t7783 + t7784;
+  const Real t7786 = carried[210] * t7785;
+  const Real t7787 = t7779 - t7786;
+  const Real t7788 = carried[210] * carried[594];
+  const Real t7789 = carried[112] - t7788;
+  const Real t7790 = carried[211] * carried[45];
+  const Real t7791 = t7789 + t7790;
+  const Real t7792 = carried[11] * carried[214];
+  const Real t7793 = t7792 + t7791;
+  const Real t7794 = carried[211] * t7793;
+  const Real t7795 = t7787 + t7794;
+  const Real t7796 = carried[213] * constant<Real>(0.05178848L);
+  const Real t7797 = carried[588] * carried[210];
+  const Real t7798 = carried[109] - t7797;
+  const Real t7799 = carried[211] * carried[11];
+  const Real t7800 = t7798 + t7799;
+  const Real t7801 = t7800 + t7796;
+  const Real t7802 = t7801 * carried[214];
+  const Real t7803 = t7802 + t7795;
+  const Real t7804 = carried[216] * carried[472];
+  const Real t7805 = t7804 + carried[26];
+  const Real t7806 = carried[220] * carried[221];
+  const Real t7807 = t7805 + t7806;
+  const Real t7808 = carried[289] * carried[172];
+  const Real t7809 = t7808 + t7807;
+  const Real t7810 = t7809 * carried[216];
+  const Real t7811 = t7810 + t7803;
+  const Real t7812 = carried[220] * carried[216];
+  const Real t7813 = t7812 + carried[32];
+  const Real t7814 = carried[221] * carried[494];
+  const Real t7815 = t7814 + t7813;
+  const Real t7816 = carried[289] * carried[487];
+  const Real t7817 = t7815 + t7816;
+  const Real t7818 = carried[221] * t7817;
+  const Real t7819 = t7811 + t7818;
+  const Real t7820 = carried[288] * constant<Real>(0.05178848L);
+  const Real t7821 = carried[216] * carried[172];
+  const Real t7822 = carried[31] + t7821;
+  const Real t7823 = carried[221] * carried[487];
+  const Real t7824 = t7822 + t7823;
+  const Real t7825 = t7824 + t7820;
+  const Real t7826 = carried[289] * t7825;
+  const Real t7827 = t7819 + t7826;
+  const Real t7828 = carried[370] * carried[365];
+  const Real t7829 = t7828 + carried[74];
+  const Real t7830 = carried[232] * carried[366];
+  const Real t7831 = t7829 + t7830;
+  const Real t7832 = carried[13] * carried[369];
+  const Real t7833 = t7832 + t7831;
+  const Real t7834 = t7833 * carried[365];
+  const Real t7835 = t7827 + t7834;
+  const Real t7836 = carried[365] * carried[232];
+  const Real t7837 = t7836 + carried[80];
+  const Real t7838 = carried[376] * carried[366];
+  const Real t7839 = t7837 + t7838;
+  const Real t7840 = carried[373] * carried[369];
+  const Real t7841 = t7839 + t7840;
+  const Real t7842 = t7841 * carried[366];
+  const Real t7843 = t7842 + t7835;
+  const Real t7844 = constant<Real>(0.05178848L) * carried[368];
+  const Real t7845 = carried[13] * carried[365];
+  const Real t7846 = carried[76] + t7845;
+  const Real t7847 = carried[373] * carried[366];
+  const Real t7848 = t7847 + t7846;
+  const Real t7849 = t7844 + t7848;
+  const Real t7850 = t7849 * carried[369];
+  const Real t7851 = t7850 + t7843;
+
+  // reduced accelerations
+  const Real t7852 = carried[37] * carried[83];
+  const Real t7853 = t7851 - t7852;
+  const Real t7854 = carried[64] * carried[38];
+  const Real t7855 = t7853 - t7854;
+  const Real t7856 = carried[43] * carried[46];
+  const Real t7857 = t7855 - t7856;
+  const Real t7858 = t7857 - carried[98];
+  const Real t7859 = t7858 - carried[97];
+  const Real t7860 = constant<Real>(1.0L) / t7859;
+  const Real t7861 = carried[96] * t7860;
+  w_dot[5] = t7861;
+  eta_dot[5] = t7861;
+  const Real t7862 = t7861 * carried[7];
+  const Real t7863 = carried[4] * carried[1];
+  const Real t7864 = t7863 - t7862;
+  w_dot[4] = t7864;
+  eta_dot[4] = t7864;
+  const Real t7865 = carried[62] * t7864;
+  const Real t7866 = carried[20] * carried[79];
+  const Real t7867 = t7866 - t7865;
+  const Real t7868 = t7861 * carried[15];
+  const Real t7869 = t7867 - t7868;
+  w_dot[3] = t7869;
+  eta_dot[3] = t7869;
+  const Real t7870 = carried[19] * t7869;
+  const Real t7871 = carried[647] * carried[539];
+  const Real t7872 = t7871 - t7870;
+  const Real t7873 = carried[122] * t7864;
+  const Real t7874 = t7872 - t7873;
+  const Real t7875 = t7861 * carried[46];
+  const Real t7876 = t7874 - t7875;
+  w_dot[2] = t7876;
+  eta_dot[2] = t7876;
+  const Real t7877 = carried[622] * t7876;
+  const Real t7878 = carried[453] * carried[523];
+  const Real t7879 = t7878 - t7877;
+  const Real t7880 = carried[47] * t7869;
+  const Real t7881 = t7879 - t7880;
+  const Real t7882 = carried[125] * t7864;
+  const Real t7883 = t7881 - t7882;
+  const Real t7884 = carried[64] * t7861;
+  const Real t7885 = t7883 - t7884;
+  w_dot[1] = t7885;
+  eta_dot[1] = t7885;
+  const Real t7886 = carried[450] * t7885;
+  const Real t7887 = carried[425] * carried[466];
+  const Real t7888 = t7887 - t7886;
+  const Real t7889 = carried[533] * t7876;
+  const Real t7890 = t7888 - t7889;
+  const Real t7891 = t7869 * carried[78];
+  const Real t7892 = t7890 - t7891;
+  const Real t7893 = carried[0] * t7864;
+  const Real t7894 = t7892 - t7893;
+  const Real t7895 = t7861 * carried[83];
+  const Real t7896 = t7894 - t7895;
+  w_dot[0] = t7896;
+  eta_dot[0] = t7896;
+
+  // accelerations
+  const Real t7897 = t7896 * carried[344];
+  const Real t7898 = t7885 * carried[340];
+  const Real t7899 = t7898 + t7897;
+  const Real t7900 = carried[243] * t7876;
+  const Real t7901 = t7899 - t7900;
+  const Real t7902 = carried[351] * t7869;
+  const Real t7903 = t7901 + t7902;
+  const Real t7904 = carried[360] * t7864;
+  const Real t7905 = t7903 - t7904;
+  const Real t7906 = t7861 * carried[369];
+  const Real t7907 = t7905 + t7906;
+  const Real t7908 = t7907 - carried[297];
+  r_a_ddot_out[11] = t7908;
+  const Real t7909 = t7896 * carried[342];
+  const Real t7910 = carried[335] * t7885;
+  const Real t7911 = t7909 + t7910;
+  const Real t7912 = t7876 * carried[127];
+  const Real t7913 = t7912 + t7911;
+  const Real t7914 = carried[286] * t7869;
+  const Real t7915 = t7914 + t7913;
+  const Real t7916 = carried[357] * t7864;
+  const Real t7917 = t7916 + t7915;
+  const Real t7918 = t7861 * carried[366];
+  const Real t7919 = t7917 + t7918;
+  const Real t7920 = carried[401] + t7919;
+  r_a_ddot_out[10] = t7920;
+  const Real t7921 = carried[327] * t7885;
+  const Real t7922 = t7876 * carried[346];
+  const Real t7923 = t7922 + t7921;
+  const Real t7924 = carried[273] * t7869;
+  const Real t7925 = t7924 + t7923;
+  const Real t7926 = carried[353] * t7864;
+  const Real t7927 = t7926 + t7925;
+  const Real t7928 = carried[365] * t7861;
+  const Real t7929 = t7928 - t7927;
+  const Real t7930 = t7929 + carried[379];
+  r_a_ddot_out[9] = t7930;
+  const Real t7931 = t7896 * carried[253];
+  const Real t7932 = carried[249] * t7885;
+  const Real t7933 = t7932 + t7931;
+  const Real t7934 = carried[263] * t7876;
+  const Real t7935 = t7933 + t7934;
+  const Real t7936 = carried[272] * t7869;
+  const Real t7937 = t7935 + t7936;
+  const Real t7938 = carried[126] * t7864;
+  const Real t7939 = t7938 + t7937;
+  const Real t7940 = carried[289] * t7861;
+  const Real t7941 = t7940 + t7939;
+  const Real t7942 = t7941 - carried[319];
+  r_a_ddot_out[8] = t7942;
+  const Real t7943 = t7896 * carried[251];
+  const Real t7944 = carried[244] * t7885;
+  const Real t7945 = t7944 + t7943;
+  const Real t7946 = t7876 * carried[260];
+  const Real t7947 = t7946 + t7945;
+  const Real t7948 = carried[269] * t7869;
+  const Real t7949 = t7948 + t7947;
+  const Real t7950 = carried[283] * t7864;
+  const Real t7951 = t7950 + t7949;
+  const Real t7952 = carried[221] * t7861;
+  const Real t7953 = t7952 + t7951;
+  const Real t7954 = t7953 + carried[314];
+  r_a_ddot_out[7] = t7954;
+  const Real t7955 = t7885 * carried[236];
+  const Real t7956 = carried[254] * t7876;
+  const Real t7957 = t7956 + t7955;
+  const Real t7958 = carried[265] * t7869;
+  const Real t7959 = t7957 + t7958;
+  const Real t7960 = carried[276] * t7864;
+  const Real t7961 = t7959 + t7960;
+  const Real t7962 = carried[216] * t7861;
+  const Real t7963 = t7962 - t7961;
+  const Real t7964 = carried[298] + t7963;
+  r_a_ddot_out[6] = t7964;
+  const Real t7965 = carried[178] * t7896;
+  const Real t7966 = carried[174] * t7885;
+  const Real t7967 = t7966 + t7965;
+  const Real t7968 = t7876 * carried[188];
+  const Real t7969 = t7967 - t7968;
+  const Real t7970 = carried[196] * t7869;
+  const Real t7971 = t7970 + t7969;
+  const Real t7972 = carried[205] * t7864;
+  const Real t7973 = t7971 + t7972;
+  const Real t7974 = t7861 * carried[214];
+  const Real t7975 = t7974 + t7973;
+  const Real t7976 = t7975 - carried[230];
+  r_a_ddot_out[5] = t7976;
+  const Real t7977 = t7896 * carried[176];
+  const Real t7978 = carried[169] * t7885;
+  const Real t7979 = t7977 + t7978;
+  const Real t7980 = t7876 * carried[185];
+  const Real t7981 = t7979 + t7980;
+  const Real t7982 = carried[194] * t7869;
+  const Real t7983 = t7981 + t7982;
+  const Real t7984 = carried[202] * t7864;
+  const Real t7985 = t7984 + t7983;
+  const Real t7986 = carried[211] * t7861;
+  const Real t7987 = t7986 + t7985;
+  const Real t7988 = t7987 + carried[225];
+  r_a_ddot_out[4] = t7988;
+  const Real t7989 = t7885 * carried[161];
+  const Real t7990 = t7876 * carried[179];
+  const Real t7991 = t7989 + t7990;
+  const Real t7992 = carried[190] * t7869;
+  const Real t7993 = t7992 + t7991;
+  const Real t7994 = carried[198] * t7864;
+  const Real t7995 = t7994 + t7993;
+  const Real t7996 = t7861 * carried[210];
+  const Real t7997 = t7996 + t7995;
+  const Real t7998 = carried[106] - t7997;
+  r_a_ddot_out[3] = t7998;
+  const Real t7999 = carried[65] * t7896;
+  const Real t8000 = carried[61] * t7885;
+  const Real t8001 = t7999 + t8000;
+  const Real t8002 = t7876 * carried[75];
+  const Real t8003 = t8001 + t8002;
+  const Real t8004 = t7869 * carried[84];
+  const Real t8005 = t8003 + t8004;
+  const Real t8006 = carried[95] * t7864;
+  const Real t8007 = t8006 + t8005;
+  const Real t8008 = carried[104] * t7861;
+  const Real t8009 = t8007 + t8008;
+  const Real t8010 = t8009 - carried[139];
+  r_a_ddot_out[2] = t8010;
+  const Real t8011 = t7896 * carried[63];
+  const Real t8012 = carried[56] * t7885;
+  const Real t8013 = t8012 + t8011;
+  const Real t8014 = t7876 * carried[72];
+  const Real t8015 = t8014 + t8013;
+  const Real t8016 = t7869 * carried[81];
+  const Real t8017 = t8015 + t8016;
+  const Real t8018 = t7864 * carried[92];
+  const Real t8019 = t8018 + t8017;
+  const Real t8020 = carried[101] * t7861;
+  const Real t8021 = t8020 + t8019;
+  const Real t8022 = carried[137] + t8021;
+  r_a_ddot_out[1] = t8022;
+  const Real t8023 = t7885 * carried[48];
+  const Real t8024 = carried[66] * t7876;
+  const Real t8025 = t8024 + t8023;
+  const Real t8026 = carried[77] * t7869;
+  const Real t8027 = t8026 + t8025;
+  const Real t8028 = t7864 * carried[86];
+  const Real t8029 = t8027 + t8028;
+  const Real t8030 = carried[100] * t7861;
+  const Real t8031 = t8029 + t8030;
+  const Real t8032 = carried[121] - t8031;
+  r_a_ddot_out[0] = t8032;
 }
 
 }  // namespace detail
@@ -15740,17 +15732,17 @@ inline void torque_driven_dynamics(const Prepared<Real>&,
                                    Real (&eta_dot)[6],
                                    Real (&r_a_ddot_out)[12]) noexcept {
   Real carried[658];
-  detail::torque_driven_dynamics_block_1(r_a, w, carried);
-  detail::torque_driven_dynamics_block_2(w, carried);
-  detail::torque_driven_dynamics_block_3(w, carried);
-  detail::torque_driven_dynamics_block_4(w, carried);
-  detail::torque_driven_dynamics_block_5(w, carried);
-  detail::torque_driven_dynamics_block_6(R, w, carried);
+  detail::torque_driven_dynamics_block_1(R, r_a, w, tau_a, carried);
+  detail::torque_driven_dynamics_block_2(carried);
+  detail::torque_driven_dynamics_block_3(carried);
+  detail::torque_driven_dynamics_block_4(carried);
+  detail::torque_driven_dynamics_block_5(carried);
+  detail::torque_driven_dynamics_block_6(carried);
   detail::torque_driven_dynamics_block_7(carried);
   detail::torque_driven_dynamics_block_8(carried);
-  detail::torque_driven_dynamics_block_9(tau_a, carried);
-  detail::torque_driven_dynamics_block_10(tau_a, carried);
-  detail::torque_driven_dynamics_block_11(tau_a, carried);
+  detail::torque_driven_dynamics_block_9(carried);
+  detail::torque_driven_dynamics_block_10(carried);
+  detail::torque_driven_dynamics_block_11(carried);
   detail::torque_driven_dynamics_block_12(carried);
   detail::torque_driven_dynamics_block_13(carried);
   detail::torque_driven_dynamics_block_14(carried);
@@ -15766,8 +15758,7 @@ inline void torque_driven_dynamics(const Prepared<Real>&,
   detail::torque_driven_dynamics_block_24(carried);
   detail::torque_driven_dynamics_block_25(carried);
   detail::torque_driven_dynamics_block_26(carried);
-  detail::torque_driven_dynamics_block_27(carried);
-  detail::torque_driven_dynamics_block_28(w_dot, eta_dot, r_a_ddot_out, carried);
+  detail::torque_driven_dynamics_block_27(w_dot, eta_dot, r_a_ddot_out, carried);
 }
 
 }  // namespace quadruped_stance::standard
