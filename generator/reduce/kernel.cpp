@@ -285,14 +285,16 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
   const auto as_asked_for = [&]() -> std::vector<std::vector<int>> {
     const int asked = static_cast<int>(preferred_free.size());
     if (asked == 0 || asked > k) return {};
-    if (asked == k) return {preferred_free};
     const std::vector<int> others = complement(preferred_free, passive);
     const bool others_can_hold_the_pivots = std::ranges::any_of(A, [&](const Eigen::MatrixXd& a) {
       Eigen::MatrixXd p(a.rows(), std::ssize(others));
       for (Eigen::Index j = 0; j < p.cols(); ++j) p.col(j) = a.col(others[static_cast<std::size_t>(j)]);
       return p.allFinite() && smallest(p) > 1e-9;
     });
-    if (!others_can_hold_the_pivots) return {};
+    if (!others_can_hold_the_pivots)
+      throw UnsupportedError(
+          "no kernel basis is regular anywhere: the constraints tie the free velocities together");
+    if (asked == k) return {preferred_free};
     return {complement(Elimination(tape_, A_1_, others, sampler_).pivot_columns(), passive)};
   };
 
