@@ -31,7 +31,7 @@ class Writer {
     for (const auto& [id, value] : given_) given.push_back(id);
     order_ = emission_order(tape_, roots, given, style_.order);
     name_temporaries();
-    const bool split = order_.nodes.size() > style_.split_above;
+    const bool split = order_.nodes.size() + results_.size() > style_.split_above;
     const std::size_t block_size =
         split ? std::max<std::size_t>(1, style_.block_size) : std::max<std::size_t>(1, order_.nodes.size());
     if (split) place_carried(block_size);

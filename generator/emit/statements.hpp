@@ -37,7 +37,7 @@ enum class SinCos {
 
 struct StatementStyle {
   NodeOrder order = NodeOrder::by_length;
-  std::size_t split_above = 4000;  // operations; compilers are slow on longer functions
+  std::size_t split_above = 4000;  // lines, results too; compilers are slow on longer functions
   std::size_t block_size = 300;    // lines of a part
   SinCos sincos = SinCos::cmath;
 };
