@@ -74,7 +74,8 @@ TEST(TreeLoops, CountWhatAChainTakes) {
 }
 
 TEST(TreeLoops, AreLeftOutWhereAStraightLineDoes) {
-  const auto derivation = derive_tree(read_robot_text(testing::serial_arm(), "arm.urdf"), request_for(looped));
+  const auto derivation =
+      derive_tree(read_robot_text(testing::serial_arm(), "arm.urdf"), request_for(looped));
   ASSERT_EQ(derivation->program.functions.size(), looped.size());
   for (const Function& f : derivation->program.functions) EXPECT_FALSE(f.loops.has_value()) << f.name;
 }
