@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -40,7 +41,18 @@ std::string json_text(const Model& model, const Verification& v) {
 int verify(const VerifyOptions& options) {
   const Stopwatch watch;
   const Model model = load_model(options);
-  const AnyDerivation derivation = derive_any(options, model);
+  AnyDerivation derivation = derive_any(options, model);
+  if (derivation.reduction && !options.functions.empty()) {
+    // Torques and multipliers are compared at the velocities and accelerations that these give, and power
+    // balances between them.
+    VerifyOptions complete = options;
+    for (const char* name :
+         {"kinematics", "compatibility", "forward_dynamics", "inverse_torques", "energies"}) {
+      if (std::ranges::find(complete.functions, name) == complete.functions.end())
+        complete.functions.emplace_back(name);
+    }
+    derivation = derive_any(complete, model);
+  }
   double shown = 1;
   const auto progress = [&](int done) {
     if (watch.seconds() < shown || isatty(STDERR_FILENO) == 0) return;

@@ -16,3 +16,11 @@ foreach(model IN LISTS ANHOLON_MODEL_FOLDERS)
       ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
   endforeach()
 endforeach()
+
+# One function alone is verified with what its comparison starts from.
+foreach(function IN ITEMS inverse_torques energies multipliers)
+  add_test(NAME Verify.${function}_alone COMMAND anholon verify
+    ${PROJECT_SOURCE_DIR}/models/trailer/trailer.toml --functions ${function} --samples 5)
+  set_tests_properties(Verify.${function}_alone PROPERTIES LABELS slow TIMEOUT 900
+    ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+endforeach()
