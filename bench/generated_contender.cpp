@@ -35,6 +35,13 @@ std::vector<double> block_of(const Sample& s, const std::string& name) {
   throw std::logic_error("no sample has '" + name + "'");
 }
 
+CompileOptions compile_options(const StatementStyle& style) {
+  CompileOptions options;
+  options.flags = generated_flags();
+  options.style = style;
+  return options;
+}
+
 }  // namespace
 
 const std::vector<std::string>& generated_flags() {
@@ -56,10 +63,7 @@ const std::vector<std::string>& generated_flags() {
 std::vector<Contender> generated_contenders(const Robot& robot, const Program& program,
                                             const std::string& function, const std::string& name,
                                             const StatementStyle& style) {
-  CompileOptions options;
-  options.flags = generated_flags();
-  options.style = style;
-  auto code = std::make_shared<Code>(program, options);
+  auto code = std::make_shared<Code>(program, compile_options(style));
   code->function = &code->program.function(function);
   const std::size_t count = robot.samples.size();
   code->storage.resize(count);
@@ -82,14 +86,20 @@ std::vector<Contender> generated_contenders(const Robot& robot, const Program& p
     code->outputs.push_back(next);
     next += code->function->outputs[b].rows * code->function->outputs[b].cols;
   }
-  return {{name,
-           [code, count] {
-             for (std::size_t i = 0; i < count; ++i) code->call(i);
-           },
-           [code](std::size_t i) {
-             code->call(i);
-             return code->output_storage;
-           }}};
+  return {contender(
+      name, count, [code](std::size_t i) { code->call(i); },
+      [code](std::size_t) { return code->output_storage; })};
+}
+
+std::vector<Contender> preparation_contenders(const Robot& robot, const Program& program,
+                                              const std::string& name, const StatementStyle& style) {
+  const auto code = std::make_shared<CompiledProgram>(program, compile_options(style));
+  const std::vector<double> values = code->parameter_defaults();
+  Contender all = contender(
+      name, robot.samples.size(), [code, values](std::size_t) { code->set_parameters(values); },
+      [](std::size_t) { return std::vector<double>(); });
+  all.values = nullptr;
+  return {all};
 }
 
 }  // namespace anholon::bench

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
+#include <kdl/chaindynparam.hpp>
 #include <kdl/chainfdsolver_recursive_newton_euler.hpp>
 #include <kdl/chainidsolver_recursive_newton_euler.hpp>
 #include <memory>
@@ -21,8 +22,10 @@ struct Engine {
         gravity(robot.mechanism.gravity.x, robot.mechanism.gravity.y, robot.mechanism.gravity.z),
         inverse(chain, gravity),
         forward(chain, gravity),
+        parameters(chain, gravity),
         no_wrenches(chain.getNrOfSegments(), KDL::Wrench::Zero()),
-        result(chain.getNrOfJoints()) {
+        result(chain.getNrOfJoints()),
+        M(chain.getNrOfJoints()) {
     for (const Sample& s : robot.samples) {
       r.push_back(array(s.state.r));
       r_dot.push_back(array(s.state.r_dot));
@@ -30,8 +33,6 @@ struct Engine {
       tau.push_back(array(s.tau));
     }
   }
-  void run_inverse(std::size_t i) { inverse.CartToJnt(r[i], r_dot[i], r_ddot[i], no_wrenches, result); }
-  void run_forward(std::size_t i) { forward.CartToJnt(r[i], r_dot[i], tau[i], no_wrenches, result); }
   [[nodiscard]] std::vector<double> values() const {
     return {result.data.data(), result.data.data() + result.data.size()};
   }
@@ -40,8 +41,10 @@ struct Engine {
   KDL::Vector gravity;
   KDL::ChainIdSolver_RNE inverse;
   KDL::ChainFdSolver_RNE forward;
+  KDL::ChainDynParam parameters;
   KDL::Wrenches no_wrenches;
   KDL::JntArray result;
+  KDL::JntSpaceInertiaMatrix M;
   std::vector<KDL::JntArray> r, r_dot, r_ddot, tau;
 };
 
@@ -49,17 +52,30 @@ struct Engine {
 
 std::vector<Contender> kdl_contenders(const Robot& robot, const std::string& function) {
   if (robot.mechanism.group != GroupKind::fixed || !testing::is_chain(robot.mechanism)) return {};
-  if (function != "inverse_dynamics" && function != "forward_dynamics") return {};
-  const auto engine = std::make_shared<Engine>(robot);
-  const auto call = function == "inverse_dynamics" ? &Engine::run_inverse : &Engine::run_forward;
-  return {{"KDL, " + std::string(function == "inverse_dynamics" ? "ChainIdSolver_RNE" : "ChainFdSolver_RNE"),
-           [engine, call] {
-             for (std::size_t i = 0; i < engine->r.size(); ++i) (engine.get()->*call)(i);
-           },
-           [engine, call](std::size_t i) {
-             (engine.get()->*call)(i);
-             return engine->values();
-           }}};
+  const auto e = std::make_shared<Engine>(robot);
+  const std::size_t n = robot.samples.size();
+  const auto values = [e](std::size_t) { return e->values(); };
+  if (function == "inverse_dynamics")
+    return {contender(
+        "KDL, ChainIdSolver_RNE", n,
+        [e](std::size_t i) {
+          e->inverse.CartToJnt(e->r[i], e->r_dot[i], e->r_ddot[i], e->no_wrenches, e->result);
+        },
+        values)};
+  if (function == "forward_dynamics")
+    return {contender(
+        "KDL, ChainFdSolver_RNE", n,
+        [e](std::size_t i) {
+          e->forward.CartToJnt(e->r[i], e->r_dot[i], e->tau[i], e->no_wrenches, e->result);
+        },
+        values)};
+  if (function == "mass_matrix")
+    return {contender(
+        "KDL, ChainDynParam", n, [e](std::size_t i) { e->parameters.JntToMass(e->r[i], e->M); },
+        [e](std::size_t) {
+          return std::vector<double>(e->M.data.data(), e->M.data.data() + e->M.data.size());
+        })};
+  return {};
 }
 
 }  // namespace anholon::bench

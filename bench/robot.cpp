@@ -37,14 +37,28 @@ Mechanism<double> merged_mechanism(const Model& model) {
   return result;
 }
 
-Mat3<double> random_rotation(std::mt19937& random) {
+std::array<double, 4> random_quaternion(std::mt19937& random) {
   std::normal_distribution<double> normal;
-  double a = normal(random), b = normal(random), c = normal(random), d = normal(random);
-  const double scale = 1 / std::sqrt(a * a + b * b + c * c + d * d);
-  a *= scale, b *= scale, c *= scale, d *= scale;
+  std::array<double, 4> q{};
+  double square = 0;
+  for (double& x : q) x = normal(random), square += x * x;
+  for (double& x : q) x /= std::sqrt(square);
+  return q;
+}
+
+Mat3<double> rotation(const std::array<double, 4>& wxyz) {
+  const auto& [a, b, c, d] = wxyz;
   return {{1 - 2 * (c * c + d * d), 2 * (b * c - a * d), 2 * (b * d + a * c),  //
            2 * (b * c + a * d), 1 - 2 * (b * b + d * d), 2 * (c * d - a * b),  //
            2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)}};
+}
+
+/// No peer is asked for springs, dampers and friction.
+Model read_without_forces(const std::filesystem::path& file, const RobotOptions& options) {
+  Model model = read_robot(file, options);
+  model.potential = model.dissipation = 0;
+  model.forces.clear();
+  return model;
 }
 
 }  // namespace
@@ -52,9 +66,9 @@ Mat3<double> random_rotation(std::mt19937& random) {
 Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t count) {
   RobotOptions options;
   options.floating = floating;
-  Robot robot{urdf.stem().string(), read_robot(urdf, options), {}, {}};
-  robot.model.potential = robot.model.dissipation = 0;
-  robot.model.forces.clear();
+  Robot robot{urdf.stem().string(), read_without_forces(urdf, options), {}, {}, {}};
+  options.symbolic_inertia = true;
+  robot.symbolic = read_without_forces(urdf, options);
   robot.mechanism = merged_mechanism(robot.model);
 
   std::mt19937 random(1);
@@ -65,7 +79,8 @@ Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t c
   for (std::size_t i = 0; i < count; ++i) {
     Sample s;
     if (floating) {
-      s.state.R = random_rotation(random);
+      s.quaternion_wxyz = random_quaternion(random);
+      s.state.R = rotation(s.quaternion_wxyz);
       for (int j = 0; j < 6; ++j) s.state.eta[j] = between(-2, 2), s.eta_dot[j] = between(-3, 3);
     }
     for (const Coordinate& c : robot.model.coordinates) {

@@ -4,6 +4,7 @@
 // A robot as every contender sees it: its mechanism in numbers, bodies on fixed joints merged, and random
 // states within the limits of its joints.
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,14 +17,16 @@ namespace anholon::bench {
 /// One state with the motion or the forces that go with it. eta and eta_dot are zero for a fixed base.
 struct Sample {
   State<double> state;
-  Spatial<double> eta_dot;     // derivative of eta's components
-  std::vector<double> r_ddot;  // (s)
-  std::vector<double> tau;     // (s) forces of the joints
+  std::array<double, 4> quaternion_wxyz = {1, 0, 0, 0};  // of state.R
+  Spatial<double> eta_dot;                               // derivative of eta's components
+  std::vector<double> r_ddot;                            // (s)
+  std::vector<double> tau;                               // (s) forces of the joints
 };
 
 struct Robot {
   std::string name;
   Model model;                  // without springs, dampers and friction: no peer is asked for them
+  Model symbolic;               // the same with inertial figures as parameters
   Mechanism<double> mechanism;  // of the described frames
   std::vector<Sample> samples;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
-// Times of the functions of robots on one core: generated code, the project's recursion in double and, where
-// they were found at configure time, MuJoCo and KDL. All take turns within one run, at the same random states
+// Times of the functions of robots on one core: generated code, the project's recursion in double and the
+// other engines that were found at configure time. All take turns within one run, at the same random states
 // within the joint limits. Prints a Markdown table for each robot and function; fails if values disagree.
 //
 //   robot_benchmark [--rounds N] [--orders] [--functions NAME,...] [--fixed NAME]... URDF...
@@ -15,6 +15,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <memory>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@
 #include "contenders.hpp"
 #include "derive/tree_functions.hpp"
 #include "optimise/tape/count.hpp"
+#include "optimise/tree_loops.hpp"
 
 namespace {
 
@@ -31,7 +33,7 @@ using namespace anholon::bench;
 struct Options {
   int rounds = 101;
   bool orders = false;  // compare the orders in which operations may be emitted
-  std::vector<std::string> functions = {"inverse_dynamics", "forward_dynamics"};
+  std::vector<std::string> functions = {"inverse_dynamics", "mass_matrix", "forward_dynamics"};
   std::set<std::string> fixed = {"double_pendulum", "iiwa", "panda", "ur5"};  // base on the ground
   std::vector<std::string> robots;
 };
@@ -109,25 +111,34 @@ double disagreement(const Contender& a, const Contender& b) {
   return worst;
 }
 
+/// The robot's functions with its inertial figures as constants, and as parameters.
+struct Programs {
+  std::unique_ptr<TreeDerivation> frozen, symbolic;
+};
+
 /// Every way to compute one function of one robot; the first is what the others are compared with.
-std::vector<Contender> contenders_of(const Robot& robot, const Program& program, const std::string& function,
-                                     bool orders) {
+std::vector<Contender> contenders_of(const Robot& robot, const Programs& programs,
+                                     const std::string& function, bool orders) {
   StatementStyle batch;
   batch.sincos = SinCos::batch;
   batch.order = NodeOrder::lifetimes;
+  const Program& frozen = programs.frozen->program;
+  const Program& symbolic = programs.symbolic->program;
   std::vector<Contender> all =
-      generated_contenders(robot, program, function, "generated, --sincos batch --order lifetimes", batch);
+      generated_contenders(robot, frozen, function, "generated, --sincos batch --order lifetimes", batch);
   const auto add = [&](std::vector<Contender> more) {
     for (Contender& c : more) all.push_back(std::move(c));
   };
   StatementStyle plain = batch;
   plain.sincos = SinCos::cmath;
-  add(generated_contenders(robot, program, function, "generated, --order lifetimes", plain));
+  add(generated_contenders(robot, frozen, function, "generated, --order lifetimes", plain));
+  add(generated_contenders(robot, symbolic, function, "the first row's with --symbolic-inertia", batch));
+  add(preparation_contenders(robot, symbolic, "its prepare(), once for all functions", batch));
   if (orders) {
     for (const auto& [order, name] : {std::pair(NodeOrder::depth_first, "batch, depth first in sections"),
                                       std::pair(NodeOrder::levels, "batch, by levels in sections")}) {
       batch.order = order;
-      add(generated_contenders(robot, program, function, name, batch));
+      add(generated_contenders(robot, frozen, function, name, batch));
     }
   }
   add(recursion_contenders(robot, function));
@@ -137,24 +148,43 @@ std::vector<Contender> contenders_of(const Robot& robot, const Program& program,
 #ifdef ANHOLON_HAVE_KDL
   add(kdl_contenders(robot, function));
 #endif
+#ifdef ANHOLON_HAVE_DART
+  add(dart_contenders(robot, function));
+#endif
+#ifdef ANHOLON_HAVE_SIMBODY
+  add(simbody_contenders(robot, function));
+#endif
+#ifdef ANHOLON_HAVE_PINOCCHIO
+  add(pinocchio_contenders(robot, function));
+#endif
+#ifdef ANHOLON_HAVE_RBDL
+  add(rbdl_contenders(robot, function));
+#endif
   return all;
 }
 
 int operations(const Program& program, const std::string& function) {
+  return operations_per_call(program, *std::ranges::find(program.functions, function, &Function::name))
+      .total();
+}
+
+/// Those of prepare(): of what depends on parameters alone and a function reads.
+int preparation(const Program& program) {
   std::vector<NodeId> roots;
   for (const Function& f : program.functions) {
-    if (f.name != function) continue;
     for (const OutputBlock& b : f.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
   }
-  return count_operations(program.tape, roots).total();
+  return count_operations(program.tape, roots).total() - operations_per_call(program, roots).total();
 }
 
 /// Prints the table of one function. @return whether all values agree
-bool compete(const Robot& robot, const Program& program, const std::string& function,
+bool compete(const Robot& robot, const Programs& programs, const std::string& function,
              const Options& options) {
-  const std::vector<Contender> contenders = contenders_of(robot, program, function, options.orders);
+  const std::vector<Contender> contenders = contenders_of(robot, programs, function, options.orders);
   const std::vector<Timing> timings = measure(contenders, robot.samples.size(), options.rounds);
-  fmt::print("\n### {}, {}: {} operations\n\n", robot.name, function, operations(program, function));
+  fmt::print("\n### {}, {}: {} operations, {} with symbolic inertia\n\n", robot.name, function,
+             operations(programs.frozen->program, function),
+             operations(programs.symbolic->program, function));
   fmt::print("| | median ns | quartiles | least | times the generated code | difference |\n");
   fmt::print("| --- | ---: | ---: | ---: | ---: | ---: |\n");
   bool agree = true;
@@ -164,8 +194,7 @@ bool compete(const Robot& robot, const Program& program, const std::string& func
     if (i > 0 && contenders[i].values) {
       const double d = disagreement(contenders[0], contenders[i]);
       difference = fmt::format("{:.0e}", d);
-      agree =
-          agree && d < 1e-6;  // MuJoCo keeps about nine digits of an inertia; a wrong formula shows at once
+      agree = agree && d < contenders[i].tolerance;
     }
     fmt::print("| {} | {:.0f} | {:.0f} .. {:.0f} | {:.0f} | {:.2f} | {} |\n", contenders[i].name, t.median,
                t.lower, t.upper, t.least, t.ratio, difference);
@@ -187,9 +216,11 @@ int main(int argc, char** argv) {
       const Robot robot = load_robot(file, !options.fixed.contains(name), 1024);
       TreeRequest request;
       request.functions = options.functions;
-      const auto derivation = derive_tree(robot.model, request);
+      const Programs programs = {derive_tree(robot.model, request), derive_tree(robot.symbolic, request)};
+      fmt::print("\n## {}: {} inertial parameters, of which prepare() takes {} operations\n", robot.name,
+                 robot.symbolic.parameters.size(), preparation(programs.symbolic->program));
       for (const std::string& function : options.functions)
-        agree = compete(robot, derivation->program, function, options) && agree;
+        agree = compete(robot, programs, function, options) && agree;
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "{}\n", error.what());

@@ -12,7 +12,7 @@ cd "$project"
 packages_build=(g++ cmake ninja-build pkg-config
   libginac-dev libcln-dev libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev
   libkainjow-mustache-dev libmd-dev)
-packages_test=(clang libgtest-dev libbenchmark-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev
+packages_test=(clang libgtest-dev libbenchmark-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev libsimbody-dev
   liburdfdom-dev libsdformat-dev)
 packages_check=(clang-format clang-tidy libclang-rt-dev)
 

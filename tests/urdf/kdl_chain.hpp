@@ -5,7 +5,7 @@
 
 #include <kdl/chain.hpp>
 
-#include "anholon/mechanism.hpp"
+#include "urdf/central_inertia.hpp"
 
 namespace anholon::testing {
 
@@ -23,16 +23,12 @@ inline KDL::Chain chain_of(const Mechanism<double>& m) {
                              : b.kind == JointKind::prismatic
                                  ? KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::TransAxis)
                                  : KDL::Joint(b.name, vector(b.p), axis, KDL::Joint::RotAxis);
-    const Vec3<double> c = b.mass == 0 ? Vec3<double>{} : (1 / b.mass) * b.first_moment;
-    const double square = dot(c, c);
-    const auto central = [&](int i, int j) {
-      return b.inertia(i, j) - b.mass * ((i == j ? square : 0.0) - c[i] * c[j]);
-    };
+    Vec3<double> c;
+    const Mat3<double> I = central_inertia(b, c);
     chain.addSegment(KDL::Segment(
         b.name, joint, tip,
         KDL::RigidBodyInertia(b.mass, vector(c),
-                              KDL::RotationalInertia(central(0, 0), central(1, 1), central(2, 2),
-                                                     central(0, 1), central(0, 2), central(1, 2)))));
+                              KDL::RotationalInertia(I(0, 0), I(1, 1), I(2, 2), I(0, 1), I(0, 2), I(1, 2)))));
   }
   return chain;
 }

@@ -12,20 +12,10 @@
 #include "derive/tree_functions.hpp"
 #include "describe/mechanise.hpp"
 #include "describe/read_robot.hpp"
+#include "urdf/central_inertia.hpp"
 #include "urdf/random_state.hpp"
 
 namespace anholon::testing {
-
-/// Central inertia of a body about its mass centre, in the body's axes.
-inline Mat3<double> central_inertia(const Body<double>& b, Vec3<double>& centre) {
-  centre = b.mass == 0 ? Vec3<double>{} : (1 / b.mass) * b.first_moment;
-  const double square = dot(centre, centre);
-  Mat3<double> I = b.inertia;
-  for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) I(i, j) -= b.mass * ((i == j ? square : 0.0) - centre[i] * centre[j]);
-  }
-  return I;
-}
 
 inline double difference(const std::vector<double>& got, const std::vector<double>& want) {
   double worst = got.size() == want.size() ? 0 : 1, scale = 0;
