@@ -12,7 +12,7 @@ foreach(model IN LISTS folders)
   list(APPEND models ${model})
   add_test(NAME generated.same_bytes.${model} COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}"
     "-DPROGRAM=$<TARGET_FILE:anholon>" "-DMODELS=${model}" "-DWORK=${work}/${model}" -P "${script}")
-  set_tests_properties(generated.same_bytes.${model} PROPERTIES LABELS quick TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
+  set_tests_properties(generated.same_bytes.${model} PROPERTIES LABELS slow TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
 endforeach()
 
 # The program once more, by the compiler that did not build this one.
