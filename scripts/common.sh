@@ -8,13 +8,14 @@ export LC_ALL=C.UTF-8
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project"
 
-# What the program needs, what the tests need besides, and what only the long checks need.
+# What the program needs, what its reports need besides, what the tests need, and what only the long checks need.
 packages_build=(g++ cmake ninja-build pkg-config
   libginac-dev libcln-dev libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev
   libkainjow-mustache-dev libmd-dev)
-packages_test=(clang libgtest-dev libbenchmark-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev libsimbody-dev
-  liburdfdom-dev libsdformat-dev)
-packages_check=(clang-format clang-tidy libclang-rt-dev)
+packages_report=(gnuplot-nox)
+packages_test=(gnuplot-nox clang libgtest-dev libbenchmark-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev
+  libsimbody-dev liburdfdom-dev libsdformat-dev)
+packages_check=(clang-format clang-tidy libclang-rt-dev chromium)
 
 say() { printf '\n== %s\n' "$*"; }
 fail() {

@@ -2,11 +2,8 @@
 #include "check/compile_cache.hpp"
 
 #include <dlfcn.h>
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -19,13 +16,12 @@
 #include <sstream>
 #include <system_error>
 
+#include "check/run_process.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/embedded.hpp"
 #include "emit/header.hpp"
 #include "emit/provenance.hpp"
 #include "emit/write_file.hpp"
-
-extern char** environ;  // POSIX leaves it to its users. NOLINT(readability-redundant-declaration)
 
 namespace anholon {
 namespace {
@@ -67,29 +63,14 @@ class TemporaryFolder {
   fs::path path_;
 };
 
-/// Runs a program without a shell; what it prints goes to a file.
-/// @return its exit status, 128 + signal if one ended it
+/// @return the exit status of the compiler
 int run(const std::vector<std::string>& command, const fs::path& printed) {
-  std::vector<char*> arguments;
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, printed.c_str(), O_WRONLY | O_CREAT | O_TRUNC,
-                                   0600);
-  posix_spawn_file_actions_adddup2(&actions, STDOUT_FILENO, STDERR_FILENO);
-  pid_t child = 0;
-  const int error = ::posix_spawnp(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  if (error != 0)
+  try {
+    return run_process(command, printed);
+  } catch (const std::system_error& error) {
     throw CompileError(
-        fmt::format("cannot run '{}': {}; set CXX to a C++ compiler", command[0], std::strerror(error)));
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0) {
-    if (errno != EINTR) throw CompileError(fmt::format("lost '{}': {}", command[0], std::strerror(errno)));
+        fmt::format("cannot run '{}': {}; set CXX to a C++ compiler", command[0], error.code().message()));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 std::vector<std::string> compiler_command(const CompileOptions& options) {
@@ -215,6 +196,14 @@ CompileEffort compile_effort(const Program& program, const CompileOptions& optio
   compile(compiler, flags, emit_header(program, options.style), emit_c_abi(program, "program.hpp"),
           scratch.path() / "program", object);
   return {seconds_of_children() - before, fs::file_size(object)};
+}
+
+std::string compiler_name(const CompileOptions& options) {
+  std::istringstream text(compiler_version(compiler_command(options), cache_folder(options)));
+  std::string line;
+  std::getline(text, line);  // the status
+  std::getline(text, line);
+  return line;
 }
 
 void CompiledProgram::CloseLibrary::operator()(void* handle) const { ::dlclose(handle); }

@@ -61,6 +61,9 @@ struct CompileEffort {
 /// @throws CompileError
 CompileEffort compile_effort(const Program& program, const CompileOptions& options = {});
 
+/// The first line that the compiler prints of its version.
+std::string compiler_name(const CompileOptions& options = {});
+
 /// A program that runs. Not copied; a copy of the code stays loaded as long as this lives.
 class CompiledProgram {
  public:

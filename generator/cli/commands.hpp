@@ -62,6 +62,12 @@ struct SimulateOptions {
   bool conditioning = false;
   std::vector<double> stiffen;  // factors of the stiffness of elastic contacts
 };
+struct ReportOptions {
+  std::vector<std::string> models;  // files, of robot files with ":floating" behind; empty: models/*/*.toml
+  std::string output = "out/report";
+  int samples = 1000;
+  bool motions = true;
+};
 
 int check(const CheckOptions& options);
 int generate(const GenerateOptions& options);
@@ -69,5 +75,6 @@ int evaluate(const EvaluateOptions& options);
 int verify(const VerifyOptions& options);
 int explain(const ExplainOptions& options);
 int simulate(const SimulateOptions& options);
+int report(const ReportOptions& options);
 
 }  // namespace anholon::cli

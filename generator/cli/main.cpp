@@ -117,6 +117,20 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber);
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
+  cli::ReportOptions report;
+  verb = app.add_subcommand(
+      "report", "Measure models and their motions: a page of speed against error, and its figures as JSON");
+  verb->add_option("MODELS", report.models,
+                   "descriptions or robot files, 'FILE:floating' for a robot whose root link moves freely; "
+                   "default: models/NAME/NAME.toml of this folder");
+  verb->add_option("-o,--output", report.output,
+                   "folder for index.html and report.json; an interrupted run "
+                   "goes on where it was");
+  verb->add_option("--samples", report.samples, "random states at which errors are measured")
+      ->check(CLI::Range(1, 10000000));
+  verb->add_flag("!--no-motions", report.motions, "leave out the motions of the scenes beside the models");
+  verb->callback([&] { run = [&] { return cli::report(report); }; });
+
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
