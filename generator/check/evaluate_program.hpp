@@ -25,6 +25,18 @@ template <class S>
 using ProgramCaller =
     std::function<NamedValues<S>(const std::string& function, const NamedValues<S>& inputs)>;
 
+/// To the last digit that long double has.
+inline NamedValues<long double> in_long_double(const NamedValues<Exact>& exact) {
+  NamedValues<long double> values;
+  for (const auto& [name, block] : exact) {
+    for (const Exact& x : block) {
+      const double head = x.to_double();
+      values[name].push_back(static_cast<long double>(head) + (x - Exact::from_double(head)).to_double());
+    }
+  }
+  return values;
+}
+
 inline const Function* find_function(const Program& program, const std::string& name) {
   for (const Function& f : program.functions) {
     if (f.name == name) return &f;

@@ -13,6 +13,7 @@
 #include "check/error_measure.hpp"
 #include "check/evaluate_program.hpp"
 #include "check/evaluate_recursion.hpp"
+#include "check/relative_condition.hpp"
 #include "describe/mechanise.hpp"
 #include "reduce/samples.hpp"
 
@@ -22,12 +23,11 @@ namespace {
 constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr unsigned digits = 60;
 constexpr int formula_samples = 40;  // the exact recursion with its factorisations is slow
-constexpr int condition_trials = 4;
 
 /// Blocks of one kind of quantity: a pose has no scale of its own parts, a twist has two.
 struct Record {
   std::vector<double> error, scale, recursion_error;
-  std::vector<std::string> label;
+  std::vector<int> sample;
 };
 
 class Verifier {
@@ -47,22 +47,29 @@ class Verifier {
     chart_at_ = chart_finder<Exact>(derivation);
     torque_driven_chart_at_ = chart_finder<Exact>(derivation, "torque_driven_");
     exact_ = interpreting_caller<Exact>(program_, parameters_);
+    extended_ = interpreting_caller<long double>(
+        program_, std::vector<long double>(double_parameters_.begin(), double_parameters_.end()));
     compiled_ = compiled_caller(program_, parameters_);
   }
 
-  Verification run(int samples, const std::function<void(int)>& progress) {
+  Verification run(const VerificationPlan& plan, const std::function<void(int)>& progress) {
+    bound_ = plan.bound;
     const WorkingDigits precision(digits);
     const Mechanism<Exact> mechanism = mechanise<Exact>(description_, parameters_);
     const Mechanism<double> rounded = mechanise<double>(description_, double_parameters_);
     SampleSource source(4);
-    for (int s = 0; s < samples; ++s) {
+    for (int s = 0; s < plan.samples; ++s) {
       if (progress) progress(s);
-      label_ = fmt::format("sample {}", s + 1);
-      NamedValues<Exact> inputs = random_inputs(source);
-      compare(inputs);
+      sample_ = s + 1;
+      const NamedValues<Exact> inputs = random_inputs(source);
+      if (s < exactly_judged) {
+        compare(inputs, exact_, inputs);
+      } else {
+        compare(inputs, extended_, in_long_double(inputs));
+      }
       if (s < formula_samples) check_formulas(mechanism, rounded, inputs);
     }
-    return summarise(samples, source);
+    return summarise(plan.samples);
   }
 
  private:
@@ -124,11 +131,13 @@ class Verifier {
     return !best.empty() && find_function(program_, best + name) != nullptr;
   }
 
-  void compare(const NamedValues<Exact>& in) {
+  /// Compiled code against a judge that is given the same inputs in its own numbers.
+  template <class S>
+  void compare(const NamedValues<Exact>& in, const ProgramCaller<S>& judge, const NamedValues<S>& for_judge) {
     const NamedValues<double> rounded = as_doubles(in);
     for (const Function& f : program_.functions) {
       if (is_of_another_chart(f.name)) continue;
-      const NamedValues<Exact> expected = exact_(f.name, in);
+      const NamedValues<S> expected = judge(f.name, for_judge);
       const NamedValues<double> got = compiled_(f.name, rounded);
       for (const OutputBlock& b : f.outputs) {
         Record& record = records_[{f.name, b.name}];
@@ -136,9 +145,10 @@ class Verifier {
         const double scale = size_of(expected.at(b.name));
         record.scale.push_back(f.name.ends_with("compatibility") ? std::max(scale, residual_scale_[b.name])
                                                                  : scale);
-        record.label.push_back(label_);
+        record.sample.push_back(sample_);
+        if (!(record.error.back() <= bound_ * record.scale.back()))  // may be asked for its condition
+          inputs_of_sample_[sample_] = in;
       }
-      inputs_by_label_[label_] = in;
     }
   }
 
@@ -282,24 +292,13 @@ class Verifier {
     if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
   }
 
-  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last
-  /// place.
-  double condition(const std::string& function, const std::string& output, const std::string& label,
-                   double scale, SampleSource& source) {
-    const NamedValues<Exact>& in = inputs_by_label_.at(label);
-    const std::vector<Exact> base = exact_(function, in).at(output);
-    double largest = 0;
-    for (int trial = 0; trial < condition_trials; ++trial) {
-      NamedValues<Exact> moved = in;
-      for (auto& [name, values] : moved) {
-        for (Exact& x : values) x = x * (Exact(1) + Exact::from_double(source.uniform() < 0.5 ? eps : -eps));
-      }
-      largest = std::max(largest, distance(exact_(function, moved).at(output), base) / scale);
-    }
-    return largest / eps;
+  double condition(const std::string& function, const std::string& output, int sample, double scale) {
+    const NamedValues<Exact>& in = inputs_of_sample_.at(sample);
+    return relative_condition([&](const NamedValues<Exact>& at) { return exact_(function, at).at(output); },
+                              in, scale);
   }
 
-  Verification summarise(int samples, SampleSource& source) {
+  Verification summarise(int samples) {
     Verification v;
     v.samples = samples;
     v.formula_samples = formula_count_;
@@ -320,9 +319,10 @@ class Verifier {
         for (std::size_t i = 0; i < record.error.size(); ++i) {
           const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
           relative.push_back(record.error[i] / scale);
-          if (!(relative.back() <= e.worst)) e.worst = relative.back(), e.worst_at = record.label[i];
-          if (relative.back() > verification_bound) {
-            const double kappa = condition(f.name, b.name, record.label[i], scale, source);
+          if (!(relative.back() <= e.worst))
+            e.worst = relative.back(), e.worst_at = fmt::format("sample {}", record.sample[i]);
+          if (relative.back() > bound_) {
+            const double kappa = condition(f.name, b.name, record.sample[i], scale);
             e.condition = std::max(e.condition, kappa);
             if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
           }
@@ -348,15 +348,17 @@ class Verifier {
   std::vector<Exact> parameters_;
   std::vector<double> double_parameters_;
   ProgramCaller<Exact> exact_;
+  ProgramCaller<long double> extended_;
   ProgramCaller<double> compiled_;
   State<Exact> state_;
   ChartFinder<Exact> chart_at_, torque_driven_chart_at_;
   std::string chart_, torque_driven_chart_;  // prefixes of the functions of the best chart at the state
-  std::string label_;
+  int sample_ = 0;
+  double bound_ = 0;
   std::map<std::string, double>
       residual_scale_;  // natural scale of the compatibility residuals, which vanish
   std::map<std::pair<std::string, std::string>, Record> records_;
-  std::map<std::string, NamedValues<Exact>> inputs_by_label_;
+  std::map<int, NamedValues<Exact>> inputs_of_sample_;
   double formula_worst_ = 0, energy_balance_ = 0;
   int formula_count_ = 0;
   std::string formula_at_;
@@ -364,9 +366,9 @@ class Verifier {
 
 }  // namespace
 
-Verification verify_program(const Model& model, const Derivation& derivation, int samples,
+Verification verify_program(const Model& model, const Derivation& derivation, const VerificationPlan& plan,
                             const std::function<void(int)>& progress) {
-  return Verifier(model, derivation).run(samples, progress);
+  return Verifier(model, derivation).run(plan, progress);
 }
 
 }  // namespace anholon

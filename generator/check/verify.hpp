@@ -31,11 +31,15 @@ struct Verification {
   bool passed = true;
 };
 
-inline constexpr double verification_bound = 1e-13;  // of the natural scale; beyond it 10 eps kappa
-inline constexpr double formula_bound = 1e-30;       // both sides carry 60 digits
+/// How many states, and what an error may be, relative to the natural scale; beyond it 10 eps kappa.
+struct VerificationPlan {
+  int samples = 1000;
+  double bound = 1e-13;
+};
+inline constexpr double formula_bound = 1e-30;  // both sides carry 60 digits
 
 /// @param progress  called now and then with the number of samples done; may be empty
-Verification verify_program(const Model& model, const Derivation& derivation, int samples,
+Verification verify_program(const Model& model, const Derivation& derivation, const VerificationPlan& plan,
                             const std::function<void(int)>& progress);
 
 }  // namespace anholon

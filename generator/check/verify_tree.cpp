@@ -12,6 +12,7 @@
 #include "anholon/free_dynamics.hpp"
 #include "check/compiled_caller.hpp"
 #include "check/error_measure.hpp"
+#include "check/relative_condition.hpp"
 #include "check/tree_reference.hpp"
 #include "derive/tree_functions.hpp"
 #include "describe/mechanise.hpp"
@@ -22,7 +23,6 @@ namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
 constexpr unsigned digits = 60;
-constexpr int condition_trials = 4;
 
 /// A rotation near R, by Gram-Schmidt in working precision.
 Mat3<Exact> nearest_rotation(const Mat3<Exact>& R) {
@@ -69,6 +69,7 @@ class TreeVerifier {
     mechanism_ = mechanise<Exact>(description, parameters);
     in_double_ = mechanise<double>(description, numbers);
     exact_ = interpreting_caller<Exact>(program, parameters);
+    extended_ = interpreting_caller<long double>(program, {numbers.begin(), numbers.end()});
     compiled_ = compiled_caller(program, parameters);
     for (const Function& f : program.functions) {  // others are steps of these
       if (std::ranges::find(tree_function_names(), f.name) != tree_function_names().end())
@@ -76,16 +77,22 @@ class TreeVerifier {
     }
   }
 
-  Verification run(int samples, const std::function<void(int)>& progress) {
+  Verification run(const VerificationPlan& plan, const std::function<void(int)>& progress) {
+    bound_ = plan.bound;
     const int size = static_cast<int>(components_.size()) + mechanism_.coordinates;
     SampleSource source(4);
-    for (int s = 0; s < samples; ++s) {
+    for (int s = 0; s < plan.samples; ++s) {
       if (progress) progress(s);
-      points_.push_back(random_point(source));
-      compare(points_.back());
-      if (s < formula_samples(size)) check_formulas(points_.back());
+      const TreePoint<Exact> x = random_point(source);
+      const NamedValues<Exact> in = tree_inputs(mechanism_, x);
+      if (s < exactly_judged) {
+        compare(s, x, exact_, in);
+      } else {
+        compare(s, x, extended_, in_long_double(in));
+      }
+      if (s < formula_samples(size)) check_formulas(x);
     }
-    return summarise(samples, source);
+    return summarise(plan.samples);
   }
 
  private:
@@ -106,16 +113,20 @@ class TreeVerifier {
     return x;
   }
 
-  void compare(const TreePoint<Exact>& x) {
-    const NamedValues<Exact> in = tree_inputs(mechanism_, x);
+  /// Compiled code against a judge that is given the same inputs in its own numbers.
+  template <class S>
+  void compare(int sample, const TreePoint<Exact>& x, const ProgramCaller<S>& judge,
+               const NamedValues<S>& for_judge) {
     const NamedValues<double> in_double = tree_inputs(in_double_, rounded(x));
     for (const Function& f : checked_) {
-      const NamedValues<Exact> expected = exact_(f.name, in);
+      const NamedValues<S> expected = judge(f.name, for_judge);
       const NamedValues<double> got = compiled_(f.name, in_double);
       for (const OutputBlock& b : f.outputs) {
         Record& record = records_[{f.name, b.name}];
         record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
         record.scale.push_back(size_of(expected.at(b.name)));
+        if (!(record.error.back() <= bound_ * record.scale.back()))  // may be asked for its condition
+          points_.insert_or_assign(sample, x);
       }
     }
   }
@@ -174,24 +185,13 @@ class TreeVerifier {
     if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
   }
 
-  /// Largest change of an output, relative to its scale, when every input moves by one unit in the last
-  /// place.
-  double condition(const std::string& function, const std::string& output, std::size_t sample, double scale,
-                   SampleSource& source) {
-    const NamedValues<Exact> in = tree_inputs(mechanism_, points_[sample]);
-    const std::vector<Exact> base = exact_(function, in).at(output);
-    double largest = 0;
-    for (int trial = 0; trial < condition_trials; ++trial) {
-      NamedValues<Exact> moved = in;
-      for (auto& [name, values] : moved) {
-        for (Exact& x : values) x = x * (Exact(1) + Exact::from_double(source.uniform() < 0.5 ? eps : -eps));
-      }
-      largest = std::max(largest, distance(exact_(function, moved).at(output), base) / scale);
-    }
-    return largest / eps;
+  double condition(const std::string& function, const std::string& output, int sample, double scale) {
+    const NamedValues<Exact> in = tree_inputs(mechanism_, points_.at(sample));
+    return relative_condition([&](const NamedValues<Exact>& at) { return exact_(function, at).at(output); },
+                              in, scale);
   }
 
-  Verification summarise(int samples, SampleSource& source) {
+  Verification summarise(int samples) {
     Verification v;
     v.samples = samples;
     v.formula_samples = formula_count_;
@@ -213,8 +213,8 @@ class TreeVerifier {
           relative.push_back(record.error[i] / scale);
           if (!(relative.back() <= e.worst))
             e.worst = relative.back(), e.worst_at = fmt::format("sample {}", i + 1);
-          if (relative.back() <= verification_bound) continue;
-          const double kappa = condition(f.name, b.name, i, scale, source);
+          if (relative.back() <= bound_) continue;
+          const double kappa = condition(f.name, b.name, static_cast<int>(i), scale);
           e.condition = std::max(e.condition, kappa);
           if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
         }
@@ -239,19 +239,20 @@ class TreeVerifier {
   Mechanism<Exact> mechanism_;
   Mechanism<double> in_double_;
   ProgramCaller<Exact> exact_;
+  ProgramCaller<long double> extended_;
   ProgramCaller<double> compiled_;
-  std::vector<TreePoint<Exact>> points_;
+  std::map<int, TreePoint<Exact>> points_;  // those whose condition may be asked for
   std::map<std::pair<std::string, std::string>, Record> records_;
-  double formula_worst_ = 0, energy_balance_ = 0;
+  double bound_ = 0, formula_worst_ = 0, energy_balance_ = 0;
   int formula_count_ = 0;
   std::string formula_at_;
 };
 
 }  // namespace
 
-Verification verify_tree(const Model& model, const TreeDerivation& derivation, int samples,
+Verification verify_tree(const Model& model, const TreeDerivation& derivation, const VerificationPlan& plan,
                          const std::function<void(int)>& progress) {
-  return TreeVerifier(model, derivation.program).run(samples, progress);
+  return TreeVerifier(model, derivation.program).run(plan, progress);
 }
 
 }  // namespace anholon

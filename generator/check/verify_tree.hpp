@@ -10,7 +10,7 @@
 namespace anholon {
 
 /// @param progress  called now and then with the number of samples done; may be empty
-Verification verify_tree(const Model& model, const TreeDerivation& derivation, int samples,
+Verification verify_tree(const Model& model, const TreeDerivation& derivation, const VerificationPlan& plan,
                          const std::function<void(int)>& progress);
 
 }  // namespace anholon

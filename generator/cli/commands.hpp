@@ -49,6 +49,7 @@ struct EvaluateOptions : ModelOptions {
 };
 struct VerifyOptions : ModelOptions {
   int samples = 1000;
+  double bound_ulps = 450;  // 1e-13
   bool json = false;
 };
 struct ExplainOptions : ModelOptions {

@@ -98,7 +98,12 @@ int main(int argc, char** argv) {
   verb = app.add_subcommand(
       "verify", "Compare generated code with exact arithmetic and the recursion at random states");
   model_options(verb, verify, true);
-  verb->add_option("--samples", verify.samples, "random states")->check(CLI::Range(1, 10000000));
+  verb->add_option("--samples", verify.samples, "random states; beyond 1000, long double is the judge")
+      ->check(CLI::Range(1, 10000000));
+  verb->add_option(
+          "--bound", verify.bound_ulps,
+          "largest error in ulps of the natural scale, 2^-52; beyond it 10 eps kappa. Default 450, 1e-13")
+      ->check(CLI::PositiveNumber);
   verb->add_flag("--json", verify.json, "print JSON, schema anholon.verify/1");
   verb->callback([&] { run = [&] { return cli::verify(verify); }; });
 

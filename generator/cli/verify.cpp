@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
+#include "check/error_measure.hpp"
 #include "check/verify_tree.hpp"
 #include "cli/common.hpp"
 
@@ -16,12 +17,12 @@ namespace {
 
 constexpr double ulp = 2.220446049250313e-16;
 
-std::string json_text(const Model& model, const Verification& v) {
+std::string json_text(const Model& model, const Verification& v, double bound) {
   nlohmann::ordered_json j;
   j["schema"] = "anholon.verify/1";
   j["model"] = model.name;
   j["samples"] = v.samples;
-  j["bound"] = verification_bound;
+  j["bound"] = bound;
   j["energy_balance"] = v.energy_balance;
   j["formulas"] = {{"samples", v.formula_samples}, {"worst", v.formula_worst}, {"at", v.formula_at}};
   for (const OutputError& e : v.outputs) {
@@ -53,6 +54,7 @@ int verify(const VerifyOptions& options) {
     }
     derivation = derive_any(complete, model);
   }
+  const VerificationPlan plan{options.samples, options.bound_ulps * ulp};
   double shown = 1;
   const auto progress = [&](int done) {
     if (watch.seconds() < shown || isatty(STDERR_FILENO) == 0) return;
@@ -60,20 +62,21 @@ int verify(const VerifyOptions& options) {
     std::fflush(stderr);
     shown = watch.seconds() + 0.5;
   };
-  const Verification v = derivation.tree
-                             ? verify_tree(model, *derivation.tree, options.samples, progress)
-                             : verify_program(model, *derivation.reduction, options.samples, progress);
+  const Verification v = derivation.tree ? verify_tree(model, *derivation.tree, plan, progress)
+                                         : verify_program(model, *derivation.reduction, plan, progress);
   if (shown > 1 && isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r{:40s}\r", "");
   if (options.json) {
-    fmt::print("{}", json_text(model, v));
+    fmt::print("{}", json_text(model, v, plan.bound));
     return v.passed ? ok : check_failed;
   }
   fmt::print("{}: generated code against exact evaluation at {} random states of the working range\n",
              model.name, v.samples);
+  if (v.samples > exactly_judged)
+    fmt::print("exact at the first {}, in long double at the others\n", exactly_judged);
   fmt::print(
       "error relative to the natural scale of the output, in ulps of it (2^-52); bound {:.0e} = {:.0f} ulps, "
       "beyond it 10 eps kappa\n\n",
-      verification_bound, verification_bound / ulp);
+      plan.bound, options.bound_ulps);
   fmt::print("{:26s} {:22s} {:>8s} {:>8s} {:>8s} {:>9s} {:>10s}  {}\n", "function", "output", "median",
              "99 %", "worst", "relative", "recursion", "worst at");
   for (const OutputError& e : v.outputs) {

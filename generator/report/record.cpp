@@ -111,8 +111,9 @@ ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options
 
   stage("verifying");
   const auto progress = [&](int done) { stage(fmt::format("verifying, {} of {}", done, options.samples)); };
-  const Verification v = g.tree != nullptr ? verify_tree(g.model, *g.tree, options.samples, progress)
-                                           : verify_program(g.model, *g.reduction, options.samples, progress);
+  const Verification v = g.tree != nullptr
+                             ? verify_tree(g.model, *g.tree, {options.samples}, progress)
+                             : verify_program(g.model, *g.reduction, {options.samples}, progress);
   record["verification"] = {{"samples", v.samples},
                             {"formulas_worst", v.formula_worst},
                             {"formula_samples", v.formula_samples},

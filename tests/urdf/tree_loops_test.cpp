@@ -33,7 +33,7 @@ void expect_loops_that_pass(const Model& model, const std::vector<std::string>& 
     ASSERT_NE(f, derivation->program.functions.end());
     EXPECT_TRUE(f->loops.has_value()) << name;
   }
-  const Verification v = verify_tree(model, *derivation, 3, {});
+  const Verification v = verify_tree(model, *derivation, {3}, {});
   EXPECT_TRUE(v.passed);
   EXPECT_LE(v.formula_worst, formula_bound) << v.formula_at;
   for (const OutputError& e : v.outputs)

@@ -20,7 +20,7 @@ void expect_passed(const Model& model, const std::vector<std::string>& functions
   TreeRequest request;
   request.functions = functions;
   const auto derivation = derive_tree(model, request);
-  const Verification v = verify_tree(model, *derivation, samples, {});
+  const Verification v = verify_tree(model, *derivation, {samples}, {});
   EXPECT_TRUE(v.passed);
   EXPECT_GT(v.formula_samples, 0);
   EXPECT_LE(v.formula_worst, formula_bound) << v.formula_at;
@@ -61,7 +61,7 @@ TEST(VerifyTree, FindsAWrongFunction) {
   NodeId& output = program.functions.at(0).outputs.back().nodes.at(1);
   const Expr factor(program.tape, program.tape.constant(Exact::from_decimal("1.000000000001")));
   output = (factor * Expr(program.tape, output)).id(program.tape);
-  const Verification v = verify_tree(model, *derivation, 3, {});
+  const Verification v = verify_tree(model, *derivation, {3}, {});
   EXPECT_FALSE(v.passed);
   EXPECT_GT(v.formula_worst, 1e-14);
 }
