@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "anholon/integrate/dopri.hpp"
+#include "anholon/integrate/rosenbrock.hpp"
 #include "anholon/motion.hpp"
 #include "run/lie_samples.hpp"
 #include "run/manufactured_motion.hpp"
@@ -53,6 +54,7 @@ namespace {
 using integrate::AdaptiveOptions;
 using integrate::DormandPrince;
 using integrate::Rkmk4;
+using integrate::RosenbrockStages;
 using integrate::State;
 
 /// The manufactured motion allocates; this field does not.
@@ -106,6 +108,48 @@ TYPED_TEST(AllocationOn, NoneHappensInAnIntegration) {
   EXPECT_TRUE(fixed);
   EXPECT_TRUE(adaptive);
   EXPECT_EQ(reported, 4);
+}
+
+/// The same with its Jacobian.
+template <class G>
+struct QuietStiffField : QuietField {
+  using Real = typename G::Scalar;
+  template <class Vector, class Matrix>
+  void jacobian(Real t, const G& g, const Vector& y, Matrix& F, Vector& F_t) const {
+    F.setZero();
+    F_t.setZero();
+    for (int i = 0; i < G::dim; ++i) {
+      for (int j = 0; j < G::linear_dim; ++j) F(i, j) = g.R()(0, j) / 9;
+      F(i, G::dim + i % y.size()) = 1;
+      F_t[i] = Real(i + 1) * std::cos(t * (i + 1));
+    }
+    for (Eigen::Index i = 0; i < y.size(); ++i) {
+      F(G::dim + i, G::dim + i) -= y[(i + 1) % y.size()];
+      F(G::dim + i, G::dim + (i + 1) % y.size()) -= y[i];
+      F_t[G::dim + i] = -std::sin(t);
+    }
+  }
+};
+
+TYPED_TEST(AllocationOn, NoneHappensInAStiffIntegration) {
+  using Real = typename TypeParam::Scalar;
+  for (const Eigen::Index size : {1, 7, 40}) {  // 40: beyond the block size of the factorisation
+    using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
+    RosenbrockStages<TypeParam> stages(size);
+    State<TypeParam> state{0, {}, Vector::Constant(size, Real(0.1L))};
+    AdaptiveOptions<Real> options;
+    options.rtol = options.atol = Real(1e-4L);
+    Vector y(size);
+    const long before = allocations;
+    const auto outcome = integrate_adaptive(stages, QuietStiffField<TypeParam>{}, state, Real(1), options,
+                                            [&](const auto& step) {
+                                              TypeParam g;
+                                              step.evaluate((step.t_begin() + step.t_end()) / 2, g, y);
+                                            });
+    EXPECT_EQ(allocations - before, 0) << size;
+    EXPECT_TRUE(outcome);
+    EXPECT_LT(outcome.accepted_steps, 100);  // a wrong Jacobian would cost many
+  }
 }
 
 TEST(Allocation, NoneHappensInTheImposedMotion) {

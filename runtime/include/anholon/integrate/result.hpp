@@ -17,6 +17,10 @@ struct State {
   Eigen::Matrix<Real, Eigen::Dynamic, 1> y;  ///< (n_y), any size, 0 included
 };
 
+/// Half a turn: steps that turn further are refused, since dexp^-1 has its pole at a whole turn.
+template <class Real>
+inline constexpr Real largest_turn_in_a_step = Real(3.1415926535897932385L);
+
 enum class Status {
   ok,              ///< the end time was reached
   step_too_small,  ///< the tolerance asks for steps below the resolution of t: a singularity, or too tight a
@@ -50,6 +54,7 @@ struct Result {
   long accepted_steps = 0;
   long rejected_steps = 0;
   long evaluations = 0;      ///< calls of the field
+  long jacobians = 0;        ///< calls of its derivative (rosenbrock.hpp only)
   Real next_step = Real(0);  ///< step [s] with which a continuation may start (adaptive only)
 
   explicit operator bool() const { return status == Status::ok; }

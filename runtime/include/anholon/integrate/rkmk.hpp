@@ -186,10 +186,6 @@ class RkmkStages {
   Vector y_begin_, y_end_, y_stage_, y_sum_, carry_, carry_end_;
 };
 
-/// Half a turn: steps that turn further are refused, since dexp^-1 has its pole at a whole turn.
-template <class Real>
-inline constexpr Real largest_turn_in_a_step = Real(3.1415926535897932385L);
-
 /// Integrates with `steps` equal steps from state.t to t_end (which may lie before it).
 ///
 /// @param stages    workspace; its size_y() must be state.y.size()
