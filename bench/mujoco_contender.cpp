@@ -14,6 +14,8 @@
 
 #include "contenders.hpp"
 #include "layout.hpp"
+#include "motion.hpp"
+#include "simulate/cpu_time.hpp"
 #include "urdf/central_inertia.hpp"
 
 namespace anholon::bench {
@@ -160,6 +162,24 @@ std::vector<Contender> mujoco_contenders(const Robot& robot, const std::string& 
         "MuJoCo, mj_crb path", n, [e](std::size_t i) { e->mass_matrix(i); },
         [e](std::size_t i) { return e->full_mass_matrix(i); }, digits)};
   return {};
+}
+
+MotionRun mujoco_motion(const Robot& robot, double duration, long steps) {
+  Engine e(robot);
+  e.model->opt.integrator = mjINT_RK4;
+  e.model->opt.timestep = duration / static_cast<double>(steps);
+  e.load(0);
+  const double start = cpu_now();
+  for (long i = 0; i < steps; ++i) mj_step(e.model.get(), e.data.get());
+  MotionRun run;
+  run.cpu_seconds = cpu_now() - start;
+  run.evaluations = 4 * steps;
+  for (std::size_t i = 0; i < robot.model.coordinates.size(); ++i) {
+    const int joint = mj_name2id(e.model.get(), mjOBJ_JOINT, fmt::format("j{}", i).c_str());
+    run.end.r.push_back(e.data->qpos[e.model->jnt_qposadr[joint]]);
+    run.end.r_dot.push_back(e.data->qvel[e.model->jnt_dofadr[joint]]);
+  }
+  return run;
 }
 
 }  // namespace anholon::bench

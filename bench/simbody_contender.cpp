@@ -3,7 +3,9 @@
 
 #include "contenders.hpp"
 #include "layout.hpp"
+#include "motion.hpp"
 #include "simbody_engine.hpp"
+#include "simulate/cpu_time.hpp"
 
 namespace anholon::bench {
 namespace {
@@ -40,7 +42,7 @@ struct Twin {
     if (layout.free_base) {
       for (const std::size_t c : {3, 4, 5, 0, 1, 2}) layout.at.push_back(engine.first_velocity(0) + c);
     }
-    std::vector<std::size_t> body_of(static_cast<std::size_t>(m.coordinates));
+    body_of.resize(static_cast<std::size_t>(m.coordinates));
     for (std::size_t k = 0; k < m.bodies.size(); ++k) {
       if (m.bodies[k].coordinate >= 0) body_of[static_cast<std::size_t>(m.bodies[k].coordinate)] = k;
     }
@@ -61,6 +63,7 @@ struct Twin {
   const Robot& robot;
   SimbodyEngine engine;
   Layout layout;
+  std::vector<std::size_t> body_of;  // each coordinate moves
 };
 
 }  // namespace
@@ -87,6 +90,20 @@ std::vector<Contender> simbody_contenders(const Robot& robot, const std::string&
           });
         })};
   return {};
+}
+
+MotionRun simbody_motion(const Robot& robot, double duration, double accuracy) {
+  Twin twin(robot);
+  std::vector<double> q, u;
+  MotionRun run;
+  const double start = cpu_now();
+  run.evaluations = twin.engine.fall(0, duration, accuracy, q, u);
+  run.cpu_seconds = cpu_now() - start;
+  for (const std::size_t k : twin.body_of) {
+    run.end.r.push_back(q[twin.engine.first_position(k)]);
+    run.end.r_dot.push_back(u[twin.engine.first_velocity(k)]);
+  }
+  return run;
 }
 
 }  // namespace anholon::bench

@@ -26,6 +26,7 @@ struct SimbodyEngine::Parts {
 
   SimTK::MultibodySystem system;
   SimTK::SimbodyMatterSubsystem matter{system};
+  SimTK::GeneralForceSubsystem applied{system};
   SimTK::State state;
   std::vector<SimTK::MobilizedBody> bodies;
   std::vector<Weight> weights;
@@ -74,6 +75,7 @@ SimbodyEngine::SimbodyEngine(const std::vector<SimbodyBody>& bodies, const std::
     parts_->weights.push_back(
         {parts_->bodies.back().getMobilizedBodyIndex(), vector(b.centre), b.mass * vector(gravity)});
   }
+  SimTK::Force::Gravity(parts_->applied, parts_->matter, vector(gravity));
   parts_->state = parts_->system.realizeTopology();
   parts_->system.realizeModel(parts_->state);
 }
@@ -109,6 +111,23 @@ void SimbodyEngine::forward_dynamics(std::size_t state) {
 void SimbodyEngine::mass_matrix(std::size_t state) {
   parts_->move(state, SimTK::Stage::Position);
   parts_->matter.calcM(parts_->state, parts_->M);
+}
+
+long SimbodyEngine::fall(std::size_t state, double duration, double accuracy, std::vector<double>& position,
+                         std::vector<double>& velocity) {
+  Parts& p = *parts_;
+  p.move(state, SimTK::Stage::Velocity);
+  SimTK::RungeKuttaMersonIntegrator integrator(p.system);
+  integrator.setAccuracy(accuracy);
+  SimTK::TimeStepper stepper(p.system, integrator);
+  stepper.initialize(p.state);
+  stepper.stepTo(duration);
+  const SimTK::State& end = integrator.getState();
+  position.resize(static_cast<std::size_t>(end.getNQ()));
+  velocity.resize(static_cast<std::size_t>(end.getNU()));
+  for (std::size_t i = 0; i < position.size(); ++i) position[i] = end.getQ()[static_cast<int>(i)];
+  for (std::size_t i = 0; i < velocity.size(); ++i) velocity[i] = end.getU()[static_cast<int>(i)];
+  return integrator.getNumRealizations();
 }
 
 double SimbodyEngine::result(std::size_t i) const { return parts_->result[static_cast<int>(i)]; }

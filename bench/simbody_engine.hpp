@@ -42,6 +42,11 @@ class SimbodyEngine {
   void inverse_dynamics(std::size_t state);
   void forward_dynamics(std::size_t state);
   void mass_matrix(std::size_t state);
+  /// Lets the system fall from a state, without joint forces, by Runge-Kutta-Merson with error control.
+  /// @param position, velocity  out: at the end, in Simbody's order
+  /// @return evaluations of the dynamics
+  long fall(std::size_t state, double duration, double accuracy, std::vector<double>& position,
+            std::vector<double>& velocity);
   /// Of the last inverse_dynamics() or forward_dynamics().
   [[nodiscard]] double result(std::size_t i) const;
   /// Of the last mass_matrix().
