@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -98,6 +100,53 @@ TEST(FlexibleRobots, BalanceTheirEnergyToANinthDigit) {
     ASSERT_TRUE(result.finished) << name;
     EXPECT_LT(result.energy_balance, 1e-9) << name;
   }
+}
+
+// Nothing drives it and nothing damps it: T + V itself stays, while the beam bends in both planes on a hub
+// that tumbles.
+TEST(FreeHub, KeepsItsEnergyWithAStiffenedBeam) {
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "free_hub";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "hub.toml") << R"(anholon = 1
+name = "hub"
+group = "SE3"
+[[body]]
+name = "hub"
+inertia = { mass = 2, com = [0.02, 0, 0.01], about_com = { xx = 0.08, yy = 0.06, zz = 0.1 } }
+[[body]]
+name = "boom"
+parent = "hub"
+pose = { translation = [0.1, 0, 0] }
+joint = { kind = "fixed" }
+[body.beam]
+length = 1
+mass_per_length = 0.5
+bending_stiffness = [6, 4]
+modes = 2
+planes = ["y", "z"]
+deformation = "stiffened"
+range = [-0.1, 0.1]
+)";
+  const SimulationResult result = simulate_scene(read_scene_text(
+      R"(anholon = 1
+name = "tumble"
+model = "hub.toml"
+initial = { coordinates = { boom_e1 = 0.04, boom_e3 = -0.03 }, velocities = { V_X = 0.2, Omega_X = 1, Omega_Y = 0.6, Omega_Z = 2.5, boom_e2 = 0.1 } }
+duration = 10
+output_step = 0.05
+integrator = { method = "dopri5", tolerance = 1e-11 }
+)",
+      folder / "tumble.scene.toml"));
+  ASSERT_TRUE(result.finished) << result.status;
+  const std::size_t kinetic = testing::column_index(result, "kinetic"),
+                    potential = testing::column_index(result, "potential");
+  const double energy = result.rows.front()[kinetic] + result.rows.front()[potential];
+  double bent = 0;
+  for (const auto& row : result.rows) {
+    EXPECT_NEAR(row[kinetic] + row[potential], energy, 1e-9 * energy) << "t = " << row[0];
+    bent = std::max(bent, row[potential]);
+  }
+  EXPECT_GT(bent, 0.01 * energy);  // J; it does bend
 }
 
 // Eight axles leave seven joints two freedoms; torques push them towards a wave.
