@@ -128,6 +128,10 @@ class TreeDeriver {
         throw UnsupportedError(
             fmt::format("body '{}' is compliant: the functions of model '{}' are those of derive()", b.name,
                         model_.name));
+      if (b.fluid)
+        throw UnsupportedError(
+            fmt::format("body '{}' has added mass: the functions of model '{}' are those of derive()", b.name,
+                        model_.name));
     }
     mechanism.open_section = [this](const std::string& title) { tape_.section(title); };
     described_ = mechanism;
@@ -702,7 +706,7 @@ const std::vector<std::string>& standard_tree_functions() {
 
 bool is_driven_tree(const Model& model) {
   const auto moves_alone = [](const Coordinate& c) { return c.drive == Drive::active; };
-  const auto is_rigid = [](const BodyDescription& b) { return b.modes.empty(); };
+  const auto is_rigid = [](const BodyDescription& b) { return b.modes.empty() && !b.fluid; };
   const auto acts_on_base = [](const GeneralisedForceDescription& f) { return f.index < 6; };
   std::vector<NodeId> roots = {model.potential.id(*model.tape), model.dissipation.id(*model.tape)};
   for (const GeneralisedForceDescription& f : model.forces) roots.push_back(f.force.id(*model.tape));

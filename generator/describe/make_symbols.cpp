@@ -79,7 +79,8 @@ void name_symbols(Reading& reading) {
     reading.scope.add(coordinate.name, symbol(SymbolKind::coordinate, symbols.r[i], unit));
     reading.scope.add_rate(coordinate.name, symbol(SymbolKind::velocity, symbols.r_dot[i], unit / units::s));
   }
-  for (std::size_t i = 0; i < 3 + 6 + 2 * model.coordinates.size(); ++i) reading.defaults.add_input(0);
+  const std::size_t state = 3 + 6 + 2 * model.coordinates.size() + symbols.local.size();
+  for (std::size_t i = 0; i < state; ++i) reading.defaults.add_input(0);
 }
 
 void name_coupled_coordinates(Reading& reading) {

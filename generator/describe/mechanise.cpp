@@ -120,6 +120,7 @@ class Describer {
       for (int col = 0; col < row; ++col) body.inertia(row, col) = body.inertia(col, row);
     }
     for (std::size_t j = 0; j < b.modes.size(); ++j) body.modes.push_back(mode(b, j, alignment.A));
+    if (b.fluid) body.fluid = b.fluid->turned_by(to_body);
     body.station = station(b, parent_axes);
     if (body.station.modes.empty()) body.p += parent_axes * vector(b.station.at);
     if (body.kind != JointKind::fixed) {
@@ -297,9 +298,11 @@ class Describer {
 
   void add(const WrenchDescription& w) {
     const Mat3<Expr> to_body = alignments_[static_cast<std::size_t>(w.body)].A.transposed();
-    result_.wrenches.push_back({w.body, w.in_world_axes, to_body * vector(w.point)});
-    for (const Expr& e : w.force) result_.wrench_roots.push_back(e.id(tape_));
-    for (const Expr& e : w.torque) result_.wrench_roots.push_back(e.id(tape_));
+    MechanismDescription::WrenchRoots wrench;
+    wrench.form = {w.body, w.in_world_axes, w.dissipates, to_body * vector(w.point), to_body, {}};
+    for (const Expr& e : w.force) wrench.roots.push_back(e.id(tape_));
+    for (const Expr& e : w.torque) wrench.roots.push_back(e.id(tape_));
+    result_.wrenches.push_back(std::move(wrench));
   }
 
   /// Q = -dU/dr - dD/dr_dot, eq. (21), plus the user's own; likewise for the reference body, whose directions
@@ -325,7 +328,12 @@ class Describer {
     for (const GeneralisedForceDescription& f : model_.forces) {
       const auto index = static_cast<std::size_t>(f.index);
       force[index] += f.force;
-      applied = applied + f.force * Expr(tape_, index < 6 ? s.eta[index] : s.r_dot[index - 6]);
+      const Expr of_force = f.force * Expr(tape_, index < 6 ? s.eta[index] : s.r_dot[index - 6]);
+      if (f.dissipates) {
+        power = power - of_force;
+      } else {
+        applied = applied + of_force;
+      }
     }
     if (std::ranges::any_of(force, [](const Expr& e) { return !e.is_zero(); })) {
       for (const Expr& e : force) result_.force_roots.push_back(e.id(tape_));

@@ -26,6 +26,10 @@ struct MechanismDescription {
     std::vector<RowTerm<Expr>> terms;
     std::vector<NodeId> roots;  // of a written row: 6 + s coefficients, bias
   };
+  struct WrenchRoots {
+    AppliedWrench<Expr> form;   // but for what evaluates it
+    std::vector<NodeId> roots;  // force, torque
+  };
   std::shared_ptr<Tape> tape;
   StateSymbols symbols;
   GroupKind group = GroupKind::fixed;
@@ -35,9 +39,8 @@ struct MechanismDescription {
   std::vector<RowRoots> rows;
   std::vector<NodeId> condition_roots;  // of each condition on the position: value, 6 + s derivatives
   Vec3<Expr> gravity;
-  std::vector<AppliedWrench<Expr>> wrenches;
-  std::vector<NodeId> wrench_roots;  // 6 each
-  std::vector<NodeId> force_roots;   // 6 + s, empty where all vanish
+  std::vector<WrenchRoots> wrenches;
+  std::vector<NodeId> force_roots;  // 6 + s, empty where all vanish
   std::vector<NodeId>
       energy_roots;  // potential, dissipated power, power of generalised forces; empty where all vanish
 };
@@ -62,6 +65,11 @@ class StateFunction {
     for (std::size_t i = 0; i < 6; ++i) eta_[i] = index(symbols_.eta[i]);
     for (const NodeId id : symbols_.r) r_.push_back(index(id));
     for (const NodeId id : symbols_.r_dot) r_dot_.push_back(index(id));
+    for (const NodeId id : symbols_.local) local_.push_back(index(id));
+  }
+  void operator()(const State<S>& state, const Spatial<S>& local, std::span<S> out) {
+    for (std::size_t i = 0; i < local_.size(); ++i) inputs_[local_[i]] = local[static_cast<int>(i)];
+    (*this)(state, out);
   }
   void operator()(const State<S>& state, std::span<S> out) {
     inputs_[t_] = state.t;
@@ -85,7 +93,7 @@ class StateFunction {
   std::array<std::size_t, 9> R_{};
   std::array<std::size_t, 3> p_{};
   std::array<std::size_t, 6> eta_{};
-  std::vector<std::size_t> r_, r_dot_;
+  std::vector<std::size_t> r_, r_dot_, local_;
 };
 
 }  // namespace detail
@@ -111,6 +119,11 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
       const Body<Expr>& b = d.bodies[k];
       scalar(b.pitch), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass), vector(b.first_moment),
           matrix(b.inertia);
+      if (b.fluid) {
+        vector(b.fluid->A.diagonal), vector(b.fluid->A.mixed), matrix(b.fluid->B);
+        vector(b.fluid->C.diagonal), vector(b.fluid->C.mixed);
+        scalar(b.fluid->displaced), vector(b.fluid->displaced_moment);
+      }
       for (const Mode<Expr>& mode : b.modes) {
         vector(mode.S_j), matrix(mode.N_j);
         for (const Expr& m : mode.m_jl) scalar(m);
@@ -127,7 +140,7 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
       for (const auto& term : row.terms) vector(term.point), vector(term.linear), vector(term.angular);
     }
     vector(d.gravity);
-    for (const auto& wrench : d.wrenches) vector(wrench.point);
+    for (const auto& wrench : d.wrenches) vector(wrench.form.point), matrix(wrench.form.axes);
   };
   visit(want, want3, want9);
   const std::vector<S> values = interpret<S>(*d.tape, roots, inputs, constant);
@@ -157,6 +170,13 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     body.coupling = b.coupling;
     body.pitch = scalar(), body.R = matrix(), body.p = vector(), body.R_frame = matrix();
     body.mass = scalar(), body.first_moment = vector(), body.inertia = matrix();
+    if (b.fluid) {
+      AddedMass<S> fluid;
+      fluid.A.diagonal = vector(), fluid.A.mixed = vector(), fluid.B = matrix();
+      fluid.C.diagonal = vector(), fluid.C.mixed = vector();
+      fluid.displaced = scalar(), fluid.displaced_moment = vector();
+      body.fluid = fluid;
+    }
     for (const Mode<Expr>& m : b.modes) {
       Mode<S> mode;
       mode.coordinate = m.coordinate;
@@ -197,8 +217,18 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
   mechanism.conditions = static_cast<int>(d.condition_roots.size()) / (7 + d.coordinates);
   if (!d.condition_roots.empty()) mechanism.position_conditions = state_function(d.condition_roots);
   mechanism.gravity = vector();
-  for (const auto& w : d.wrenches) mechanism.wrenches.push_back({w.body, w.in_world_axes, vector()});
-  if (!d.wrenches.empty()) mechanism.evaluate_wrenches = state_function(d.wrench_roots);
+  for (const auto& w : d.wrenches) {
+    AppliedWrench<S> wrench;
+    wrench.body = w.form.body;
+    wrench.in_world_axes = w.form.in_world_axes;
+    wrench.dissipates = w.form.dissipates;
+    wrench.point = vector(), wrench.axes = matrix();
+    wrench.evaluate = [f = std::make_shared<detail::StateFunction<S>>(d, w.roots, parameters, constant)](
+                          const State<S>& state, const Spatial<S>& velocity, std::span<S> out) {
+      (*f)(state, velocity, out);
+    };
+    mechanism.wrenches.push_back(std::move(wrench));
+  }
   if (!d.force_roots.empty()) mechanism.generalised_forces = state_function(d.force_roots);
   if (!d.energy_roots.empty()) mechanism.user_energies = state_function(d.energy_roots);
   return mechanism;

@@ -44,7 +44,8 @@ std::array<Exact, n> difference(std::array<Exact, n> a, const std::array<Exact, 
   return a;
 }
 
-/// Whether a symmetric matrix has no negative pivot beyond rounding, by elimination without a square root.
+}  // namespace
+
 bool is_semidefinite(PerPair<Exact> a) {
   const std::size_t n = a.size();
   std::vector<Exact> scale;
@@ -74,6 +75,8 @@ bool is_semidefinite(PerPair<Exact> a) {
   }
   return true;
 }
+
+namespace {
 
 class TableOfModes {
  public:

@@ -43,6 +43,10 @@ struct ModalTable {
   [[nodiscard]] std::size_t modes() const { return S.size(); }
 };
 
+/// Whether a symmetric matrix has no negative pivot beyond rounding to 1e-6, by elimination without a square
+/// root.
+bool is_semidefinite(ModalTable::PerPair<Exact> a);
+
 /// Reads and checks a table: shapes, symmetry to 1e-6 of the largest entry (the mean of both halves is
 /// taken), no negative stiffness or damping, and a mass matrix of body and modes that is positive
 /// semidefinite. Errors go to `findings`; the table is usable where there are none.

@@ -90,6 +90,7 @@ struct BodyDescription {
   std::array<Expr, 3> first_moment = {0, 0, 0};      // about the body's origin
   std::array<Expr, 6> inertia = {0, 0, 0, 0, 0, 0};  // xx yy zz xy xz yz about the origin, matrix entries
   std::vector<ModeDescription> modes;                // empty: rigid
+  std::optional<AddedMass<Expr>> fluid;              // about the body's origin, in its axes
   Deformation deformation = Deformation::stiffened;
   Location where;
 };
@@ -135,9 +136,10 @@ struct ContactForceDescription {
   bool unilateral = true;        // the ground only pushes
 };
 
-/// External wrench on a body: expressions of state, parameters and time.
+/// External wrench on a body: expressions of state, parameters, time and the velocity of the body there.
 struct WrenchDescription {
   int body = 0;
+  bool dissipates = false;                // its power is lost
   bool in_world_axes = false;             // else in the body's axes
   std::array<Expr, 3> point = {0, 0, 0};  // application point, body frame
   std::array<Expr, 3> force = {0, 0, 0};
@@ -147,6 +149,7 @@ struct WrenchDescription {
 struct GeneralisedForceDescription {
   int index = 0;  // 0..5: component of the base wrench in body axes; 6 + i: coordinate i
   Expr force = 0;
+  bool dissipates = false;  // its power is lost
 };
 
 /// The state that expressions may name, as inputs of the model's tape.
@@ -158,6 +161,8 @@ struct StateSymbols {
   std::vector<NodeId> r;        // in the order of Model::coordinates
   std::array<NodeId, 6> eta{};  // V, Omega in body axes
   std::vector<NodeId> r_dot;
+  std::vector<NodeId> local;  // of the wrench that is evaluated: velocity of its point, angular velocity of
+                              // its body, in its axes; empty where no wrench uses them
 };
 
 struct Model {

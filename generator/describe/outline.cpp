@@ -279,7 +279,7 @@ Outline read_outline(TableReader& root, Reading& reading) {
   }
   for (const Value* table : tables) {
     BodyOutline& body = outline.bodies.emplace_back(
-        BodyOutline{TableReader(*table, "a body", reading.findings), {}, {}, {}, {}, -1});
+        BodyOutline{TableReader(*table, "a body", reading.findings), {}, {}, {}, {}, -1, {}});
     BodyDescription described;
     described.where = table->where;
     if (const Value* name = body.table.required("name", Value::Kind::string, "name it: name = \"wheel\"")) {

@@ -38,13 +38,21 @@ struct ModalOutline {
 using StationReader =
     std::function<StationDescription(const Value* station, const BodyDescription& hanging, Reading& reading)>;
 
+/// The axis of a beam, along which sections may be taken.
+struct BeamLine {
+  Expr length = 1;
+  /// @param x  fraction of the length
+  std::function<StationDescription(const Exact& x, Reading& reading)> at;
+};
+
 struct BodyOutline {
   TableReader table;
   std::optional<TableReader> joint;
   std::optional<BeamOutline> beam;
   std::optional<ModalOutline> modal;
-  StationReader station_on;  // what hangs on this body, once it has been read as compliant
-  int coordinate = -1;       // of the joint in Model::coordinates; -1 where it is coupled or fixed
+  StationReader station_on;      // what hangs on this body, once it has been read as compliant
+  int coordinate = -1;           // of the joint in Model::coordinates; -1 where it is coupled or fixed
+  std::optional<BeamLine> line;  // once it has been read as a beam
 };
 
 struct CouplingOutline {

@@ -120,35 +120,6 @@ void read_modal_range(BeamOutline& beam, const char* key, std::size_t first, std
   }
 }
 
-/// A function of x alone, as the user writes it: value and two derivatives.
-std::optional<BeamShape> read_function(const Value& value, const std::string& what, Reading& reading) {
-  const auto tape = std::make_shared<Tape>();
-  const NodeId x = tape->input("x");
-  Scope scope;
-  scope.add("x", Symbol{SymbolKind::coordinate, {Expr(*tape, x), units::one}, "", ""});
-  const std::string text = value.kind == Value::Kind::number ? decimal_text(value) : value.text;
-  if (text.empty() || (value.kind != Value::Kind::number && value.kind != Value::Kind::string)) {
-    reading.findings.error(value.where, fmt::format("{} is {}", what, value.kind_name()),
-                           "write a number, or an expression of x in quotes");
-    return std::nullopt;
-  }
-  try {
-    const NodeId f = read_expression(*tape, text, scope, SymbolKind::coordinate).value.id(*tape);
-    const NodeId first = derivative(*tape, f, x);
-    const std::vector<NodeId> roots = {f, first, derivative(*tape, first, x)};
-    return [tape, roots](const Exact& at) {
-      const std::vector<Exact> values = interpret<Exact>(*tape, roots, std::vector<Exact>{at});
-      return std::array<Exact, 3>{values[0], values[1], values[2]};
-    };
-  } catch (const ExpressionError& error) {
-    reading.findings.error(value.at(error.offset), error.fact, error.mend);
-  } catch (const std::domain_error& error) {
-    reading.findings.error(value.where, fmt::format("{} is undefined: {}", what, error.what()),
-                           "write a function that is defined for x from 0 to 1");
-  }
-  return std::nullopt;
-}
-
 /// Bending shapes: the user's own, or those of the boundary conditions.
 std::vector<BeamShape> read_shapes(BeamOutline& beam, Reading& reading) {
   static const std::vector<std::string> all_ends = {"clamped-free", "pinned-pinned"};
@@ -169,7 +140,7 @@ std::vector<BeamShape> read_shapes(BeamOutline& beam, Reading& reading) {
                              fmt::format("write {} at most", beam.modes));
     for (const Value& item : own->items) {
       const std::string what = fmt::format("a shape of {}", beam.table.what());
-      const auto shape = read_function(item, what, reading);
+      const auto shape = read_function_of_x(item, what, reading);
       if (!shape) return shapes;
       const std::array<Exact, 3> root = (*shape)(Exact(0));
       if (!root[0].is_zero())
@@ -225,7 +196,7 @@ std::vector<BeamSection> read_sections(BeamOutline& beam, Reading& reading) {
     const auto factor = [&](const char* key) -> BeamSection::Factor {
       const Value* value = table.optional(key);
       if (value == nullptr) return {};
-      const auto f = read_function(*value, fmt::format("the {} of {}", key, table.what()), reading);
+      const auto f = read_function_of_x(*value, fmt::format("the {} of {}", key, table.what()), reading);
       if (!f) return {};
       return [shape = *f](const Exact& x) { return shape(x)[0]; };
     };
@@ -265,22 +236,10 @@ std::array<Expr, 3> turn_of(BeamFamily family, const Expr& value, const Expr& sl
 
 bool bends(BeamFamily family) { return family == BeamFamily::bending_y || family == BeamFamily::bending_z; }
 
-/// Where a child hangs: station = 0.5 is half way.
-StationReader station_reader(const std::vector<BeamMode>& modes, int first_coordinate, const Expr& length) {
-  return [modes, first_coordinate, length](const Value* station, const BodyDescription& hanging,
-                                           Reading& reading) {
+/// The frame of a place on the axis: x = 0.5 is half way.
+BeamLine line_of(const std::vector<BeamMode>& modes, int first_coordinate, const Expr& length) {
+  const auto at = [modes, first_coordinate, length](const Exact& x, Reading& reading) {
     StationDescription result;
-    Exact x = 1;
-    if (station != nullptr) {
-      const auto number = decimal_value(*station);
-      if (!number || *number < Exact(0) || *number > Exact(1)) {
-        reading.findings.error(
-            station->where, fmt::format("the station of body '{}' is not a number from 0 to 1", hanging.name),
-            "write the fraction of the beam's length at which it hangs");
-        return result;
-      }
-      x = *number;
-    }
     const WorkingDigits digits(128);
     Tape& tape = *reading.model.tape;
     const auto constant = [&](const Exact& value) { return Expr(tape, tape.constant(value)); };
@@ -303,9 +262,56 @@ StationReader station_reader(const std::vector<BeamMode>& modes, int first_coord
     }
     return result;
   };
+  return {length, at};
+}
+
+/// Where a child hangs: station = 0.5 is half way.
+StationReader station_reader(const BeamLine& line) {
+  return [line](const Value* station, const BodyDescription& hanging, Reading& reading) {
+    Exact x = 1;
+    if (station != nullptr) {
+      const auto number = decimal_value(*station);
+      if (!number || *number < Exact(0) || *number > Exact(1)) {
+        reading.findings.error(
+            station->where, fmt::format("the station of body '{}' is not a number from 0 to 1", hanging.name),
+            "write the fraction of the beam's length at which it hangs");
+        return StationDescription();
+      }
+      x = *number;
+    }
+    return line.at(x, reading);
+  };
 }
 
 }  // namespace
+
+std::optional<BeamShape> read_function_of_x(const Value& value, const std::string& what, Reading& reading) {
+  const auto tape = std::make_shared<Tape>();
+  const NodeId x = tape->input("x");
+  Scope scope;
+  scope.add("x", Symbol{SymbolKind::coordinate, {Expr(*tape, x), units::one}, "", ""});
+  const std::string text = value.kind == Value::Kind::number ? decimal_text(value) : value.text;
+  if (text.empty() || (value.kind != Value::Kind::number && value.kind != Value::Kind::string)) {
+    reading.findings.error(value.where, fmt::format("{} is {}", what, value.kind_name()),
+                           "write a number, or an expression of x in quotes");
+    return std::nullopt;
+  }
+  try {
+    const NodeId f = read_expression(*tape, text, scope, SymbolKind::coordinate).value.id(*tape);
+    const NodeId first = derivative(*tape, f, x);
+    const std::vector<NodeId> roots = {f, first, derivative(*tape, first, x)};
+    return [tape, roots](const Exact& at) {
+      const std::vector<Exact> values = interpret<Exact>(*tape, roots, std::vector<Exact>{at});
+      return std::array<Exact, 3>{values[0], values[1], values[2]};
+    };
+  } catch (const ExpressionError& error) {
+    reading.findings.error(value.at(error.offset), error.fact, error.mend);
+  } catch (const std::domain_error& error) {
+    reading.findings.error(value.where, fmt::format("{} is undefined: {}", what, error.what()),
+                           "write a function that is defined for x from 0 to 1");
+  }
+  return std::nullopt;
+}
 
 void read_station(BodyOutline& body, BodyDescription& described, const BodyOutline* parent,
                   Reading& reading) {
@@ -439,7 +445,8 @@ void read_beam(BodyOutline& body, BodyDescription& described, Reading& reading) 
       if (damping.material) model.dissipation += *damping.material * k * (rate * rate_l);
     }
   }
-  body.station_on = station_reader(modes, beam.first_coordinate, L);
+  body.line = line_of(modes, beam.first_coordinate, L);
+  body.station_on = station_reader(*body.line);
 }
 
 }  // namespace anholon

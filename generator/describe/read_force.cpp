@@ -10,6 +10,13 @@
 namespace anholon {
 namespace {
 
+constexpr std::array<const char*, 6> local_names = {"v_x", "v_y", "v_z", "omega_x", "omega_y", "omega_z"};
+
+bool dissipates(TableReader& table) {
+  const Value* value = table.optional("dissipative", Value::Kind::boolean);
+  return value != nullptr && value->text == "true";
+}
+
 constexpr Allowed force_symbols = SymbolKind::parameter | SymbolKind::coordinate | SymbolKind::velocity |
                                   SymbolKind::pose | SymbolKind::time;
 
@@ -30,7 +37,7 @@ void read_coordinate_force(TableReader& table, const Value& coordinate, Reading&
   if (symbol->quantity.unit) unit = symbol->quantity.unit->is_number() ? units::newton_m : units::newton;
   const Expr value =
       reading.number(*force, fmt::format("the force of {}", table.what()), unit, force_symbols);
-  add_force_on(symbol->quantity.value, value, reading);
+  add_force_on(symbol->quantity.value, value, reading, dissipates(table));
 }
 
 void read_component_force(TableReader& table, const Value& component, Reading& reading) {
@@ -51,7 +58,7 @@ void read_component_force(TableReader& table, const Value& component, Reading& r
   const int index = free[static_cast<std::size_t>(found - known.begin())];
   const Expr value = reading.number(*force, fmt::format("the force of {}", table.what()),
                                     index < 3 ? units::newton : units::newton_m, force_symbols);
-  reading.model.forces.push_back({index, value});
+  reading.model.forces.push_back({index, value, dissipates(table)});
 }
 
 void read_wrench(TableReader& table, const Value& body, Reading& reading) {
@@ -68,12 +75,22 @@ void read_wrench(TableReader& table, const Value& body, Reading& reading) {
   if (force == nullptr && torque == nullptr)
     reading.findings.error(table.table().where, fmt::format("{} has neither force nor torque", table.what()),
                            "give it one");
+  const Scope of_all = reading.scope;  // local velocities are names of this wrench alone
+  const std::array<Expr, 6> local = local_velocity(reading);
+  for (std::size_t i = 0; i < 6; ++i) {
+    if (of_all.find(local_names[i]) == nullptr)  // what the description calls so keeps its name
+      reading.scope.add(
+          local_names[i],
+          Symbol{SymbolKind::velocity, {local[i], i < 3 ? units::m_per_s : units::per_s}, "", ""});
+  }
   if (force != nullptr)
     wrench.force =
         reading.vector3(*force, fmt::format("the force of {}", table.what()), units::newton, force_symbols);
   if (torque != nullptr)
     wrench.torque = reading.vector3(*torque, fmt::format("the torque of {}", table.what()), units::newton_m,
                                     force_symbols);
+  reading.scope = of_all;
+  wrench.dissipates = dissipates(table);
   if (const Value* point = table.optional("point"))
     wrench.point = reading.vector3(*point, fmt::format("the point of {}", table.what()), units::m);
   if (const auto axes = table.optional_choice("axes", {"body", "world"})) wrench.in_world_axes = *axes == 1;
@@ -81,6 +98,18 @@ void read_wrench(TableReader& table, const Value& body, Reading& reading) {
 }
 
 }  // namespace
+
+std::array<Expr, 6> local_velocity(Reading& reading) {
+  Tape& tape = *reading.model.tape;
+  std::vector<NodeId>& inputs = reading.model.symbols.local;
+  for (std::size_t i = inputs.size(); i < 6; ++i) {
+    inputs.push_back(tape.input(local_names[i]));
+    reading.defaults.add_input(0);
+  }
+  std::array<Expr, 6> velocity;
+  for (std::size_t i = 0; i < 6; ++i) velocity[i] = Expr(tape, inputs[i]);
+  return velocity;
+}
 
 void read_forces(TableReader& root, Reading& reading) {
   std::size_t number = 0;

@@ -69,7 +69,7 @@ void read_joint_forces(TableReader& joint, const Expr& r, const Expr& rate, bool
         read_positive(*size, fmt::format("the {} of {}", effort, table.what()), unit.effort, true, reading);
     const Expr v =
         read_positive(*speed, fmt::format("the velocity of {}", table.what()), unit.rate, false, reading);
-    if (!v.is_zero()) add_force_on(r, -(F * tanh(rate / v)), reading);
+    if (!v.is_zero()) add_force_on(r, -(F * tanh(rate / v)), reading, true);
   }
 }
 
@@ -88,12 +88,13 @@ void read_coordinate(TableReader& joint, Coordinate& coordinate, Reading& readin
 
 }  // namespace
 
-void add_force_on(const Expr& displacement, const Expr& force, Reading& reading) {
+void add_force_on(const Expr& displacement, const Expr& force, Reading& reading, bool dissipates) {
   Model& model = reading.model;
   Tape& tape = *model.tape;
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     const NodeId share = derivative(tape, displacement.id(tape), model.symbols.r[i]);
-    if (!tape.is_zero(share)) model.forces.push_back({static_cast<int>(6 + i), Expr(tape, share) * force});
+    if (!tape.is_zero(share))
+      model.forces.push_back({static_cast<int>(6 + i), Expr(tape, share) * force, dissipates});
   }
 }
 

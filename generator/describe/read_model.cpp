@@ -53,6 +53,7 @@ void fill(TableReader& root, const ParameterValues& overrides, Reading& reading)
   read_energies(root, reading);
   read_constraints(root, reading);
   read_forces(root, reading);
+  read_fluids(root, outline, 0, reading);
   read_free_velocities(root, reading);
   root.report_unknown_keys();
 }

@@ -57,6 +57,19 @@ void read_constraints(TableReader& root, Reading& reading);
 /// Wrenches and generalised forces.
 void read_forces(TableReader& root, Reading& reading);
 
+/// What a fluid does to bodies and beams. Sections of beams become bodies, the last ones of the model.
+/// @param first_outlined  index in Model::bodies of the outline's first body
+void read_fluids(TableReader& root, const Outline& outline, int first_outlined, Reading& reading);
+
+/// Velocity of the point that a wrench acts on, and angular velocity of its body, in the axes of the wrench:
+/// inputs of the model's tape that have these values while that wrench is evaluated.
+std::array<Expr, 6> local_velocity(Reading& reading);
+
+/// A function of x alone, as the user writes it: value and two derivatives. Empty after an error.
+std::optional<std::function<std::array<Exact, 3>(const Exact& x)>> read_function_of_x(const Value& value,
+                                                                                      const std::string& what,
+                                                                                      Reading& reading);
+
 /// Acceleration of gravity.
 void read_gravity(TableReader& root, Reading& reading);
 
@@ -70,7 +83,8 @@ void read_free_velocities(TableReader& root, Reading& reading);
 std::vector<std::string> group_names();
 
 /// Adds the generalised force `force` that works on `displacement`: on each independent coordinate its share.
-void add_force_on(const Expr& displacement, const Expr& force, Reading& reading);
+/// @param dissipates  whether its power counts as lost
+void add_force_on(const Expr& displacement, const Expr& force, Reading& reading, bool dissipates = false);
 
 /// Tables of an array of tables, such as [[body]]; anything else in it is an error.
 std::vector<const Value*> tables_of(TableReader& root, std::string_view key, Findings& findings);

@@ -152,6 +152,7 @@ class SupplementReader {
     read_energies(root_, reading);
     read_constraints(root_, reading);
     read_forces(root_, reading);
+    read_fluids(root_, outline_, static_cast<int>(file_bodies_), reading);
     read_free_velocities(root_, reading);
   }
 

@@ -30,6 +30,14 @@ void for_each_expression(Model& model, const Visitor& visit) {
     visit(body.mass);
     visit_all(body.first_moment, visit);
     visit_all(body.inertia, visit);
+    if (body.fluid) {
+      AddedMass<Expr>& fluid = *body.fluid;
+      for (Vec3<Expr>* v :
+           {&fluid.A.diagonal, &fluid.A.mixed, &fluid.C.diagonal, &fluid.C.mixed, &fluid.displaced_moment})
+        visit(v->x), visit(v->y), visit(v->z);
+      visit_all(fluid.B.m, visit);
+      visit(fluid.displaced);
+    }
     for (ModeDescription& mode : body.modes) {
       visit_all(mode.S, visit);
       visit_all(mode.X_phi, visit);
@@ -171,6 +179,7 @@ std::vector<Expr> new_inputs(const Model& old, Model& model, const Scene& scene,
   }
   for (const RowDescription& row : rows_in_force())
     symbols.r_dot.push_back(tape.input("deflection_" + row.name + "_dot"));
+  for (const NodeId id : old.symbols.local) symbols.local.push_back(copied(id));
   for (const LockedCoordinate& locked : scene.locked) {  // their places depend on parameters alone
     const NodeId root = locked.value.id(*scene.model.tape);
     const Expr place = interpret<Expr>(*scene.model.tape, {root}, image, FromExact<Expr>{&tape}).front();

@@ -81,6 +81,10 @@ TEST(Friction, SaturatesAtItsForce) {
                              -3.5L * std::tanh(Real(s.state.r_dot[0]) / 0.2L),
                              -1.1L * std::tanh(Real(s.state.r_dot[1]) / 0.05L)};
   };
+  w.dissipated_power = [forces = w.forces](const Sample& s) {
+    const std::vector<Real> F = forces(s);
+    return -F[6] * s.state.r_dot[0] - F[7] * s.state.r_dot[1];
+  };
   expect_mechanics_of(w);
 }
 

@@ -45,6 +45,7 @@ void require_rigid_tree(const Mechanism<S>& mechanism) {
     throw std::logic_error("frames that rows or wrenches refer to do not move");
   for (const Body<S>& b : mechanism.bodies) {
     if (!b.modes.empty()) throw std::logic_error("frames of a compliant body do not move");
+    if (b.fluid) throw std::logic_error("frames of a body with added mass do not move");
   }
 }
 

@@ -33,26 +33,13 @@ void move_rows(Mechanism<S>& mechanism, const std::vector<Place<S>>& places) {
 
 template <class S>
 void move_wrenches(Mechanism<S>& mechanism, const std::vector<Place<S>>& places) {
-  std::vector<std::pair<std::size_t, Mat3<S>>> turns;  // of wrenches given in the axes of a body that is gone
-  for (std::size_t i = 0; i < mechanism.wrenches.size(); ++i) {
-    AppliedWrench<S>& wrench = mechanism.wrenches[i];
+  for (AppliedWrench<S>& wrench : mechanism.wrenches) {
     const Place<S>& place = places[static_cast<std::size_t>(wrench.body)];
     wrench.body = place.index;
     if (!place.moved) continue;
     wrench.point = place.p + place.R * wrench.point;
-    if (!wrench.in_world_axes) turns.emplace_back(i, place.R);
+    wrench.axes = place.R * wrench.axes;
   }
-  if (turns.empty()) return;
-  mechanism.evaluate_wrenches = [evaluate = mechanism.evaluate_wrenches, turns](const State<S>& state,
-                                                                                std::span<S> out) {
-    evaluate(state, out);
-    for (const auto& [wrench, R] : turns) {
-      for (const std::size_t at : {6 * wrench, 6 * wrench + 3}) {
-        const Vec3<S> v = R * Vec3<S>{out[at], out[at + 1], out[at + 2]};
-        for (int c = 0; c < 3; ++c) out[at + static_cast<std::size_t>(c)] = v[c];
-      }
-    }
-  };
 }
 
 }  // namespace
@@ -83,6 +70,9 @@ int merge_fixed(Mechanism<S>& mechanism) {
     place = {body.parent, body.R, body.p, true};
     Body<S>& into = kept[static_cast<std::size_t>(body.parent)];
     set_moments(into, moments_of(into) + moments_in(body.R, body.p, moments_of(body)));
+    if (!body.fluid) continue;
+    const AddedMass<S> moved = body.fluid->turned_by(body.R).moved(body.p);
+    into.fluid = into.fluid ? *into.fluid + moved : moved;
   }
   const int gone = static_cast<int>(bodies.size() - kept.size());
   bodies = std::move(kept);

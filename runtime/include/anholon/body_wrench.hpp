@@ -23,6 +23,7 @@ struct BodyMotion {
   Vec3<S> v;                // velocity of the origin, m/s
   Vec3<S> w;                // angular velocity, rad/s
   Vec3<S> a;                // acceleration of the origin minus gravity (not the derivative of v), m/s^2
+  Vec3<S> gravity;          // acceleration of gravity that a has taken off; kept where there is a fluid
   Vec3<S> wd;               // derivative of w
   Vec3<S> square, product;  // (w_x^2, w_y^2, w_z^2), (w_y w_z, w_z w_x, w_x w_y)
   Mat3<S> U;                // [wd] + [w][w]
@@ -155,6 +156,23 @@ Spatial<S> body_wrench(const Body<S>& body, const BodyInertia<S>& shape, const B
     modal_force[j] = force;
   }
   return f;
+}
+
+/// Wrench about the body's origin that the motion needs because of the fluid, buoyancy included.
+template <class S>
+Spatial<S> fluid_wrench(const AddedMass<S>& fluid, const BodyMotion<S>& k) {
+  const Spatial<S> at = fluid.impulse(k.v, k.w);
+  const Spatial<S> rate = fluid.impulse(k.a + k.gravity - cross(k.w, k.v), k.wd);
+  return {rate.linear + cross(k.w, at.linear) + fluid.displaced * k.gravity,
+          rate.angular + cross(k.w, at.angular) + cross(k.v, at.linear) +
+              cross(fluid.displaced_moment, k.gravity)};
+}
+
+/// Kinetic energy of the fluid around a body.
+template <class S>
+S kinetic_energy(const AddedMass<S>& fluid, const BodyMotion<S>& k) {
+  const Spatial<S> at = fluid.impulse(k.v, k.w);
+  return (dot(k.v, at.linear) + dot(k.w, at.angular)) / S(2);
 }
 
 /// Kinetic energy of a body, from its twist and modal rates.

@@ -150,8 +150,9 @@ class FreeDynamics {
   struct Energies {
     S kinetic, gravity, elastic, dissipated_power, applied_power;  // J, J, J, W, W
   };
-  /// Kinetic energy; potential of gravity (zero at the world's origin); user, spring and modal energy; power
-  /// lost to the dissipation function; power of the user's generalised forces and wrenches.
+  /// Kinetic energy of bodies and fluid; potential of gravity and buoyancy (zero at the world's origin);
+  /// user, spring and modal energy; power lost to the dissipation function and to forces that dissipate;
+  /// power of the other forces and wrenches.
   Energies energies(const State<S>& state) {
     Energies e{S(0), S(0), S(0), S(0), S(0)};
     recursion_.position(state);
@@ -164,6 +165,11 @@ class FreeDynamics {
       e.kinetic = e.kinetic + kinetic_energy(mechanism_.bodies[k], inertia, recursion_.motion(body),
                                              std::span<const S>(state.r_dot));
       e.gravity = e.gravity - dot(mechanism_.gravity, inertia.mass * p_[k] + R_[k] * inertia.first_moment);
+      if (!mechanism_.bodies[k].fluid) continue;
+      const AddedMass<S>& fluid = *mechanism_.bodies[k].fluid;
+      e.kinetic = e.kinetic + kinetic_energy(fluid, recursion_.motion(body));
+      e.gravity =
+          e.gravity + dot(mechanism_.gravity, fluid.displaced * p_[k] + R_[k] * fluid.displaced_moment);
     }
     if (mechanism_.user_energies) {
       std::vector<S> user(3, S(0));
@@ -172,8 +178,11 @@ class FreeDynamics {
       e.dissipated_power = user[1];
       e.applied_power = user[2];
     }
-    if (!mechanism_.wrenches.empty())
-      e.applied_power = e.applied_power + recursion_.applied_wrench_power(state);
+    if (!mechanism_.wrenches.empty()) {
+      const auto [driving, lost] = recursion_.applied_wrench_powers(state);
+      e.applied_power = e.applied_power + driving;
+      e.dissipated_power = e.dissipated_power + lost;
+    }
     return e;
   }
 

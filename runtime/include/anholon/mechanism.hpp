@@ -6,10 +6,12 @@
 // poses.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "anholon/added_mass.hpp"
 #include "anholon/lie/group_kind.hpp"
 #include "anholon/spatial.hpp"
 
@@ -73,10 +75,11 @@ struct Body {
   Mat3<S> R_frame =
       Mat3<S>::identity();  // the described frame, in the body's: same origin, constant rotation
   S mass = S(0);
-  Vec3<S> first_moment;        // integral of X dm about the origin
-  Mat3<S> inertia;             // about the origin
-  std::vector<Mode<S>> modes;  // empty: rigid
-  Station<S> station;          // on the parent; the pose is in its frame
+  Vec3<S> first_moment;               // integral of X dm about the origin
+  Mat3<S> inertia;                    // about the origin
+  std::vector<Mode<S>> modes;         // empty: rigid
+  std::optional<AddedMass<S>> fluid;  // of the fluid that moves with the body's frame
+  Station<S> station;                 // on the parent; the pose is in its frame
 };
 
 /// Displacement of a coupled joint, with its derivatives by the independent coordinates that it depends on.
@@ -103,11 +106,17 @@ struct ConstraintRow {
   std::function<void(const State<S>&, std::span<S> out)> written;
 };
 
+/// A wrench on a body, at a point of it.
 template <class S>
 struct AppliedWrench {
   int body = 0;
   bool in_world_axes = false;
-  Vec3<S> point;
+  bool dissipates = false;             // its power is lost, and is counted as that
+  Vec3<S> point;                       // in the body's frame
+  Mat3<S> axes = Mat3<S>::identity();  // of the wrench, in the body's frame; not used in world axes
+  /// writes (force, torque) in the wrench's axes, 6 numbers
+  /// @param velocity  of the point, and angular velocity of the body, in the same axes
+  std::function<void(const State<S>&, const Spatial<S>& velocity, std::span<S> out)> evaluate;
 };
 
 template <class S>
@@ -123,8 +132,6 @@ struct Mechanism {
   Vec3<S> gravity;  // acceleration, world axes, m/s^2
 
   std::vector<AppliedWrench<S>> wrenches;
-  /// writes (force, torque) of every applied wrench, 6 numbers each
-  std::function<void(const State<S>&, std::span<S> out)> evaluate_wrenches;
   /// writes the 6 + s generalised forces of potential, dissipation and the user's own; empty where there are
   /// none
   std::function<void(const State<S>&, std::span<S> out)> generalised_forces;

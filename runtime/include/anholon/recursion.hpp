@@ -25,7 +25,8 @@ class Recursion {
         wrenches_(mechanism.bodies.size()) {
     for (const Coupling<S>& c : mechanism.couplings)
       coupling_values_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
-    applied_.resize(6 * mechanism.wrenches.size(), S(0));
+    for (const Body<S>& body : mechanism.bodies) has_fluid_ = has_fluid_ || body.fluid.has_value();
+    applied_.resize(6, S(0));
     force_.resize(6 + static_cast<std::size_t>(mechanism.coordinates), S(0));
     generalised_.resize(static_cast<std::size_t>(mechanism.coordinates), S(0));
     zeros_.resize(static_cast<std::size_t>(mechanism.coordinates), S(0));
@@ -84,7 +85,12 @@ class Recursion {
     BodyMotion<S>& base = motions_[0];
     mechanism_.section(mechanism_.bodies[0].name + ": acceleration");
     base.a = eta_dot.linear + cross(base.w, base.v);
-    if (gravity) base.a -= transposed_times(state.R, mechanism_.gravity);
+    base.gravity = {};
+    if (gravity) {
+      const Vec3<S> own = transposed_times(state.R, mechanism_.gravity);
+      base.a -= own;
+      base.gravity = own;
+    }
     base.wd = eta_dot.angular;
     complete(base);
     for (std::size_t k = 1; k < mechanism_.bodies.size(); ++k) {
@@ -102,6 +108,7 @@ class Recursion {
       motion.a[body.axis] = motion.a[body.axis] + linear;
       motion.wd = to_body(k, parent.wd) + cross(carried, angular_rate * axis);
       motion.wd[body.axis] = motion.wd[body.axis] + angular;
+      if (has_fluid_) motion.gravity = to_body(k, parent.gravity);
       complete(motion);
     }
   }
@@ -143,11 +150,17 @@ class Recursion {
       wrenches_[k] =
           body_wrench(body, joints_[k].inertia, motions_[k], std::span<const S>(state.r_dot), r_ddot, modal_);
       for (std::size_t j = 0; j < modal_.size(); ++j) add_force(body.modes[j].coordinate, modal_[j]);
+      if (!body.fluid) continue;
+      mechanism_.section(body.name + ": wrench of the fluid");
+      const Spatial<S> moved = fluid_wrench(*body.fluid, motions_[k]);
+      wrenches_[k].linear += moved.linear;
+      wrenches_[k].angular += moved.angular;
     }
     if (applied && !mechanism_.wrenches.empty()) {
-      for_each_applied_wrench(state, [this](std::size_t k, const Spatial<S>& wrench) {
-        wrenches_[k].linear -= wrench.linear;
-        wrenches_[k].angular -= wrench.angular;
+      for_each_applied_wrench(state, [this](const AppliedWrench<S>& of, const Spatial<S>& wrench) {
+        Spatial<S>& sum = wrenches_[static_cast<std::size_t>(of.body)];
+        sum.linear -= wrench.linear;
+        sum.angular -= wrench.angular;
       });
     }
     for (std::size_t k = mechanism_.bodies.size(); k-- > 1;) {
@@ -177,13 +190,18 @@ class Recursion {
     }
   }
 
-  /// Power of the applied wrenches. Needs twists().
-  S applied_wrench_power(const State<S>& state) {
-    S power = S(0);
-    for_each_applied_wrench(state, [&](std::size_t k, const Spatial<S>& wrench) {
-      power = power + dot(wrench.linear, motions_[k].v) + dot(wrench.angular, motions_[k].w);
+  /// Power of the applied wrenches: of those that drive, and lost to those that dissipate. Needs twists().
+  std::pair<S, S> applied_wrench_powers(const State<S>& state) {
+    S driving = S(0), lost = S(0);
+    for_each_applied_wrench(state, [&](const AppliedWrench<S>& of, const Spatial<S>& wrench) {
+      const BodyMotion<S>& k = motions_[static_cast<std::size_t>(of.body)];
+      if (of.dissipates) {
+        lost = lost - dot(wrench.linear, k.v) - dot(wrench.angular, k.w);
+      } else {
+        driving = driving + dot(wrench.linear, k.v) + dot(wrench.angular, k.w);
+      }
     });
-    return power;
+    return {driving, lost};
   }
 
   [[nodiscard]] const Spatial<S>& base_wrench() const { return base_wrench_; }
@@ -242,6 +260,7 @@ class Recursion {
     carriers_[k].a = station.to(parent.a + parent.U * station.offset() +
                                 S(2) * cross(parent.w, velocity.linear) + own.linear);
     carriers_[k].wd = station.to(parent.wd + cross(parent.w, velocity.angular) + own.angular);
+    if (has_fluid_) carriers_[k].gravity = station.to(parent.gravity);
     complete(carriers_[k]);
   }
 
@@ -310,23 +329,25 @@ class Recursion {
     for (std::size_t i = 0; i < c.on.size(); ++i)
       add_force(c.on[i], coupling_values_[static_cast<std::size_t>(body.coupling)][1 + i] * force);
   }
-  /// Calls f(body, wrench about the body's origin in its axes) for every applied wrench.
+  /// Calls f(applied wrench, wrench about the body's origin in its axes) for every one.
   template <class F>
   void for_each_applied_wrench(const State<S>& state, const F& f) {
-    mechanism_.section("applied wrenches");
-    mechanism_.evaluate_wrenches(state, applied_);
     poses(state, orientation_, position_);
-    for (std::size_t i = 0; i < mechanism_.wrenches.size(); ++i) {
-      const AppliedWrench<S>& w = mechanism_.wrenches[i];
+    mechanism_.section("applied wrenches");
+    for (const AppliedWrench<S>& w : mechanism_.wrenches) {
       const auto k = static_cast<std::size_t>(w.body);
-      const S* x = &applied_[6 * i];
-      const Mat3<S> from = w.in_world_axes ? orientation_[k].transposed() : mechanism_.bodies[k].R_frame;
-      const Vec3<S> force = from * Vec3<S>{x[0], x[1], x[2]};
-      f(k, Spatial<S>{force, from * Vec3<S>{x[3], x[4], x[5]} + cross(w.point, force)});
+      const Mat3<S> from = w.in_world_axes ? orientation_[k].transposed() : w.axes;
+      const Spatial<S> velocity = {transposed_times(from, motions_[k].v + cross(motions_[k].w, w.point)),
+                                   transposed_times(from, motions_[k].w)};
+      w.evaluate(state, velocity, applied_);
+      const Vec3<S> force = from * Vec3<S>{applied_[0], applied_[1], applied_[2]};
+      const Vec3<S> torque = from * Vec3<S>{applied_[3], applied_[4], applied_[5]};
+      f(w, Spatial<S>{force, torque + cross(w.point, force)});
     }
   }
 
   const Mechanism<S>& mechanism_;
+  bool has_fluid_ = false;
   std::vector<Joint> joints_;
   std::vector<BodyMotion<S>> motions_, carriers_;  // of bodies; of the stations that they hang on
   std::vector<Spatial<S>> wrenches_;
