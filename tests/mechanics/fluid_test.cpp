@@ -367,6 +367,48 @@ TEST(Resistance, OfARodIsThatOfTheIntegral) {
   expect_mechanics_of(w);
 }
 
+// Resistance is linear in the velocities of the sections as their momenta are: with equal figures its force
+// is minus the mass matrix of the added mass, which has a witness above, times the velocities.
+TEST(Resistance, AlongABeamActsOnItsSections) {
+  const std::string bodies =
+      header("SE3") + body("base", "", cloud(0)) +
+      body("tail", "base", {},
+           "pose = { translation = [0.2, -0.1, 0.3], rotation = { axis = \"z\", angle = 0.7 } }\n"
+           "joint = { kind = \"revolute\", axis = [0, -0.28, 0.96], coordinate = \"a\" }\n"
+           "[body.beam]\nlength = 0.8\nmass_per_length = 0.3\nbending_stiffness = 1.4\nmodes = 2\n"
+           "planes = [\"y\", \"z\"]\nrange = [-0.5, 0.5]\n");
+  const auto mechanism_with = [&](const std::string& fluid) {
+    return mechanise<Real>(describe_mechanism(read_model_text(bodies + fluid, "tail.toml")), {});
+  };
+  const std::string place = "[[fluid]]\nbody = \"tail\"\nto = 0.9\nsections = 3\nprofile = \"1 + x\"\n";
+  const Mechanism<Real> bare = mechanism_with(""),
+                        heavy = mechanism_with(place + "added_mass = [0.4, 1.1, 0.8]\n"),
+                        slow = mechanism_with(place + "resistance = [0.4, 1.1, 0.8]\n");
+  FreeDynamics<Real> of_bare(bare), of_heavy(heavy), of_slow(slow);
+  const Model model = read_model_text(bodies, "tail.toml");
+  std::mt19937_64 rng(20260204);
+  BlockErrors errors;
+  for (int sample = 0; sample < 100; ++sample) {
+    const State<Real> s = random_position_and_velocity(model, rng);
+    const std::vector<Real> v = velocity(GroupKind::SE3, s);
+    const Matrix<Real> with = of_heavy.mass_matrix(s), without = of_bare.mass_matrix(s);
+    const std::vector<Real> force = of_slow.forces(s), inertial = of_bare.forces(s);
+    std::vector<Real> want(v.size(), 0), have;
+    Real power = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) {
+      for (std::size_t j = 0; j < v.size(); ++j) {
+        const int row = static_cast<int>(i), column = static_cast<int>(j);
+        want[i] -= (with(row, column) - without(row, column)) * v[j];
+      }
+      power -= want[i] * v[i];
+      have.push_back(force[i] - inertial[i]);
+    }
+    errors.add("resistance", want, have);
+    errors.add("dissipated power", {power}, std::vector{of_slow.energies(s).dissipated_power});
+  }
+  errors.expect_below(1e-16L);  // differences of forces some hundred times larger, of half an ulp of 5.4e-20
+}
+
 TEST(Wake, PushesForwardByHalfItsEnergyPerLengthAndTakesItsMomentum) {
   Witness w = base_and_hinge(
       "[[fluid]]\nbody = \"base\"\npoint = [-0.4, 0.1, 0]\nwake = { added_mass = [0.8, 0.5], forward = \"x\" "

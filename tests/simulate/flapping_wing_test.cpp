@@ -51,7 +51,7 @@ TEST(FlappingWing, TwistsLikeAnOscillatorForSmallAmplitudes) {
   const double air = rho * M_PI * c * c / 4 * S;
   const double J = m * (c * c / 12 + d * d) + air * d * d + rho * M_PI * std::pow(c, 4) / 128 * S;
   const double P = (m + air) * d * S / 2;
-  const double omega = 2 * M_PI * 26;
+  const double omega = 2 * M_PI * 32;
 
   const double a = 1e-7;
   State<double> s;
