@@ -53,11 +53,12 @@ Mat3<double> rotation(const std::array<double, 4>& wxyz) {
            2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)}};
 }
 
-/// No peer is asked for springs, dampers and friction.
+/// No peer is asked for springs, dampers, friction and armatures.
 Model read_without_forces(const std::filesystem::path& file, const RobotOptions& options) {
   Model model = read_robot(file, options);
   model.potential = model.dissipation = 0;
   model.forces.clear();
+  for (BodyDescription& b : model.bodies) b.joint.armature = 0;
   return model;
 }
 

@@ -25,7 +25,7 @@ struct Sample {
 
 struct Robot {
   std::string name;
-  Model model;                  // without springs, dampers and friction: no peer is asked for them
+  Model model;                  // without springs, dampers, friction and armatures: no peer is asked for them
   Model symbolic;               // the same with inertial figures as parameters
   Mechanism<double> mechanism;  // of the described frames
   std::vector<Sample> samples;

@@ -226,7 +226,7 @@ class Reference {
     std::vector<std::size_t> moving;
     for (std::size_t k = 0; k < bare.bodies.size(); ++k) {
       Body<S>& b = bare.bodies[k];
-      b.mass = S(0), b.first_moment = {}, b.inertia = {};
+      b.mass = b.armature = S(0), b.first_moment = {}, b.inertia = {};
       if (k == 0 || b.kind != JointKind::fixed) moving.push_back(k);
     }
     constexpr int entries[6][2] = {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}};

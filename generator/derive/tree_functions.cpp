@@ -437,7 +437,7 @@ class TreeDeriver {
     return joints_are_independent(tree);
   }
 
-  static std::string meaning(const std::string& name) {
+  [[nodiscard]] std::string meaning(const std::string& name) const {
     if (name == "inverse_dynamics")
       return "Joint forces and, for a moving reference body, the wrench on it that a motion needs.";
     if (name == "bias_forces")
@@ -458,10 +458,16 @@ class TreeDeriver {
       return "Twists of the links at the tips in their own axes: J (eta, r_dot); their derivative is J "
              "(eta_dot, r_ddot) + bias.";
     if (name == "regressor")
-      return "Inverse dynamics without springs, dampers and friction as Y pi, linear in the inertial figures "
-             "pi of the bodies.";
+      return fmt::format(
+          "Inverse dynamics without springs, dampers{} as Y pi, linear in the inertial figures pi of the "
+          "bodies.",
+          has_armatures() ? ", friction and armatures" : " and friction");
     if (name == regressor_motion) return "Motion of bodies and joints, from which regressor() starts.";
     return "";
+  }
+
+  [[nodiscard]] bool has_armatures() const {
+    return std::ranges::any_of(merged_.bodies, [](const Body<Expr>& b) { return !b.armature.is_zero(); });
   }
 
   // ---- quantities

@@ -107,6 +107,7 @@ class Describer {
     const Mat3<Expr> to_body = alignment.A.transposed();
     body.axis = alignment.axis;
     body.pitch = b.joint.pitch;
+    body.armature = b.joint.armature;
     body.R = parent_axes * matrix(b.R) * alignment.A;
     body.p = parent_axes * vector(b.p);
     body.R_frame = to_body;
@@ -203,6 +204,7 @@ class Describer {
     if (body.kind != JointKind::prismatic && !q.is_zero())
       body.R = body.R * AxisRotation<Expr>{body.axis, cos(q), sin(q)}.matrix();
     body.kind = JointKind::fixed;
+    body.armature = 0;
   }
 
   void attach(Body<Expr>& body, const Expr& q) {

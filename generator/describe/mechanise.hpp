@@ -117,8 +117,8 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
   const auto visit = [&](auto&& scalar, auto&& vector, auto&& matrix) {
     for (std::size_t k = 0; k < d.bodies.size(); ++k) {
       const Body<Expr>& b = d.bodies[k];
-      scalar(b.pitch), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass), vector(b.first_moment),
-          matrix(b.inertia);
+      scalar(b.pitch), scalar(b.armature), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass),
+          vector(b.first_moment), matrix(b.inertia);
       if (b.fluid) {
         vector(b.fluid->A.diagonal), vector(b.fluid->A.mixed), matrix(b.fluid->B);
         vector(b.fluid->C.diagonal), vector(b.fluid->C.mixed);
@@ -168,7 +168,8 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     body.axis = b.axis;
     body.coordinate = b.coordinate;
     body.coupling = b.coupling;
-    body.pitch = scalar(), body.R = matrix(), body.p = vector(), body.R_frame = matrix();
+    body.pitch = scalar(), body.armature = scalar(), body.R = matrix(), body.p = vector(),
+    body.R_frame = matrix();
     body.mass = scalar(), body.first_moment = vector(), body.inertia = matrix();
     if (b.fluid) {
       AddedMass<S> fluid;

@@ -153,12 +153,10 @@ class MjcfElements : MjcfInertials {
     if (type == "ball")
       error(a.at("type").where, fmt::format("{} is a ball joint, which is not supported", what),
             "write three hinges, one after the other");
-    must_be_zero(a, "armature", what,
-                 "remove it, and describe the rotor as a [[body]] of a side-car file, with a [[coupling]]");
     must_be_zero(a, "springdamper", what, "write stiffness and damping", 2);
     if (type == "free") {
       j.type = RobotJointType::floating;
-      for (const char* figure : {"stiffness", "damping", "frictionloss"})
+      for (const char* figure : {"stiffness", "damping", "frictionloss", "armature"})
         must_be_zero(a, figure, what, "write <freejoint/>, which has no such default");
       return;
     }
@@ -171,8 +169,9 @@ class MjcfElements : MjcfInertials {
       return;
     }
     placed.at = vector(a, "pos", what, {0, 0, 0});
-    for (const auto& [figure, to] : {std::pair{"stiffness", &j.stiffness}, std::pair{"damping", &j.damping},
-                                     std::pair{"frictionloss", &j.friction}}) {
+    for (const auto& [figure, to] :
+         {std::pair{"stiffness", &j.stiffness}, std::pair{"damping", &j.damping},
+          std::pair{"frictionloss", &j.friction}, std::pair{"armature", &j.armature}}) {
       *to = number(a, figure, what, 0);
       if (const auto given = a.find(figure); given != a.end())
         check_not_negative(*to, given->second.where, figure, what);

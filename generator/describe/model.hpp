@@ -44,6 +44,7 @@ struct JointDescription {
   JointKind kind = JointKind::fixed;
   std::array<Expr, 3> axis = {0, 0, 1};  // unit vector, in the body's frame
   Expr pitch = 0;                        // of a helical joint, m/rad
+  Expr armature = 0;       // inertia of the motor, times the squared ratio of its gear, kg m^2 or kg
   Expr displacement = 0;   // an independent coordinate, or an expression of several (a coupling)
   std::string coordinate;  // name as written; empty for a fixed joint
 };

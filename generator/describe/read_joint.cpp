@@ -129,8 +129,7 @@ void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading)
   joint.report_unknown_keys();
 }
 
-void read_joint_supplement(TableReader& joint, const BodyDescription& described, int coordinate,
-                           Reading& reading) {
+void read_joint_supplement(TableReader& joint, BodyDescription& described, int coordinate, Reading& reading) {
   if (coordinate >= 0) {
     read_coordinate(joint, reading.model.coordinates[static_cast<std::size_t>(coordinate)], reading);
   } else {
@@ -140,10 +139,15 @@ void read_joint_supplement(TableReader& joint, const BodyDescription& described,
                                "it belongs to the coordinates that the joint follows; remove it");
     }
   }
+  const bool is_angle = described.joint.kind != JointKind::prismatic;
+  if (const Value* armature = joint.optional("armature")) {
+    const Dimension unit = is_angle ? units::kg * units::m * units::m : units::kg;
+    described.joint.armature +=
+        read_positive(*armature, fmt::format("the armature of {}", joint.what()), unit, true, reading);
+  }
   const Symbol* rate = reading.scope.find_rate(described.joint.coordinate);
   if (rate != nullptr)
-    read_joint_forces(joint, described.joint.displacement, rate->quantity.value,
-                      described.joint.kind != JointKind::prismatic, reading);
+    read_joint_forces(joint, described.joint.displacement, rate->quantity.value, is_angle, reading);
 }
 
 }  // namespace anholon

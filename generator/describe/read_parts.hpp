@@ -19,13 +19,12 @@ PoseDescription read_pose(const Value& pose, const std::string& what, Reading& r
 /// Pose of a body in its parent's frame.
 void read_pose(BodyOutline& body, BodyDescription& described, Reading& reading);
 
-/// Axis, range, drive, spring, damper and friction of a body's joint.
+/// Axis, range, drive, armature, spring, damper and friction of a body's joint.
 void read_joint(BodyOutline& body, BodyDescription& described, Reading& reading);
 
-/// Drive, range, spring, damper and friction alone: what a robot file does not say of its joints.
+/// Drive, range, armature, spring, damper and friction alone: what a robot file does not say of its joints.
 /// @param coordinate  index of the coordinate that moves the joint; -1 where the joint follows others
-void read_joint_supplement(TableReader& joint, const BodyDescription& described, int coordinate,
-                           Reading& reading);
+void read_joint_supplement(TableReader& joint, BodyDescription& described, int coordinate, Reading& reading);
 
 /// Mass, first moment and inertia, brought to the body's origin.
 void read_inertia(BodyOutline& body, BodyDescription& described, Reading& reading);

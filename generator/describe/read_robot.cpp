@@ -189,6 +189,7 @@ class RobotBuilder {
       }
       figures_.push_back(figures);
       if (!options_.symbolic_inertia) continue;
+      name_armature(n);
       constexpr std::array<const char*, 10> suffix = {"m",   "mx",  "my",  "mz",  "Ixx",
                                                       "Iyy", "Izz", "Ixy", "Ixz", "Iyz"};
       std::array<std::size_t, 10>& index = parameter_of_.emplace_back();
@@ -206,6 +207,16 @@ class RobotBuilder {
              inertial->where});
       }
     }
+  }
+
+  /// The armature of the joint that carries a link, as a parameter.
+  void name_armature(std::size_t n) {
+    armature_of_.push_back(model_.parameters.size());
+    if (tree_.nodes[n].joint < 0 || joint(tree_.nodes[n].joint).armature.is_zero()) return;
+    const RobotJoint& j = joint(tree_.nodes[n].joint);
+    model_.parameters.push_back({fmt::format("{}{}armature", names_[n], names_[n].back() == '_' ? "" : "_"),
+                                 j.armature, j.type == RobotJointType::prismatic ? "kg" : "kg m^2",
+                                 fmt::format("armature of joint {}", j.name), j.where});
   }
 
   std::array<Exact, 10> about_origin(const RobotInertial& i, const std::string& name) {
@@ -274,6 +285,10 @@ class RobotBuilder {
       add_chain(std::move(body), j, node.joint);
     } else {
       if (j.type != RobotJointType::fixed) add_joint(body, j, node.joint);
+      if (!j.armature.is_zero())
+        body.joint.armature = options_.symbolic_inertia
+                                  ? Expr(*model_.tape, model_.symbols.parameters[armature_of_[n]])
+                                  : constant(j.armature);
       model_.bodies.push_back(std::move(body));
     }
     body_of_.push_back(static_cast<int>(model_.bodies.size()) - 1);
@@ -396,12 +411,13 @@ class RobotBuilder {
   RobotFile file_;
   RobotTree tree_;
   Model model_;
-  std::vector<int> first_coordinate_;                      // of each joint, in Model::coordinates
-  std::vector<std::string> coordinate_names_;              // of all coordinates that the file has
-  std::vector<int> places_;                                // of those in Model::coordinates; -1: left out
-  std::vector<std::string> names_;                         // of the nodes' links
-  std::vector<std::array<Exact, 10>> figures_;             // inertial figures of the nodes' links
-  std::vector<int> body_of_;                               // of each node, in Model::bodies
+  std::vector<int> first_coordinate_;           // of each joint, in Model::coordinates
+  std::vector<std::string> coordinate_names_;   // of all coordinates that the file has
+  std::vector<int> places_;                     // of those in Model::coordinates; -1: left out
+  std::vector<std::string> names_;              // of the nodes' links
+  std::vector<std::array<Exact, 10>> figures_;  // inertial figures of the nodes' links
+  std::vector<int> body_of_;                    // of each node, in Model::bodies
+  std::vector<std::size_t> armature_of_;        // parameter of each node, where inertia is symbolic
   std::vector<std::array<std::size_t, 10>> parameter_of_;  // where inertia is symbolic
 };
 

@@ -44,6 +44,7 @@ struct RobotJoint {
   ExactPose pose;                             // of the child's frame in the parent's, at zero displacement
   ExactVector axis = {1, 0, 0};               // in the child's frame, of any length
   std::optional<std::array<Exact, 2>> limit;  // of the coordinate
+  Exact armature = 0;                         // inertia of the motor as the joint feels it, kg m^2 or kg
   Exact damping = 0;
   Exact friction = 0;
   Exact stiffness = 0;  // of a spring

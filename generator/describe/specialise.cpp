@@ -26,6 +26,7 @@ void for_each_expression(Model& model, const Visitor& visit) {
     visit_all(body.p, visit);
     visit_all(body.joint.axis, visit);
     visit(body.joint.pitch);
+    visit(body.joint.armature);
     visit(body.joint.displacement);
     visit(body.mass);
     visit_all(body.first_moment, visit);

@@ -149,10 +149,13 @@ INSTANTIATE_TEST_SUITE_P(
             "which has no such default"},
         Bad{"NegativeDamping", file(body("<joint name='j' damping='-1'/>")),
             "bad.xml:4:84: error: damping of joint 'j' is -1; it must not be negative"},
-        Bad{"Armature", file(body("<joint name='j'/>"), "<default><joint armature='0.01'/></default>"),
-            "bad.xml:2:17: error: armature of joint 'j' is 0.01, which is not supported; remove it, and "
-            "describe the "
-            "rotor as a [[body]] of a side-car file, with a [[coupling]]"},
+        Bad{"NegativeArmature",
+            file(body("<joint name='j'/>"), "<default><joint armature='-0.01'/></default>"),
+            "bad.xml:2:17: error: armature of joint 'j' is -0.01; it must not be negative"},
+        Bad{"ArmatureOfAFreeBody",
+            file(body("<joint name='j' type='free'/>"), "<default><joint armature='1'/></default>"),
+            "bad.xml:2:17: error: armature of joint 'j' is 1, which is not supported; write <freejoint/>, "
+            "which has no such default"},
         Bad{"SpringDamper", file(body("<joint name='j' springdamper='0.1 1'/>")),
             "bad.xml:4:84: error: springdamper of joint 'j' is 0.1 1, which is not supported; write "
             "stiffness and damping"},

@@ -135,7 +135,7 @@ void compare(const std::string& xml, const Model& model, double bound) {
   std::uniform_real_distribution<double> uniform(-2, 2);
   const std::function<double()> random = [&] { return uniform(generator); };
   const auto size = static_cast<std::size_t>(velocity_size(mechanism));
-  double worst_force = 0, worst_mass = 0;
+  double worst_force = 0, worst_mass = 0, worst_energy = 0;
   for (int trial = 0; trial < 20; ++trial) {
     State<double> s;
     if (model.group == GroupKind::SE3) {
@@ -166,10 +166,22 @@ void compare(const std::string& xml, const Model& model, double bound) {
                            their_M[i / size][i % size]);
         },
         size * size, worst_mass);
+    std::vector<double> v;
+    if (model.group == GroupKind::SE3) {
+      for (int i = 0; i < 6; ++i) v.push_back(s.eta[i]);
+    }
+    v.insert(v.end(), s.r_dot.begin(), s.r_dot.end());
+    double kinetic = 0;
+    for (std::size_t i = 0; i < size; ++i) {
+      for (std::size_t j = 0; j < size; ++j) kinetic += v[i] * their_M[i][j] * v[j] / 2;
+    }
+    worst_energy = std::max(worst_energy, std::abs(dynamics.energies(s).kinetic / kinetic - 1));
   }
   EXPECT_LT(worst_force, bound);
   EXPECT_LT(worst_mass, bound);
-  std::printf("inverse dynamics %.1e, mass matrix %.1e\n", worst_force, worst_mass);
+  EXPECT_LT(worst_energy, bound);
+  std::printf("inverse dynamics %.1e, mass matrix %.1e, kinetic energy %.1e\n", worst_force, worst_mass,
+              worst_energy);
 }
 
 constexpr double full_inertias = 3e-9, diagonal_inertias = 1e-12;
@@ -192,10 +204,10 @@ TEST(Mujoco, EveryWayToWriteABody) {
     <default class="stiff">
       <joint stiffness="30" springref="20"/>
       <default class="stiff_slide">
-        <joint type="slide" damping="3" axis="1 0 0"/>
+        <joint type="slide" damping="3" armature="0.6" axis="1 0 0"/>
       </default>
     </default>
-    <joint damping="0.4" axis="0.3 0 -1"/>
+    <joint damping="0.4" armature="0.07" axis="0.3 0 -1"/>
   </default>
   <worldbody>
     <body name="a" pos="0.1 0.2 0.3" euler="10 20 30" childclass="stiff">

@@ -50,6 +50,16 @@ TEST_F(RobotSupplement, StandsOnEachFormat) {
   }
 }
 
+TEST_F(RobotSupplement, AddsToArmatures) {
+  const Model model =
+      read_model_text("anholon = 1\nmjcf = 'arm.xml'\n[[joint]]\nname = 'elbow'\narmature = 0.25\n",
+                      (folder_ / "robot.toml").string());
+  for (const BodyDescription& b : model.bodies) {
+    const Expr& armature = b.joint.armature;
+    EXPECT_TRUE(b.joint.coordinate == "elbow" ? armature.constant_value()->to_double() == 0.25 : armature.is_zero());
+  }
+}
+
 TEST_F(RobotSupplement, HasExactMessages) {
   EXPECT_EQ(
       fault("sdf = 'arm.urdf'"),

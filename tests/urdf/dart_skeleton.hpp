@@ -68,7 +68,8 @@ struct DartSkeleton {
       inertia.setMass(b.mass);
       inertia.setLocalCOM(eigen(centre));
       inertia.setMoment(eigen(I));
-      node->setInertia(inertia);
+      if (b.parent >= 0 || free)
+        node->setInertia(inertia);  // that of the ground may be none, which DART minds
       nodes.push_back(node);
     }
     if (free) {  // DART has the angular part first

@@ -56,10 +56,11 @@ ArticulatedInertia<S> operator+(const ArticulatedInertia<S>& a, const Articulate
   return {a.M + b.M, a.H + b.H, a.I + b.I};
 }
 
-/// What is left of an articulated inertia when its joint gives way: IA - U U^T / d with U = IA S.
+/// What is left of an articulated inertia when its joint gives way: IA - U U^T / d with U = IA S and d = S^T
+/// U + armature.
 template <class S>
 struct ReleasedJoint {
-  Spatial<S> W;  // U / d; S^T W = 1
+  Spatial<S> W;  // U / d; S^T W = 1 where there is no armature
   S inverse_d = S(0);
   ArticulatedInertia<S> rest;
 };
@@ -76,12 +77,14 @@ ReleasedJoint<S> release(const Body<S>& b, const ArticulatedInertia<S>& A) {
     if (!pure)
       U.linear[i] = U.linear[i] + b.pitch * A.M(i, z), U.angular[i] = U.angular[i] + b.pitch * A.H(z, i);
   }
-  const S d = RigidTree<S>::joint_force(b, U);
+  const bool bare = pure && vanishes(b.armature);  // nothing is left along the joint's own axis
+  S d = RigidTree<S>::joint_force(b, U);
+  if (!vanishes(b.armature)) d = d + b.armature;
   r.inverse_d = S(1) / d;
   const int own = b.kind == JointKind::prismatic ? z : 3 + z;
-  for (int i = 0; i < 6; ++i) r.W[i] = pure && i == own ? S(1) : r.inverse_d * U[i];
+  for (int i = 0; i < 6; ++i) r.W[i] = bare && i == own ? S(1) : r.inverse_d * U[i];
   const auto rest = [&](const S& x, int i, int j) {
-    return pure && (i == own || j == own) ? S(0) : x - U[i] * r.W[j];
+    return bare && (i == own || j == own) ? S(0) : x - U[i] * r.W[j];
   };
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) r.rest.H(i, j) = rest(A.H(i, j), i, 3 + j);
@@ -141,8 +144,10 @@ TreeAcceleration<S> articulated_acceleration(const RigidTree<S>& tree, const std
       const S u = tau - tree.joint_force(b, p[k]);
       own[k] = joint[k].inverse_d * u;
       for (int i = 0; i < 6; ++i) p[k][i] = p[k][i] + joint[k].W[i] * u;
-      if (b.kind == JointKind::revolute) p[k].angular[b.axis] = tau;  // S^T W = 1
-      if (b.kind == JointKind::prismatic) p[k].linear[b.axis] = tau;
+      if (vanishes(b.armature)) {  // S^T W = 1
+        if (b.kind == JointKind::revolute) p[k].angular[b.axis] = tau;
+        if (b.kind == JointKind::prismatic) p[k].linear[b.axis] = tau;
+      }
     }
     const JointTransform<S>& x = tree.joint(k);
     const ArticulatedInertia<S>& rest = joint[k].rest;

@@ -91,7 +91,8 @@ Matrix<S> composite_mass_matrix(const RigidTree<S>& tree) {
     Spatial<S> f = inertial_wrench(composite.joined[k], s.linear, s.angular);
     if (body.kind == JointKind::revolute) f.angular[body.axis] = composite.about_axis[k];
     for (std::size_t i = k; i > 0; i = tree.parent_of(i)) {
-      const S entry = tree.joint_force(tree.body(i), f);
+      S entry = tree.joint_force(tree.body(i), f);
+      if (i == k && !vanishes(body.armature)) entry = entry + body.armature;
       tree.for_each_share(k, [&](int ck, const S& share_k) {
         tree.for_each_share(i, [&](int ci, const S& share_i) {
           const S x = share_k * share_i * entry;

@@ -171,6 +171,7 @@ class FreeDynamics {
       e.gravity =
           e.gravity + dot(mechanism_.gravity, fluid.displaced * p_[k] + R_[k] * fluid.displaced_moment);
     }
+    e.kinetic = e.kinetic + recursion_.rotor_energy(state);
     if (mechanism_.user_energies) {
       std::vector<S> user(3, S(0));
       mechanism_.user_energies(state, user);

@@ -68,6 +68,7 @@ struct Body {
   JointKind kind = JointKind::fixed;
   int axis = 2;                     // of the joint, in the body's frame
   S pitch = S(0);                   // helical: translation per angle, m/rad
+  S armature = S(0);                // inertia of what turns or slides with the joint's rate, kg m^2 or kg
   int coordinate = -1;              // independent coordinate that moves the joint alone, or -1
   int coupling = -1;                // index into Mechanism::couplings, or -1
   Mat3<S> R = Mat3<S>::identity();  // pose in the frame of parent or station, at zero displacement

@@ -10,6 +10,7 @@
 
 #include "anholon/body_wrench.hpp"
 #include "anholon/mechanism.hpp"
+#include "anholon/second_moment.hpp"
 #include "anholon/station.hpp"
 
 namespace anholon {
@@ -166,7 +167,7 @@ class Recursion {
     for (std::size_t k = mechanism_.bodies.size(); k-- > 1;) {
       const Body<S>& body = mechanism_.bodies[k];
       mechanism_.section(body.name + ": joint force");
-      project(body, wrenches_[k]);
+      project(body, wrenches_[k], rotor_force(body, state, r_ddot));
       const Vec3<S> force = to_parent(k, wrenches_[k].linear);
       const Vec3<S> moment = to_parent(k, wrenches_[k].angular) + cross(joints_[k].offset, force);
       Spatial<S>& parent = wrenches_[static_cast<std::size_t>(body.parent)];
@@ -188,6 +189,17 @@ class Recursion {
       for (int i = 0; i < 6; ++i) base_wrench_[i] = base_wrench_[i] - force_[static_cast<std::size_t>(i)];
       for (std::size_t i = 0; i < generalised_.size(); ++i) generalised_[i] = generalised_[i] - force_[6 + i];
     }
+  }
+
+  /// Kinetic energy of the armatures. Needs position().
+  [[nodiscard]] S rotor_energy(const State<S>& state) const {
+    S energy = S(0);
+    for (const Body<S>& body : mechanism_.bodies) {
+      if (vanishes(body.armature)) continue;
+      const S speed = rate(body, std::span<const S>(state.r_dot));
+      energy = energy + body.armature * (speed * speed) / S(2);
+    }
+    return energy;
   }
 
   /// Power of the applied wrenches: of those that drive, and lost to those that dissipate. Needs twists().
@@ -316,13 +328,19 @@ class Recursion {
     S& sum = generalised_[static_cast<std::size_t>(coordinate)];
     sum = sum + force;
   }
-  /// Adds the joint's share of a wrench to the coordinates that move it.
-  void project(const Body<S>& body, const Spatial<S>& wrench) {
+  /// What the armature of a joint needs; zero where there is none.
+  [[nodiscard]] S rotor_force(const Body<S>& body, const State<S>& state, std::span<const S> r_ddot) const {
+    if (vanishes(body.armature)) return S(0);
+    return body.armature * acceleration(body, state, r_ddot);
+  }
+  /// Adds the joint's share of a wrench, and what its armature needs, to the coordinates that move it.
+  void project(const Body<S>& body, const Spatial<S>& wrench, const S& rotor_force) {
     S force = S(0);
     if (body.kind == JointKind::revolute) force = wrench.angular[body.axis];
     if (body.kind == JointKind::prismatic) force = wrench.linear[body.axis];
     if (body.kind == JointKind::helical)
       force = wrench.angular[body.axis] + body.pitch * wrench.linear[body.axis];
+    if (!vanishes(body.armature)) force = force + rotor_force;
     if (body.coordinate >= 0) add_force(body.coordinate, force);
     if (body.coupling < 0) return;
     const Coupling<S>& c = mechanism_.couplings[static_cast<std::size_t>(body.coupling)];

@@ -67,6 +67,7 @@ class RigidTree {
     for (const Coupling<S>& c : mechanism.couplings)
       couplings_.emplace_back(1 + c.on.size() * (1 + c.on.size()), S(0));
     joints_.resize(mechanism.bodies.size());
+    rotor_force_.assign(mechanism.bodies.size(), S(0));
     motions_.resize(mechanism.bodies.size());
   }
 
@@ -114,6 +115,7 @@ class RigidTree {
       Motion& m = motions_[k];
       const S rate = joint_rate(b, r_dot);
       const S acceleration = joint_rate(b, r_ddot) + coupling_bias(b, r_dot);
+      if (!vanishes(b.armature)) rotor_force_[k] = b.armature * acceleration;
       const int n = b.axis;
       m.a = joints_[k].to_body(parent.a + parent.U * joints_[k].offset);
       m.w = joints_[k].to_body(parent.w);
@@ -135,13 +137,16 @@ class RigidTree {
     return {b.mass * m.a + m.U * b.first, cross(b.first, m.a) + rotational_moment(b.second, m)};
   }
 
-  /// Wrenches from the tips to the reference body; the forces of the coordinates are added up.
+  /// Wrenches from the tips to the reference body; the forces of the coordinates, and what armatures need of
+  /// them, are added up.
   /// @param wrench  (bodies) what each body needs; written over with what each joint transmits
   /// @param force  (coordinates) is added to
   void transmit(std::vector<Spatial<S>>& wrench, std::vector<S>& force) const {
     for (std::size_t k = size(); k-- > 1;) {
       mechanism_.section(body(k).name + ": joint force");
-      add_force(k, joint_force(body(k), wrench[k]), force);
+      S f_joint = joint_force(body(k), wrench[k]);
+      if (!vanishes(body(k).armature)) f_joint = f_joint + rotor_force_[k];
+      add_force(k, f_joint, force);
       const Spatial<S> f = joints_[k].to_parent(wrench[k]);
       wrench[parent_of(k)].linear += f.linear;
       wrench[parent_of(k)].angular += f.angular;
@@ -305,6 +310,7 @@ class RigidTree {
   std::vector<std::vector<S>> couplings_;
   std::vector<JointTransform<S>> joints_;
   std::vector<Motion> motions_;
+  std::vector<S> rotor_force_;  // that the armature of each joint needs for the motion at hand
 };
 
 }  // namespace anholon
