@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "describe/chain.hpp"
 #include "describe/names.hpp"
 #include "describe/read_parts.hpp"
 #include "describe/read_robot.hpp"
@@ -123,6 +124,8 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
   const std::vector<Count> own_counts = take_counts(document, counts, repetitions);
   repetitions.throw_if_any();
   write_out(document, own_counts, repetitions);
+  repetitions.throw_if_any();
+  write_out_chains(document, repetitions);
   repetitions.throw_if_any();
   if (std::ranges::any_of(supplement_keys, [&](const char* key) { return document.find(key) != nullptr; })) {
     Model model = read_supplemented_robot(document, text, file_name, overrides);

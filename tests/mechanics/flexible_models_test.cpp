@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 //
 // Known motions of flexible robots: frequencies of clamped and rotating beams, the spin-up manoeuvre, an arm
-// whose flexible link carries another one.
+// whose flexible link carries another one, chains of links that stand for a beam.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -87,6 +87,46 @@ TEST(TwoLinkFlexibleArm, HasTheFrequenciesOfRitzThatFallTowardsThoseOfFiniteElem
     const std::vector<Real> loaded = arm_of_model(3, q2, "tip = { mass = 1.41, inertia = 0.24 }");
     EXPECT_LT(loaded[0] / limit[0] - 1, 1e-6L);  // eight free-ended modes are a thousand times farther away
     EXPECT_GT(loaded[0], limit[0] * (1 - 1e-7L));
+  }
+}
+
+// ---- chains of links
+
+// Springs EI n/L in the middles of n segments: each halving of the segments divides the error of the
+// frequencies by four, of the cantilever and with a body at the tip that hangs on the chain.
+TEST(Chain, HasTheFrequenciesOfTheBeamWithOrderTwo) {
+  const auto chain = [](int n, const std::string& load) {
+    return read_model_text(
+        fmt::format(
+            "anholon = 1\nname = \"chain\"\ngroup = \"fixed\"\n[[body]]\nname = \"ground\"\n[[body]]\nname = "
+            "\"beam\"\nparent = \"ground\"\njoint = {{ kind = \"fixed\" }}\n[body.chain]\nlength = 1\n"
+            "mass_per_length = 1\nbending_stiffness = 1\nsegments = {}\n{}",
+            n, load),
+        "chain.toml");
+  };
+  // A body of mu = 0.5 and kappa = 0.1 at the tip: modes of the beam with that tip have b^2 as frequencies.
+  const std::string load =
+      "[[body]]\nname = \"load\"\nparent = \"beam\"\njoint = { kind = \"fixed\" }\n"
+      "inertia = { mass = 0.5, about_com = { zz = 0.1 } }\n";
+  for (const bool loaded : {false, true}) {
+    for (int mode = 1; mode <= 3; ++mode) {
+      const Exact b =
+          (loaded ? clamped_mode(mode, Exact::ratio(1, 2), Exact::ratio(1, 10)) : clamped_mode(mode)).b;
+      const Real omega = std::strtold((b * b).decimal(25).c_str(), nullptr);
+      Real before = 0;
+      for (const int n : {8, 16, 32, 64}) {
+        const std::vector<Real> rest(static_cast<std::size_t>(n), 0);
+        const Real error =
+            small_motion(chain(n, loaded ? load : ""), rest, rest)[static_cast<std::size_t>(mode - 1)] /
+                omega -
+            1;
+        if (before != 0 && n > 16) {  // the next term of the expansion, relative: a few (mode/n)^2
+          EXPECT_NEAR(static_cast<double>(before / error), 4, 0.3) << loaded << " mode " << mode << ", " << n;
+        }
+        before = error;
+      }
+      EXPECT_LT(std::abs(before), 3e-3L) << loaded << " mode " << mode;
+    }
   }
 }
 
