@@ -112,7 +112,7 @@ std::string conditioning_svg(const PathConditioning& path, const std::string& ti
     error.curves[0].values.push_back(p.error);
     error.curves[1].values.push_back(0x1p-53 * p.condition);
   }
-  return log_plot(title, "t [s]", times, {conditioning, error});
+  return svg_plot(title, "t [s]", times, {conditioning, error});
 }
 
 }  // namespace anholon

@@ -29,23 +29,8 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-struct Decades {
-  int low, high;
-};
-
-bool is_drawn(double value) { return value > 0 && std::isfinite(value); }
-
-/// Whole powers of ten around all values of a panel.
-Decades decades_of(const Panel& panel) {
-  double low = std::numeric_limits<double>::infinity(), high = 0;
-  for (const Curve& curve : panel.curves) {
-    for (const double v : curve.values) {
-      if (is_drawn(v)) low = std::min(low, v), high = std::max(high, v);
-    }
-  }
-  if (high == 0) return {-1, 1};
-  const int from = static_cast<int>(std::floor(std::log10(low)));
-  return {from, std::max(from + 1, static_cast<int>(std::ceil(std::log10(high))))};
+bool is_drawn(const Panel& panel, double value) {
+  return std::isfinite(value) && (panel.is_linear || value > 0);
 }
 
 /// A step of 1, 2 or 5 times a power of ten that divides the range into about six.
@@ -57,9 +42,31 @@ double round_step(double range) {
   return 10 * power;
 }
 
+/// What an ordinate spans, in the unit of its ticks: decades, or the quantity itself.
+struct Ordinate {
+  double low, high, tick;
+};
+
+/// Around all values of a panel, from tick to tick.
+Ordinate ordinate_of(const Panel& panel) {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  for (const Curve& curve : panel.curves) {
+    for (const double v : curve.values) {
+      if (is_drawn(panel, v)) low = std::min(low, v), high = std::max(high, v);
+    }
+  }
+  if (low > high) return {-1, 1, 1};
+  if (panel.is_linear) {
+    const double tick = round_step(std::max(high - low, 1e-300));
+    return {std::floor(low / tick) * tick, std::ceil(high / tick) * tick, tick};
+  }
+  const double from = std::floor(std::log10(low)), to = std::max(from + 1, std::ceil(std::log10(high)));
+  return {from, to, std::max(1.0, std::floor((to - from + 7) / 8))};
+}
+
 }  // namespace
 
-std::string log_plot(const std::string& title, const std::string& abscissa, const std::vector<double>& x,
+std::string svg_plot(const std::string& title, const std::string& abscissa, const std::vector<double>& x,
                      const std::vector<Panel>& panels) {
   if (x.empty()) return {};
   const double height = top + static_cast<double>(panels.size()) * (panel_height + gap);
@@ -76,16 +83,18 @@ std::string log_plot(const std::string& title, const std::string& abscissa, cons
       width, height, escaped(title), left);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const double above = top + static_cast<double>(p) * (panel_height + gap), below = above + panel_height;
-    const Decades decades = decades_of(panels[p]);
-    const auto up = [&](double value) {
-      return below - panel_height * (std::log10(value) - decades.low) / (decades.high - decades.low);
+    const Ordinate ordinate = ordinate_of(panels[p]);
+    const auto raised = [&](double tick) {
+      return below - panel_height * (tick - ordinate.low) / (ordinate.high - ordinate.low);
     };
-    const int every = std::max(1, (decades.high - decades.low + 7) / 8);
-    for (int d = decades.low; d <= decades.high; d += every) {
-      const double y = up(std::pow(10.0, d));
+    const auto up = [&](double value) { return raised(panels[p].is_linear ? value : std::log10(value)); };
+    const int ticks = static_cast<int>(std::floor((ordinate.high - ordinate.low) / ordinate.tick + 1e-9));
+    for (int i = 0; i <= ticks; ++i) {
+      const double tick = ordinate.low + i * ordinate.tick, y = raised(tick);
       svg += fmt::format("<path class=\"g\" d=\"M{:g} {:.1f}H{:g}\"/>\n", left, y, width - right);
       svg +=
-          fmt::format("<text x=\"{:g}\" y=\"{:.1f}\" text-anchor=\"end\">1e{}</text>\n", left - 6, y + 4, d);
+          fmt::format("<text x=\"{:g}\" y=\"{:.1f}\" text-anchor=\"end\">{}{:.6g}</text>\n", left - 6, y + 4,
+                      panels[p].is_linear ? "" : "1e", std::abs(tick) < 1e-9 * ordinate.tick ? 0.0 : tick);
     }
     const double step = round_step(x_high - x_low);
     for (double tick = std::ceil(x_low / step) * step; tick <= x_high * (1 + 1e-12); tick += step) {
@@ -102,7 +111,7 @@ std::string log_plot(const std::string& title, const std::string& abscissa, cons
       std::string line;
       bool drawing = false;
       for (std::size_t i = 0; i < x.size() && i < curve.values.size(); ++i) {
-        if (!is_drawn(curve.values[i])) {
+        if (!is_drawn(panels[p], curve.values[i])) {
           drawing = false;
           continue;
         }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Known motions of flexible robots, for tests:
+// Known motions of flexible robots, for tests and for bench/flexible_figures.cpp:
 // frequencies of rotating beams, the spin-up manoeuvre of Kane, Ryan and Banerjee (1987) and Wu and Haug
 // (1988), an arm whose flexible link carries another one, by the recursion, by Ritz and by finite elements.
 
