@@ -43,21 +43,39 @@ class ProgressLine {
 /// A number that JSON can hold; null where there is none.
 nlohmann::ordered_json finite(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; }
 
+std::string integrator_text(const Integrator& integrator) {
+  switch (integrator.method) {
+    case Integrator::Method::dopri5:
+      return fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance);
+    case Integrator::Method::dopri8:
+      return fmt::format("Dormand-Prince 8(5,3) in Lie form, tolerance {:g}", integrator.tolerance);
+    case Integrator::Method::rkmk4:
+      return fmt::format("Munthe-Kaas RK4, step {:g} s", integrator.step);
+    case Integrator::Method::rkmk8:
+      return fmt::format("Munthe-Kaas RK8, step {:g} s", integrator.step);
+    case Integrator::Method::cf4:
+      return fmt::format("commutator-free, order 4, step {:g} s", integrator.step);
+  }
+  return "";
+}
+
 nlohmann::ordered_json json_of(const Scene& scene, const WorkPrecision& result) {
+  const char* rung = result.by_step ? "step" : "tolerance";
   nlohmann::ordered_json j = {{"schema", "anholon.work_precision/1"},
                               {"model", scene.model.name},
                               {"scene", scene.name},
+                              {"method", scene.integrator.name()},
                               {"reference",
                                {{"method", "Gauss collocation of order 12, long double"},
                                 {"steps", result.reference_steps},
                                 {"own_error", finite(result.reference_error)}}}};
   for (const char* code : {"generated", "recursion"}) {
     const RoundingFloor floor = rounding_floor(result, code);
-    j["floor"][code] = {{"error", finite(floor.error)}, {"tolerance", floor.tolerance}, {"seen", floor.seen}};
+    j["floor"][code] = {{"error", finite(floor.error)}, {rung, floor.tolerance}, {"seen", floor.seen}};
   }
   for (const WorkPrecisionPoint& p : result.points)
     j["points"].push_back({{"code", p.code},
-                           {"tolerance", p.tolerance},
+                           {rung, p.tolerance},
                            {"error", finite(p.error)},
                            {"cpu_seconds", p.cpu_seconds},
                            {"evaluations", p.evaluations},
@@ -66,16 +84,18 @@ nlohmann::ordered_json json_of(const Scene& scene, const WorkPrecision& result) 
 }
 
 int print_work_precision(const Scene& scene, const std::filesystem::path& folder) {
-  fmt::print("{}, {}: error of the final state, relative to the sizes of the motion\n\n", scene.model.name,
-             scene.name);
-  fmt::print("{:>9s}  {:>10s} {:>11s} {:>11s}  {:>10s} {:>11s} {:>11s}\n", "tolerance", "generated",
-             "cpu [s]", "evaluations", "recursion", "cpu [s]", "evaluations");
+  const bool by_step = scene.integrator.has_fixed_step();
+  fmt::print("{}, {}, {}: error of the final state, relative to the sizes of the motion\n\n",
+             scene.model.name, scene.name, scene.integrator.name());
+  fmt::print("{:>9s}  {:>10s} {:>11s} {:>11s}  {:>10s} {:>11s} {:>11s}\n", by_step ? "step [s]" : "tolerance",
+             "generated", "cpu [s]", "evaluations", "recursion", "cpu [s]", "evaluations");
   std::fflush(stdout);
-  std::string table = "code,tolerance,error,cpu_s,evaluations,status\n";
+  std::string table =
+      fmt::format("code,{},error,cpu_s,evaluations,status\n", by_step ? "step_s" : "tolerance");
   const WorkPrecision result = work_precision(scene, [&](const WorkPrecisionPoint& p) {
     table += fmt::format("{},{},{},{},{},{}\n", p.code, p.tolerance, p.error, p.cpu_seconds, p.evaluations,
                          p.status);
-    if (p.code == "generated") fmt::print("{:>9.0e}", p.tolerance);
+    if (p.code == "generated") fmt::print("{:>9.{}e}", p.tolerance, by_step ? 2 : 0);
     if (p.status == "ok") {
       fmt::print("  {:>10.2e} {:>11.6f} {:>11d}", p.error, p.cpu_seconds, p.evaluations);
     } else {
@@ -91,8 +111,8 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
   for (const char* code : {"generated", "recursion"}) {
     const RoundingFloor floor = rounding_floor(result, code);
     fmt::print("floor       {:10s} {:.1e}, {}\n", code, floor.error,
-               floor.seen ? fmt::format("reached at tolerance {:.0e}: below it, only the cost grows",
-                                        floor.tolerance)
+               floor.seen ? fmt::format("reached at {} {:.{}e}: below it, only the cost grows",
+                                        by_step ? "step" : "tolerance", floor.tolerance, by_step ? 2 : 0)
                           : "not reached on this ladder");
   }
   write_output((folder / "work_precision.csv").string(), table);
@@ -157,12 +177,6 @@ int print_stiffness_ladder(const Scene& scene, const std::vector<double>& factor
       "\n\ndistance: the largest difference to the rigid contacts, relative to the largest multiplier\n");
   const auto is_ok = [](const StiffnessStep& step) { return step.status == "ok"; };
   return std::ranges::all_of(ladder.steps, is_ok) ? ok : check_failed;
-}
-
-std::string integrator_text(const Integrator& integrator) {
-  return integrator.method == Integrator::Method::dopri5
-             ? fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance)
-             : fmt::format("Munthe-Kaas RK4, step {:g} s", integrator.step);
 }
 
 nlohmann::ordered_json json_of(const ContactHistory& contact) {

@@ -130,20 +130,22 @@ void read_integrator(TableReader& root, Scene& scene, Reading& reading) {
   if (value == nullptr) return;
   TableReader table(*value, "the integrator", reading.findings);
   Integrator& integrator = scene.integrator;
-  if (const auto method = table.optional_choice("method", {"dopri5", "rkmk4"}))
+  if (const auto method =
+          table.optional_choice("method", {Integrator::method_names.begin(), Integrator::method_names.end()}))
     integrator.method = static_cast<Integrator::Method>(*method);
+  const std::string name = integrator.name();
   const Value* tolerance = table.optional("tolerance");
   const Value* step = table.optional("step");
-  const bool has_fixed_step = integrator.method == Integrator::Method::rkmk4;
+  const bool has_fixed_step = integrator.has_fixed_step();
   if (tolerance != nullptr) integrator.tolerance = read_positive(*tolerance, "the tolerance", reading);
   if (step != nullptr) integrator.step = read_positive(*step, "the step", reading);
   if (has_fixed_step && step == nullptr)
-    reading.findings.error(value->where, "the method rkmk4 has no step", "write step = 0.01, in s");
+    reading.findings.error(value->where, "the method " + name + " has no step", "write step = 0.01, in s");
   if (has_fixed_step && tolerance != nullptr)
-    reading.findings.error(tolerance->where, "the method rkmk4 has no tolerance",
+    reading.findings.error(tolerance->where, "the method " + name + " has no tolerance",
                            "remove it; its step is fixed");
   if (!has_fixed_step && step != nullptr)
-    reading.findings.error(step->where, "the method dopri5 chooses its steps", "remove the step");
+    reading.findings.error(step->where, "the method " + name + " chooses its steps", "remove the step");
   table.report_unknown_keys();
 }
 

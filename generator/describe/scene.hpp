@@ -5,6 +5,7 @@
 // kept, whether there is gravity, how the active coordinates move, and how to integrate. docs/model-file.md
 // documents every key.
 
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -76,10 +77,16 @@ struct ContactElasticity {
 };
 
 struct Integrator {
-  enum class Method { dopri5, rkmk4 };
+  enum class Method { dopri5, rkmk4, dopri8, rkmk8, cf4 };  // docs/integrators.md
+  static constexpr std::array method_names = {"dopri5", "rkmk4", "dopri8", "rkmk8", "cf4"};  // in this order
   Method method = Method::dopri5;
-  double tolerance = 1e-9;  // of dopri5, absolute and relative
-  double step = 0;          // s, of rkmk4
+  double tolerance = 1e-9;  // of methods that choose their steps, absolute and relative
+  double step = 0;          // s, of those that do not
+
+  [[nodiscard]] const char* name() const { return method_names[static_cast<std::size_t>(method)]; }
+  [[nodiscard]] bool has_fixed_step() const {
+    return method == Method::rkmk4 || method == Method::rkmk8 || method == Method::cf4;
+  }
 };
 
 struct Scene {

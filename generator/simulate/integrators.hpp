@@ -7,8 +7,9 @@
 #include <Eigen/Core>
 #include <functional>
 
-#include "anholon/integrate/dopri.hpp"
-#include "anholon/integrate/rkmk.hpp"
+#include "anholon/integrate/result.hpp"
+#include "anholon/integrate/step_control.hpp"
+#include "describe/scene.hpp"
 #include "simulate/groups.hpp"
 
 namespace anholon {
@@ -32,20 +33,35 @@ template <class G, class From>
 Field<G> field_with_corrections(const From& from) {
   return {from, [from](double t, G& g, Eigen::VectorXd& y) { return from.correct(t, g, y); }};
 }
+/// A step just accepted, of any method; the solution inside it, anholon/integrate/dense.hpp.
 template <class G>
-using DenseObserver = std::function<void(const integrate::DenseStep<G>&)>;
+class AnyStep {
+ public:
+  virtual ~AnyStep() = default;
+  [[nodiscard]] virtual double t_begin() const = 0;
+  [[nodiscard]] virtual double t_end() const = 0;
+  [[nodiscard]] virtual const G& g_end() const = 0;
+  [[nodiscard]] virtual const Eigen::VectorXd& y_end() const = 0;
+  virtual void evaluate(double t, G& g, Eigen::VectorXd& y) const = 0;
+};
+template <class G>
+using DenseObserver = std::function<void(const AnyStep<G>&)>;
 template <class G>
 using StepObserver = std::function<void(double t, const G& g, const Eigen::VectorXd& y)>;
 
-/// Dormand-Prince with step control.
+/// With step control.
+/// @param method  dopri5 or dopri8
 template <class G>
 integrate::Result<double> integrate_adaptive(const Field<G>& field, integrate::State<G>& state, double t_end,
                                              const integrate::AdaptiveOptions<double>& options,
-                                             const DenseObserver<G>& observer);
+                                             const DenseObserver<G>& observer,
+                                             Integrator::Method method = Integrator::Method::dopri5);
 
-/// The classical method with equal steps.
+/// With equal steps.
+/// @param method  rkmk4, rkmk8 or cf4
 template <class G>
 integrate::Result<double> integrate_fixed(const Field<G>& field, integrate::State<G>& state, double t_end,
-                                          long steps, const StepObserver<G>& observer);
+                                          long steps, const StepObserver<G>& observer,
+                                          Integrator::Method method = Integrator::Method::rkmk4);
 
 }  // namespace anholon

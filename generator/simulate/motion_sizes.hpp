@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "anholon/integrate/dopri.hpp"
+#include "anholon/integrate/step_control.hpp"
 #include "simulate/integrators.hpp"
 #include "simulate/monitors.hpp"
 #include "simulate/runner.hpp"

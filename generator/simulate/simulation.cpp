@@ -42,7 +42,7 @@ std::optional<std::string> obstacle_ahead(const SceneProgram& program, Runner<do
   return monitor.passed(state.t + step, state.g, state.y);
 }
 
-/// Dormand-Prince to t_end: dense output at the wanted times, or rows at its own steps.
+/// By a method that chooses its steps to t_end: dense output at the wanted times, or rows at its own steps.
 template <class G>
 integrate::Result<double> integrate_with_step_control(const Scene& scene, double t_end, const Field<G>& field,
                                                       const MotionSizes& sizes, integrate::State<G>& state,
@@ -54,7 +54,7 @@ integrate::Result<double> integrate_with_step_control(const Scene& scene, double
   auto next = std::ranges::upper_bound(times, state.t);
   Eigen::VectorXd y(state.y.size());
   G g;
-  return integrate_adaptive<G>(field, state, t_end, options, [&](const integrate::DenseStep<G>& step) {
+  const auto observe = [&](const AnyStep<G>& step) {
     for (; next != times.end() && *next <= step.t_end(); ++next) {
       step.evaluate(*next, g, y);
       keeper(*next, g, y);
@@ -69,10 +69,11 @@ integrate::Result<double> integrate_with_step_control(const Scene& scene, double
       recorder.watch(t, g, y, keeper.residual(t, g, y));
     }
     progress("integrating", step.t_end());
-  });
+  };
+  return integrate_adaptive<G>(field, state, t_end, options, observe, scene.integrator.method);
 }
 
-/// The classical method from each output time to the next, with equal steps no longer than the scene's.
+/// By a method with equal steps from each output time to the next, none longer than the scene's step.
 template <class G>
 integrate::Result<double> integrate_with_fixed_step(const Scene& scene, double t_end, const Field<G>& field,
                                                     integrate::State<G>& state, PositionKeeper<G>& keeper,
@@ -83,18 +84,18 @@ integrate::Result<double> integrate_with_fixed_step(const Scene& scene, double t
   if (times.empty() || times.back() < t_end) times.push_back(t_end);
   for (auto t = std::ranges::upper_bound(times, state.t); t != times.end(); ++t) {
     const long steps = std::max(1L, std::lround(std::ceil((*t - state.t) / scene.integrator.step - 1e-9)));
-    const auto part =
-        integrate_fixed<G>(field, state, *t, steps, [&](double now, const G& end, const auto& y_end) {
-          G g = end;
-          Eigen::VectorXd y = y_end;
-          keeper(now, g, y);
-          if (scene.output_times.empty() || now == *t) {
-            recorder.record(now, g, y, keeper.residual(now, g, y));
-          } else {
-            recorder.watch(now, g, y, keeper.residual(now, g, y));
-          }
-          progress("integrating", now);
-        });
+    const auto observe = [&](double now, const G& end, const auto& y_end) {
+      G g = end;
+      Eigen::VectorXd y = y_end;
+      keeper(now, g, y);
+      if (scene.output_times.empty() || now == *t) {
+        recorder.record(now, g, y, keeper.residual(now, g, y));
+      } else {
+        recorder.watch(now, g, y, keeper.residual(now, g, y));
+      }
+      progress("integrating", now);
+    };
+    const auto part = integrate_fixed<G>(field, state, *t, steps, observe, scene.integrator.method);
     total.accepted_steps += part.accepted_steps, total.evaluations += part.evaluations;
     total.status = part.status, total.next_step = part.next_step;
     if (!part) break;
@@ -214,7 +215,7 @@ class PhaseRunner {
     }
     const double start = cpu_now();
     integrate::Result<double> outcome;
-    if (scene.integrator.method == Integrator::Method::dopri5) {
+    if (!scene.integrator.has_fixed_step()) {
       const MotionSizes sizes = motion_sizes<G>(program, run, state_, t_end);
       outcome = integrate_with_step_control(scene, t_end, field, sizes, state_, keeper, recorder, progress_);
     } else {

@@ -24,20 +24,26 @@ namespace anholon {
 namespace {
 
 constexpr double enough_seconds = 40;  // of one integration: what would take longer is left out, and said
-constexpr double growth = 1.6;         // of the cost per decade of a method of order 5: 10^(1/5)
+// Growth of the cost from rung to rung: by a decade of the tolerance with order 5, 10^(1/5); by half a step.
+constexpr double growth_by_decade = 1.6, growth_by_half = 2;
 
 /// One integration, repeated while it is too short for the clock; the least time counts.
 template <class G>
 WorkPrecisionPoint measured(const std::string& code, double tolerance, const integrate::State<G>& initial,
                             const Field<G>& field, const integrate::AdaptiveOptions<double>& options,
-                            double duration, integrate::State<G>& state) {
+                            double duration, const Integrator& integrator, integrate::State<G>& state) {
   constexpr double long_enough = 0.02;  // s
   constexpr int most_repeats = 5;
   WorkPrecisionPoint point{code, tolerance, 0, std::numeric_limits<double>::infinity(), 0, ""};
   for (int repeat = 0; repeat < most_repeats; ++repeat) {
     state = initial;
     const double start = cpu_now();
-    const auto outcome = integrate_adaptive<G>(field, state, duration, options, [](const auto&) {});
+    const auto outcome = integrator.has_fixed_step()
+                             ? integrate_fixed<G>(
+                                   field, state, duration, std::lround(duration / tolerance),
+                                   [](auto&&...) {}, integrator.method)
+                             : integrate_adaptive<G>(
+                                   field, state, duration, options, [](const auto&) {}, integrator.method);
     point.cpu_seconds = std::min(point.cpu_seconds, cpu_now() - start);
     point.evaluations = outcome.evaluations;
     point.status = integrate::name(outcome.status);
@@ -60,6 +66,7 @@ WorkPrecision work_precision(const Scene& scene,
   const SceneProgram program = make_program(scene);
   const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
   WorkPrecision result;
+  result.by_step = scene.integrator.has_fixed_step();
   with_group<double>(program.model.group, [&]<class G>(std::type_identity<G>) {
     Runner<double> run(scene, program, code);
     const MotionSizes sizes =
@@ -89,12 +96,13 @@ WorkPrecision work_precision(const Scene& scene,
     };
     double expected_seconds = 0;
     for (int exponent = ladder.loosest; exponent >= ladder.tightest; --exponent) {
-      const double tolerance = std::pow(10.0, exponent);
+      const double tolerance =
+          result.by_step ? std::ldexp(scene.duration, exponent) : std::pow(10.0, exponent);
       integrate::State<G> state;
       auto options = relative_tolerance(tolerance, sizes, reduced_sizes);
       options.max_steps = 100'000'000;
-      const WorkPrecisionPoint by_code =
-          measured<G>("generated", tolerance, initial, generated, options, scene.duration, state);
+      const WorkPrecisionPoint by_code = measured<G>("generated", tolerance, initial, generated, options,
+                                                     scene.duration, scene.integrator, state);
       run.express_in_best_chart(state);
       add(by_code, state);
       if (!ladder.recursion) continue;
@@ -107,9 +115,9 @@ WorkPrecision work_precision(const Scene& scene,
       field.rates = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
         recursion(t, g, y, eta, y_dot);
       };
-      const WorkPrecisionPoint point =
-          measured<G>("recursion", tolerance, expanded, field, options, scene.duration, state);
-      expected_seconds = growth * point.cpu_seconds;
+      const WorkPrecisionPoint point = measured<G>("recursion", tolerance, expanded, field, options,
+                                                   scene.duration, scene.integrator, state);
+      expected_seconds = (result.by_step ? growth_by_half : growth_by_decade) * point.cpu_seconds;
       run.use_chart(chart);
       integrate::State<G> reduced = recursion.reduced(state);
       run.express_in_best_chart(reduced);
@@ -124,13 +132,13 @@ RoundingFloor rounding_floor(const WorkPrecision& result, const std::string& cod
   for (const WorkPrecisionPoint& p : result.points) {
     if (p.code == code && p.error < floor.error) floor.error = p.error;
   }
-  double tightest = 1;
+  int rungs_below = 0;
   for (const WorkPrecisionPoint& p : result.points) {
     if (p.code != code || std::isnan(p.error)) continue;
+    if (floor.tolerance > 0) ++rungs_below;
     if (floor.tolerance == 0 && p.error <= 2 * floor.error) floor.tolerance = p.tolerance;
-    tightest = p.tolerance;
   }
-  floor.seen = floor.tolerance >= 99 * tightest;  // two decades of the ladder no longer help
+  floor.seen = rungs_below >= 2;
   return floor;
 }
 

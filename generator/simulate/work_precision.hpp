@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #pragma once
 
-// Error against cost: one scene, integrated along a ladder of tolerances by generated code and by the numeric
-// recursion, on past the rounding floor, so that the floor is seen.
+// Error against cost: one scene, integrated by its method along a ladder of tolerances, or of steps where
+// they are fixed, by generated code and by the numeric recursion, on past the rounding floor, so that the
+// floor is seen.
 
 #include <functional>
 #include <string>
@@ -12,18 +13,19 @@
 
 namespace anholon {
 
-/// One way to compute at one tolerance.
+/// One way to compute at one rung of the ladder.
 struct WorkPrecisionPoint {
-  std::string code;  // "generated", "recursion"
-  double tolerance = 0;
-  double error = 0;  // of the final state, see state_error()
+  std::string code;      // "generated", "recursion"
+  double tolerance = 0;  // or step, s
+  double error = 0;      // of the final state, see state_error()
   double cpu_seconds = 0;
   long evaluations = 0;
   std::string status;
 };
 
 struct WorkPrecision {
-  std::vector<WorkPrecisionPoint> points;  // per tolerance: generated, then recursion
+  bool by_step = false;                    // a ladder of steps
+  std::vector<WorkPrecisionPoint> points;  // per rung: generated, then recursion
   long reference_steps = 0;                // of Gauss collocation of order 12 in long double
   double reference_error = 0;              // how far the reference moves when its steps are doubled
 };
@@ -31,13 +33,14 @@ struct WorkPrecision {
 /// Where the error of one code stops falling.
 struct RoundingFloor {
   double error = 0;      // the smallest of the ladder
-  double tolerance = 0;  // the loosest at which the error is within twice the smallest
-  bool seen = false;     // the ladder goes on below it
+  double tolerance = 0;  // or step, the largest at which the error is within twice the smallest
+  bool seen = false;     // the ladder goes on for two rungs below it
 };
 RoundingFloor rounding_floor(const WorkPrecision& result, const std::string& code);
 
-/// Powers of ten of the tolerances, and which codes. The tightest is beyond what double can resolve: an error
-/// of it cannot fall below 1e-16, and has risen again by then where steps are many.
+/// Powers of ten of the tolerances, or of two of the steps as parts of the duration, and which codes. The
+/// tightest is beyond what double can resolve: an error of it cannot fall below 1e-16, and has risen again by
+/// then where steps are many.
 struct Ladder {
   int loosest = -3, tightest = -18;
   bool recursion = true;

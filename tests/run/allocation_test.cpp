@@ -10,6 +10,9 @@
 #include <new>
 #include <vector>
 
+#include "anholon/integrate/cf4.hpp"
+#include "anholon/integrate/cooper_verner.hpp"
+#include "anholon/integrate/dop853.hpp"
 #include "anholon/integrate/dopri.hpp"
 #include "anholon/integrate/rosenbrock.hpp"
 #include "anholon/motion.hpp"
@@ -52,8 +55,11 @@ namespace anholon::testing {
 namespace {
 
 using integrate::AdaptiveOptions;
+using integrate::Cf4Stages;
+using integrate::Dop853;
 using integrate::DormandPrince;
 using integrate::Rkmk4;
+using integrate::Rkmk8;
 using integrate::RosenbrockStages;
 using integrate::State;
 
@@ -91,9 +97,13 @@ TYPED_TEST(AllocationOn, NoneHappensInAnIntegration) {
     quiet(t, g, y, eta, y_dot);
   };
   Rkmk4<TypeParam> rkmk4(40);  // beyond any small-size shortcut
+  Rkmk8<TypeParam> rkmk8(40);
+  Cf4Stages<TypeParam> cf4(40);
   DormandPrince<TypeParam> dopri(40);
+  Dop853<TypeParam> dop853(40);
   State<TypeParam> state{0, {}, Vector::Constant(40, Real(0.1L))};
-  const std::vector<Real> times = {Real(1.2L), Real(1.3L), Real(1.31L), Real(2)};
+  const std::vector<Real> times = {Real(1.2L), Real(1.3L), Real(1.31L), Real(2)},
+                          later = {Real(2.1L), Real(3)};
   AdaptiveOptions<Real> options;
   options.rtol = options.atol = Real(1e-5L);
   int reported = 0;
@@ -102,12 +112,19 @@ TYPED_TEST(AllocationOn, NoneHappensInAnIntegration) {
   const auto fixed = integrate_fixed(rkmk4, field, state, Real(1), 50);
   const auto adaptive = integrate_adaptive_at(dopri, field, state, times, options,
                                               [&](Real, const TypeParam&, const Vector&) { ++reported; });
+  const auto of_order_8 = integrate_adaptive_at(dop853, field, state, later, options,
+                                                [&](Real, const TypeParam&, const Vector&) { ++reported; });
+  const auto by_rkmk8 = integrate_fixed(rkmk8, field, state, Real(3.2L), 5);
+  const auto by_cf4 = integrate_fixed(cf4, field, state, Real(3.4L), 10);
   const long counted = allocations - before;
 
   EXPECT_EQ(counted, 0);
   EXPECT_TRUE(fixed);
   EXPECT_TRUE(adaptive);
-  EXPECT_EQ(reported, 4);
+  EXPECT_TRUE(of_order_8);
+  EXPECT_TRUE(by_rkmk8);
+  EXPECT_TRUE(by_cf4);
+  EXPECT_EQ(reported, 6);
 }
 
 /// The same with its Jacobian.

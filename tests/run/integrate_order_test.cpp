@@ -8,6 +8,9 @@
 #include <limits>
 #include <vector>
 
+#include "anholon/integrate/cf4.hpp"
+#include "anholon/integrate/cooper_verner.hpp"
+#include "anholon/integrate/dop853.hpp"
 #include "anholon/integrate/dopri.hpp"
 #include "anholon/integrate/rkmk.hpp"
 #include "run/lie_samples.hpp"
@@ -17,9 +20,11 @@ namespace anholon::testing {
 namespace {
 
 using integrate::AdaptiveOptions;
-using integrate::DenseStep;
+using integrate::Cf4Stages;
+using integrate::Dop853;
 using integrate::DormandPrince;
 using integrate::Rkmk4;
+using integrate::Rkmk8;
 using integrate::State;
 using integrate::Status;
 
@@ -54,9 +59,10 @@ State<G> initial_state(const ManufacturedMotion<G>& motion) {
   return {0, motion.pose(0), motion.y(0)};
 }
 
-/// Halves the step until the error has fallen by the wanted number of decades, or 2^18 steps are made.
+/// Halves the step until the error has fallen by the wanted number of decades or below the floor, which then
+/// does not count, or 2^18 steps are made.
 template <class Stages, class G>
-Convergence converge(const ManufacturedMotion<G>& motion, long steps, double decades) {
+Convergence converge(const ManufacturedMotion<G>& motion, long steps, double decades, double floor = 0) {
   using Real = typename G::Scalar;
   Convergence result;
   Stages stages(motion.size_y);
@@ -64,8 +70,10 @@ Convergence converge(const ManufacturedMotion<G>& motion, long steps, double dec
     State<G> state = initial_state(motion);
     const auto outcome = integrate_fixed(stages, motion, state, Real(1), steps);
     EXPECT_EQ(outcome.status, Status::ok);
+    const auto error = motion.error(1, state.g, state.y);
+    if (error < floor) break;
     result.step.push_back(1.0L / steps);
-    result.error.push_back(motion.error(1, state.g, state.y));
+    result.error.push_back(error);
     if (result.error.size() > 1 && result.decades() >= decades) break;
   }
   return result;
@@ -87,6 +95,17 @@ class IntegrationOn : public ::testing::Test {
     // Less so at the finest (measured 0.06), unless rounding shows, as it may in double at 1e-13.
     EXPECT_NEAR(found.last_slope(), order, is_long ? 0.08 : 0.3);
   }
+  /// Order 8 leaves few halvings between steps that are too long and rounding, which shows from some thirty
+  /// units of the last place on: two or three of them.
+  template <class Stages>
+  void expect_order_8() const {
+    constexpr double floor = is_long ? 1e-17 : 1e-14;
+    const Convergence found = converge<Stages>(motion, is_long ? 6 : 3, 99, floor);
+    ASSERT_GE(found.error.size(), 3U);
+    EXPECT_GE(found.decades(), 4.5);
+    EXPECT_NEAR(found.slope(), 8, is_long ? 0.1 : 0.25);       // measured 0.05 and 0.17 away
+    EXPECT_NEAR(found.last_slope(), 8, is_long ? 0.1 : 0.25);  // 0.01 and 0.08
+  }
   ManufacturedMotion<G> motion;
 };
 using Groups =
@@ -102,13 +121,21 @@ TYPED_TEST(IntegrationOn, DormandPrinceHasOrder5OverTenDecades) {
   this->expect_order(converge<DormandPrince<TypeParam>>(this->motion, this->coarsest, this->decades), 5);
 }
 
+TYPED_TEST(IntegrationOn, CommutatorFree4HasOrder4OverTenDecades) {
+  this->expect_order(converge<Cf4Stages<TypeParam>>(this->motion, this->coarsest, this->decades), 4);
+}
+
+TYPED_TEST(IntegrationOn, MuntheKaas8HasOrder8) { this->template expect_order_8<Rkmk8<TypeParam>>(); }
+
+TYPED_TEST(IntegrationOn, Dop853HasOrder8) { this->template expect_order_8<Dop853<TypeParam>>(); }
+
 /// Largest error of the continuous solution at a quarter, a half and three quarters of every step.
-template <class G>
+template <template <class> class Stages, class G>
 Convergence converge_inside_steps(const ManufacturedMotion<G>& motion, bool first_step_only, long steps,
                                   int halvings) {
   using Real = typename G::Scalar;
   Convergence result;
-  DormandPrince<G> stages(motion.size_y);
+  Stages<G> stages(motion.size_y);
   for (int i = 0; i < halvings; ++i, steps *= 2) {
     const Real h = Real(1) / Real(steps);
     AdaptiveOptions<Real> fixed;  // a tolerance that everything meets: steps of max_step
@@ -117,7 +144,7 @@ Convergence converge_inside_steps(const ManufacturedMotion<G>& motion, bool firs
     State<G> state = initial_state(motion);
     Real largest = 0;
     const Real t_end = first_step_only ? h : Real(1);
-    integrate_adaptive(stages, motion, state, t_end, fixed, [&](const DenseStep<G>& step) {
+    integrate_adaptive(stages, motion, state, t_end, fixed, [&](const auto& step) {
       G g;
       typename ManufacturedMotion<G>::Vector y(motion.size_y);
       for (const Real s : {Real(0.25L), Real(0.5L), Real(0.75L)}) {
@@ -133,13 +160,18 @@ Convergence converge_inside_steps(const ManufacturedMotion<G>& motion, bool firs
 }
 
 TYPED_TEST(IntegrationOn, DenseOutputOfOneStepErrsWithItsFifthPower) {
-  const Convergence found = converge_inside_steps(this->motion, true, 8, 5);
+  const Convergence found = converge_inside_steps<DormandPrince>(this->motion, true, 8, 5);
   EXPECT_NEAR(found.slope(), 5, 0.15);  // an interpolant of order 4
 }
 
 TYPED_TEST(IntegrationOn, DenseOutputOfManyStepsKeepsOrder5) {
-  const Convergence found = converge_inside_steps(this->motion, false, 8, 6);
+  const Convergence found = converge_inside_steps<DormandPrince>(this->motion, false, 8, 6);
   EXPECT_NEAR(found.slope(), 5, 0.15);
+}
+
+TYPED_TEST(IntegrationOn, DenseOutputOfDop853KeepsOrder8) {
+  const Convergence found = converge_inside_steps<Dop853>(this->motion, false, 4, this->is_long ? 4 : 3);
+  EXPECT_NEAR(found.slope(), 8, 0.4);
 }
 
 TYPED_TEST(IntegrationOn, GoingBackReturnsToTheStart) {

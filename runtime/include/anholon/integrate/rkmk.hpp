@@ -21,6 +21,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
+#include <concepts>
+#include <cstddef>
 #include <utility>
 
 #include "anholon/integrate/result.hpp"
@@ -33,11 +35,17 @@ namespace anholon::integrate {
 template <lie::LieGroup G, template <class> class TableauOf>
 class RkmkStages {
  public:
+  using Group = G;
   using Real = typename G::Scalar;
   using Tableau = TableauOf<Real>;
   using Tangent = typename G::Tangent;
   using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
   static constexpr int stages = Tableau::stages;
+  /// Stages that only the continuous solution takes.
+  static constexpr int dense_stages = [] {
+    if constexpr (requires { Tableau::dense_stages; }) return Tableau::dense_stages;
+    return 0;
+  }();
 
   /// Allocates; nothing else here does.
   /// @param size_y  number of components of y
@@ -61,6 +69,7 @@ class RkmkStages {
     g_begin_ = state.g;
     y_begin_ = state.y;
     carry_.setZero();
+    evaluations_of_completion_ = 0;
     if (!state.g.is_finite() || !state.y.allFinite()) return false;
     return evaluate_first(field);
   }
@@ -79,6 +88,7 @@ class RkmkStages {
   void advance(Field&& field, Real h) {
     h_ = h;
     largest_turn_ = Real(0);
+    completed_ = false;
     for (int i = 1; i < stages; ++i) {
       sum_rates(Tableau::a[i]);
       theta_sum_ *= h;
@@ -102,6 +112,25 @@ class RkmkStages {
     y_end_ = y_begin_ + y_sum_;
     carry_end_ = (y_end_ - y_begin_) - y_sum_;
   }
+
+  /// Evaluates the stages of the continuous solution, unless they are there already; after advance().
+  template <class Field>
+  void complete(Field& field) requires(dense_stages > 0) {
+    if (completed_) return;
+    completed_ = true;
+    evaluations_of_completion_ += dense_stages;
+    for (int i = stages; i < stages + dense_stages; ++i) {
+      sum_rates(Tableau::a_dense[i - stages]);
+      theta_sum_ *= h_;
+      y_stage_ = y_begin_ + h_ * y_sum_;
+      Tangent eta;
+      field(t_begin_ + Tableau::c[i] * h_, g_begin_ * G::exp(theta_sum_), std::as_const(y_stage_), eta,
+            y_rate_[i]);
+      theta_rate_[i] = G::dexp_inv(theta_sum_, eta);
+    }
+  }
+  /// Calls of the field that the continuous solution has made since start().
+  long evaluations_of_completion() const { return evaluations_of_completion_; }
 
   /// Makes the end point the current state and evaluates the first stage there, or reuses the last one where
   /// the tableau allows it. False if the field is not finite. A field that has `bool correct(Real t, G& g,
@@ -161,10 +190,11 @@ class RkmkStages {
     return theta_rate_[0].allFinite() && y_rate_[0].allFinite();
   }
 
-  void sum_rates(const std::array<Real, stages>& weights) {
+  template <std::size_t n>
+  void sum_rates(const std::array<Real, n>& weights) {
     theta_sum_.setZero();
     y_sum_.setZero();
-    for (int j = 0; j < stages; ++j) {
+    for (std::size_t j = 0; j < n; ++j) {
       if (weights[j] == Real(0)) continue;
       theta_sum_ += weights[j] * theta_rate_[j];
       y_sum_ += weights[j] * y_rate_[j];
@@ -179,11 +209,21 @@ class RkmkStages {
   }
 
   Real t_begin_ = Real(0), h_ = Real(0), largest_turn_ = Real(0);
+  bool completed_ = false;
+  long evaluations_of_completion_ = 0;
   G g_begin_, g_end_;
   Tangent theta_sum_, eta_end_;
-  std::array<Tangent, stages> theta_rate_;
-  std::array<Vector, stages> y_rate_;
+  std::array<Tangent, stages + dense_stages> theta_rate_;
+  std::array<Vector, stages + dense_stages> y_rate_;
   Vector y_begin_, y_end_, y_stage_, y_sum_, carry_, carry_end_;
+};
+
+/// What makes steps of a size that is given: RkmkStages, Cf4Stages.
+template <class Stages>
+concept FixedStages = requires(Stages& stages) {
+  typename Stages::Group;
+  Stages::evaluations_per_step;
+  { stages.end_is_finite() } -> std::convertible_to<bool>;
 };
 
 /// Integrates with `steps` equal steps from state.t to t_end (which may lie before it).
@@ -192,11 +232,11 @@ class RkmkStages {
 /// @param field     see the head of this file
 /// @param state     in: initial; out: at the last accepted step
 /// @param observer  called after each step as observer(Real t, const G& g, const Vector& y)
-template <class G, template <class> class TableauOf, class Field, class Observer>
-Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Field&& field, State<G>& state,
-                                           typename G::Scalar t_end, long steps, Observer&& observer) {
-  using Real = typename G::Scalar;
-  using Stages = RkmkStages<G, TableauOf>;
+template <FixedStages Stages, class Field, class Observer>
+Result<typename Stages::Real> integrate_fixed(Stages& stages, Field&& field,
+                                              State<typename Stages::Group>& state,
+                                              typename Stages::Real t_end, long steps, Observer&& observer) {
+  using Real = typename Stages::Real;
   eigen_assert(stages.size_y() == state.y.size());
   Result<Real> result;
   const Real t_begin = state.t;
@@ -222,7 +262,7 @@ Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Fie
     const Real t = step == steps ? t_end : t_begin + Real(step) * h;  // not a running sum
     observer(t, stages.g_end(), stages.y_end());
     const bool finite = stages.commit(field, t);
-    if (!Stages::Tableau::first_same_as_last) ++result.evaluations;
+    result.evaluations += Stages::evaluations_per_step - Stages::stages + 1;  // 0 or 1
     if (!finite) {
       result.status = Status::non_finite;
       break;
@@ -233,9 +273,10 @@ Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Fie
 }
 
 /// The same without an observer.
-template <class G, template <class> class TableauOf, class Field>
-Result<typename G::Scalar> integrate_fixed(RkmkStages<G, TableauOf>& stages, Field&& field, State<G>& state,
-                                           typename G::Scalar t_end, long steps) {
+template <FixedStages Stages, class Field>
+Result<typename Stages::Real> integrate_fixed(Stages& stages, Field&& field,
+                                              State<typename Stages::Group>& state,
+                                              typename Stages::Real t_end, long steps) {
   return integrate_fixed(stages, field, state, t_end, steps, [](auto&&...) {});
 }
 

@@ -38,6 +38,10 @@ struct DormandPrince54 {
   static constexpr int order = 5;
   static constexpr bool first_same_as_last = true;
 
+  // Step control by the error of this step and, a little, of the last: DOPRI5's constants.
+  static constexpr Real integral_weight = Real(0.04L);
+  static constexpr Real largest_factor = 10;
+
   static constexpr Real q(long long numerator, long long denominator) {
     return Real(numerator) / Real(denominator);
   }
@@ -57,8 +61,24 @@ struct DormandPrince54 {
   static constexpr std::array<Real, stages> error = {
       q(71, 57600), 0, q(-71, 16695), q(71, 1920), q(-17253, 339200), q(22, 525), q(-1, 40)};
 
-  /// Coefficients of the quartic bubble s^2 (1 - s)^2 of the continuous solution (dense.hpp); their sum is 0.
-  /// Shampine's, as in Hairer, Norsett & Wanner 1993, section II.6 and their code DOPRI5.
+  /// Weights of the rates in the continuous solution, of order 4: at t + s h it is the start plus h times
+  /// their sum,
+  ///
+  ///   b_i(s) = s^2 (3 - 2s) b_i + s (1 - s)^2 [i = 1] - s^2 (1 - s) [i = 7] + s^2 (1 - s)^2 d_i
+  ///
+  /// that is the cubic Hermite polynomial of the step's ends and a quartic bubble that lifts it to order 4.
+  static constexpr std::array<Real, stages> weights(Real s) {
+    const Real u = Real(1) - s;
+    const Real ends = s * s * (Real(3) - 2 * s), shape = s * s * u * u;
+    std::array<Real, stages> sum{};
+    for (int i = 0; i < stages; ++i) sum[i] = ends * b[i] + shape * bubble[i];
+    sum[0] += s * u * u;
+    sum[stages - 1] -= s * s * u;
+    return sum;
+  }
+
+  /// Coefficients d_i of the quartic bubble; their sum is 0. Shampine's, as in Hairer, Norsett & Wanner 1993,
+  /// section II.6 and their code DOPRI5.
   static constexpr std::array<Real, stages> bubble = {
       q(-12715105075, 11282082432),  0,
       q(87487479700, 32700410799),   q(-10690763975, 1880347072),
