@@ -214,9 +214,7 @@ class Verifier {
     const auto agree = [&](const std::string& function, const std::string& output,
                            const std::vector<Exact>& got, const std::vector<Exact>& want,
                            const std::vector<double>& by_double) {
-      const double scale = std::max(size_of(want), 1e-3);
-      const double error = distance(got, want) / scale;
-      if (error > formula_worst_) formula_worst_ = error, formula_at_ = function + "." + output;
+      const double scale = compare_formula(function, output, got, want);
       records_[{chart_ + function, output}].recursion_error.push_back(distance(by_double, want) / scale);
     };
     std::vector<int> eta_at(n), r_p_at(partition_.passive.begin() + partition_.n, partition_.passive.end());
@@ -235,7 +233,93 @@ class Verifier {
             numeric.tau_a);
     if (find_function(program_, chart_ + "multipliers") != nullptr)
       agree("multipliers", "lambda", run("multipliers", at).at("lambda"), expected.lambda, numeric.lambda);
+    check_state_jacobian(in);
     balance_energy(mechanism, input, expected, at);
+  }
+
+  /// @return the scale of what was compared
+  double compare_formula(const std::string& function, const std::string& output,
+                         const std::vector<Exact>& got, const std::vector<Exact>& want) {
+    const double scale = std::max(size_of(want), 1e-3);
+    const double error = distance(got, want) / scale;
+    if (error > formula_worst_) formula_worst_ = error, formula_at_ = function + "." + output;
+    return scale;
+  }
+
+  /// state_jacobian against central differences of the velocities and accelerations of the exact program:
+  /// with steps of 1e-20 these have an error of 1e-40, and 60 digits lose 20.
+  void check_state_jacobian(const NamedValues<Exact>& in) {
+    const std::string name = chart_ + "state_jacobian";
+    if (find_function(program_, name) == nullptr) return;
+    const WorkingDigits precision(2 * digits);
+    const Exact h = Exact::from_decimal("1e-20");
+    const auto rates = [&](const NamedValues<Exact>& at) {
+      std::vector<Exact> values;
+      for (const auto& [function, blocks] :
+           {std::pair{"kinematics", std::vector{"eta", "r_p_dot", "r_d_dot"}},
+            std::pair{"forward_dynamics", std::vector{"nu_dot"}}}) {
+        if (find_function(program_, chart_ + function) == nullptr) continue;
+        const NamedValues<Exact> out = exact_(chart_ + function, at);
+        for (const char* block : blocks) {
+          const auto found = out.find(block);
+          if (found != out.end()) values.insert(values.end(), found->second.begin(), found->second.end());
+        }
+      }
+      return values;
+    };
+    const auto slope = [&](const std::function<void(NamedValues<Exact>&, const Exact&)>& move) {
+      NamedValues<Exact> after = in, before = in;
+      move(after, h), move(before, -h);
+      std::vector<Exact> difference = rates(after);
+      const std::vector<Exact> start = rates(before);
+      for (std::size_t i = 0; i < start.size(); ++i)
+        difference[i] = (difference[i] - start[i]) / (Exact(2) * h);
+      return difference;
+    };
+    std::vector<std::vector<Exact>> columns;
+    for (const int component : free_components(model_.group)) {
+      columns.push_back(slope([&](NamedValues<Exact>& at, const Exact& step) {
+        Vec3<Exact> V, Omega;
+        (component < 3 ? V[component] : Omega[component - 3]) = step;
+        const Vec3<Exact> moved = state_.R * V;
+        if (model_.group == GroupKind::SE2) {
+          at["g"][0] += moved.x, at["g"][1] += moved.y, at["g"][2] += Omega.z;
+          return;
+        }
+        const Mat3<Exact> turned = state_.R + state_.R * skew(Omega);
+        if (at.contains("R")) at["R"].assign(turned.m.begin(), turned.m.end());
+        std::size_t next = 0;
+        for (const int c : free_components(model_.group)) {
+          if (c < 3) at["p"][next++] += moved[c];
+        }
+      }));
+    }
+    const auto add_block = [&](const std::string& block, std::size_t i) {
+      columns.push_back(slope([&](NamedValues<Exact>& at, const Exact& step) { at.at(block)[i] += step; }));
+    };
+    const auto n = static_cast<std::size_t>(partition_.n);
+    for (std::size_t i = 0; i + n < partition_.passive.size(); ++i) add_block("r_p", i);
+    for (std::size_t i = partition_.passive.size(); i < reduced_.passive.size(); ++i) {  // torque-driven
+      const auto at = std::ranges::find(partition_.active, reduced_.passive[i]);
+      add_block("r_a", static_cast<std::size_t>(at - partition_.active.begin()));
+    }
+    for (std::size_t i = 0; in.contains("nu") && i < in.at("nu").size(); ++i) add_block("nu", i);
+    const std::vector<Exact> by_time = slope([&](NamedValues<Exact>& at, const Exact& step) {
+      at["t"][0] += step;
+      for (std::size_t i = 0; i < reduced_.active.size(); ++i) {
+        const auto place = std::ranges::find(partition_.active, reduced_.active[i]);
+        at["r_a"][static_cast<std::size_t>(place - partition_.active.begin())] += step * in.at("r_a_dot")[i];
+        at["r_a_dot"][i] += step * in.at("r_a_ddot")[i];
+        at["r_a_ddot"][i] += step * in.at("r_a_dddot")[i];
+      }
+    });
+    std::vector<Exact> by_state;  // row-major
+    for (std::size_t row = 0; row < by_time.size(); ++row) {
+      for (const auto& column : columns) by_state.push_back(column[row]);
+    }
+    const NamedValues<Exact> got = exact_(name, in);
+    compare_formula("state_jacobian", "rates_x", got.at("rates_x"), by_state);
+    compare_formula("state_jacobian", "rates_t", got.at("rates_t"), by_time);
   }
 
   static EvaluationInput<double> double_input(const EvaluationInput<Exact>& e) {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "derive/state_jacobian.hpp"
 #include "describe/model.hpp"
 #include "optimise/tape/count.hpp"
 #include "reduce/kernel.hpp"
@@ -27,6 +28,7 @@ struct DeriveRequest {
   std::vector<int> leading_rows;  // for Inverse::leading; row indices
   bool closed_forms = true;       // also try GiNaC's simplified closed form of each function
   bool rates = false;             // fill Derivation::rates
+  bool state_jacobian = false;    // also that function, which no empty list of functions stands for
 };
 
 /// What a route to a function costs.
@@ -59,6 +61,7 @@ struct Derivation {
   /// For each chart: (input, its time derivative at the velocities that nu and r_a_dot mean) of pose, shape
   /// and t.
   std::vector<std::vector<std::pair<NodeId, NodeId>>> rates;
+  StateDirections directions;  // where state_jacobian was wanted
 };
 
 /// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.

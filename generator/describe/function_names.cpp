@@ -11,6 +11,7 @@ const std::vector<std::string>& function_names() {
                                                  "reduced_dynamics",
                                                  "split_dynamics",
                                                  "forward_dynamics",
+                                                 "state_jacobian",
                                                  "inverse_torques",
                                                  "multipliers",
                                                  "compatibility",

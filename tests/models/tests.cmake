@@ -29,3 +29,14 @@ foreach(function IN ITEMS inverse_torques energies multipliers)
   set_tests_properties(Verify.${function}_alone PROPERTIES LABELS slow TIMEOUT 900
     ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
 endforeach()
+
+# The derivatives of the rates of the state, against differences in exact arithmetic: in the plane and in space, with motions and
+# with torques, in several charts.
+foreach(model IN ITEMS soft_snakeboard/soft_snakeboard.toml whipple_bicycle/whipple_bicycle.toml
+                       wheeled_snake3/wheeled_snake3.toml two_wheeled_pendulum/balance.scene.toml)
+  get_filename_component(name ${model} NAME_WE)
+  add_test(NAME Verify.state_jacobian_of_${name} COMMAND anholon verify
+    ${PROJECT_SOURCE_DIR}/models/${model} --functions state_jacobian --samples 5)
+  set_tests_properties(Verify.state_jacobian_of_${name} PROPERTIES LABELS slow TIMEOUT 900
+    ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+endforeach()
