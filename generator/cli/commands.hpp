@@ -61,7 +61,8 @@ struct SimulateOptions {
   std::string output;
   bool work_precision = false;
   bool conditioning = false;
-  std::vector<double> stiffen;  // factors of the stiffness of elastic contacts
+  std::vector<double> stiffen;              // factors of the stiffness of elastic contacts
+  std::vector<std::string> stiffness_cost;  // parameters, each with its exponent: "EI:1"
 };
 struct ReportOptions {
   std::vector<std::string> models;  // files, of robot files with ":floating" behind; empty: models/*/*.toml

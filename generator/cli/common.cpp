@@ -123,6 +123,7 @@ DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
     request.scene = program_name(scene);
     request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
     if (request.functions.empty()) request.functions = scene.functions;
+    request.state_jacobian = request.functions.empty() && may_be_stiff(scene.integrator);
   }
   const std::string prefix = "leading:";
   if (options.inverse == "pseudo") return request;

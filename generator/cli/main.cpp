@@ -120,6 +120,11 @@ int main(int argc, char** argv) {
                    "shares of elastic contacts at these factors of their stiffness, beside rigid ones")
       ->delimiter(',')
       ->check(CLI::PositiveNumber);
+  verb->add_option(
+          "--stiffness-cost", simulate.stiffness_cost,
+          "cost of the same accuracy as parameters grow 1e8-fold, each to its exponent (EI:1,c:0.5): "
+          "stiff and explicit method")
+      ->delimiter(',');
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
   cli::ReportOptions report;

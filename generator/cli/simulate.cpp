@@ -5,12 +5,15 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "cli/common.hpp"
 #include "simulate/path_conditioning.hpp"
 #include "simulate/simulation.hpp"
+#include "simulate/stiffness_cost.hpp"
 #include "simulate/stiffness_ladder.hpp"
 #include "simulate/work_precision.hpp"
 
@@ -43,8 +46,9 @@ class ProgressLine {
 /// A number that JSON can hold; null where there is none.
 nlohmann::ordered_json finite(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; }
 
-std::string integrator_text(const Integrator& integrator) {
-  switch (integrator.method) {
+/// @param method  the one that ran
+std::string integrator_text(const Integrator& integrator, Integrator::Method method) {
+  switch (method) {
     case Integrator::Method::dopri5:
       return fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance);
     case Integrator::Method::dopri8:
@@ -55,6 +59,10 @@ std::string integrator_text(const Integrator& integrator) {
       return fmt::format("Munthe-Kaas RK8, step {:g} s", integrator.step);
     case Integrator::Method::cf4:
       return fmt::format("commutator-free, order 4, step {:g} s", integrator.step);
+    case Integrator::Method::rodas5p:
+      return fmt::format("Rodas5P 5(4), stiff, in Lie form, tolerance {:g}", integrator.tolerance);
+    case Integrator::Method::automatic:
+      break;  // a motion has one of the others
   }
   return "";
 }
@@ -66,7 +74,7 @@ nlohmann::ordered_json json_of(const Scene& scene, const WorkPrecision& result) 
                               {"scene", scene.name},
                               {"method", scene.integrator.name()},
                               {"reference",
-                               {{"method", "Gauss collocation of order 12, long double"},
+                               {{"method", result.reference_method + ", long double"},
                                 {"steps", result.reference_steps},
                                 {"own_error", finite(result.reference_error)}}}};
   for (const char* code : {"generated", "recursion"}) {
@@ -104,10 +112,8 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
     if (p.code == "recursion") fmt::print("\n");
     std::fflush(stdout);
   });
-  fmt::print(
-      "\nreference   Gauss collocation of order 12 in long double, {} steps; half as many move it by "
-      "{:.1e}\n",
-      result.reference_steps, result.reference_error);
+  fmt::print("\nreference   {} in long double, {} steps; half as many move it by {:.1e}\n",
+             result.reference_method, result.reference_steps, result.reference_error);
   for (const char* code : {"generated", "recursion"}) {
     const RoundingFloor floor = rounding_floor(result, code);
     fmt::print("floor       {:10s} {:.1e}, {}\n", code, floor.error,
@@ -179,6 +185,70 @@ int print_stiffness_ladder(const Scene& scene, const std::vector<double>& factor
   return std::ranges::all_of(ladder.steps, is_ok) ? ok : check_failed;
 }
 
+/// "EI:1" or "EI" as a parameter and its exponent.
+std::vector<Growth> growths_of(const std::vector<std::string>& texts) {
+  std::vector<Growth> result;
+  for (const std::string& text : texts) {
+    const std::size_t colon = text.find(':');
+    Growth growth{text.substr(0, colon), 1};
+    if (colon != std::string::npos) {
+      const char* begin = text.c_str() + colon + 1;
+      char* end = nullptr;
+      growth.exponent = std::strtod(begin, &end);
+      if (end == begin || *end != 0 || !std::isfinite(growth.exponent))
+        throw std::invalid_argument(
+            fmt::format("--stiffness-cost is '{}', not PARAMETER:EXPONENT, for example EI:1", text));
+    }
+    result.push_back(growth);
+  }
+  return result;
+}
+
+int print_stiffness_cost(const Scene& scene, const std::vector<Growth>& growths,
+                         const std::filesystem::path& folder) {
+  fmt::print(
+      "{}, {}: cost of a final state that is off by {:.0e} of the sizes of the motion (pose, r_p, nu)\n\n",
+      scene.model.name, scene.name, cost_accuracy);
+  fmt::print("{:>9s} {:>11s}  {:>7s} {:>11s} {:>9s} {:>9s}  {:>11s} {:>9s} {:>9s}  {:>9s}\n", "factor",
+             "fast [1/s]", "stiff:", "evaluations", "cpu [s]", "error", "explicit:", "cpu [s]", "error",
+             "ref. own");
+  std::fflush(stdout);
+  const StiffnessCost result = stiffness_cost(scene, growths, [](const StiffnessCostRow& row) {
+    fmt::print("{:>9.0e} {:>11.3g}  {:>7d} {:>11d} {:>9.5f} {:>9.1e}  {:>11d} {:>9.4f} {:>9.1e}  {:>9.1e}",
+               row.factor, row.fast, row.stiff.jacobians, row.stiff.evaluations, row.stiff.cpu_seconds,
+               row.stiff.error, row.explicit_method.evaluations, row.explicit_method.cpu_seconds,
+               row.explicit_method.error, row.reference_error);
+    fmt::print("\n");
+    std::fflush(stdout);
+  });
+  std::string table =
+      "factor,fast_per_s,stiff_steps,stiff_evaluations,stiff_cpu_s,stiff_error,stiff_tolerance,explicit_"
+      "evaluations,"
+      "explicit_cpu_s,explicit_error,explicit_tolerance,reference_error,to_limit\n";
+  fmt::print("\ndistance of the reference's end to that at the largest factor:");
+  for (const StiffnessCostRow& row : result.rows) {
+    table += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}\n", row.factor, row.fast,
+                         row.stiff.jacobians, row.stiff.evaluations, row.stiff.cpu_seconds, row.stiff.error,
+                         row.stiff.tolerance, row.explicit_method.evaluations,
+                         row.explicit_method.cpu_seconds, row.explicit_method.error,
+                         row.explicit_method.tolerance, row.reference_error, row.to_limit);
+    if (&row != &result.rows.back()) fmt::print(" {:.1e}", row.to_limit);
+  }
+  fmt::print("\nstiff: Jacobians, one a step, of {} operations; an evaluation is {} operations\n",
+             result.jacobian_operations, result.operations);
+  fmt::print(
+      "cost of the stiff method grows {:.2f}-fold in evaluations, that of the explicit one {:.3g}-fold\n",
+      result.growth(&StiffnessCostRow::stiff), result.growth(&StiffnessCostRow::explicit_method));
+  fmt::print("reference   Radau collocation of order 9 in long double\n");
+  const std::string csv = (folder / "stiffness_cost.csv").string(),
+                    svg = (folder / "stiffness_cost.svg").string();
+  write_output(csv, table);
+  write_output(svg, stiffness_cost_svg(result, scene.model.name + ", " + scene.name));
+  fmt::print("files       {}, {}\n", csv, svg);
+  const auto reached = [](const StiffnessCostRow& row) { return row.stiff.error <= cost_accuracy; };
+  return std::ranges::all_of(result.rows, reached) ? ok : check_failed;
+}
+
 nlohmann::ordered_json json_of(const ContactHistory& contact) {
   nlohmann::ordered_json j = {{"contact", contact.contact}};
   if (!contact.has_normal) return j;
@@ -216,7 +286,8 @@ nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& resul
           {"status", result.status},
           {"finished", result.finished},
           {"table_I", result.class_of_table_I},
-          {"integrator", integrator_text(scene.integrator)},
+          {"integrator", integrator_text(scene.integrator, result.method)},
+          {"why", result.why},
           {"projected", result.projected},
           {"departure", finite(result.departure)},
           {"charts", result.charts},
@@ -225,6 +296,8 @@ nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& resul
           {"rejected", result.rejected},
           {"evaluations", result.evaluations},
           {"operations_per_evaluation", result.operations},
+          {"jacobians", result.jacobians},
+          {"operations_per_jacobian", result.jacobian_operations},
           {"nanoseconds_per_evaluation", result.nanoseconds_per_evaluation},
           {"cpu_seconds", result.cpu_seconds},
           {"largest_energy", finite(result.largest_energy)},
@@ -263,6 +336,8 @@ int simulate(const SimulateOptions& options) {
                              : std::filesystem::path(options.output);
   if (options.work_precision) return print_work_precision(scene, folder);
   if (options.conditioning) return print_conditioning(scene, folder);
+  if (!options.stiffness_cost.empty())
+    return print_stiffness_cost(scene, growths_of(options.stiffness_cost), folder);
   if (!options.stiffen.empty()) return print_stiffness_ladder(scene, options.stiffen);
 
   const SimulationResult result = [&] {
@@ -274,7 +349,10 @@ int simulate(const SimulateOptions& options) {
 
   fmt::print("{}, scene {}{}\n", scene.model.name, scene.name, scene.title.empty() ? "" : ": " + scene.title);
   fmt::print("  class (Table I)       {}\n", result.class_of_table_I);
-  fmt::print("  integrator            {}\n", integrator_text(scene.integrator));
+  fmt::print("  integrator            {}{}\n",
+             scene.integrator.method == Integrator::Method::automatic ? "auto: " : "",
+             integrator_text(scene.integrator, result.method));
+  if (!result.why.empty()) fmt::print("  chosen because        {}\n", result.why);
   fmt::print("  status                {} ({} s simulated, {} steps, {} rejected, {} evaluations)\n",
              result.status, result.rows.empty() ? 0.0 : result.rows.back()[0], result.steps, result.rejected,
              result.evaluations);
@@ -285,6 +363,9 @@ int simulate(const SimulateOptions& options) {
     fmt::print("  charts of the kernel  {}, changed {} times\n", result.charts, result.chart_changes.size());
   fmt::print("  one evaluation        {} operations, {:.0f} ns\n", result.operations,
              result.nanoseconds_per_evaluation);
+  if (result.jacobians > 0)
+    fmt::print("  Jacobians             {}, {} operations each\n", result.jacobians,
+               result.jacobian_operations);
   fmt::print("  energy balance        {:.2e} of the largest energy, {:.3g} J\n", result.energy_balance,
              result.largest_energy);
   fmt::print("  constraint residual   {:.2e} relative\n", result.constraint_residual);

@@ -176,6 +176,20 @@ void read_initial_state(TableReader& root, Scene& scene, Reading& reading) {
       scene.initial.velocities.emplace_back(index, at(x, entry.value.where, what));
     }
   }
+  if (const Value* names = initial.optional("equilibrium", Value::Kind::array)) {
+    std::vector<std::string> known;
+    for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
+      const auto is_it = [&](const auto& given) { return given.first == static_cast<int>(i); };
+      const auto rate_is = [&](const auto& given) { return given.first == static_cast<int>(i) + 6; };
+      if (model.coordinates[i].drive == Drive::passive &&
+          std::ranges::none_of(scene.initial.coordinates, is_it) &&
+          std::ranges::none_of(scene.initial.velocities, rate_is))
+        known.push_back(model.coordinates[i].name);
+    }
+    for (const std::string& name :
+         read_names(*names, "a passive coordinate whose start is open", known, reading.findings))
+      scene.initial.equilibrium.push_back(coordinate_index(model, name));
+  }
   initial.report_unknown_keys();
 }
 

@@ -130,6 +130,7 @@ void read_integrator(TableReader& root, Scene& scene, Reading& reading) {
   if (value == nullptr) return;
   TableReader table(*value, "the integrator", reading.findings);
   Integrator& integrator = scene.integrator;
+  integrator.where = value->where;
   if (const auto method =
           table.optional_choice("method", {Integrator::method_names.begin(), Integrator::method_names.end()}))
     integrator.method = static_cast<Integrator::Method>(*method);

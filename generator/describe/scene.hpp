@@ -51,6 +51,7 @@ struct InitialState {
   std::array<Exact, 3> p = {0, 0, 0};
   std::vector<std::pair<int, Exact>> coordinates;  // index in Model::coordinates
   std::vector<std::pair<int, Exact>> velocities;   // 0..5: component of eta; 6 + i: rate of coordinate i
+  std::vector<int> equilibrium;                    // coordinates that start without ringing
 };
 
 /// Contacts that hold together: of those that any set of the scene names, these and no others.
@@ -77,17 +78,25 @@ struct ContactElasticity {
 };
 
 struct Integrator {
-  enum class Method { dopri5, rkmk4, dopri8, rkmk8, cf4 };  // docs/integrators.md
-  static constexpr std::array method_names = {"dopri5", "rkmk4", "dopri8", "rkmk8", "cf4"};  // in this order
+  enum class Method { dopri5, rkmk4, dopri8, rkmk8, cf4, rodas5p, automatic };  // docs/integrators.md
+  static constexpr std::array method_names = {"dopri5", "rkmk4",   "dopri8", "rkmk8",
+                                              "cf4",    "rodas5p", "auto"};  // in this order
   Method method = Method::dopri5;
   double tolerance = 1e-9;  // of methods that choose their steps, absolute and relative
   double step = 0;          // s, of those that do not
+  Location where;
 
   [[nodiscard]] const char* name() const { return method_names[static_cast<std::size_t>(method)]; }
   [[nodiscard]] bool has_fixed_step() const {
     return method == Method::rkmk4 || method == Method::rkmk8 || method == Method::cf4;
   }
 };
+
+/// Whether the method is, or may turn out to be, one that needs the Jacobian.
+inline bool may_be_stiff(const Integrator& integrator) {
+  return integrator.method == Integrator::Method::rodas5p ||
+         integrator.method == Integrator::Method::automatic;
+}
 
 struct Scene {
   std::string name;

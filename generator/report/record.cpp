@@ -160,7 +160,7 @@ ordered_json motion_record(const Scene& scene, const Stage& stage) {
   try {
     const WorkPrecision result = work_precision(
         scene, [&](const WorkPrecisionPoint& p) { stage(fmt::format("{} at {:.0e}", p.code, p.tolerance)); });
-    record["reference"] = {{"method", "Gauss collocation of order 12, long double"},
+    record["reference"] = {{"method", result.reference_method + ", long double"},
                            {"steps", result.reference_steps},
                            {"own_error", finite(result.reference_error)}};
     record["points"] = ordered_json::array();

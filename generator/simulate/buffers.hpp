@@ -28,6 +28,9 @@ class Buffers {
   Block r_p = blocks_["r_p"], r_a = blocks_["r_a"], r_p_dot = blocks_["r_p_dot"],
         r_a_dot = blocks_["r_a_dot"], r_d_dot = blocks_["r_d_dot"], r_a_ddot = blocks_["r_a_ddot"];
   Block eta = blocks_["eta"], nu = blocks_["nu"], nu_dot = blocks_["nu_dot"];
+  Block r_a_dddot = blocks_["r_a_dddot"], r_m_dddot = blocks_["r_m_dddot"];
+  Block rates_x = blocks_["rates_x"], rates_t = blocks_["rates_t"], power_x = blocks_["power_x"],
+        power_t = blocks_["power_t"];
   Block r_m = blocks_["r_m"], r_m_dot = blocks_["r_m_dot"], r_m_ddot = blocks_["r_m_ddot"];
   Block torque = blocks_["torque"], tau_a = blocks_["tau_a"], tau_d = blocks_["tau_d"],
         lambda = blocks_["lambda"];

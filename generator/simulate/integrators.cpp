@@ -6,6 +6,7 @@
 #include "anholon/integrate/dop853.hpp"
 #include "anholon/integrate/dopri.hpp"
 #include "anholon/integrate/rkmk.hpp"
+#include "anholon/integrate/rosenbrock.hpp"
 
 namespace anholon {
 namespace {
@@ -19,6 +20,13 @@ class StepOf final : public AnyStep<G> {
   [[nodiscard]] const G& g_end() const override { return step_.g_end(); }
   [[nodiscard]] const Eigen::VectorXd& y_end() const override { return step_.y_end(); }
   void evaluate(double t, G& g, Eigen::VectorXd& y) const override { step_.evaluate(t, g, y); }
+  [[nodiscard]] const Eigen::MatrixXd* jacobian() const override {
+    if constexpr (requires { step_.stages().jacobian(); }) {
+      return &step_.stages().jacobian();
+    } else {
+      return nullptr;
+    }
+  }
 
  private:
   const Step& step_;
@@ -49,6 +57,8 @@ integrate::Result<double> integrate_adaptive(const Field<G>& field, integrate::S
                                              const DenseObserver<G>& observer, Integrator::Method method) {
   if (method == Integrator::Method::dopri8)
     return adaptive<integrate::Dop853<G>>(field, state, t_end, options, observer);
+  if (method == Integrator::Method::rodas5p)
+    return adaptive<integrate::RosenbrockStages<G>>(field, state, t_end, options, observer);
   return adaptive<integrate::DormandPrince<G>>(field, state, t_end, options, observer);
 }
 

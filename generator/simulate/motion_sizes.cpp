@@ -41,6 +41,21 @@ std::vector<char> angles_of_shape(const SceneProgram& program) {
 
 }  // namespace
 
+double spectral_radius(const Eigen::MatrixXd& J) {
+  constexpr int squarings = 8;
+  Eigen::MatrixXd power = J;
+  double logarithm = 0;  // of what has been divided off, per power of J
+  for (int i = 0; i <= squarings; ++i) {
+    const double size = power.norm(), share = std::ldexp(1.0, -i);
+    if (!(size > 0)) return 0;
+    logarithm += share * std::log(size);
+    if (i == squarings) break;
+    power /= size;
+    power = (power * power).eval();
+  }
+  return std::exp(logarithm);
+}
+
 std::vector<double> MotionSizes::of_state() const {
   std::vector<double> y = shape;
   y.insert(y.end(), nu.begin(), nu.end());

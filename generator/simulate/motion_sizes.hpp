@@ -58,12 +58,23 @@ class MotionSizesCollector {
 /// may have been larger than the quantity itself
 bool overestimated(const MotionSizes& used, const MotionSizes& seen);
 
+/// How stiff the motion is, seen on the coarse run.
+struct Stiffness {
+  double fast = 0;   // radians that the fastest component turns or decays by: integral of the spectral radius
+  double steps = 0;  // of the stiff method, at the coarse tolerance
+};
+constexpr double coarse_tolerance = 1e-3;
+
+/// Largest magnitude of an eigenvalue, by Gelfand's formula: ||J^m||^(1/m), m = 256, is a few percent off.
+double spectral_radius(const Eigen::MatrixXd& J);
+
 /// Sizes along the motion from `initial`, whose y has the quadratures; all 1 where the coarse run fails. The
-/// runner is left in the chart of `initial`.
+/// runner is left in the chart of `initial`. Where the program has a Jacobian, the run is one of the stiff
+/// method, which no motion makes slow.
 template <class G>
 MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const integrate::State<G>& initial,
-                         double t_end) {
-  constexpr double tolerance = 1e-3;
+                         double t_end, Stiffness* stiffness = nullptr) {
+  const auto method = run.field_jacobian ? Integrator::Method::rodas5p : Integrator::Method::dopri5;
   constexpr int most_passes = 6;  // each may find the motion smaller than the tolerance of the one before
   MotionSizes sizes(program, run);
   const std::size_t chart = run.chart();
@@ -83,12 +94,20 @@ MotionSizes motion_sizes(const SceneProgram& program, Runner<double>& run, const
     run.use_chart(chart);
     observe(0.0, state.g, state.y);
     const std::vector<double> y_sizes = sizes.of_state();
-    auto options = relative_tolerance(tolerance, sizes, y_sizes);
+    auto options = relative_tolerance(coarse_tolerance, sizes, y_sizes);
     options.max_step = (t_end - initial.t) / 20;  // so that the run sees the motion
     options.max_steps = 100'000;
+    Stiffness seen_stiffness;
     const auto outcome = integrate_adaptive<G>(
         field_with_corrections<G>(run.template charted_field<G>()), state, t_end, options,
-        [&](const auto& step) { observe(step.t_end(), step.g_end(), step.y_end()); });
+        [&](const AnyStep<G>& step) {
+          observe(step.t_end(), step.g_end(), step.y_end());
+          ++seen_stiffness.steps;
+          if (stiffness != nullptr && step.jacobian() != nullptr)
+            seen_stiffness.fast += (step.t_end() - step.t_begin()) * spectral_radius(*step.jacobian());
+        },
+        method);
+    if (stiffness != nullptr) *stiffness = seen_stiffness;
     run.use_chart(chart);
     if (!outcome) return {program, run};
     const MotionSizes seen = collector.sizes();

@@ -8,6 +8,7 @@
 #include "simulate/gauss_collocation.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/initial_state.hpp"
+#include "simulate/radau_collocation.hpp"
 #include "simulate/runner.hpp"
 
 namespace anholon {
@@ -33,13 +34,15 @@ template double state_error(const std::vector<long double>&, const std::vector<l
                             const MotionSizes&);
 
 ReferenceSolution reference_solution(const Scene& scene, const SceneProgram& program,
-                                     const MotionSizes& sizes) {
-  constexpr int stages = 6;
+                                     const MotionSizes& sizes, double enough) {
+  constexpr int gauss_stages = 6, radau_stages = 5;
   constexpr long first_steps = 32, most_steps = 1L << 17;
   constexpr double settled =
       1e-17;  // a twentieth of double's last place; long double keeps this over 1e5 steps
   ReferenceSolution best;
   best.own_error = INFINITY;
+  const bool by_newton = program.jacobian_operations > 0;
+  best.method = by_newton ? "Radau collocation of order 9" : "Gauss collocation of order 12";
   with_group<long double>(program.model.group, [&]<class G>(std::type_identity<G>) {
     Runner<long double> run(scene, program, &program.derivation->program);
     const integrate::State<G> initial = initial_state<G>(scene, program, run, 0);
@@ -49,7 +52,9 @@ ReferenceSolution reference_solution(const Scene& scene, const SceneProgram& pro
     for (long steps = first_steps; steps <= most_steps; steps *= 2) {
       integrate::State<G> state = initial;
       run.use_chart(chart);
-      if (!integrate_gauss<stages>(field, state, static_cast<long double>(scene.duration), steps)) {
+      const auto t_end = static_cast<long double>(scene.duration);
+      if (!(by_newton ? integrate_radau<radau_stages>(field, state, t_end, steps)
+                      : integrate_gauss<gauss_stages>(field, state, t_end, steps))) {
         coarser.clear();
         continue;
       }
@@ -58,8 +63,8 @@ ReferenceSolution reference_solution(const Scene& scene, const SceneProgram& pro
       if (!coarser.empty()) {
         const double difference = state_error(finer, coarser, sizes);
         const bool worse = difference >= best.own_error;  // rounding has taken over
-        if (!worse) best = {finer, steps, difference};
-        if (difference < settled || (worse && best.own_error < 1e-12)) return;
+        if (!worse) best = {finer, steps, difference, best.method};
+        if (difference < std::max(settled, enough) || (worse && best.own_error < 1e-12)) return;
       }
       coarser = std::move(finer);
     }

@@ -22,7 +22,7 @@ namespace anholon {
 /// The functions that know nu.
 struct ChartCalls {
   Call imposed_torque, rates, kinematics, torques, multipliers, reduced_velocities, compatibility,
-      projected_accelerations;
+      projected_accelerations, field_jacobian;
 };
 
 /// y = (r_p, r_d, nu), then work and dissipated energy where y has room for them; behind r_d the
@@ -37,7 +37,8 @@ class Runner : public ChartCalls {
     b.t.resize(1), b.g.resize(3), b.R.resize(9), b.p.resize(positions(program.model.group));
     b.r_p.resize(static_cast<std::size_t>(program.original.s_p())),
         b.r_a.resize(program.original.active.size());
-    for (auto* v : {&b.r_a_dot, &b.r_a_ddot, &b.r_m, &b.r_m_dot, &b.r_m_ddot}) v->resize(active);
+    for (auto* v : {&b.r_a_dot, &b.r_a_ddot, &b.r_m, &b.r_m_dot, &b.r_m_ddot, &b.r_a_dddot, &b.r_m_dddot})
+      v->resize(active);
     b.nu.resize(static_cast<std::size_t>(k_)), b.nu_dot.resize(static_cast<std::size_t>(k_));
     b.eta.resize(static_cast<std::size_t>(program.original.n)), b.r_p_dot.resize(b.r_p.size());
     b.r_d_dot.resize(program.driven.size()), b.torque.resize(program.driven.size()),
@@ -60,7 +61,8 @@ class Runner : public ChartCalls {
                          bound(code, chart + "kinematics", b), bound(code, chart + "inverse_torques", b),
                          bound(code, chart + "multipliers", b), bound(code, chart + "reduced_velocities", b),
                          bound(code, chart + "compatibility", b),
-                         bound(code, chart + "projected_accelerations", b)});
+                         bound(code, chart + "projected_accelerations", b),
+                         bound(code, chart + "field_jacobian", b)});
     }
     use_chart(0);
     contact_shares = bound(code, "contact_shares", b);
@@ -74,7 +76,8 @@ class Runner : public ChartCalls {
     if (table_) (*table_)(t, b);
     if (projected_rates) return;  // follows from the position: set()
     for (std::size_t i = 0; i < motion_at_.size(); ++i)
-      b.r_a[motion_at_[i]] = b.r_m[i], b.r_a_dot[i] = b.r_m_dot[i], b.r_a_ddot[i] = b.r_m_ddot[i];
+      b.r_a[motion_at_[i]] = b.r_m[i], b.r_a_dot[i] = b.r_m_dot[i], b.r_a_ddot[i] = b.r_m_ddot[i],
+      b.r_a_dddot[i] = b.r_m_dddot[i];
   }
 
   /// Pose, shape and reduced velocities, and the torques that follow from them. Needs impose().
@@ -184,6 +187,30 @@ class Runner : public ChartCalls {
     y_dot(next) = b.dissipated_power[0];
   }
 
+  /// The derivative of the field by (twist of g in body axes, y) and by t. Needs a program that has it.
+  template <class G, class Vector, class Matrix>
+  void jacobian(S t, const G& g, const Vector& y, Matrix& F, Vector& F_t) {
+    impose(t);
+    set(g, y);
+    if (rates) rates();
+    field_jacobian();
+    F.setZero();
+    F_t.setZero();
+    const auto n = static_cast<Eigen::Index>(b.eta.size()), columns = n + size();
+    const auto at = [n](Eigen::Index i) { return i < n ? i : i - n + G::dim; };
+    const auto place = [&](const std::vector<S>& by_state, const std::vector<S>& by_time, Eigen::Index first,
+                           Eigen::Index rows) {
+      for (Eigen::Index i = 0; i < rows; ++i) {
+        for (Eigen::Index j = 0; j < columns; ++j)
+          F(at(first + i), at(j)) = by_state[static_cast<std::size_t>(i * columns + j)];
+        F_t(at(first + i)) = by_time[static_cast<std::size_t>(i)];
+      }
+    };
+    place(b.rates_x, b.rates_t, 0, columns);
+    if (y.size() > size()) place(b.power_x, b.power_t, columns, 2);
+    if (stopped_) F.setConstant(std::numeric_limits<S>::quiet_NaN());
+  }
+
   /// The field as a function object, for integration in groups of the same scalar.
   template <class G>
   auto field_of() {
@@ -201,6 +228,10 @@ class Runner : public ChartCalls {
     template <class Vector, class Tangent>
     void operator()(S t, const G& g, const Vector& y, Tangent& eta, Vector& y_dot) const {
       run.field(t, g, y, eta, y_dot);
+    }
+    template <class Vector, class Matrix>
+    void jacobian(S t, const G& g, const Vector& y, Matrix& F, Vector& F_t) const {
+      run.jacobian(t, g, y, F, F_t);
     }
     template <class Vector>
     bool correct(S t, G& g, Vector& y) const {

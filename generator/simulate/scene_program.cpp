@@ -6,8 +6,14 @@
 
 #include "describe/specialise.hpp"
 #include "optimise/tape/count.hpp"
+#include "tape/derivative.hpp"
 
 namespace anholon {
+
+bool has_jacobian(const Scene& scene) {
+  return may_be_stiff(scene.integrator) && !scene.project_motion && !scene.motion_table;
+}
+
 namespace {
 
 /// The entry that a scene has for each of some velocities; `missing` where it has none.
@@ -29,11 +35,14 @@ std::vector<Entry> entries_for(const Scene& scene, const SceneProgram& p, const 
 void add_imposed_motion(const Scene& scene, SceneProgram& p) {
   const int size = p.reduced.s_a();
   if (size == 0 || scene.motion_table) return;
-  std::vector<Expr> r, r_dot, r_ddot;
+  std::vector<Expr> r, r_dot, r_ddot, r_dddot;
+  Tape& tape = *scene.model.tape;
   for (const ImposedMotion& m : entries_for(scene, p, scene.motion, p.reduced.active, {})) {
     r.push_back(m.r);
     r_dot.push_back(m.r_dot);
     r_ddot.push_back(m.r_ddot);
+    if (has_jacobian(scene))
+      r_dddot.emplace_back(tape, derivative(tape, m.r_ddot.id(tape), scene.model.symbols.t));
   }
   Function imposed{"imposed", "Imposed motion of the active coordinates.", {}, ""};
   imposed.outputs = {
@@ -41,6 +50,9 @@ void add_imposed_motion(const Scene& scene, SceneProgram& p) {
       {"r_m_dot", "rad/s or m/s", "their rates", size, 1, scene_expressions(scene, p, r_dot)},
       {"r_m_ddot", "rad/s^2 or m/s^2", "their second derivatives", size, 1,
        scene_expressions(scene, p, r_ddot)}};
+  if (has_jacobian(scene))
+    imposed.outputs.push_back({"r_m_dddot", "rad/s^3 or m/s^3", "their third derivatives", size, 1,
+                               scene_expressions(scene, p, r_dddot)});
   p.derivation->program.functions.push_back(std::move(imposed));
 }
 
@@ -111,7 +123,13 @@ SceneProgram make_program(const Scene& scene) {
   request.functions = {"kinematics",       "reduced_velocities", "constraints",
                        "forward_dynamics", "inverse_torques",    "multipliers",
                        "compatibility",    "energies",           "position_conditions"};
-  request.rates = scene.project_motion;
+  request.rates = scene.project_motion || !scene.initial.equilibrium.empty();
+  request.state_jacobian = has_jacobian(scene);
+  if (scene.integrator.method == Integrator::Method::rodas5p && !request.state_jacobian)
+    throw ModelError(scene.integrator.where,
+                     "the method rodas5p needs a motion whose derivatives are known, not one from a table or "
+                     "a projection",
+                     "write the motion as expressions, or take dopri5");
   p.derivation = derive(p.model, request);
   p.original = partition_of(p.model);
   p.reduced = partition_of(p.model, request.torque_driven);
@@ -121,7 +139,10 @@ SceneProgram make_program(const Scene& scene) {
   add_imposed_torque(scene, p);
   add_imposed_motion(scene, p);
   if (scene.project_motion) add_projection(p);
-  for (std::size_t c = 0; c < p.derivation->reduction.charts.size(); ++c) add_rates(p, c);
+  for (std::size_t c = 0; c < p.derivation->reduction.charts.size(); ++c) {
+    add_rates(p, c);
+    if (request.state_jacobian) add_field_jacobian(p, c);
+  }
   add_contact_shares(scene, p);
   return p;
 }

@@ -10,11 +10,14 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <tuple>
+#include <utility>
 
 #include "check/compile_cache.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/contact_switch.hpp"
 #include "simulate/cpu_time.hpp"
+#include "simulate/equilibrium.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/initial_state.hpp"
 #include "simulate/integrators.hpp"
@@ -42,9 +45,30 @@ std::optional<std::string> obstacle_ahead(const SceneProgram& program, Runner<do
   return monitor.passed(state.t + step, state.g, state.y);
 }
 
-/// By a method that chooses its steps to t_end: dense output at the wanted times, or rows at its own steps.
+/// The method of a scene that leaves the choice, and why: what each would cost, in operations, to go as far
+/// as accuracy and stability ask for. Both are of order 5, so that the steps of a coarse run tell those of a
+/// fine one.
+std::pair<Integrator::Method, std::string> chosen_method(const Scene& scene, const SceneProgram& program,
+                                                         const Stiffness& stiffness, Eigen::Index size) {
+  if (program.jacobian_operations == 0) return {Integrator::Method::dopri5, "no Jacobian of this motion"};
+  constexpr double stable = 1;  // |h lambda| of Dormand-Prince on the imaginary axis; 3.3 on the real one
+  constexpr int stages = 8, explicit_stages = 6;
+  const double n = static_cast<double>(size);
+  const double accurate = stiffness.steps * std::pow(coarse_tolerance / scene.integrator.tolerance, 0.2);
+  const double stable_steps = stiffness.fast / stable;
+  const double by_stiff = accurate * (stages * (program.operations + 2 * n * n + 2 * stages * n) +
+                                      program.jacobian_operations + 2 * n * n * n / 3);
+  const double by_explicit =
+      std::max(accurate, stable_steps) * explicit_stages * (program.operations + 2 * explicit_stages * n);
+  return {by_stiff < by_explicit ? Integrator::Method::rodas5p : Integrator::Method::dopri5,
+          fmt::format("stability asks an explicit method for {:.2g} steps, accuracy for {:.2g}", stable_steps,
+                      accurate)};
+}
+
+/// To t_end: dense output at the wanted times, or rows at the method's own steps.
 template <class G>
-integrate::Result<double> integrate_with_step_control(const Scene& scene, double t_end, const Field<G>& field,
+integrate::Result<double> integrate_with_step_control(const Scene& scene, double t_end,
+                                                      Integrator::Method method, const Field<G>& field,
                                                       const MotionSizes& sizes, integrate::State<G>& state,
                                                       PositionKeeper<G>& keeper, Recorder& recorder,
                                                       const Progress& progress) {
@@ -70,7 +94,7 @@ integrate::Result<double> integrate_with_step_control(const Scene& scene, double
     }
     progress("integrating", step.t_end());
   };
-  return integrate_adaptive<G>(field, state, t_end, options, observe, scene.integrator.method);
+  return integrate_adaptive<G>(field, state, t_end, options, observe, method);
 }
 
 /// By a method with equal steps from each output time to the next, none longer than the scene's step.
@@ -191,7 +215,9 @@ class PhaseRunner {
       switch_contacts(set, phase, run, keeper);
     }
     last_ = &set;
-    Field<G> field{run.template field_of<G>(), {}};
+    Field<G> field{run.template field_of<G>(),
+                   {},
+                   field_with_corrections<G>(run.template charted_field<G>()).derivative};
     result_.charts = std::max(result_.charts, run.charts());
     result_.projected = program.projects_motion;
     if (!keeper.empty() || run.charts() > 1) {
@@ -215,12 +241,21 @@ class PhaseRunner {
     }
     const double start = cpu_now();
     integrate::Result<double> outcome;
-    if (!scene.integrator.has_fixed_step()) {
-      const MotionSizes sizes = motion_sizes<G>(program, run, state_, t_end);
-      outcome = integrate_with_step_control(scene, t_end, field, sizes, state_, keeper, recorder, progress_);
-    } else {
+    if (scene.integrator.has_fixed_step()) {
+      result_.method = scene.integrator.method;
       outcome = integrate_with_fixed_step(scene, t_end, field, state_, keeper, recorder, progress_);
+    } else {
+      Stiffness stiffness;
+      const MotionSizes sizes = motion_sizes<G>(program, run, state_, t_end, &stiffness);
+      Integrator::Method method = scene.integrator.method;
+      if (scene.integrator.method == Integrator::Method::automatic)
+        std::tie(method, result_.why) = chosen_method(scene, program, stiffness, G::dim + state_.y.size());
+      result_.method = method;
+      result_.jacobian_operations = program.jacobian_operations;
+      outcome = integrate_with_step_control(scene, t_end, method, field, sizes, state_, keeper, recorder,
+                                            progress_);
     }
+    result_.jacobians += outcome.jacobians;
     result_.cpu_seconds += cpu_now() - start;
     add_phase(result_, seen);
     result_.steps += outcome.accepted_steps, result_.rejected += outcome.rejected_steps,
@@ -295,12 +330,15 @@ void require_duration(const Scene& scene) {
     throw ModelError(scene.where, "the scene has no duration", "write how long it lasts, in s: duration = 5");
 }
 
-SimulationResult simulate_scene(const Scene& scene, const Progress& wanted_progress,
+SimulationResult simulate_scene(const Scene& wanted, const Progress& wanted_progress,
                                 const RowObserver& observer) {
-  require_duration(scene);
+  require_duration(wanted);
   const Progress progress = wanted_progress ? wanted_progress : [](const char*, double) {};
   const std::vector<ContactPhase> phases =
-      scene.phases.empty() ? std::vector<ContactPhase>{{0, scene.contact_set, 0, {}}} : scene.phases;
+      wanted.phases.empty() ? std::vector<ContactPhase>{{0, wanted.contact_set, 0, {}}} : wanted.phases;
+  Scene scene = wanted;
+  scene.contact_set = phases.front().set;
+  scene = settled(scene);
   const std::map<std::string, SetOfContacts> sets = sets_of_contacts(scene, phases, progress);
   SimulationResult result;
   result.was_cached =

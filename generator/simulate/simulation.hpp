@@ -38,7 +38,11 @@ struct SimulationResult {
   std::string status;  // "ok", or why the integration stopped
   bool finished = false;
   long steps = 0, rejected = 0, evaluations = 0;
-  double cpu_seconds = 0;  // of the integration alone
+  Integrator::Method method = Integrator::Method::dopri5;  // that integrated
+  std::string why;                                         // it was chosen, where the scene leaves the choice
+  long jacobians = 0;
+  int jacobian_operations = 0;  // of one of them
+  double cpu_seconds = 0;       // of the integration alone
   double nanoseconds_per_evaluation = 0;
   double energy_balance = 0;  // largest |E(t) - E(0) - work + dissipation| / largest_energy, at all steps
   double largest_energy = 0;  // of kinetic, change of potential, work, dissipated [J]

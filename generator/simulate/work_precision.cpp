@@ -9,6 +9,7 @@
 
 #include "check/compile_cache.hpp"
 #include "simulate/cpu_time.hpp"
+#include "simulate/equilibrium.hpp"
 #include "simulate/final_state.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/initial_state.hpp"
@@ -54,10 +55,11 @@ WorkPrecisionPoint measured(const std::string& code, double tolerance, const int
 
 }  // namespace
 
-WorkPrecision work_precision(const Scene& scene,
+WorkPrecision work_precision(const Scene& wanted,
                              const std::function<void(const WorkPrecisionPoint&)>& on_point,
                              const Ladder& ladder) {
-  require_duration(scene);
+  require_duration(wanted);
+  const Scene scene = settled(wanted);
   if (scene.project_motion)
     throw UnsupportedError("work-precision needs a motion that is given, not one that is projected");
   if (scene.phases.size() > 1)
@@ -73,6 +75,7 @@ WorkPrecision work_precision(const Scene& scene,
         motion_sizes<G>(program, run, initial_state<G>(scene, program, run, 2), scene.duration);
     const ReferenceSolution reference = reference_solution(scene, program, sizes);
     result.reference_steps = reference.steps, result.reference_error = reference.own_error;
+    result.reference_method = reference.method;
     const integrate::State<G> initial = initial_state<G>(scene, program, run, 0);
     const std::size_t chart = run.chart();
     RecursionDynamics recursion(program, run);
@@ -82,7 +85,9 @@ WorkPrecision work_precision(const Scene& scene,
                                if (t == 0) run.use_chart(chart);  // each integration starts there
                                charted.rates(t, g, y, eta, y_dot);
                              },
-                             charted.correction};
+                             charted.correction, charted.derivative};
+    Integrator by_recursion = scene.integrator;  // which has no Jacobian
+    if (by_recursion.method == Integrator::Method::rodas5p) by_recursion.method = Integrator::Method::dopri5;
     std::vector<double> reduced_sizes = sizes.of_state();
     reduced_sizes.resize(static_cast<std::size_t>(initial.y.size()));  // no quadratures here
     const std::vector<double> expanded_sizes = sizes.of_velocity_state();
@@ -115,8 +120,8 @@ WorkPrecision work_precision(const Scene& scene,
       field.rates = [&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
         recursion(t, g, y, eta, y_dot);
       };
-      const WorkPrecisionPoint point = measured<G>("recursion", tolerance, expanded, field, options,
-                                                   scene.duration, scene.integrator, state);
+      const WorkPrecisionPoint point =
+          measured<G>("recursion", tolerance, expanded, field, options, scene.duration, by_recursion, state);
       expected_seconds = (result.by_step ? growth_by_half : growth_by_decade) * point.cpu_seconds;
       run.use_chart(chart);
       integrate::State<G> reduced = recursion.reduced(state);

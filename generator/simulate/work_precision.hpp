@@ -26,8 +26,9 @@ struct WorkPrecisionPoint {
 struct WorkPrecision {
   bool by_step = false;                    // a ladder of steps
   std::vector<WorkPrecisionPoint> points;  // per rung: generated, then recursion
-  long reference_steps = 0;                // of Gauss collocation of order 12 in long double
-  double reference_error = 0;              // how far the reference moves when its steps are doubled
+  std::string reference_method;            // in long double
+  long reference_steps = 0;
+  double reference_error = 0;  // how far the reference moves when its steps are doubled
 };
 
 /// Where the error of one code stops falling.

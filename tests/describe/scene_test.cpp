@@ -156,6 +156,7 @@ TEST(Scene, SaysWhatIsWrong) {
       {"functions = [\"kinematics\", \"multiplier\"]\n",
        "5:28: error: there is no function 'multiplier'; did you mean 'multipliers'? choose from kinematics, "
        "reduced_velocities, constraints, free_dynamics, reduced_dynamics, split_dynamics, forward_dynamics, "
+       "state_jacobian, "
        "inverse_torques, multipliers, compatibility, torque_driven_kinematics, torque_driven_velocities, "
        "torque_driven_dynamics, torque_driven_multipliers, position_conditions, energies and body_poses"},
       {"functions = [\"x\"]\n", "5:14: error: there is no function 'x'; choose from kinematics, "},
@@ -187,8 +188,8 @@ TEST(Scene, SaysWhatIsWrong) {
       {"locked = { r1 = 0 }\nmotion = { r1 = 0 }\n",
        "1:1: error: 'r1' is driven in more than one way; keep it in one of locked, motion and torque_driven"},
       {"integrator = { method = \"euler\" }\n",
-       "5:25: error: 'method' of the integrator is 'euler'; write one of dopri5, rkmk4, dopri8, rkmk8 and "
-       "cf4"},
+       "5:25: error: 'method' of the integrator is 'euler'; write one of dopri5, rkmk4, dopri8, rkmk8, cf4, "
+       "rodas5p and auto"},
       {"integrator = { method = \"rkmk4\" }\n",
        "5:14: error: the method rkmk4 has no step; write step = 0.01, in s"},
       {"integrator = { method = \"cf4\", step = 0.1, tolerance = 1e-9 }\n",
