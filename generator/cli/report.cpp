@@ -171,7 +171,9 @@ int report(const ReportOptions& options) {
                          {"samples", options.samples},      {"states", defaults.states},
                          {"models", ordered_json::array()}, {"motions", ordered_json::array()}};
   std::vector<std::string> failures;
-  for (const auto& [subject, scenes] : work) {
+  for (const auto& item : work) {
+    const Subject& subject = item.first;  // clang++ 14 captures no structured bindings
+    const std::vector<fs::path>& scenes = item.second;
     const fs::path file = subject.file;
     const std::string inputs =
         version + text_of(file) + (subject.is_floating ? "floating" : "") + result["machine"].dump();

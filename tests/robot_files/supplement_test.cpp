@@ -56,7 +56,8 @@ TEST_F(RobotSupplement, AddsToArmatures) {
                       (folder_ / "robot.toml").string());
   for (const BodyDescription& b : model.bodies) {
     const Expr& armature = b.joint.armature;
-    EXPECT_TRUE(b.joint.coordinate == "elbow" ? armature.constant_value()->to_double() == 0.25 : armature.is_zero());
+    EXPECT_TRUE(b.joint.coordinate == "elbow" ? armature.constant_value()->to_double() == 0.25
+                                              : armature.is_zero());
   }
 }
 
