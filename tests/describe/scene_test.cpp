@@ -193,7 +193,7 @@ TEST(Scene, SaysWhatIsWrong) {
       {"integrator = { method = \"rkmk4\" }\n",
        "5:14: error: the method rkmk4 has no step; write step = 0.01, in s"},
       {"integrator = { method = \"cf4\", step = 0.1, tolerance = 1e-9 }\n",
-       "5:52: error: the method cf4 has no tolerance; remove it; its step is fixed"},
+       "5:56: error: the method cf4 has no tolerance; remove it; its step is fixed"},
       {"integrator = { method = \"dopri8\", step = 0.1 }\n",
        "5:42: error: the method dopri8 chooses its steps; remove the step"},
       {"duration = 1\noutput_times = [0, 2]\n",

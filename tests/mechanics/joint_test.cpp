@@ -253,7 +253,7 @@ void expect_coupling(const std::string& group, const std::string& kind, const st
   };
   w.dissipated_power = [=](const Sample& sample) {
     const Real rate = rate_and_gradient(sample.state)[0];
-    return 0.7L * rate * rate;
+    return (0.7L * rate + 0.9L * std::tanh(rate / 0.4L)) * rate;
   };
   expect_mechanics_of(w);
 }
