@@ -139,7 +139,8 @@ json motion_data(const ordered_json& motion) {
       failed.push_back(fmt::format("{} at tolerance {:.0e}: {}", p.at("code").get<std::string>(),
                                    number(p.at("tolerance")), p.at("status").get<std::string>()));
   }
-  std::string note = fmt::format("{}: {} steps of the reference; half as many move it by {:.1e}.", scene,
+  std::string note = fmt::format("{}: reference {}, {} steps; half as many move it by {:.1e}.", scene,
+                                 motion.at("reference").at("method").get<std::string>(),
                                  motion.at("reference").at("steps").get<long>(),
                                  number(motion.at("reference").at("own_error")));
   for (const std::string& text : failed) note += " " + text + ".";
