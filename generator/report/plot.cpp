@@ -33,22 +33,26 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-bool is_drawn(const std::pair<double, double>& point) {
-  return std::isfinite(point.first) && std::isfinite(point.second) && point.first > 0 && point.second > 0;
+bool is_drawn(const std::pair<double, double>& point, bool logarithmic_abscissa) {
+  return std::isfinite(point.first) && std::isfinite(point.second) && point.second > 0 &&
+         (!logarithmic_abscissa || point.first > 0);
 }
 
 std::string script_of(const LogPlot& plot, const fs::path& output) {
   std::string text = fmt::format(
       "set terminal svg size 560,400 dynamic noenhanced font 'sans-serif,12'\n"
       "set output {}\nset encoding utf8\nset title {}\nset xlabel {}\nset ylabel {}\n"
-      "set logscale xy\nset format '%.0e'\n"
+      "{}\n"
       "set grid linecolor '#dddddd'\nset key outside bottom center horizontal\n",
-      quoted(output.string()), quoted(plot.title), quoted(plot.abscissa), quoted(plot.ordinate));
+      quoted(output.string()), quoted(plot.title), quoted(plot.abscissa), quoted(plot.ordinate),
+      plot.logarithmic_abscissa ? "set logscale xy\nset format '%.0e'"
+                                : "set logscale y\nset format y '%.0e'");
   std::string curves;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     std::string data;
     for (const auto& point : plot.series[i].points) {
-      if (is_drawn(point)) data += fmt::format("{} {}\n", point.first, point.second);
+      if (is_drawn(point, plot.logarithmic_abscissa))
+        data += fmt::format("{} {}\n", point.first, point.second);
     }
     if (data.empty()) continue;
     text += fmt::format("$s{} << EOD\n{}EOD\n", i, data);

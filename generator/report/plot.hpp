@@ -24,7 +24,8 @@ struct Series {
 struct LogPlot {
   std::string title, abscissa, ordinate;
   std::vector<Series> series;
-  bool joined = true;  // points of a series by lines
+  bool joined = true;                // points of a series by lines
+  bool logarithmic_abscissa = true;  // else linear, as of time
 };
 
 /// An <svg> element. @throws PlotError
