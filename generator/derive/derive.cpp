@@ -5,12 +5,14 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <stdexcept>
 
 #include "algebra/closed_form.hpp"
 #include "anholon/free_dynamics.hpp"
+#include "derive/articulated_route.hpp"
 #include "derive/charts.hpp"
 #include "derive/symbols.hpp"
 #include "describe/function_names.hpp"
@@ -34,6 +36,12 @@ struct Route {
   std::string name;
   std::vector<OutputBlock> outputs;
 };
+
+std::vector<NodeId> roots_of(const Route& r) {
+  std::vector<NodeId> roots;
+  for (const OutputBlock& b : r.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
+  return roots;
+}
 
 /// A partition of the velocities with its kinematic reduction, in the chart that is derived at the moment.
 struct Reduced {
@@ -137,19 +145,15 @@ class Deriver {
   }
 
   /// Keeps the cheapest route; the closed form of the cheapest one is a further candidate.
+  /// @param simplified  let the closed form compete: it expands products, and with them loses digits again
   void emit(const std::string& name, const std::string& meaning, std::vector<Route> routes,
-            const std::string& remark = "") {
+            const std::string& remark = "", bool simplified = true) {
     for (Route& r : routes) std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
     std::erase_if(routes, [](const Route& r) { return r.outputs.empty(); });
     if (routes.empty()) return;
-    const auto roots_of = [](const Route& r) {
-      std::vector<NodeId> roots;
-      for (const OutputBlock& b : r.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-      return roots;
-    };
     const auto cost = [&](const Route& r) { return operations_per_call(program_, roots_of(r)).total(); };
     const auto cheapest = [&] { return std::ranges::min_element(routes, {}, cost); };
-    if (request_.closed_forms) {
+    if (request_.closed_forms && simplified) {
       const Route& base = *cheapest();
       if (const auto closed = closed_form(tape_, roots_of(base))) {
         Route route{"closed form", base.outputs};
@@ -484,9 +488,42 @@ class Deriver {
       emit("split_dynamics",
            "Forward dynamics by blocks, eqs. (4)-(5), of external and internal reduced velocities.",
            split_routes);
-    if (forward)
-      emit("forward_dynamics",
-           "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).", forward_routes);
+    if (!forward) return;
+    const bool replaced = replace_by_articulated_bodies(force, forward_routes);
+    emit("forward_dynamics",
+         "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).", forward_routes,
+         replaced ? "the mass matrix would lose the digits of its small bodies" : "", !replaced);
+  }
+
+  /// Where every route through the mass matrix loses most of its digits at the default parameters, and
+  /// articulated bodies do not, they are the only route left.
+  bool replace_by_articulated_bodies(const std::vector<Expr>& force, std::vector<Route>& routes) {
+    constexpr double poor = 1e-10, gain = 1e-3;
+    const Partition& p = motion_partition_;
+    if (routes.empty() || !p.active.empty() || motion_.k() != static_cast<int>(p.passive.size()))
+      return false;
+    std::vector<NodeId> parameters;
+    for (const ParameterInfo& info : program_.parameters) parameters.push_back(info.node);
+    const auto rounding = [&](const Route& r) {
+      return rounding_of(tape_, roots_of(r), parameters, defaults_);
+    };
+    double least = std::numeric_limits<double>::infinity();
+    for (const Route& r : routes) least = std::min(least, rounding(r));
+    if (least < poor) return false;  // before anything else is derived, so that other models stay as they are
+    const std::vector<Expr> none;
+    const State<Expr> state =
+        symbols_.moving(merged(p, motion_.reduction->velocities(none, nu_), none));  // nu are velocities
+    if (!is_rigid_tree(mechanism_, state)) return false;
+    std::vector<Expr> torque(static_cast<std::size_t>(mechanism_.coordinates), Expr(0));
+    for (std::size_t i = 0; i < p.passive.size(); ++i) {
+      if (p.passive[i] >= p.n) torque[static_cast<std::size_t>(p.passive[i] - p.n)] = force[i];
+    }
+    const std::vector<Expr> v_dot = picked(articulated_accelerations(mechanism_, state, torque), p.passive);
+    Route articulated{"articulated bodies", {block("nu_dot", "mixed", "derivative of nu", v_dot)}};
+    for (OutputBlock& b : split_passive(p, v_dot, "dot")) articulated.outputs.push_back(std::move(b));
+    if (!(rounding(articulated) < gain * least)) return false;
+    routes = {std::move(articulated)};
+    return true;
   }
 
   /// Inputs that only this function has, and the directions of the state.

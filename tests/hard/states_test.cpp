@@ -247,9 +247,30 @@ TEST(HardStates, KernelsNextToWhereTheyDegenerate) {
   }
 }
 
+// Where the default parameters are such that every route through the mass matrix loses its digits,
+// articulated bodies are emitted, and the problem's own condition is all that is lost.
+TEST(HardStates, ArticulatedBodiesKeepWhatTheMassMatrixLoses) {
+  for (const double l_1 : {1e-2, 1e-6}) {
+    Robot robot(pendulum, {{"l_1", l_1}, {"l_2", 1e3}});
+    EXPECT_EQ(robot.route(), "articulated bodies");
+    const Kept kept =
+        check(robot,
+              {fmt::format("lower link {:.0e} times as long, generated for these lengths", 1e3 / l_1),
+               "articulated bodies: the generator sees that the mass matrix would lose all and takes this "
+               "route; the recursion keeps to the mass matrix",
+               {},
+               false,
+               true,
+               INFINITY},  // the recursion may lose all
+              moderate);
+    EXPECT_LE(kept.of_strict_bound, 1);
+  }
+  EXPECT_NE(Robot(pendulum).route(), "articulated bodies");  // equal links keep the cheaper one
+}
+
 /// What loses all digits does not pass unseen: `verify` fails at these parameters and says where.
 TEST(HardStates, VerifyNamesWhatLosesItsDigits) {
-  Model model = model_file(pendulum);
+  Model model = model_file("tests/hard/pushed_pendulum.toml");
   const auto verification = [&](double l_1) {
     for (Parameter& p : model.parameters) {
       if (p.name == "l_1") p.value = Exact::from_double(l_1);
