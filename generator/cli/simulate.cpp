@@ -305,6 +305,8 @@ nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& resul
           {"constraint_residual", finite(result.constraint_residual)},
           {"position_residual_m", finite(result.position_residual)},
           {"orthonormality", finite(result.orthonormality)},
+          {"rounding_of_accelerations", finite(result.rounding.error)},
+          {"lost_digits", result.rounding.is_loss()},
           {"switches", switches},
           {"contacts", contacts}};
 }
@@ -372,13 +374,22 @@ int simulate(const SimulateOptions& options) {
   if (result.position_residual > 0)
     fmt::print("  position residual     {:.2e} m\n", result.position_residual);
   fmt::print("  ||R^T R - 1||         {:.2e}\n", result.orthonormality);
+  const bool lost = result.rounding.is_loss();
+  if (lost)
+    fmt::print(
+        "  LOST DIGITS           at t = {:.6g} s the accelerations keep {:.1f} digits where rounded inputs "
+        "would leave "
+        "{:.1f}: their program loses them; links or masses of very different sizes do that "
+        "(docs/hard-cases.md)\n",
+        result.rounding.t, std::max(0.0, -std::log10(result.rounding.error)),
+        std::min(16.0, -std::log10(result.rounding.least)));
   print_contacts(result);
   fmt::print("  time                  {:.4f} s integration, {:.2f} s in all\n", result.cpu_seconds,
              watch.seconds());
   fmt::print("  files                 {}{}\n",
              result.rows.empty() ? "" : (folder / "trajectory.csv").string() + ", ",
              (folder / "summary.json").string());
-  return result.finished ? ok : check_failed;
+  return result.finished && !lost ? ok : check_failed;
 }
 
 }  // namespace anholon::cli

@@ -25,6 +25,7 @@
 #include "simulate/position_keeper.hpp"
 #include "simulate/rank_monitor.hpp"
 #include "simulate/recorder.hpp"
+#include "simulate/rounding_monitor.hpp"
 #include "simulate/runner.hpp"
 #include "simulate/scene_program.hpp"
 
@@ -229,6 +230,7 @@ class PhaseRunner {
         return moved || changed;
       };
     }
+    watch_rounding(program, run);
     SimulationResult seen;
     const SharingRule sharing = sharing_rule(scene.sharing);
     Recorder recorder(program, run, energy_, sharing, seen, observer_);
@@ -267,13 +269,20 @@ class PhaseRunner {
     }
     if (!result_.violation.empty()) result_.status = result_.violation;
     result_.finished = outcome && result_.violation.empty();
-    run.impose(state_.t), run.set(state_.g, state_.y);
+    watch_rounding(program, run);
     result_.nanoseconds_per_evaluation = nanoseconds_per_call(run.rates);
     if (run.kinematics) run.kinematics();
     before_ = state_of(program, run);
   }
 
  private:
+  void watch_rounding(const SceneProgram& program, Runner<double>& run) {
+    run.impose(state_.t), run.set(state_.g, state_.y);
+    const RoundingLoss here = rounding_loss(program, run);
+    const auto rank = [](const RoundingLoss& l) { return std::pair(l.is_loss(), l.error); };
+    if (rank(here) > rank(result_.rounding)) result_.rounding = here;
+  }
+
   /// The state at which a phase ends becomes the one at which the next begins.
   void switch_contacts(const SetOfContacts& set, const ContactPhase& phase, Runner<double>& run,
                        PositionKeeper<G>& keeper) {

@@ -31,6 +31,16 @@ struct ContactHistory {
   std::optional<double> lifts_at, slips_at;            // first time that the ground would pull; give way
 };
 
+/// What rounding does to the reduced accelerations at one instant (rounding_monitor.hpp).
+struct RoundingLoss {
+  double t = 0;      // s
+  double error = 0;  // largest, relative to the largest entry; infinite where one is not finite
+  double least = 0;  // what rounding each input and parameter alone makes of it; known where error is large
+  /// Digits are lost inside the function: its error is beyond this and ten times what the inputs explain.
+  static constexpr double large = 1e-6;
+  [[nodiscard]] bool is_loss() const { return error > large && !(error <= 10 * least); }
+};
+
 /// A trajectory and what was seen on the way.
 struct SimulationResult {
   std::vector<std::string> columns;  // with units: "V_X [m/s]"
@@ -58,6 +68,7 @@ struct SimulationResult {
   std::vector<double> chart_changes;  // times at which the motion went on in another chart [s]
   std::vector<ContactSwitch> switches;
   std::vector<ContactHistory> contacts;
+  RoundingLoss rounding;  // at the start or the end of a phase, the worst
   std::string violation;  // the first compatibility condition that the imposed motion violates, and when
 };
 
