@@ -93,7 +93,7 @@ void drift(long periods) {
             "grows with t^{:.1f}: roundings of the heading, and of the phase of the imposed motion, 1e-16 t",
             exponent(heading, heading.x.size() / 10))});
   note({"Long horizons", name, "reduced velocity", digits_text(std::abs(last("nu_1") / first("nu_1") - 1)),
-        "", "", "", "summed with compensation"});
+        "", "", "", "summed with compensation; the phase of the imposed motion is rounded to 1e-16 t"});
   if (periods > 10'000)
     draw_picture("drift", "gait of the snake-board: errors over many periods", "t [s]", "m, rad",
                  {position, heading}, true);
