@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: MIT
 #
 # anholon_add_model(<target> MODEL <file> [SCENE <file>] [FUNCTIONS <name>...] [INVERSE <inverse>]
-#                   [SINCOS cmath|batch] [STATIC [COMPILE_OPTIONS <option>...]])
+#                   [SINCOS cmath|batch] [OPTIMISE accuracy|balanced|speed] [STATIC [COMPILE_OPTIONS <option>...]])
 #
 # Generates the C++ of a model at build time and makes it a target. Programs that link the target include
 #
@@ -14,6 +14,7 @@
 #   FUNCTIONS      functions to generate; default: all that the model or the scene asks for
 #   INVERSE        generalised inverse where rows are redundant: pseudo (default) or leading:ROW[,ROW...]
 #   SINCOS         cmath (default): std::sin and std::cos; batch: those of double by one loop that compilers vectorise
+#   OPTIMISE       accuracy, speed, or balanced (default): docs/accuracy.md
 #   STATIC         a static library with the functions of double compiled in; without it an INTERFACE library, a header
 #   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math,
 #                  with g++ also -frename-registers
@@ -26,7 +27,7 @@ include_guard(GLOBAL)
 set_property(GLOBAL PROPERTY ANHOLON_INSTANTIATE_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/AnholonInstantiate.cmake")
 
 function(anholon_add_model target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE;SINCOS" "FUNCTIONS;COMPILE_OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE;SINCOS;OPTIMISE" "FUNCTIONS;COMPILE_OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "anholon_add_model(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -38,6 +39,9 @@ function(anholon_add_model target)
   endif()
   if(arg_SINCOS AND NOT arg_SINCOS MATCHES "^(cmath|batch)$")
     message(FATAL_ERROR "anholon_add_model(${target}): SINCOS is '${arg_SINCOS}'; choose cmath or batch")
+  endif()
+  if(arg_OPTIMISE AND NOT arg_OPTIMISE MATCHES "^(accuracy|balanced|speed)$")
+    message(FATAL_ERROR "anholon_add_model(${target}): OPTIMISE is '${arg_OPTIMISE}'; choose accuracy, balanced or speed")
   endif()
   if(NOT TARGET anholon::anholon)
     message(FATAL_ERROR "anholon_add_model(${target}): there is no program anholon::anholon; build it "
@@ -82,6 +86,9 @@ function(anholon_add_model target)
   endif()
   if(arg_SINCOS)
     list(APPEND options --sincos "${arg_SINCOS}")
+  endif()
+  if(arg_OPTIMISE)
+    list(APPEND options --optimise "${arg_OPTIMISE}")
   endif()
 
   # The folder with what programs include holds nothing else.

@@ -119,6 +119,7 @@ nlohmann::ordered_json evaluate_states(const Model& model, const StatesFile& sta
     DeriveRequest wanted;
     wanted.inverse = request.inverse;
     wanted.leading_rows = request.leading_rows;
+    wanted.optimise = request.optimise;
     const auto derivation = derive(model, wanted);
     const ProgramCaller<double> call = compiled_caller(derivation->program, states.parameters);
     for (const auto& entry : states.states) {

@@ -20,6 +20,7 @@ struct EvaluateRequest {
   unsigned digits = 50;  // of the exact method
   Inverse inverse = Inverse::pseudo;
   std::vector<int> leading_rows;
+  OptimiseFor optimise = OptimiseFor::balanced;  // of the generated code
   std::optional<TreeRequest> tree;  // functions of a driven tree in place of those of the reduction
 };
 

@@ -23,12 +23,13 @@ struct ModelOptions {
   std::string model;  // path of a description or scene
   std::string scene;  // path, empty: standard
   std::vector<std::string> functions;
-  std::string inverse = "pseudo";   // or "leading:ROW[,ROW...]"
-  RobotOptions robot;               // of a robot file
-  std::string gravity;              // of a robot file, m/s^2 along -z; empty: its own or the default
-  bool search = true;               // of a tree: try every formulation
-  std::vector<std::string> counts;  // of a model file: "N=12"
-  std::string contacts;             // of a scene: its contact set; empty: the first phase's
+  std::string inverse = "pseudo";     // or "leading:ROW[,ROW...]"
+  RobotOptions robot;                 // of a robot file
+  std::string gravity;                // of a robot file, m/s^2 along -z; empty: its own or the default
+  bool search = true;                 // of a tree: try every formulation
+  std::vector<std::string> counts;    // of a model file: "N=12"
+  std::string contacts;               // of a scene: its contact set; empty: the first phase's
+  std::string optimise = "balanced";  // or "accuracy", "speed"
 };
 
 struct CheckOptions : ModelOptions {
@@ -63,6 +64,7 @@ struct SimulateOptions {
   bool conditioning = false;
   std::vector<double> stiffen;              // factors of the stiffness of elastic contacts
   std::vector<std::string> stiffness_cost;  // parameters, each with its exponent: "EI:1"
+  std::string optimise = "balanced";        // or "accuracy", "speed"
 };
 struct ReportOptions {
   std::vector<std::string> models;  // files, of robot files with ":floating" behind; empty: models/*/*.toml

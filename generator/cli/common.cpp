@@ -100,17 +100,22 @@ bool wants_tree(const ModelOptions& options, const Model& model) {
 TreeRequest tree_request(const ModelOptions& options) {
   TreeRequest request;
   request.search = options.search;
+  request.optimise = optimise_for(options.optimise);
   request.functions = options.functions;
   if (named(request.functions, "all")) request.functions = tree_function_names();
   return request;
 }
 
-AnyDerivation derive_any(const ModelOptions& options, const Model& model) {
+AnyDerivation derive_any(const ModelOptions& options, const Model& model, bool trace) {
   AnyDerivation result;
   if (wants_tree(options, model)) {
-    result.tree = derive_tree(model, tree_request(options));
+    TreeRequest request = tree_request(options);
+    request.trace = trace;
+    result.tree = derive_tree(model, request);
   } else {
-    result.reduction = derive(model, derive_request(options, model));
+    DeriveRequest request = derive_request(options, model);
+    request.trace = trace;
+    result.reduction = derive(model, request);
   }
   return result;
 }
@@ -118,6 +123,7 @@ AnyDerivation derive_any(const ModelOptions& options, const Model& model) {
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   DeriveRequest request;
   request.functions = options.functions;
+  request.optimise = optimise_for(options.optimise);
   if (!options.scene.empty() || is_scene(options.model)) {
     const Scene scene = load_scene(options);
     request.scene = program_name(scene);

@@ -29,13 +29,15 @@ struct AnyDerivation {
   [[nodiscard]] const std::vector<CandidateReport>& candidates() const {
     return tree ? tree->candidates : reduction->candidates;
   }
+  [[nodiscard]] const std::vector<PassReport>& trace() const { return tree ? tree->trace : reduction->trace; }
 };
 
 /// Whether the functions of a tree are wanted: of a robot file as it stands, without a scene, unless a
 /// function is named that only the reduction has; of another model, where a function is named that only a
 /// tree has.
 bool wants_tree(const ModelOptions& options, const Model& model);
-AnyDerivation derive_any(const ModelOptions& options, const Model& model);
+/// @param trace  also fill the traces and the errors of all candidates
+AnyDerivation derive_any(const ModelOptions& options, const Model& model, bool trace = false);
 TreeRequest tree_request(const ModelOptions& options);
 
 /// Functions, inverse and scene name as a request.

@@ -17,6 +17,7 @@ int evaluate(const EvaluateOptions& options) {
   wanted.digits = options.digits;
   wanted.inverse = request.inverse;
   wanted.leading_rows = request.leading_rows;
+  wanted.optimise = request.optimise;
   if (is_tree) wanted.tree = tree_request(options);
   write_output(options.output, evaluate_states(model, states, wanted).dump(1) + "\n");
   return ok;

@@ -52,16 +52,19 @@ std::string headline(const AnyDerivation& derivation, const Model& model) {
       model.group == GroupKind::fixed ? "fixed" : fmt::format("free in {}", name(model.group)));
 }
 
-/// Operations after each pass, for the route that was kept; passes that change nothing are left out.
-void print_passes(const TreeDerivation& traced) {
-  fmt::print("\n{:28s} {:28s} {:>10s}\n", "function", "after", "operations");
+/// Operations and rounding after each pass, for the route that was kept; passes that change nothing are left
+/// out.
+void print_passes(const std::vector<PassReport>& trace) {
+  fmt::print("\n{:28s} {:28s} {:>10s} {:>9s} {:>9s}\n", "function", "after", "operations", "median", "worst");
   const PassReport* last = nullptr;
-  for (const PassReport& p : traced.trace) {
+  for (const PassReport& p : trace) {
     const bool is_first = last == nullptr || last->function != p.function;
-    if (is_first || last->operations != p.operations)
-      fmt::print("{:28s} {:28s} {:>10d}\n", is_first ? p.function : "", p.pass, p.operations);
+    if (is_first || last->operations != p.operations || last->error.text() != p.error.text())
+      fmt::print("{:28s} {:28s} {:>10d} {}\n", is_first ? p.function : "", p.pass, p.operations,
+                 p.error.text());
     last = &p;
   }
+  fmt::print("median and worst rounding error of {} states, in ulps of the natural scale\n", measured_states);
 }
 
 /// What compiling all functions of double takes.
@@ -79,13 +82,14 @@ void print_effort(const Program& program, const StatementStyle& style, double se
 }
 
 /// Every formulation that was tried. Passes over the finished program see only the cheapest.
-void print_routes(const AnyDerivation& derivation) {
+void print_routes(const AnyDerivation& derivation, bool errors) {
   std::size_t width = 5;
   for (const CandidateReport& c : derivation.candidates()) width = std::max(width, c.route.size());
-  fmt::print("\n{:28s} {:{}s} {:>10s}\n", "function", "route", width, "operations");
+  fmt::print("\n{:28s} {:{}s} {:>10s}{}\n", "function", "route", width, "operations",
+             errors ? fmt::format(" {:>9s} {:>9s}", "median", "worst") : "");
   for (const CandidateReport& c : derivation.candidates())
-    fmt::print("{:28s} {:{}s} {:>10d}{}\n", c.function, c.route, width, c.operations,
-               c.chosen ? "  <- kept" : "");
+    fmt::print("{:28s} {:{}s} {:>10d}{}{}\n", c.function, c.route, width, c.operations,
+               errors ? " " + c.error.text() : "", c.chosen ? "  <- kept" : "");
   if (derivation.tree) {
     for (const std::string& pass : derivation.tree->passes) fmt::print("{}\n", pass);
   }
@@ -146,14 +150,13 @@ int generate_one(const GenerateOptions& options) {
   if (operations_before > 0)
     fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % fewer\n", operations,
                operations_before, 100.0 * (operations_before - operations) / operations_before);
-  if (options.passes || derivation.tree) print_routes(derivation);
   if (options.passes) {
-    if (derivation.tree) {
-      TreeRequest request = tree_request(options);
-      request.trace = true;
-      print_passes(*derive_tree(model, request));
-    }
+    const AnyDerivation traced = derive_any(options, model, true);
+    print_routes(traced, true);
+    print_passes(traced.trace());
     print_effort(program, style, seconds);
+  } else if (derivation.tree) {
+    print_routes(derivation, false);
   }
   fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), seconds);
   return ok;

@@ -24,7 +24,12 @@ int main(int argc, char** argv) {
       "program.");
   std::function<int()> run;
 
-  const auto model_options = [](CLI::App* verb, cli::ModelOptions& o, bool functions) {
+  const auto optimise_option = [](CLI::App* verb, std::string& optimise) {
+    verb->add_option("--optimise", optimise,
+                     "for accuracy, speed, or balanced: what is fastest and loses no digits to speak of")
+        ->check(CLI::IsMember({"accuracy", "balanced", "speed"}));
+  };
+  const auto model_options = [&](CLI::App* verb, cli::ModelOptions& o, bool functions) {
     verb->add_option("MODEL", o.model,
                      "description of the robot or a scene of it (TOML), or its URDF, SDFormat or MJCF file")
         ->required();
@@ -34,6 +39,7 @@ int main(int argc, char** argv) {
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
     verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")->delimiter(',');
     verb->add_option("--contacts", o.contacts, "contact set of the scene; default: that of its first phase");
+    optimise_option(verb, o.optimise);
     if (functions)
       verb->add_option(
               "--functions", o.functions,
@@ -73,7 +79,8 @@ int main(int argc, char** argv) {
   verb->add_flag("--c-abi", generate.c_abi, "also write a source with a flat C interface, and its JSON");
   verb->add_flag(
       "--passes", generate.passes,
-      "print the operations of every route that was tried, after each pass, and what compiling takes");
+      "print the operations and the rounding error of every route that was tried, after each pass, and what "
+      "compiling takes");
   verb->callback([&] { run = [&] { return cli::generate(generate); }; });
 
   cli::ExplainOptions explain;
@@ -112,6 +119,7 @@ int main(int argc, char** argv) {
   verb->add_option("SCENE", simulate.scene, "scene file (TOML)")->required();
   verb->add_option("-o,--output", simulate.output,
                    "folder for the trajectory and its summary; default: out/<scene>");
+  optimise_option(verb, simulate.optimise);
   verb->add_flag("--work-precision", simulate.work_precision,
                  "error against CPU time over a ladder of tolerances");
   verb->add_flag("--conditioning", simulate.conditioning,

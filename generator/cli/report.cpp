@@ -134,12 +134,19 @@ ordered_json measured_model(const ReportOptions& options, const Subject& subject
   const Stopwatch watch;
   AnyDerivation derivation = derive_any(one, model);
   const double seconds = watch.seconds();
-  if (derivation.tree) {  // once more, with a count after each pass
-    TreeRequest request = tree_request(one);
-    request.trace = true;
-    derivation.tree = derive_tree(model, request);
+  derivation = derive_any(one, model, true);  // once more, with what each pass does
+  GeneratedModel generated{model, derivation.reduction.get(), derivation.tree.get(), seconds};
+  for (const OptimiseFor mode :
+       {OptimiseFor::nothing, OptimiseFor::speed, OptimiseFor::balanced, OptimiseFor::accuracy}) {
+    stage(fmt::format("optimising for {}", name(mode)));
+    one.optimise = name(mode);
+    std::optional<AnyDerivation> other;
+    if (mode != OptimiseFor::balanced) other = derive_any(one, model, true);
+    ModeResult result{mode, {}};
+    std::ranges::copy_if((other ? *other : derivation).candidates(), std::back_inserter(result.kept),
+                         &CandidateReport::chosen);
+    generated.modes.push_back(std::move(result));
   }
-  const GeneratedModel generated{model, derivation.reduction.get(), derivation.tree.get(), seconds};
   MeasureOptions measure;
   measure.samples = options.samples;
   return model_record(generated, measure, stage);

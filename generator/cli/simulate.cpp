@@ -332,7 +332,8 @@ void print_contacts(const SimulationResult& result) {
 
 int simulate(const SimulateOptions& options) {
   const Stopwatch watch;
-  const Scene scene = read_scene(options.scene);
+  Scene scene = read_scene(options.scene);
+  scene.optimise = options.optimise;
   const std::filesystem::path folder =
       options.output.empty() ? std::filesystem::path("out") / (scene.model.name + "_" + scene.name)
                              : std::filesystem::path(options.output);

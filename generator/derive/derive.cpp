@@ -11,14 +11,18 @@
 #include <stdexcept>
 
 #include "algebra/closed_form.hpp"
+#include "anholon/charts.hpp"
 #include "anholon/free_dynamics.hpp"
 #include "derive/articulated_route.hpp"
 #include "derive/charts.hpp"
+#include "derive/sampled_inputs.hpp"
 #include "derive/symbols.hpp"
 #include "describe/function_names.hpp"
 #include "describe/mechanise.hpp"
+#include "optimise/accuracy/variants.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/tape/count.hpp"
+#include "optimise/tape/passes.hpp"
 
 namespace anholon {
 namespace {
@@ -71,6 +75,7 @@ class Deriver {
     described_.open_section =
         mechanism_.open_section = [this](const std::string& title) { tape_.section(title); };
     for (const Parameter& p : model.parameters) defaults_.push_back(p.value);
+    for (const ParameterInfo& p : program_.parameters) parameter_nodes_.push_back(p.node);
   }
 
   std::unique_ptr<Derivation> run() {
@@ -86,6 +91,7 @@ class Deriver {
       }
     }
     motion_ = reduce(motion_partition_);
+    atlas_ = &motion_.atlas;
     nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + meaning_of_nu(motion_));
     r_a_dot_ = symbols_.block("r_a_dot", motion_partition_.s_a(), "rad/s or m/s", "rates of r_a");
     r_a_ddot_ =
@@ -111,6 +117,7 @@ class Deriver {
             symbols_.motion(merged(motion_partition_, chart->velocities(r_a_dot_, nu_), r_a_dot_)));
     }
     note_header();
+    if (request_.trace) trace();  // last: it leaves nodes on the tape, which no function needs
     return std::move(result_);
   }
 
@@ -151,25 +158,88 @@ class Deriver {
     for (Route& r : routes) std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
     std::erase_if(routes, [](const Route& r) { return r.outputs.empty(); });
     if (routes.empty()) return;
-    const auto cost = [&](const Route& r) { return operations_per_call(program_, roots_of(r)).total(); };
-    const auto cheapest = [&] { return std::ranges::min_element(routes, {}, cost); };
-    if (request_.closed_forms && simplified) {
-      const Route& base = *cheapest();
-      if (const auto closed = closed_form(tape_, roots_of(base))) {
-        Route route{"closed form", base.outputs};
-        std::size_t next = 0;
-        for (OutputBlock& b : route.outputs) {
-          for (NodeId& id : b.nodes) id = (*closed)[next++];
-        }
-        routes.push_back(std::move(route));
-      }
+    std::vector<Candidate> candidates;
+    const auto add = [&](const std::string& route, std::vector<OutputBlock> outputs) {
+      const int operations = operations_per_call(program_, roots_of(outputs)).total();
+      candidates.push_back({route, std::move(outputs), operations, candidates.size()});
+    };
+    for (Route& r : routes) add(r.name, std::move(r.outputs));
+    if (request_.closed_forms && simplified && request_.optimise != OptimiseFor::nothing) {
+      const std::vector<OutputBlock> base =
+          std::ranges::min_element(candidates, {}, &Candidate::operations)->outputs;
+      if (const auto closed = closed_form(tape_, roots_of(base)))
+        add("closed form", with_roots(base, *closed));
     }
-    const auto best = cheapest();
+    if (request_.optimise == OptimiseFor::speed) add_after_passes(candidates);
+    const std::size_t best = choose(
+        tape_, candidates, request_.optimise, [this] { return measured_states_of(atlas_, chart_); },
+        [&] {
+          add_stable_forms(candidates);
+          if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
+        });
     const std::string full_name = prefix_ + name;
-    for (const Route& r : routes) result_->candidates.push_back({full_name, r.name, cost(r), &r == &*best});
+    const std::size_t first_report = result_->candidates.size();
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& c = candidates[i];
+      result_->candidates.push_back({full_name, c.name, c.operations, i == best, c.error});
+    }
+    const std::string route = "route: " + candidates[best].name;
     program_.functions.push_back(
-        {full_name, meaning, best->outputs,
-         remark.empty() ? "route: " + best->name : remark + "; route: " + best->name});
+        {full_name, meaning, candidates[best].outputs, remark.empty() ? route : remark + "; " + route});
+    if (request_.trace)
+      traced_.push_back({full_name, std::move(candidates), best, first_report, atlas_, chart_});
+  }
+
+  void add_stable_forms(std::vector<Candidate>& candidates) {
+    const std::size_t routes = candidates.size();
+    for (std::size_t i = 0; i < routes; ++i) {
+      if (auto stable = in_stable_form(tape_, candidates[i], parameter_nodes_))
+        candidates.push_back(std::move(*stable));
+    }
+  }
+  void add_after_passes(std::vector<Candidate>& candidates) {
+    const std::size_t routes = candidates.size();
+    for (std::size_t i = 0; i < routes; ++i) {
+      for (Candidate& c : after_passes(tape_, candidates[i], parameter_nodes_))
+        candidates.push_back(std::move(c));
+    }
+  }
+
+  // ---- rounding
+  // ------------------------------------------------------------------------------------------------
+  /// Random states; where there are several charts, those at which this one is the best.
+  std::vector<std::vector<double>> measured_states_of(const KernelAtlas* atlas, std::size_t chart) {
+    const std::size_t charts = atlas == nullptr ? 1 : atlas->charts.size();
+    const int times = static_cast<int>(std::min<std::size_t>(charts, 8));
+    std::vector<std::vector<double>> states = sampled_inputs(model_, program_, measured_states * times);
+    if (charts < 2) return states;
+    std::vector<NodeId> quality;
+    for (const Expr& e : atlas->quality) quality.push_back(e.id(tape_));
+    std::erase_if(states, [&](const std::vector<double>& inputs) {
+      return best_chart(std::span<const double>(reproducible_values(tape_, quality, inputs))) != chart;
+    });
+    if (states.size() > measured_states) states.resize(measured_states);
+    return states;
+  }
+
+  /// What all candidates lose, and what stable forms and each pass make of the route that was kept.
+  void trace() {
+    for (Traced& t : traced_) {
+      Candidate route = t.candidates[t.candidates[t.best].route];
+      route.name = "as derived";
+      std::vector<Candidate> steps = {route};
+      route.name.clear();
+      if (auto stable = in_stable_form(tape_, route, parameter_nodes_)) steps.push_back(std::move(*stable));
+      for (const AfterPass& step : run_passes(tape_, roots_of(route.outputs), parameter_nodes_))
+        steps.push_back({step.pass, with_roots(route.outputs, step.roots), step.operations});
+      const auto states = measured_states_of(t.atlas, t.chart);
+      const auto given = [&] { return states; };
+      measure(tape_, t.candidates, given);
+      measure(tape_, steps, given);
+      for (std::size_t i = 0; i < t.candidates.size(); ++i)
+        result_->candidates[t.first_report + i].error = t.candidates[i].error;
+      for (const Candidate& c : steps) result_->trace.push_back({t.function, c.name, c.operations, c.error});
+    }
   }
 
   // ---- reduction
@@ -256,6 +326,7 @@ class Deriver {
     if (atlas.charts.size() < 2) return;
     for (std::size_t c = 1; c < atlas.charts.size(); ++c) {
       prefix_ = chart_prefix(c);
+      chart_ = c;
       motion_.reduction = atlas.charts[c].get();
       derive_kinematics();
       derive_reduced_dynamics();
@@ -264,6 +335,7 @@ class Deriver {
       derive_compatibility();
     }
     prefix_.clear();
+    chart_ = 0;
     motion_.reduction = atlas.charts.front().get();
     emit_quality(atlas, "chart_quality", "nu", "reduced_velocities", "kinematics");
   }
@@ -730,17 +802,22 @@ class Deriver {
     if (std::ranges::none_of(family, [this](const std::string& f) { return wanted(f); }) ||
         partition_of(model_).s_a() == 0 || !request_.torque_driven.empty())
       return;
-    Reduced all = reduce(partition_of(model_, {"*"}));
+    torque_driven_ = reduce(partition_of(model_, {"*"}));
+    Reduced& all = torque_driven_;
+    atlas_ = &all.atlas;
     const auto w =
         symbols_.block("w", all.k(), "mixed", "reduced velocities with r_a free: " + meaning_of_nu(all));
     for (std::size_t c = 0; c < all.atlas.charts.size(); ++c) {
       prefix_ = chart_prefix(c);
+      chart_ = c;
       all.reduction = all.atlas.charts[c].get();
       derive_torque_driven(all, w, family);
     }
     prefix_.clear();
+    chart_ = 0;
     if (all.atlas.charts.size() > 1)
       emit_quality(all.atlas, "torque_driven_chart_quality", "w", family[2], family[1]);
+    atlas_ = &motion_.atlas;
     result_->torque_driven = report(all);
   }
 
@@ -846,6 +923,8 @@ class Deriver {
   }
 
   void note_header() {
+    if (request_.optimise != OptimiseFor::balanced)
+      program_.notes.push_back(fmt::format("optimised for {}", anholon::name(request_.optimise)));
     const RankAnalysis& r = motion_.ranks;
     program_.notes.push_back(fmt::format(
         "group {}: n = {}, s_p = {}, s_a = {}, rows = {}, m = {}, m_locked = {}", name(model_.group),
@@ -877,8 +956,20 @@ class Deriver {
   std::vector<SampleState> samples_;
   std::vector<std::string> names_;
   std::vector<Exact> defaults_;
-  Reduced motion_;
-  std::string prefix_;  // of the names of functions: the chart
+  Reduced motion_, torque_driven_;
+  std::string prefix_;                  // of the names of functions: the chart
+  const KernelAtlas* atlas_ = nullptr;  // that chart_ belongs to; null before there is one
+  std::size_t chart_ = 0;
+  std::vector<NodeId> parameter_nodes_;
+  struct Traced {
+    std::string function;
+    std::vector<Candidate> candidates;
+    std::size_t best;
+    std::size_t first_report;  // of the candidates
+    const KernelAtlas* atlas;
+    std::size_t chart;
+  };
+  std::vector<Traced> traced_;
   std::vector<Expr> nu_, r_a_dot_, r_a_ddot_;
 };
 

@@ -14,6 +14,7 @@
 
 #include "derive/state_jacobian.hpp"
 #include "describe/model.hpp"
+#include "optimise/accuracy/choice.hpp"
 #include "optimise/tape/count.hpp"
 #include "reduce/kernel.hpp"
 #include "tape/interface.hpp"
@@ -29,6 +30,8 @@ struct DeriveRequest {
   bool closed_forms = true;       // also try GiNaC's simplified closed form of each function
   bool rates = false;             // fill Derivation::rates
   bool state_jacobian = false;    // also that function, which no empty list of functions stands for
+  OptimiseFor optimise = OptimiseFor::balanced;
+  bool trace = false;  // fill Derivation::trace, and the errors of all candidates
 };
 
 /// What a route to a function costs.
@@ -37,6 +40,16 @@ struct CandidateReport {
   std::string route;
   int operations = 0;
   bool chosen = false;
+  RoundingError error{};  // where it was measured
+};
+
+/// Operations of one call of a function after a pass, and what rounding costs then; the algorithm is the one
+/// that was kept.
+struct PassReport {
+  std::string function;
+  std::string pass;
+  int operations = 0;
+  RoundingError error{};
 };
 
 /// Reduction of one partition, for reports.
@@ -58,6 +71,7 @@ struct Derivation {
   ReductionReport reduction;                     // motion-driven
   std::optional<ReductionReport> torque_driven;  // all active coordinates by torque, where it was wanted
   std::vector<CandidateReport> candidates;
+  std::vector<PassReport> trace;  // in the order in which the passes run, function by function
   /// For each chart: (input, its time derivative at the velocities that nu and r_a_dot mean) of pose, shape
   /// and t.
   std::vector<std::vector<std::pair<NodeId, NodeId>>> rates;

@@ -14,20 +14,19 @@
 #include "anholon/composite.hpp"
 #include "anholon/factor.hpp"
 #include "derive/loop_tables.hpp"
+#include "derive/sampled_inputs.hpp"
 #include "derive/tree_inputs.hpp"
 #include "derive/tree_kinematics.hpp"
 #include "describe/mechanise.hpp"
+#include "optimise/accuracy/variants.hpp"
 #include "optimise/model/align_parallel.hpp"
 #include "optimise/model/merge_fixed.hpp"
 #include "optimise/model/regroup.hpp"
 #include "optimise/model/rotate_leaves.hpp"
 #include "optimise/model/slide_frames.hpp"
-#include "optimise/tape/common_factors.hpp"
-#include "optimise/tape/common_sums.hpp"
 #include "optimise/tape/count.hpp"
-#include "optimise/tape/gather_parameters.hpp"
 #include "optimise/tape/hoist.hpp"
-#include "optimise/tape/opposite_differences.hpp"
+#include "optimise/tape/passes.hpp"
 #include "optimise/tree_loops.hpp"
 
 namespace anholon {
@@ -39,11 +38,6 @@ struct Frames {
   Mechanism<Expr> mechanism;
 };
 
-struct Route {
-  std::string name;
-  std::vector<OutputBlock> outputs;
-};
-
 /// Ways to derive a function in given frames; one that does not apply has no outputs.
 struct Algorithm {
   std::string name;
@@ -53,27 +47,10 @@ struct Algorithm {
 /// What became of a function, for the trace.
 struct Kept {
   Algorithm algorithm;
-  std::vector<NodeId> roots;       // before the passes on the program
-  std::vector<PassReport> passes;  // on the program
+  std::vector<Candidate> candidates;
+  std::vector<Candidate> passes;  // on the program; the first is what they were given
+  std::size_t first_report = 0;   // of the candidates
 };
-
-/// Passes over a program, in the order in which they run.
-struct TapePass {
-  std::string name;
-  std::function<std::vector<NodeId>(Tape&, std::vector<NodeId>, const std::vector<NodeId>&)> run;
-};
-const std::vector<TapePass>& tape_passes() {
-  using Roots = std::vector<NodeId>;
-  static const std::vector<TapePass> passes = {
-      {"opposite differences",
-       [](Tape& t, Roots r, const Roots&) { return merge_opposite_differences(t, std::move(r)); }},
-      {"common factors",
-       [](Tape& t, Roots r, const Roots&) { return extract_common_factors(t, std::move(r)); }},
-      {"common sums", [](Tape& t, Roots r, const Roots&) { return share_common_sums(t, std::move(r)); }},
-      {"gathered parameters",
-       [](Tape& t, Roots r, const Roots& p) { return gather_parameters(t, std::move(r), p); }}};
-  return passes;
-}
 
 class TreeDeriver {
  public:
@@ -98,6 +75,8 @@ class TreeDeriver {
         throw std::invalid_argument(fmt::format("there is no function '{}'; choose from {}", name,
                                                 fmt::join(tree_function_names(), ", ")));
     }
+    if (request_.optimise != OptimiseFor::balanced)
+      program_.notes.push_back(fmt::format("optimised for {}", anholon::name(request_.optimise)));
     make_frames();
     for (const std::string& name : tree_function_names()) {
       const std::vector<std::string>& wanted =
@@ -148,7 +127,7 @@ class TreeDeriver {
     Mechanism<Expr> to_tips = mechanism;
     result_->passes.push_back(fmt::format("slid {} frames along their joints", slide_frames(to_tips)));
     add("slid to the tips, tips turned, regrouped", to_tips, true, true);
-    if (!request_.search) return;
+    if (!request_.search || request_.optimise == OptimiseFor::nothing) return;
     Mechanism<Expr> to_base = mechanism;
     slide_frames(to_base, SlideTowards::base);
     add("slid to the base, tips turned, regrouped", to_base, true, true);
@@ -175,21 +154,30 @@ class TreeDeriver {
 
   void trace_passes() {
     for (const Function& f : program_.functions) {
-      const auto report = [&](const std::string& pass, const std::vector<NodeId>& roots) {
-        result_->trace.push_back({f.name, pass, cost_of(roots)});
-      };
       if (f.loops) {
         result_->trace.push_back({f.name, loops_route, operations_per_call(program_, f).total()});
         continue;
       }
-      const Kept& kept = kept_.at(f.name);
+      Kept& kept = kept_.at(f.name);
+      std::vector<Candidate> passes;
       for (const Frames& stage : stages_) {
-        const Route r{"", kept.algorithm.outputs(stage.mechanism)};
-        if (const std::vector<NodeId> roots = roots_of(r); !roots.empty()) report(stage.name, roots);
+        std::vector<OutputBlock> outputs = kept.algorithm.outputs(stage.mechanism);
+        std::erase_if(outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+        if (outputs.empty()) continue;
+        const int operations = cost_of(outputs);
+        passes.push_back({stage.name, std::move(outputs), operations});
       }
-      report("best frames", kept.roots);
-      result_->trace.insert(result_->trace.end(), kept.passes.begin(), kept.passes.end());
+      passes.insert(passes.end(), kept.passes.begin(), kept.passes.end());
+      measure(tape_, passes, states());
+      measure(tape_, kept.candidates, states());
+      for (const Candidate& c : passes) result_->trace.push_back({f.name, c.name, c.operations, c.error});
+      for (std::size_t i = 0; i < kept.candidates.size(); ++i)
+        result_->candidates[kept.first_report + i].error = kept.candidates[i].error;
     }
+  }
+
+  [[nodiscard]] MeasuredStates states() const {
+    return [this] { return sampled_inputs(model_, program_, measured_states); };
   }
 
   // ---- routes
@@ -204,11 +192,6 @@ class TreeDeriver {
     b.rows = m.rows();
     b.cols = m.cols();
     return b;
-  }
-  static std::vector<NodeId> roots_of(const Route& r) {
-    std::vector<NodeId> roots;
-    for (const OutputBlock& b : r.outputs) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-    return roots;
   }
 
   /// Loops whose straight line would take more operations than that are kept as loops: compilers take long
@@ -264,81 +247,82 @@ class TreeDeriver {
   void derive(const std::string& name) {
     if (std::ranges::find(program_.functions, name, &Function::name) != program_.functions.end()) return;
     if (derive_loops(name)) return;
-    std::vector<Route> routes;
+    std::vector<Candidate> candidates;
     std::vector<Algorithm> algorithms;
-    std::vector<int> cost;
     std::set<std::string> hopeless;  // algorithms that lost by a quarter in the first frames
     for (const Frames& frames : frames_) {
-      const std::size_t first = routes.size();
+      const std::size_t first = candidates.size();
       for (const Algorithm& algorithm : algorithms_of(name)) {
         if (hopeless.contains(algorithm.name)) continue;
-        Route r{algorithm.name, outputs_of(name, algorithm, frames.mechanism)};
-        std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
-        if (r.outputs.empty()) continue;
-        cost.push_back(cost_of(roots_of(r)));
-        routes.push_back(std::move(r));
+        std::vector<OutputBlock> outputs = outputs_of(name, algorithm, frames.mechanism);
+        std::erase_if(outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+        if (outputs.empty()) continue;
+        const int operations = cost_of(outputs);
+        candidates.push_back({algorithm.name, std::move(outputs), operations, candidates.size()});
         algorithms.push_back(algorithm);
       }
-      if (first == routes.size()) continue;
-      const int least = *std::min_element(cost.begin() + static_cast<std::ptrdiff_t>(first), cost.end());
-      for (std::size_t i = first; i < routes.size(); ++i) {
-        if (cost[i] > least + least / 4) hopeless.insert(routes[i].name);
-        routes[i].name += (routes[i].name.empty() ? "frames " : ", frames ") + frames.name;
+      if (first == candidates.size()) continue;
+      int least = candidates[first].operations;
+      for (std::size_t i = first; i < candidates.size(); ++i)
+        least = std::min(least, candidates[i].operations);
+      for (std::size_t i = first; i < candidates.size(); ++i) {
+        Candidate& c = candidates[i];
+        if (c.operations > least + least / 4 && request_.optimise != OptimiseFor::accuracy)
+          hopeless.insert(c.name);
+        c.name += (c.name.empty() ? "frames " : ", frames ") + frames.name;
       }
     }
-    if (routes.empty()) return;
-    const auto place = [&](std::size_t route, const std::vector<NodeId>& roots) {
-      std::size_t next = 0;
-      for (OutputBlock& b : routes[route].outputs) {
-        for (NodeId& id : b.nodes) id = roots[next++];
-      }
-    };
-    std::vector<std::vector<NodeId>> before;
-    for (const Route& r : routes) before.push_back(roots_of(r));
-    std::vector<std::size_t> order(routes.size());
+    if (candidates.empty()) return;
+    const std::vector<Candidate> derived = candidates;
+    std::vector<std::size_t> order(derived.size());
     std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return cost[i]; });
-    std::vector<std::vector<PassReport>> passes(routes.size());
-    for (std::size_t i = 0; i < std::min<std::size_t>(order.size(), finalists); ++i) {
-      const std::vector<NodeId> shared =
-          share(before[order[i]], [&](const std::string& pass, int operations) {
-            passes[order[i]].push_back({name, pass, operations});
-          });
-      place(order[i], shared);
-      cost[order[i]] = cost_of(shared);
+    std::ranges::stable_sort(order, {}, [&](std::size_t i) { return derived[i].operations; });
+    order.resize(request_.optimise == OptimiseFor::nothing ? 0 : std::min(order.size(), finalists));
+    std::vector<std::vector<Candidate>> passes(derived.size());  // those before the last
+    for (const std::size_t i : order) {
+      std::vector<Candidate> steps = after_passes(tape_, derived[i], parameters_);
+      if (steps.empty()) continue;
+      candidates[i].outputs = steps.back().outputs;
+      candidates[i].operations = steps.back().operations;
+      passes[i] = std::move(steps);
     }
-    const auto best = static_cast<std::size_t>(std::ranges::min_element(cost) - cost.begin());
-    for (std::size_t i = 0; i < routes.size(); ++i)
-      result_->candidates.push_back({name, routes[i].name, cost[i], i == best});
-    if (request_.trace) kept_.emplace(name, Kept{algorithms[best], before[best], passes[best]});
-    program_.functions.push_back({name, meaning(name), routes[best].outputs, "route: " + routes[best].name});
-  }
-
-  /// Passes over the program itself; they are costly, so only the cheapest routes see them.
-  static constexpr std::size_t finalists = 4;
-  static constexpr std::size_t largest_shared =
-      400000;  // nodes of the tape beyond which the passes would dominate the time
-  std::vector<NodeId> share(std::vector<NodeId> roots,
-                            const std::function<void(const std::string& pass, int operations)>& report) {
-    if (tape_.size() > largest_shared) return roots;
-    int cost = cost_of(roots);
-    for (int round = 0; round < 3; ++round) {
-      const int before = cost;
-      for (const TapePass& pass : tape_passes()) {
-        std::vector<NodeId> next = pass.run(tape_, roots, parameters_);
-        const int after = cost_of(next);
-        if (after > cost) continue;  // a pass counts what prepare() computes, too
-        cost = after;
-        roots = std::move(next);
-        report(pass.name, cost);
+    const std::size_t best = choose(tape_, candidates, request_.optimise, states(), [&] {
+      for (const std::size_t i : order) {
+        if (!passes[i].empty()) {
+          candidates.push_back(derived[i]);
+          candidates.back().name += ", without passes";
+          candidates.insert(candidates.end(), passes[i].begin(), passes[i].end() - 1);
+        }
+        if (const auto stable = in_stable_form(tape_, derived[i], parameters_)) {
+          candidates.push_back(*stable);
+          const std::vector<Candidate> steps = after_passes(tape_, *stable, parameters_);
+          candidates.insert(candidates.end(), steps.begin(), steps.end());
+        }
       }
-      if (cost == before) break;
+    });
+    const std::size_t first_report = result_->candidates.size();
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& c = candidates[i];
+      result_->candidates.push_back({name, c.name, c.operations, i == best, c.error});
     }
-    return roots;
+    program_.functions.push_back(
+        {name, meaning(name), candidates[best].outputs, "route: " + candidates[best].name});
+    if (!request_.trace) return;
+    const std::size_t route = candidates[best].route;
+    Kept kept{algorithms[route], std::move(candidates), {derived[route]}, first_report};
+    kept.passes[0].name = "best frames";
+    for (Candidate c : passes[route]) {
+      c.name = c.name.substr(c.name.rfind("after ") + 6);
+      kept.passes.push_back(std::move(c));
+    }
+    kept_.emplace(name, std::move(kept));
   }
 
-  [[nodiscard]] int cost_of(const std::vector<NodeId>& roots) const {
-    return operations_per_call(tape_, roots, parameters_).total();
+  /// Passes over the program itself are costly, so only the cheapest routes see them.
+  static constexpr std::size_t finalists = 4;
+
+  [[nodiscard]] int cost_of(const std::vector<OutputBlock>& outputs) const {
+    return operations_per_call(tape_, roots_of(outputs), parameters_).total();
   }
 
   static std::vector<OutputBlock> outputs_of(const std::string& function, const Algorithm& algorithm,

@@ -19,14 +19,8 @@ struct TreeRequest {
   std::string scene = "standard";
   std::vector<std::string> functions;  // wanted; empty: standard_tree_functions()
   bool search = true;  // try every choice of frames and algorithm; else only the first of each
-  bool trace = false;  // fill TreeDerivation::trace
-};
-
-/// Operations of one call of a function after a pass; the algorithm is the one that was kept.
-struct PassReport {
-  std::string function;
-  std::string pass;
-  int operations = 0;
+  OptimiseFor optimise = OptimiseFor::balanced;
+  bool trace = false;  // fill TreeDerivation::trace, and the errors of all candidates
 };
 
 struct TreeDerivation {

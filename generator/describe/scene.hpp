@@ -125,7 +125,8 @@ struct Scene {
   std::optional<double> continuous;  // largest jump of the velocities at a switch that is allowed, relative
   LoadSharing sharing = LoadSharing::least_norm;
   std::optional<ContactElasticity> elasticity;
-  double duration = 0;               // s; 0: the scene is not to be simulated
+  std::string optimise = "balanced";  // aim of the optimiser: an option of the run, not of the file
+  double duration = 0;                // s; 0: the scene is not to be simulated
   std::vector<double> output_times;  // s, increasing, within [0, duration]; empty: the integrator's own steps
   Location where, initial_where;     // of the scene and of its initial state, for messages
 

@@ -161,15 +161,58 @@ double evaluation_ratio(const ordered_json& motion) {
   return cost("recursion") / cost("generated");
 }
 
+/// What a row of routes, passes or modes says of operations and ulps.
+json measured_row(const ordered_json& row, const char* name) {
+  const auto of = [&](const char* key) { return row.contains(key) ? shown(number(row.at(key))) : "–"; };
+  return {{"name", escaped(row.at(name).get<std::string>())},
+          {"operations", row.at("operations").get<int>()},
+          {"median", of("median_ulps")},
+          {"worst", of("worst_ulps")}};
+}
+
+/// The passes that change operations or errors, the function's name with the first.
+json pass_rows(const ordered_json& f) {
+  json rows = json::array();
+  const auto is_same = [](const json& a, const json& b) {
+    return a["operations"] == b["operations"] && a["median"] == b["median"] && a["worst"] == b["worst"];
+  };
+  for (const ordered_json& pass : f.at("passes")) {
+    json row = measured_row(pass, "after");
+    row["function"] = rows.empty() ? escaped(f.at("function").get<std::string>()) : "";
+    if (rows.empty() || !is_same(rows.back(), row)) rows.push_back(std::move(row));
+  }
+  return rows.size() > 1 ? rows : json::array();
+}
+
+/// Operations against digits of every function, one series for each aim of the optimiser.
+LogPlot pareto(const ordered_json& model) {
+  LogPlot plot{
+      "operations against digits, every function", "operations", "worst rounding error [ulps]", {}, false};
+  for (const ordered_json& f : model.at("functions")) {
+    for (const ordered_json& m : f.at("modes")) {
+      const auto mode = m.at("mode").get<std::string>();
+      const auto found = std::ranges::find(plot.series, mode, &Series::name);
+      Series& series = found == plot.series.end() ? plot.series.emplace_back(Series{mode, {}}) : *found;
+      if (m.contains("worst_ulps"))
+        series.points.emplace_back(m.at("operations").get<int>(), number(m.at("worst_ulps")));
+    }
+  }
+  return plot;
+}
+
 json model_data(const ordered_json& model, const ordered_json& motions) {
   const auto name = model.at("model").get<std::string>();
   const ordered_json* const forward = function_of(model, "forward_dynamics");
   double worst = 0;
-  json functions = json::array();
+  json functions = json::array(), modes = json::array(), passes = json::array();
   for (const ordered_json& f : model.at("functions")) {
     const double ulps = worst_ulps(f);
     if (ulps > worst) worst = ulps;
     functions.push_back(function_row(f));
+    json row = {{"function", functions.back()["function"]}, {"cells", json::array()}};
+    for (const ordered_json& m : f.at("modes")) row["cells"].push_back(measured_row(m, "mode"));
+    if (!row["cells"].empty()) modes.push_back(std::move(row));
+    for (json& pass : pass_rows(f)) passes.push_back(std::move(pass));
   }
   json plotted = json::array();
   for (const ordered_json& motion : motions) {
@@ -194,6 +237,12 @@ json model_data(const ordered_json& model, const ordered_json& motions) {
           {"samples", v.at("samples").get<int>()},
           {"failed", !v.at("passed").get<bool>()},
           {"functions", functions},
+          {"has_modes", !modes.empty()},
+          {"mode_names", modes.empty() ? json::array() : modes[0]["cells"]},
+          {"modes", modes},
+          {"pareto_plot", modes.empty() ? "" : draw(pareto(model))},
+          {"has_passes", !passes.empty()},
+          {"passes", passes},
           {"has_motions", !plotted.empty()},
           {"motions", plotted}};
 }

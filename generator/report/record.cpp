@@ -132,15 +132,29 @@ ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options
                           {"ns_double_batch_sines", time_json(batch_times[i].by_double)},
                           {"routes", ordered_json::array()},
                           {"passes", ordered_json::array()},
+                          {"modes", ordered_json::array()},
                           {"errors", ordered_json::array()}};
+    const auto measured = [](ordered_json to, int operations, const RoundingError& error) {
+      to["operations"] = operations;
+      if (error.is_measured()) {
+        to["median_ulps"] = finite(error.median);
+        to["worst_ulps"] = finite(error.worst);
+      }
+      return to;
+    };
     for (const CandidateReport& c : g.candidates()) {
       if (c.function == f.function->name)
-        entry["routes"].push_back({{"route", c.route}, {"operations", c.operations}, {"kept", c.chosen}});
+        entry["routes"].push_back(measured({{"route", c.route}, {"kept", c.chosen}}, c.operations, c.error));
     }
-    if (g.tree != nullptr) {
-      for (const PassReport& pass : g.tree->trace) {
-        if (pass.function == f.function->name)
-          entry["passes"].push_back({{"after", pass.pass}, {"operations", pass.operations}});
+    for (const PassReport& pass : g.trace()) {
+      if (pass.function == f.function->name)
+        entry["passes"].push_back(measured({{"after", pass.pass}}, pass.operations, pass.error));
+    }
+    for (const ModeResult& mode : g.modes) {
+      for (const CandidateReport& c : mode.kept) {
+        if (c.function == f.function->name)
+          entry["modes"].push_back(
+              measured({{"mode", name(mode.mode)}, {"route", c.route}}, c.operations, c.error));
       }
     }
     for (const OutputError& e : v.outputs) {

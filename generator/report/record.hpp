@@ -7,6 +7,7 @@
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 #include "derive/derive.hpp"
 #include "derive/tree_functions.hpp"
@@ -17,18 +18,28 @@ namespace anholon {
 /// Told what is being done.
 using Stage = std::function<void(const std::string& what)>;
 
+/// The programs that are kept for one aim, with their rounding errors.
+struct ModeResult {
+  OptimiseFor mode = OptimiseFor::balanced;
+  std::vector<CandidateReport> kept;  // one a function
+};
+
 /// A model with what the generator made of it: functions of the reduction, or of a tree.
 struct GeneratedModel {
   const Model& model;
   const Derivation* reduction = nullptr;
   const TreeDerivation* tree = nullptr;
   double seconds = 0;  // of the derivation
+  std::vector<ModeResult> modes = {};
 
   [[nodiscard]] const Program& program() const {
     return tree != nullptr ? tree->program : reduction->program;
   }
   [[nodiscard]] const std::vector<CandidateReport>& candidates() const {
     return tree != nullptr ? tree->candidates : reduction->candidates;
+  }
+  [[nodiscard]] const std::vector<PassReport>& trace() const {
+    return tree != nullptr ? tree->trace : reduction->trace;
   }
 };
 
@@ -38,8 +49,9 @@ struct MeasureOptions {
   int rounds = 25;     // of timings
 };
 
-/// Sizes, class, operations by route, generation and compilation, time of each function in double and float,
-/// and its error against exact evaluation. Schema anholon.report.model/1.
+/// Sizes, class, operations and rounding by route, pass and aim of the optimiser, generation and compilation,
+/// time of each function in double and float, and its error against exact evaluation. Schema
+/// anholon.report.model/1.
 nlohmann::ordered_json model_record(const GeneratedModel& generated, const MeasureOptions& options,
                                     const Stage& stage);
 

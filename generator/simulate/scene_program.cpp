@@ -120,6 +120,7 @@ SceneProgram make_program(const Scene& scene) {
   DeriveRequest request;
   request.scene = program_name(scene);
   request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
+  request.optimise = optimise_for(scene.optimise);
   request.functions = {"kinematics",       "reduced_velocities", "constraints",
                        "forward_dynamics", "inverse_torques",    "multipliers",
                        "compatibility",    "energies",           "position_conditions"};

@@ -38,7 +38,8 @@ template <class S>
 class Interpreter {
  public:
   Interpreter() = default;
-  Interpreter(const Tape& tape, const std::vector<NodeId>& roots, FromExact<S> constant = {}) {
+  template <class Constant = FromExact<S>>
+  Interpreter(const Tape& tape, const std::vector<NodeId>& roots, const Constant& constant = {}) {
     std::vector<std::uint32_t> slot(tape.size(), 0);
     for (const NodeId id : tape.reachable(roots)) {
       const Node& n = tape.node(id);

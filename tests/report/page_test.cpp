@@ -41,20 +41,27 @@ ordered_json motion() {
 
 ordered_json report() {
   const ordered_json time = {{"median", 20.0}, {"least", 19.0}, {"spread", 1.0}};
-  const ordered_json function = {{"function", "forward_dynamics"},
-                                 {"operations", {{"total", 12}, {"sines_and_cosines", 2}}},
-                                 {"operations_without_prepare", 20},
-                                 {"ns_double", time},
-                                 {"ns_float", time},
-                                 {"ns_double_batch_sines", time},
-                                 {"routes", {{{"route", "dear"}, {"operations", 99}, {"kept", false}}}},
-                                 {"passes", ordered_json::array()},
-                                 {"errors",
-                                  {{{"output", "nu_dot"},
-                                    {"median_ulps", 0.3},
-                                    {"p99_ulps", 1.0},
-                                    {"worst_ulps", 7.25},
-                                    {"passed", false}}}}};
+  const ordered_json function = {
+      {"function", "forward_dynamics"},
+      {"operations", {{"total", 12}, {"sines_and_cosines", 2}}},
+      {"operations_without_prepare", 20},
+      {"ns_double", time},
+      {"ns_float", time},
+      {"ns_double_batch_sines", time},
+      {"routes", {{{"route", "dear"}, {"operations", 99}, {"kept", false}}}},
+      {"passes",
+       {{{"after", "as derived"}, {"operations", 15}, {"median_ulps", 0.4}, {"worst_ulps", 2.5}},
+        {{"after", "nothing new"}, {"operations", 15}, {"median_ulps", 0.4}, {"worst_ulps", 2.5}},
+        {{"after", "common factors"}, {"operations", 12}, {"median_ulps", 0.4}, {"worst_ulps", 321.0}}}},
+      {"modes",
+       {{{"mode", "speed"}, {"operations", 12}, {"median_ulps", 0.4}, {"worst_ulps", 321.0}},
+        {{"mode", "accuracy"}, {"operations", 17}, {"median_ulps", 0.25}, {"worst_ulps", 1.5}}}},
+      {"errors",
+       {{{"output", "nu_dot"},
+         {"median_ulps", 0.3},
+         {"p99_ulps", 1.0},
+         {"worst_ulps", 7.25},
+         {"passed", false}}}}};
   const ordered_json model = {
       {"model", "swing"},
       {"title", "A swing & its <seat>"},
@@ -93,7 +100,13 @@ TEST(ReportPage, StandsAloneAndShowsWhatFailed) {
   EXPECT_NE(page.find("<td>10.0</td><td>10.0</td>"), std::string::npos) << "ratio at equal error";
   std::size_t plots = 0;
   for (std::size_t at = page.find("<svg"); at != std::string::npos; at = page.find("<svg", at + 1)) ++plots;
-  EXPECT_EQ(plots, 3U) << "all functions; error against time and against evaluations of the motion";
+  EXPECT_EQ(plots, 4U)
+      << "all functions; operations against digits; error against time and evaluations of the motion";
+  EXPECT_NE(page.find("<td>12</td><td>0.4</td><td>321</td><td>17</td><td>0.25</td><td>1.5</td>"),
+            std::string::npos)
+      << "the aims of the optimiser side by side";
+  EXPECT_NE(page.find("<td class=\"text\">common factors</td><td>12</td>"), std::string::npos);
+  EXPECT_EQ(page.find("nothing new"), std::string::npos) << "a pass that changes nothing";
 }
 
 TEST(ReportTiming, TimesEachFunctionForDoubleAndFloat) {

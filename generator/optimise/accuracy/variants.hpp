@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+// Further programs for the outputs of a candidate.
+
+#include <optional>
+#include <vector>
+
+#include "optimise/accuracy/choice.hpp"
+
+namespace anholon {
+
+/// The candidate after each pass over the program that shortens it.
+std::vector<Candidate> after_passes(Tape& tape, const Candidate& candidate,
+                                    const std::vector<NodeId>& parameters);
+
+/// The candidate with its differences in stable form (optimise/tape/stable_forms.hpp); nothing where there
+/// are none.
+std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
+                                        const std::vector<NodeId>& parameters);
+
+}  // namespace anholon
