@@ -17,7 +17,6 @@
 #include <system_error>
 
 #include "check/run_process.hpp"
-#include "emit/c_abi.hpp"
 #include "emit/embedded.hpp"
 #include "emit/header.hpp"
 #include "emit/provenance.hpp"
@@ -193,8 +192,8 @@ CompileEffort compile_effort(const Program& program, const CompileOptions& optio
   flags.emplace_back("-c");
   const fs::path object = scratch.path() / "program.o";
   const double before = seconds_of_children();
-  compile(compiler, flags, emit_header(program, options.style), emit_c_abi(program, "program.hpp"),
-          scratch.path() / "program", object);
+  compile(compiler, flags, emit_header(program, options.style),
+          emit_c_abi(program, "program.hpp", options.scalar), scratch.path() / "program", object);
   return {seconds_of_children() - before, fs::file_size(object)};
 }
 
@@ -214,7 +213,7 @@ void CompiledProgram::FreePrepared::operator()(std::byte* storage) const {
 
 CompiledProgram::CompiledProgram(const Program& program, const CompileOptions& options) {
   const std::string header = emit_header(program, options.style);
-  const std::string source = emit_c_abi(program, "program.hpp");
+  const std::string source = emit_c_abi(program, "program.hpp", options.scalar);
   CompiledFile file = compile_cached(header, source, options);
   try {
     load(file.library);

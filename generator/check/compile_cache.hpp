@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "anholon/abi.hpp"
+#include "emit/c_abi.hpp"
 #include "emit/statements.hpp"
 #include "tape/interface.hpp"
 
@@ -33,6 +34,7 @@ struct CompileOptions {
                                     "-fvisibility=hidden"};
   std::filesystem::path cache;  // empty: $ANHOLON_CACHE, $XDG_CACHE_HOME/anholon or ~/.cache/anholon
   StatementStyle style;
+  AbiScalar scalar = AbiScalar::is_double;
 };
 
 /// The compiler refused, could not be run, or its library could not be loaded; what() carries its messages.

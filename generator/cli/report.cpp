@@ -13,6 +13,7 @@
 #include "cli/common.hpp"
 #include "describe/location.hpp"
 #include "describe/sha256.hpp"
+#include "emit/plan.hpp"
 #include "emit/provenance.hpp"
 #include "emit/write_file.hpp"
 #include "report/page.hpp"
@@ -152,6 +153,26 @@ ordered_json measured_model(const ReportOptions& options, const Subject& subject
   return model_record(generated, measure, stage);
 }
 
+/// With the operations of forward_dynamics, of what the scene leaves of the model.
+ordered_json measured_motion(const fs::path& file, const Stage& stage) {
+  ModelOptions one;
+  one.model = file.string();
+  one.functions = {"forward_dynamics"};
+  const Scene scene = read_scene(file.string());
+  ordered_json operations;
+  stage("deriving");
+  try {
+    const AnyDerivation derivation = derive_any(one, load_model(one));
+    const EmissionPlan plan = plan_emission(derivation.reduction->program);
+    for (const PlannedFunction& f : plan.functions)
+      operations[f.function->name] = operations_record(f.operations);
+  } catch (const UnsupportedError&) {  // the motion of what has no such function may still be simulated
+  }
+  ordered_json record = motion_record(scene, stage);
+  if (!operations.is_null()) record["operations"] = operations;
+  return record;
+}
+
 }  // namespace
 
 int report(const ReportOptions& options) {
@@ -192,7 +213,7 @@ int report(const ReportOptions& options) {
       const std::string name = fmt::format("{}.{}", file.stem().string(), scene.stem().stem().string());
       ordered_json motion = kept.get(name, inputs + text_of(scene), console, [&]() -> ordered_json {
         try {
-          return motion_record(read_scene(scene.string()), stage);
+          return measured_motion(scene, stage);
         } catch (const UnsupportedError& error) {
           return {{"left_out", error.what()}};
         }

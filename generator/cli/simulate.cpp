@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "cli/common.hpp"
+#include "report/motion_json.hpp"
 #include "simulate/path_conditioning.hpp"
 #include "simulate/simulation.hpp"
 #include "simulate/stiffness_cost.hpp"
@@ -43,75 +44,36 @@ class ProgressLine {
   Stopwatch watch_;
 };
 
-/// A number that JSON can hold; null where there is none.
-nlohmann::ordered_json finite(double x) { return std::isfinite(x) ? nlohmann::ordered_json(x) : nullptr; }
-
-/// @param method  the one that ran
-std::string integrator_text(const Integrator& integrator, Integrator::Method method) {
-  switch (method) {
-    case Integrator::Method::dopri5:
-      return fmt::format("Dormand-Prince 5(4) in Lie form, tolerance {:g}", integrator.tolerance);
-    case Integrator::Method::dopri8:
-      return fmt::format("Dormand-Prince 8(5,3) in Lie form, tolerance {:g}", integrator.tolerance);
-    case Integrator::Method::rkmk4:
-      return fmt::format("Munthe-Kaas RK4, step {:g} s", integrator.step);
-    case Integrator::Method::rkmk8:
-      return fmt::format("Munthe-Kaas RK8, step {:g} s", integrator.step);
-    case Integrator::Method::cf4:
-      return fmt::format("commutator-free, order 4, step {:g} s", integrator.step);
-    case Integrator::Method::rodas5p:
-      return fmt::format("Rodas5P 5(4), stiff, in Lie form, tolerance {:g}", integrator.tolerance);
-    case Integrator::Method::automatic:
-      break;  // a motion has one of the others
-  }
-  return "";
-}
-
-nlohmann::ordered_json json_of(const Scene& scene, const WorkPrecision& result) {
-  const char* rung = result.by_step ? "step" : "tolerance";
-  nlohmann::ordered_json j = {{"schema", "anholon.work_precision/1"},
-                              {"model", scene.model.name},
-                              {"scene", scene.name},
-                              {"method", scene.integrator.name()},
-                              {"reference",
-                               {{"method", result.reference_method + ", long double"},
-                                {"steps", result.reference_steps},
-                                {"own_error", finite(result.reference_error)}}}};
-  for (const char* code : {"generated", "recursion"}) {
-    const RoundingFloor floor = rounding_floor(result, code);
-    j["floor"][code] = {{"error", finite(floor.error)}, {rung, floor.tolerance}, {"seen", floor.seen}};
-  }
-  for (const WorkPrecisionPoint& p : result.points)
-    j["points"].push_back({{"code", p.code},
-                           {rung, p.tolerance},
-                           {"error", finite(p.error)},
-                           {"cpu_seconds", p.cpu_seconds},
-                           {"evaluations", p.evaluations},
-                           {"status", p.status}});
-  return j;
-}
-
 int print_work_precision(const Scene& scene, const std::filesystem::path& folder) {
   const bool by_step = scene.integrator.has_fixed_step();
   fmt::print("{}, {}, {}: error of the final state, relative to the sizes of the motion\n\n",
              scene.model.name, scene.name, scene.integrator.name());
-  fmt::print("{:>9s}  {:>10s} {:>11s} {:>11s}  {:>10s} {:>11s} {:>11s}\n", by_step ? "step [s]" : "tolerance",
-             "generated", "cpu [s]", "evaluations", "recursion", "cpu [s]", "evaluations");
+  fmt::print("{:>9s}  {:>10s} {:>11s} {:>11s}  {:>10s} {:>11s}  {:>10s} {:>11s} {:>11s}\n",
+             by_step ? "step [s]" : "tolerance", "generated", "cpu [s]", "evaluations", "in float", "cpu [s]",
+             "recursion", "cpu [s]", "evaluations");
   std::fflush(stdout);
   std::string table =
       fmt::format("code,{},error,cpu_s,evaluations,status\n", by_step ? "step_s" : "tolerance");
-  const WorkPrecision result = work_precision(scene, [&](const WorkPrecisionPoint& p) {
+  bool had_single = false;
+  const auto show = [&](const WorkPrecisionPoint& p) {
     table += fmt::format("{},{},{},{},{},{}\n", p.code, p.tolerance, p.error, p.cpu_seconds, p.evaluations,
                          p.status);
     if (p.code == "generated") fmt::print("{:>9.{}e}", p.tolerance, by_step ? 2 : 0);
-    if (p.status == "ok") {
-      fmt::print("  {:>10.2e} {:>11.6f} {:>11d}", p.error, p.cpu_seconds, p.evaluations);
+    const bool is_single = p.code == "generated, float";
+    if (p.code == "recursion" && !had_single) fmt::print("  {:22s}", "");  // the ladder of float is shorter
+    had_single = is_single;
+    if (p.status != "ok") {
+      fmt::print("  {:>{}s}", p.status, is_single ? 22 : 34);
     } else {
-      fmt::print("  {:>34s}", p.status);
+      fmt::print("  {:>10.2e} {:>11.6f}", p.error, p.cpu_seconds);
+      if (!is_single) fmt::print(" {:>11d}", p.evaluations);
     }
     if (p.code == "recursion") fmt::print("\n");
     std::fflush(stdout);
-  });
+  };
+  Ladder ladder;
+  ladder.single = true;
+  const WorkPrecision result = work_precision(scene, show, ladder);
   fmt::print("\nreference   {} in long double, {} steps; half as many move it by {:.1e}\n",
              result.reference_method, result.reference_steps, result.reference_error);
   for (const char* code : {"generated", "recursion"}) {
@@ -122,7 +84,7 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
                           : "not reached on this ladder");
   }
   write_output((folder / "work_precision.csv").string(), table);
-  write_output((folder / "work_precision.json").string(), json_of(scene, result).dump(1) + "\n");
+  write_output((folder / "work_precision.json").string(), to_json(scene, result).dump(1) + "\n");
   fmt::print("files       {}, {}\n", (folder / "work_precision.csv").string(),
              (folder / "work_precision.json").string());
   return ok;
@@ -243,72 +205,11 @@ int print_stiffness_cost(const Scene& scene, const std::vector<Growth>& growths,
   const std::string csv = (folder / "stiffness_cost.csv").string(),
                     svg = (folder / "stiffness_cost.svg").string();
   write_output(csv, table);
+  write_output((folder / "stiffness_cost.json").string(), to_json(scene, result).dump(1) + "\n");
   write_output(svg, stiffness_cost_svg(result, scene.model.name + ", " + scene.name));
   fmt::print("files       {}, {}\n", csv, svg);
   const auto reached = [](const StiffnessCostRow& row) { return row.stiff.error <= cost_accuracy; };
   return std::ranges::all_of(result.rows, reached) ? ok : check_failed;
-}
-
-nlohmann::ordered_json json_of(const ContactHistory& contact) {
-  nlohmann::ordered_json j = {{"contact", contact.contact}};
-  if (!contact.has_normal) return j;
-  const auto time = [](const std::optional<double>& t) {
-    return t ? nlohmann::ordered_json(*t) : nlohmann::ordered_json();
-  };
-  j["least_normal_N"] = contact.least_normal, j["at_s"] = contact.least_normal_at;
-  j["lifts_at_s"] = time(contact.lifts_at);
-  if (!contact.has_friction) return j;
-  j["largest_utilisation"] = finite(contact.largest_utilisation),
-  j["utilisation_at_s"] = contact.utilisation_at;
-  j["slips_at_s"] = time(contact.slips_at);
-  return j;
-}
-
-nlohmann::ordered_json json_of(const ContactSwitch& at) {
-  nlohmann::ordered_json impulses;
-  for (const auto& [row, impulse] : at.impulses) impulses[row] = impulse;
-  return {{"t", at.t},
-          {"from", at.from},
-          {"to", at.to},
-          {"energy_lost_J", at.lost},
-          {"motor_work_J", at.work},
-          {"relative_jump", at.relative},
-          {"impulses", impulses}};
-}
-
-nlohmann::ordered_json json_of(const Scene& scene, const SimulationResult& result) {
-  nlohmann::ordered_json contacts = nlohmann::ordered_json::array(), switches = contacts;
-  for (const ContactHistory& contact : result.contacts) contacts.push_back(json_of(contact));
-  for (const ContactSwitch& at : result.switches) switches.push_back(json_of(at));
-  return {{"schema", "anholon.simulation/1"},
-          {"model", scene.model.name},
-          {"scene", scene.name},
-          {"status", result.status},
-          {"finished", result.finished},
-          {"table_I", result.class_of_table_I},
-          {"integrator", integrator_text(scene.integrator, result.method)},
-          {"why", result.why},
-          {"projected", result.projected},
-          {"departure", finite(result.departure)},
-          {"charts", result.charts},
-          {"chart_changes_s", result.chart_changes},
-          {"steps", result.steps},
-          {"rejected", result.rejected},
-          {"evaluations", result.evaluations},
-          {"operations_per_evaluation", result.operations},
-          {"jacobians", result.jacobians},
-          {"operations_per_jacobian", result.jacobian_operations},
-          {"nanoseconds_per_evaluation", result.nanoseconds_per_evaluation},
-          {"cpu_seconds", result.cpu_seconds},
-          {"largest_energy", finite(result.largest_energy)},
-          {"energy_balance", finite(result.energy_balance)},
-          {"constraint_residual", finite(result.constraint_residual)},
-          {"position_residual_m", finite(result.position_residual)},
-          {"orthonormality", finite(result.orthonormality)},
-          {"rounding_of_accelerations", finite(result.rounding.error)},
-          {"lost_digits", result.rounding.is_loss()},
-          {"switches", switches},
-          {"contacts", contacts}};
 }
 
 /// Switches, and what the contacts carried.
@@ -348,7 +249,7 @@ int simulate(const SimulateOptions& options) {
     return simulate_scene(scene, [&](const char* stage, double t) { line(stage, t); });
   }();
   if (!result.rows.empty()) write_output((folder / "trajectory.csv").string(), trajectory_csv(result));
-  write_output((folder / "summary.json").string(), json_of(scene, result).dump(1) + "\n");
+  write_output((folder / "summary.json").string(), to_json(scene, result).dump(1) + "\n");
 
   fmt::print("{}, scene {}{}\n", scene.model.name, scene.name, scene.title.empty() ? "" : ": " + scene.title);
   fmt::print("  class (Table I)       {}\n", result.class_of_table_I);

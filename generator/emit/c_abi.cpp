@@ -42,8 +42,9 @@ std::string double_literal(const Exact& value) {
 }
 
 template <class Block>
-json block_data(const Block& block, std::size_t index) {
-  return {{"name", c_literal(block.name)},
+json block_data(const Block& block, std::size_t index, AbiScalar scalar) {
+  return {{"array", scalar == AbiScalar::is_double ? "" : ".array()"},
+          {"name", c_literal(block.name)},
           {"unit", c_literal(block.unit)},
           {"meaning", c_literal(block.meaning)},
           {"rows", block.rows},
@@ -52,7 +53,7 @@ json block_data(const Block& block, std::size_t index) {
           {"index", index}};
 }
 
-json function_data(const Program& program, const PlannedFunction& function) {
+json function_data(const Program& program, const PlannedFunction& function, AbiScalar scalar) {
   json data = {{"name", function.name},
                {"qualified", (function.scope.empty() ? "" : function.scope + "::") + function.unqualified},
                {"quoted_name", c_literal(function.function->name)},
@@ -65,10 +66,10 @@ json function_data(const Program& program, const PlannedFunction& function) {
                {"inputs", json::array()},
                {"outputs", json::array()}};
   for (std::size_t i = 0; i < function.inputs.size(); ++i) {
-    data["inputs"].push_back(block_data(program.inputs[function.inputs[i]], i));
+    data["inputs"].push_back(block_data(program.inputs[function.inputs[i]], i, scalar));
   }
   for (std::size_t i = 0; i < function.outputs.size(); ++i) {
-    data["outputs"].push_back(block_data(*function.outputs[i].block, i));
+    data["outputs"].push_back(block_data(*function.outputs[i].block, i, scalar));
   }
   return data;
 }
@@ -92,9 +93,12 @@ ordered_json described(const OperationCount& count) {
 
 }  // namespace
 
-std::string emit_c_abi(const Program& program, std::string_view header) {
+std::string emit_c_abi(const Program& program, std::string_view header, AbiScalar scalar) {
+  const bool converts = scalar != AbiScalar::is_double;
   const EmissionPlan plan = plan_emission(program);
   json data = {{"version", std::string(generator_version())},
+               {"real", converts ? "float" : "double"},
+               {"converts", converts},
                {"header", one_line(header)},
                {"model", one_line(program.model)},
                {"source_file", origin(base_name(program.source_file))},
@@ -119,10 +123,12 @@ std::string emit_c_abi(const Program& program, std::string_view header) {
                                   {"meaning", c_literal(parameter.meaning)},
                                   {"value", double_literal(parameter.value)},
                                   {"member", plan.parameter_names[i]},
+                                  {"cast", converts ? "static_cast<float>(" : ""},
+                                  {"end_of_cast", converts ? ")" : ""},
                                   {"index", i}});
   }
   for (const PlannedFunction& function : plan.functions)
-    data["functions"].push_back(function_data(program, function));
+    data["functions"].push_back(function_data(program, function, scalar));
   return fill_template(embedded::c_abi_template, data);
 }
 

@@ -10,9 +10,13 @@
 
 namespace anholon {
 
-/// A C++ source that includes the program's header and exports its functions for double.
+/// In what the functions behind the interface compute. The interface itself is one of double.
+enum class AbiScalar { is_double, is_float };
+
+/// A C++ source that includes the program's header and exports its functions.
 /// @param header  as written between the quotes of the include
-std::string emit_c_abi(const Program& program, std::string_view header);
+std::string emit_c_abi(const Program& program, std::string_view header,
+                       AbiScalar scalar = AbiScalar::is_double);
 
 /// Parameters, inputs, functions, outputs and counts as JSON, schema "anholon.program/1".
 std::string describe_json(const Program& program);

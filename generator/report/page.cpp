@@ -104,9 +104,11 @@ std::string sizes_text(const ordered_json& sizes) {
       of("reduced_velocities"), of("charts") > 1 ? fmt::format(", {} charts", of("charts")) : "");
 }
 
+const ordered_json& points_of(const ordered_json& motion) { return motion.at("ladder").at("points"); }
+
 Series series_of(const ordered_json& motion, const std::string& code, const char* abscissa) {
   Series series{code, {}};
-  for (const ordered_json& p : motion.at("points")) {
+  for (const ordered_json& p : points_of(motion)) {
     if (p.at("code") == code) series.points.emplace_back(number(p.at(abscissa)), number(p.at("error")));
   }
   return series;
@@ -114,11 +116,16 @@ Series series_of(const ordered_json& motion, const std::string& code, const char
 
 std::vector<std::string> codes_of(const ordered_json& motion) {
   std::vector<std::string> codes;
-  for (const ordered_json& p : motion.at("points")) {
+  for (const ordered_json& p : points_of(motion)) {
     const auto code = p.at("code").get<std::string>();
     if (std::ranges::find(codes, code) == codes.end()) codes.push_back(code);
   }
   return codes;
+}
+
+std::string rung_text(const ordered_json& point) {
+  const char* const rung = point.contains("step") ? "step" : "tolerance";
+  return fmt::format("{} {:.0e}", rung, number(point.at(rung)));
 }
 
 json motion_data(const ordered_json& motion) {
@@ -134,15 +141,15 @@ json motion_data(const ordered_json& motion) {
     time.series.push_back(series_of(motion, code, "cpu_seconds"));
     work.series.push_back(series_of(motion, code, "evaluations"));
   }
-  for (const ordered_json& p : motion.at("points")) {
+  for (const ordered_json& p : points_of(motion)) {
     if (p.at("status") != "ok")
-      failed.push_back(fmt::format("{} at tolerance {:.0e}: {}", p.at("code").get<std::string>(),
-                                   number(p.at("tolerance")), p.at("status").get<std::string>()));
+      failed.push_back(fmt::format("{} at {}: {}", p.at("code").get<std::string>(), rung_text(p),
+                                   p.at("status").get<std::string>()));
   }
   std::string note = fmt::format("{}: reference {}, {} steps; half as many move it by {:.1e}.", scene,
-                                 motion.at("reference").at("method").get<std::string>(),
-                                 motion.at("reference").at("steps").get<long>(),
-                                 number(motion.at("reference").at("own_error")));
+                                 motion.at("ladder").at("reference").at("method").get<std::string>(),
+                                 motion.at("ladder").at("reference").at("steps").get<long>(),
+                                 number(motion.at("ladder").at("reference").at("own_error")));
   for (const std::string& text : failed) note += " " + text + ".";
   return {{"plots", draw(time) + "\n" + draw(work)}, {"note", escaped(note)}};
 }
@@ -151,7 +158,7 @@ json motion_data(const ordered_json& motion) {
 double evaluation_ratio(const ordered_json& motion) {
   const auto cost = [&](const std::string& code) {
     double least = nan;
-    for (const ordered_json& p : motion.at("points")) {
+    for (const ordered_json& p : points_of(motion)) {
       if (p.at("code") != code || p.at("status") != "ok") continue;
       const double x = number(p.at("cpu_seconds")) / number(p.at("evaluations"));
       if (!(x >= least)) least = x;
@@ -266,7 +273,7 @@ LogPlot overview(const ordered_json& report) {
 
 double cpu_seconds_at(const ordered_json& motion, const std::string& code, double error) {
   double previous_error = nan, previous_time = nan;
-  for (const ordered_json& p : motion.at("points")) {  // from loose to tight
+  for (const ordered_json& p : points_of(motion)) {  // from loose to tight
     if (p.at("code") != code || p.at("status") != "ok") continue;
     const double e = number(p.at("error")), t = number(p.at("cpu_seconds"));
     if (e <= error) {

@@ -16,6 +16,7 @@
 #include "emit/plan.hpp"
 #include "emit/provenance.hpp"
 #include "reduce/samples.hpp"
+#include "report/motion_json.hpp"
 #include "report/timing.hpp"
 #include "simulate/work_precision.hpp"
 
@@ -23,9 +24,6 @@ namespace anholon {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// A number that JSON can hold; null where there is none.
-ordered_json finite(double x) { return std::isfinite(x) ? ordered_json(x) : nullptr; }
 
 ordered_json sizes_of(const GeneratedModel& g) {
   ordered_json sizes = {{"bodies", g.model.bodies.size()}, {"coordinates", g.model.coordinates.size()}};
@@ -37,14 +35,6 @@ ordered_json sizes_of(const GeneratedModel& g) {
   sizes["m_locked"] = reduction.ranks.m_locked;
   sizes["reduced_velocities"] = reduction.kernel.H.cols(), sizes["charts"] = reduction.charts.size();
   return sizes;
-}
-
-ordered_json operations_of(const OperationCount& count) {
-  return {{"total", count.total()},
-          {"additions", count.additions},
-          {"multiplications", count.multiplications},
-          {"divisions", count.divisions},
-          {"sines_and_cosines", count.trigonometric()}};
 }
 
 /// States of the working range, velocities and forces in +-1, as time_functions() takes them.
@@ -70,15 +60,18 @@ ordered_json time_json(const CallTime& time) {
 ordered_json error_json(const OutputError& e) {
   constexpr double ulp = 2.220446049250313e-16;
   ordered_json j = {{"output", e.output},
-                    {"median_ulps", finite(e.median / ulp)},
-                    {"p99_ulps", finite(e.p99 / ulp)},
-                    {"worst_ulps", finite(e.worst / ulp)},
+                    {"median_ulps", finite_or_null(e.median / ulp)},
+                    {"p99_ulps", finite_or_null(e.p99 / ulp)},
+                    {"worst_ulps", finite_or_null(e.worst / ulp)},
                     {"worst_at", e.worst_at},
                     {"passed", e.passed}};
   if (e.condition > 0) j["condition"] = e.condition;
-  if (e.recursion_worst >= 0) j["recursion_worst_ulps"] = finite(e.recursion_worst / ulp);
+  if (e.recursion_worst >= 0) j["recursion_worst_ulps"] = finite_or_null(e.recursion_worst / ulp);
   return j;
 }
+
+/// A larger error needs the condition of its output as a reason.
+constexpr double unexplained_ulps = 50;
 
 std::string class_of(const GeneratedModel& g) {
   if (g.tree != nullptr) return "tree whose joints are all driven";
@@ -86,6 +79,14 @@ std::string class_of(const GeneratedModel& g) {
 }
 
 }  // namespace
+
+ordered_json operations_record(const OperationCount& count) {
+  return {{"total", count.total()},
+          {"additions", count.additions},
+          {"multiplications", count.multiplications},
+          {"divisions", count.divisions},
+          {"sines_and_cosines", count.trigonometric()}};
+}
 
 ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options, const Stage& stage) {
   const Program& program = g.program();
@@ -110,10 +111,10 @@ ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options
   const std::vector<FunctionTime> batch_times = time_functions(program, states, options.rounds, batch);
 
   stage("verifying");
+  const VerificationPlan plan_of_errors{options.samples, unexplained_ulps * 0x1p-52};
   const auto progress = [&](int done) { stage(fmt::format("verifying, {} of {}", done, options.samples)); };
-  const Verification v = g.tree != nullptr
-                             ? verify_tree(g.model, *g.tree, {options.samples}, progress)
-                             : verify_program(g.model, *g.reduction, {options.samples}, progress);
+  const Verification v = g.tree != nullptr ? verify_tree(g.model, *g.tree, plan_of_errors, progress)
+                                           : verify_program(g.model, *g.reduction, plan_of_errors, progress);
   record["verification"] = {{"samples", v.samples},
                             {"formulas_worst", v.formula_worst},
                             {"formula_samples", v.formula_samples},
@@ -125,7 +126,7 @@ ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options
   for (std::size_t i = 0; i < plan.functions.size(); ++i) {
     const PlannedFunction& f = plan.functions[i];
     ordered_json entry = {{"function", f.function->name},
-                          {"operations", operations_of(f.operations)},
+                          {"operations", operations_record(f.operations)},
                           {"operations_without_prepare", f.unprepared.total()},
                           {"ns_double", time_json(times[i].by_double)},
                           {"ns_float", time_json(times[i].by_float)},
@@ -172,19 +173,14 @@ ordered_json motion_record(const Scene& scene, const Stage& stage) {
                          {"title", scene.title},
                          {"duration_s", scene.duration}};
   try {
-    const WorkPrecision result = work_precision(
-        scene, [&](const WorkPrecisionPoint& p) { stage(fmt::format("{} at {:.0e}", p.code, p.tolerance)); });
-    record["reference"] = {{"method", result.reference_method + ", long double"},
-                           {"steps", result.reference_steps},
-                           {"own_error", finite(result.reference_error)}};
-    record["points"] = ordered_json::array();
-    for (const WorkPrecisionPoint& p : result.points)
-      record["points"].push_back({{"code", p.code},
-                                  {"tolerance", p.tolerance},
-                                  {"error", finite(p.error)},
-                                  {"cpu_seconds", p.cpu_seconds},
-                                  {"evaluations", p.evaluations},
-                                  {"status", p.status}});
+    stage("simulating");
+    record["run"] = to_json(scene, simulate_scene(scene));
+    Ladder ladder;
+    ladder.single = true;
+    record["ladder"] = to_json(
+        scene,
+        work_precision(
+            scene, [&](const auto& p) { stage(fmt::format("{} at {:.0e}", p.code, p.tolerance)); }, ladder));
   } catch (const CompileError&) {
     throw;
   } catch (const std::exception& error) {  // several phases, a projected motion, no duration

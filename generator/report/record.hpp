@@ -55,8 +55,11 @@ struct MeasureOptions {
 nlohmann::ordered_json model_record(const GeneratedModel& generated, const MeasureOptions& options,
                                     const Stage& stage);
 
-/// Error against cost of one motion, along the ladder of tolerances. A motion that has no such ladder says
-/// why in "left_out". Schema anholon.report.motion/1.
+/// Additions, multiplications, divisions, their sum; sines and cosines.
+nlohmann::ordered_json operations_record(const OperationCount& count);
+
+/// One motion as its scene has it, and error against cost along the ladder of tolerances. A motion that has
+/// no such ladder says why in "left_out". Schema anholon.report.motion/1.
 nlohmann::ordered_json motion_record(const Scene& scene, const Stage& stage);
 
 /// Processor, compiler and flags that all figures belong to.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "check/compile_cache.hpp"
@@ -24,7 +25,8 @@
 namespace anholon {
 namespace {
 
-constexpr double enough_seconds = 40;  // of one integration: what would take longer is left out, and said
+constexpr long most_steps = 100'000'000;
+constexpr double enough_seconds = 10;  // of one integration: what would take longer is left out, and said
 // Growth of the cost from rung to rung: by a decade of the tolerance with order 5, 10^(1/5); by half a step.
 constexpr double growth_by_decade = 1.6, growth_by_half = 2;
 
@@ -33,10 +35,11 @@ template <class G>
 WorkPrecisionPoint measured(const std::string& code, double tolerance, const integrate::State<G>& initial,
                             const Field<G>& field, const integrate::AdaptiveOptions<double>& options,
                             double duration, const Integrator& integrator, integrate::State<G>& state) {
-  constexpr double long_enough = 0.02;  // s
-  constexpr int most_repeats = 5;
+  constexpr double long_enough = 0.02;  // s, of all repeats
+  constexpr int most_repeats = 50;
   WorkPrecisionPoint point{code, tolerance, 0, std::numeric_limits<double>::infinity(), 0, ""};
-  for (int repeat = 0; repeat < most_repeats; ++repeat) {
+  double spent = 0;
+  for (int repeat = 0; repeat < most_repeats && spent < long_enough; ++repeat) {
     state = initial;
     const double start = cpu_now();
     const auto outcome = integrator.has_fixed_step()
@@ -45,10 +48,11 @@ WorkPrecisionPoint measured(const std::string& code, double tolerance, const int
                                    [](auto&&...) {}, integrator.method)
                              : integrate_adaptive<G>(
                                    field, state, duration, options, [](const auto&) {}, integrator.method);
-    point.cpu_seconds = std::min(point.cpu_seconds, cpu_now() - start);
+    const double took = cpu_now() - start;
+    spent += took;
+    point.cpu_seconds = std::min(point.cpu_seconds, took);
     point.evaluations = outcome.evaluations;
     point.status = integrate::name(outcome.status);
-    if (point.cpu_seconds > long_enough) break;
   }
   return point;
 }
@@ -80,24 +84,38 @@ WorkPrecision work_precision(const Scene& wanted,
     const std::size_t chart = run.chart();
     RecursionDynamics recursion(program, run);
     const integrate::State<G> expanded = recursion.expanded(initial);
-    const auto charted = field_with_corrections<G>(run.template charted_field<G>());
-    const Field<G> generated{[&](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
-                               if (t == 0) run.use_chart(chart);  // each integration starts there
-                               charted.rates(t, g, y, eta, y_dot);
-                             },
-                             charted.correction, charted.derivative};
+    const auto started_in_chart = [&](Runner<double>& runner) {
+      const auto charted = field_with_corrections<G>(runner.template charted_field<G>());
+      return Field<G>{[&runner, charted, chart](double t, const G& g, const auto& y, auto& eta, auto& y_dot) {
+                        if (t == 0) runner.use_chart(chart);  // each integration starts there
+                        charted.rates(t, g, y, eta, y_dot);
+                      },
+                      charted.correction, charted.derivative};
+    };
+    const Field<G> generated = started_in_chart(run);
+    std::optional<Runner<double>> single;
+    Field<G> generated_single;
+    if (ladder.single) {
+      CompileOptions options;
+      options.scalar = AbiScalar::is_float;
+      single.emplace(scene, program, std::make_shared<CompiledProgram>(program.derivation->program, options));
+      generated_single = started_in_chart(*single);
+      generated_single.correction = generated.correction;  // float cannot see what is left to correct
+    }
     Integrator by_recursion = scene.integrator;  // which has no Jacobian
     if (by_recursion.method == Integrator::Method::rodas5p) by_recursion.method = Integrator::Method::dopri5;
     std::vector<double> reduced_sizes = sizes.of_state();
     reduced_sizes.resize(static_cast<std::size_t>(initial.y.size()));  // no quadratures here
     const std::vector<double> expanded_sizes = sizes.of_velocity_state();
 
-    const auto add = [&](WorkPrecisionPoint point, const integrate::State<G>& reduced) {
-      point.error = reference.steps > 0 && point.status == "ok"
-                        ? state_error(final_values(reduced), reference.state, sizes)
-                        : std::numeric_limits<double>::quiet_NaN();
+    const auto add_values = [&](WorkPrecisionPoint point, const std::vector<double>& values) {
+      point.error = reference.steps > 0 && point.status == "ok" ? state_error(values, reference.state, sizes)
+                                                                : std::numeric_limits<double>::quiet_NaN();
       result.points.push_back(point);
       if (on_point) on_point(point);
+    };
+    const auto add = [&](const WorkPrecisionPoint& point, const integrate::State<G>& reduced) {
+      add_values(point, final_values(reduced));
     };
     double expected_seconds = 0;
     for (int exponent = ladder.loosest; exponent >= ladder.tightest; --exponent) {
@@ -105,11 +123,25 @@ WorkPrecision work_precision(const Scene& wanted,
           result.by_step ? std::ldexp(scene.duration, exponent) : std::pow(10.0, exponent);
       integrate::State<G> state;
       auto options = relative_tolerance(tolerance, sizes, reduced_sizes);
-      options.max_steps = 100'000'000;
+      options.max_steps = most_steps;
       const WorkPrecisionPoint by_code = measured<G>("generated", tolerance, initial, generated, options,
                                                      scene.duration, scene.integrator, state);
       run.express_in_best_chart(state);
       add(by_code, state);
+      if (single && exponent >= ladder.single_tightest) {
+        options.max_steps = 1'000'000;  // its noise may look like errors that no step is short enough for
+        const WorkPrecisionPoint point = measured<G>("generated, float", tolerance, initial, generated_single,
+                                                     options, scene.duration, scene.integrator, state);
+        options.max_steps = most_steps;
+        single->express_in_best_chart(state);
+        add(point, state);
+      }
+      for (const Peer& peer : ladder.peers) {
+        const Peer::Run run_of_peer = peer.run(tolerance);
+        add_values(
+            {peer.name, tolerance, 0, run_of_peer.cpu_seconds, run_of_peer.evaluations, run_of_peer.status},
+            run_of_peer.state);
+      }
       if (!ladder.recursion) continue;
       if (expected_seconds > enough_seconds) {
         add({"recursion", tolerance, 0, 0, 0, "left out: too long"}, initial);

@@ -2,8 +2,8 @@
 #pragma once
 
 // Error against cost: one scene, integrated by its method along a ladder of tolerances, or of steps where
-// they are fixed, by generated code and by the numeric recursion, on past the rounding floor, so that the
-// floor is seen.
+// they are fixed, by generated code in double and in float, by the numeric recursion and by whoever else
+// knows the scene, on past the rounding floor, so that the floor is seen.
 
 #include <functional>
 #include <string>
@@ -15,7 +15,7 @@ namespace anholon {
 
 /// One way to compute at one rung of the ladder.
 struct WorkPrecisionPoint {
-  std::string code;      // "generated", "recursion"
+  std::string code;      // "generated", "generated, float", "recursion", or a peer's name
   double tolerance = 0;  // or step, s
   double error = 0;      // of the final state, see state_error()
   double cpu_seconds = 0;
@@ -25,7 +25,7 @@ struct WorkPrecisionPoint {
 
 struct WorkPrecision {
   bool by_step = false;                    // a ladder of steps
-  std::vector<WorkPrecisionPoint> points;  // per rung: generated, then recursion
+  std::vector<WorkPrecisionPoint> points;  // rung by rung, in the order of the codes
   std::string reference_method;            // in long double
   long reference_steps = 0;
   double reference_error = 0;  // how far the reference moves when its steps are doubled
@@ -39,12 +39,27 @@ struct RoundingFloor {
 };
 RoundingFloor rounding_floor(const WorkPrecision& result, const std::string& code);
 
+/// Another engine that knows the scene and integrates it by a method of its own.
+struct Peer {
+  struct Run {
+    std::vector<double> state;  // as final_values() of the reduced state
+    double cpu_seconds = 0;
+    long evaluations = 0;
+    std::string status = "ok";
+  };
+  std::string name;
+  std::function<Run(double tolerance)> run;
+};
+
 /// Powers of ten of the tolerances, or of two of the steps as parts of the duration, and which codes. The
 /// tightest is beyond what double can resolve: an error of it cannot fall below 1e-16, and has risen again by
-/// then where steps are many.
+/// then where steps are many. Functions of float run in an integration in double, and only down to
+/// single_tightest: below their own rounding more steps bring nothing.
 struct Ladder {
   int loosest = -3, tightest = -18;
-  bool recursion = true;
+  bool recursion = true, single = false;
+  int single_tightest = -9;
+  std::vector<Peer> peers;
 };
 
 /// @param on_point  called after each point; may be empty

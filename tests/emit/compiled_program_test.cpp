@@ -81,6 +81,18 @@ TEST(CompiledProgram, KnowsEveryOperation) {
   expect_values(test::every_operation(), options_for_test(), 0.1, 0.9, 1e-15);
 }
 
+TEST(CompiledProgram, ComputesInFloatBehindTheSameInterface) {
+  CompileOptions options = options_for_test();
+  options.scalar = AbiScalar::is_float;
+  const CompiledProgram::Blocks state = {{"r", {0, 0.3}}, {"r_dot", {0, 0}}, {"F", {0}}};
+  const auto single = CompiledProgram(test::cart_pendulum(), options).call("mass_matrix", state)["M"];
+  const auto twice =
+      CompiledProgram(test::cart_pendulum(), options_for_test()).call("mass_matrix", state)["M"];
+  for (std::size_t i = 0; i < single.size(); ++i) EXPECT_NEAR(single[i], twice[i], 1e-6);  // 10 ulps of float
+  EXPECT_NE(single[1], twice[1]) << "a cosine has more digits than float";
+  EXPECT_EQ(static_cast<float>(single[1]), single[1]);
+}
+
 TEST(CompiledProgram, GivesTheSameValuesInBlocks) {
   CompileOptions options = options_for_test();
   options.style = {NodeOrder::depth_first, 10, 7};

@@ -35,8 +35,8 @@ ordered_json motion() {
           {"scene", "fast<1>"},
           {"title", ""},
           {"duration_s", 1},
-          {"reference", {{"method", "m"}, {"steps", 64}, {"own_error", 1e-19}}},
-          {"points", points}};
+          {"ladder",
+           {{"reference", {{"method", "m"}, {"steps", 64}, {"own_error", 1e-19}}}, {"points", points}}}};
 }
 
 ordered_json report() {
