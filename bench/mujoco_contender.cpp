@@ -174,10 +174,14 @@ MotionRun mujoco_motion(const Robot& robot, double duration, long steps) {
   MotionRun run;
   run.cpu_seconds = cpu_now() - start;
   run.evaluations = 4 * steps;
+  if (e.layout.free_base) {
+    const mjtNum *const q = e.data->qpos, *const v = e.data->qvel;
+    run.end = free_base({q[3], q[4], q[5], q[6]}, {q[0], q[1], q[2]}, {v[0], v[1], v[2]}, {v[3], v[4], v[5]});
+  }
   for (std::size_t i = 0; i < robot.model.coordinates.size(); ++i) {
     const int joint = mj_name2id(e.model.get(), mjOBJ_JOINT, fmt::format("j{}", i).c_str());
-    run.end.r.push_back(e.data->qpos[e.model->jnt_qposadr[joint]]);
-    run.end.r_dot.push_back(e.data->qvel[e.model->jnt_dofadr[joint]]);
+    run.end.position.push_back(e.data->qpos[e.model->jnt_qposadr[joint]]);
+    run.end.velocity.push_back(e.data->qvel[e.model->jnt_dofadr[joint]]);
   }
   return run;
 }

@@ -46,13 +46,6 @@ std::array<double, 4> random_quaternion(std::mt19937& random) {
   return q;
 }
 
-Mat3<double> rotation(const std::array<double, 4>& wxyz) {
-  const auto& [a, b, c, d] = wxyz;
-  return {{1 - 2 * (c * c + d * d), 2 * (b * c - a * d), 2 * (b * d + a * c),  //
-           2 * (b * c + a * d), 1 - 2 * (b * b + d * d), 2 * (c * d - a * b),  //
-           2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)}};
-}
-
 /// No peer is asked for springs, dampers, friction and armatures.
 Model read_without_forces(const std::filesystem::path& file, const RobotOptions& options) {
   Model model = read_robot(file, options);
@@ -63,6 +56,13 @@ Model read_without_forces(const std::filesystem::path& file, const RobotOptions&
 }
 
 }  // namespace
+
+Mat3<double> rotation(const std::array<double, 4>& wxyz) {
+  const auto& [a, b, c, d] = wxyz;
+  return {{1 - 2 * (c * c + d * d), 2 * (b * c - a * d), 2 * (b * d + a * c),  //
+           2 * (b * c + a * d), 1 - 2 * (b * b + d * d), 2 * (c * d - a * b),  //
+           2 * (b * d - a * c), 2 * (c * d + a * b), 1 - 2 * (b * b + c * c)}};
+}
 
 Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t count) {
   RobotOptions options;

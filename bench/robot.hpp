@@ -31,6 +31,9 @@ struct Robot {
   std::vector<Sample> samples;
 };
 
+/// R of a unit quaternion, scalar first.
+Mat3<double> rotation(const std::array<double, 4>& wxyz);
+
 /// @param count  number of samples
 Robot load_robot(const std::filesystem::path& urdf, bool floating, std::size_t count);
 

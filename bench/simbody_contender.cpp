@@ -99,9 +99,17 @@ MotionRun simbody_motion(const Robot& robot, double duration, double accuracy) {
   const double start = cpu_now();
   run.evaluations = twin.engine.fall(0, duration, accuracy, q, u);
   run.cpu_seconds = cpu_now() - start;
+  if (twin.layout.free_base) {
+    const double* const at = q.data() + twin.engine.first_position(0);
+    const double* const rates = u.data() + twin.engine.first_velocity(0);
+    const std::array<double, 4> quaternion = {at[0], at[1], at[2], at[3]};
+    const Vec3<double> angular =
+        transposed_times(rotation(quaternion), Vec3<double>{rates[0], rates[1], rates[2]});
+    run.end = free_base(quaternion, {at[4], at[5], at[6]}, {rates[3], rates[4], rates[5]}, angular);
+  }
   for (const std::size_t k : twin.body_of) {
-    run.end.r.push_back(q[twin.engine.first_position(k)]);
-    run.end.r_dot.push_back(u[twin.engine.first_velocity(k)]);
+    run.end.position.push_back(q[twin.engine.first_position(k)]);
+    run.end.velocity.push_back(u[twin.engine.first_velocity(k)]);
   }
   return run;
 }
