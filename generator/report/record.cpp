@@ -138,8 +138,8 @@ ordered_json model_record(const GeneratedModel& g, const MeasureOptions& options
     const auto measured = [](ordered_json to, int operations, const RoundingError& error) {
       to["operations"] = operations;
       if (error.is_measured()) {
-        to["median_ulps"] = finite(error.median);
-        to["worst_ulps"] = finite(error.worst);
+        to["median_ulps"] = finite_or_null(error.median);
+        to["worst_ulps"] = finite_or_null(error.worst);
       }
       return to;
     };

@@ -11,8 +11,8 @@
 //   sqrt(k^2 + x) - k     x / (sqrt(k^2 + x) + k) for a number k > 0
 //   exp(x) - 1            tanh(x/2) (exp(x) + 1)
 //
-// each with any common factor of both terms, among the terms of a longer sum, too. They hold everywhere, divide
-// by nothing that vanishes and branch nowhere; what they cost is sines.
+// each with any common factor of both terms, among the terms of a longer sum, too. They hold everywhere,
+// divide by nothing that vanishes and branch nowhere; what they cost is sines.
 
 #include <vector>
 
