@@ -50,8 +50,8 @@ TEST(SteeredBicycle, KeepsTheDigitsThatItsConditionLeaves) {
       const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues();
       double largest =
           1;  // of H: near 90 degrees the rear wheel, which the description names as free, is blocked
-      for (const double h : generated("kinematics", in.rounded).at("H"))
-        largest = std::max(largest, std::abs(h));
+      const auto kinematics = generated("kinematics", in.rounded);
+      for (const double h : kinematics.at("H")) largest = std::max(largest, std::abs(h));
       const double condition = largest * sigma(0) / sigma(count - 1);
       const auto got = generated("forward_dynamics", in.rounded);
       const auto want = exact("forward_dynamics", in.exact);
