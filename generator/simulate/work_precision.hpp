@@ -59,7 +59,7 @@ struct Ladder {
   int loosest = -3, tightest = -18;
   bool recursion = true, single = false;
   int single_tightest = -9;
-  std::vector<Peer> peers;
+  std::vector<Peer> peers{};
 };
 
 /// @param on_point  called after each point; may be empty
