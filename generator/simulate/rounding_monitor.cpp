@@ -33,8 +33,9 @@ RoundingLoss rounding_loss(const SceneProgram& program, Runner<double>& run) {
     if (!std::ranges::all_of(values, is_finite)) return {loss.t, infinite, 0};
     for (const double x : values) in[block.name].push_back(Exact::from_double(x));
   }
+  std::vector<Exact>& parameters = in[of_parameters];  // there also where the program has none
   for (const ParameterInfo& p : code.parameters)
-    in[of_parameters].push_back(Exact::from_double(p.value.to_double()));
+    parameters.push_back(Exact::from_double(p.value.to_double()));
 
   const WorkingDigits precision(digits);
   const auto accelerations = [&](const NamedValues<Exact>& at) {
