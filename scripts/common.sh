@@ -8,13 +8,15 @@ export LC_ALL=C.UTF-8
 project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project"
 
-# What the program needs, what its reports need besides, what the tests need, and what only the long checks need.
+# What the program needs, what its reports need besides, what the tests need, what the
+# benchmarks need, and what only the long checks need.
 packages_build=(g++ cmake ninja-build pkg-config
   libginac-dev libcln-dev libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev
   libkainjow-mustache-dev libmd-dev)
 packages_report=(gnuplot-nox)
-packages_test=(gnuplot-nox clang libgtest-dev libbenchmark-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev
-  libsimbody-dev liburdfdom-dev libsdformat-dev)
+packages_test=(gnuplot-nox clang libgtest-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev
+  liburdfdom-dev libsdformat-dev)
+packages_bench=(libmujoco-dev liborocos-kdl-dev libdart-dev libsimbody-dev)
 packages_check=(clang-format clang-tidy libclang-rt-dev chromium)
 
 say() { printf '\n== %s\n' "$*"; }
@@ -64,10 +66,12 @@ jobs_that_fit() {
   echo $((cpus < by_memory ? cpus : by_memory))
 }
 
-# configure FOLDER [CMAKE OPTION...]; the compiler cache is used where there is one.
+# configure FOLDER [CMAKE OPTION...]; several files of the generator at a time, which halves a build from nothing; the
+# compiler cache is used where there is one.
 configure() {
   local folder=$1
   shift
+  set -- -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=8 "$@"
   if command -v ccache >/dev/null; then set -- -DCMAKE_CXX_COMPILER_LAUNCHER=ccache "$@"; fi
   mkdir -p "$folder"
   if ! cmake -S . -B "$folder" -G Ninja "$@" >"$folder/configure.log" 2>&1; then

@@ -14,7 +14,7 @@
 namespace anholon {
 namespace {
 
-constexpr long largest_angle_multiple = 4;
+constexpr long largest_expanded_multiple = 4;
 
 struct NamedFunction {
   const char* ginac;
@@ -55,7 +55,8 @@ std::pair<GiNaC::ex, GiNaC::ex> GinacConverter::turn(const GiNaC::ex& angle) {
     for (std::size_t i = 0; i < e.nops(); ++i) {
       if (GiNaC::is_a<GiNaC::numeric>(e.op(i))) factor = GiNaC::ex_to<GiNaC::numeric>(e.op(i));
     }
-    if (factor.is_rational() && factor.numer() != 1 && GiNaC::abs(factor.numer()) <= largest_angle_multiple) {
+    if (factor.is_rational() && factor.numer() != 1 &&
+        GiNaC::abs(factor.numer()) <= largest_expanded_multiple) {
       const auto once = turn(e / factor.numer());
       const long multiple = factor.numer().to_long();
       std::pair<GiNaC::ex, GiNaC::ex> result{1, 0};

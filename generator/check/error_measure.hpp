@@ -17,6 +17,11 @@ namespace anholon {
 /// of that of double; only where it finds more than the bound, exact arithmetic has the last word.
 inline constexpr int exactly_judged = 1000;
 
+inline constexpr double eps = std::numeric_limits<double>::epsilon();
+
+/// Decimal digits of exact evaluation where it judges.
+inline constexpr unsigned verification_digits = 60;
+
 /// Largest magnitude.
 template <class S>
 double size_of(const std::vector<S>& v) {

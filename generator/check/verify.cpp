@@ -20,8 +20,6 @@
 namespace anholon {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr unsigned digits = 60;
 constexpr int formula_samples = 40;  // the exact recursion with its factorisations is slow
 
 /// Blocks of one kind of quantity: a pose has no scale of its own parts, a twist has two.
@@ -54,7 +52,7 @@ class Verifier {
 
   Verification run(const VerificationPlan& plan, const std::function<void(int)>& progress) {
     bound_ = plan.bound;
-    const WorkingDigits precision(digits);
+    const WorkingDigits precision(verification_digits);
     const Mechanism<Exact> mechanism = mechanise<Exact>(description_, parameters_);
     const Mechanism<double> rounded = mechanise<double>(description_, double_parameters_);
     SampleSource source(4);
@@ -251,7 +249,7 @@ class Verifier {
   void check_state_jacobian(const NamedValues<Exact>& in) {
     const std::string name = chart_ + "state_jacobian";
     if (find_function(program_, name) == nullptr) return;
-    const WorkingDigits precision(2 * digits);
+    const WorkingDigits precision(2 * verification_digits);
     const Exact h = Exact::from_decimal("1e-20");
     const auto rates = [&](const NamedValues<Exact>& at) {
       std::vector<Exact> values;

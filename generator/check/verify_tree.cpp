@@ -21,9 +21,6 @@
 namespace anholon {
 namespace {
 
-constexpr double eps = std::numeric_limits<double>::epsilon();
-constexpr unsigned digits = 60;
-
 /// A rotation near R, by Gram-Schmidt in working precision.
 Mat3<Exact> nearest_rotation(const Mat3<Exact>& R) {
   const auto column = [&](int j) { return Vec3<Exact>{R(0, j), R(1, j), R(2, j)}; };
@@ -35,7 +32,7 @@ Mat3<Exact> nearest_rotation(const Mat3<Exact>& R) {
 }
 
 /// States at which the exact recursion runs: its unit sweeps grow with the square of the size.
-int formula_samples(int size) { return std::clamp(400 / std::max(size, 1), 5, 40); }
+int formula_samples_of(int size) { return std::clamp(400 / std::max(size, 1), 5, 40); }
 
 TreePoint<double> rounded(const TreePoint<Exact>& x) {
   const auto all = [](const std::vector<Exact>& from) {
@@ -90,7 +87,7 @@ class TreeVerifier {
       } else {
         compare(s, x, extended_, in_long_double(in));
       }
-      if (s < formula_samples(size)) check_formulas(x);
+      if (s < formula_samples_of(size)) check_formulas(x);
     }
     return summarise(plan.samples);
   }
@@ -231,7 +228,7 @@ class TreeVerifier {
     return v;
   }
 
-  const WorkingDigits precision_{digits};
+  const WorkingDigits precision_{verification_digits};
   const Model& model_;
   const Program& program_;
   std::vector<std::reference_wrapper<const Function>> checked_;  // functions that have a reference

@@ -76,8 +76,6 @@ Exact factor(const BeamSection::Factor& f, const Exact& x, const char* of) {
 /// Products of shapes with the wave number b are integrated by p points to (e b/(4 p))^(2 p), b up to n pi.
 int points_for(std::size_t modes) { return 40 + 3 * static_cast<int>(modes); }
 
-bool bends(BeamFamily family) { return family == BeamFamily::bending_y || family == BeamFamily::bending_z; }
-
 }  // namespace
 
 Exact snapped(const Exact& x) {

@@ -38,6 +38,9 @@ BeamShape pinned_shape(int index);
 BeamShape fixed_free_shape(int index);
 
 enum class BeamFamily { bending_y, bending_z, torsion, axial };
+constexpr bool bends(BeamFamily family) {
+  return family == BeamFamily::bending_y || family == BeamFamily::bending_z;
+}
 
 struct BeamMode {
   BeamFamily family = BeamFamily::bending_y;

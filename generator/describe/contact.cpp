@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::array<const char*, 3> axis_names = {"x", "y", "z"};
 
-Vec3<Expr> vector(const std::array<Expr, 3>& a) { return {a[0], a[1], a[2]}; }
+Vec3<Expr> vec3(const std::array<Expr, 3>& a) { return {a[0], a[1], a[2]}; }
 
 /// Two of the coordinate axes whose products with `axis` span the plane across it.
 std::array<Vec3<Expr>, 2> across(const Vec3<Expr>& axis) {
@@ -86,7 +86,7 @@ Expr ContactGeometry::rate(const Expr& of_shape) const {
 ContactGeometry::Touch ContactGeometry::touch(const Wheel& wheel) const {
   const BodyDescription& body = model_.bodies[static_cast<std::size_t>(wheel.body)];
   const auto parallel = [&] {  // the joint turns about the axle
-    const Vec3<Expr> c = cross(vector(body.joint.axis), vector(wheel.axle));
+    const Vec3<Expr> c = cross(vec3(body.joint.axis), vec3(wheel.axle));
     return c.x.is_zero() && c.y.is_zero() && c.z.is_zero();
   };
   // The frame that carries the axle does not spin with the wheel: nothing then depends on the angle of the
@@ -95,13 +95,13 @@ ContactGeometry::Touch ContactGeometry::touch(const Wheel& wheel) const {
       body.parent >= 0 && body.joint.kind == JointKind::revolute && parallel() && body.station.modes.empty();
   const Frame& frame = world_[static_cast<std::size_t>(carried ? body.parent : wheel.body)];
   const Mat3<Expr> R = carried ? Mat3<Expr>{body.R} : Mat3<Expr>::identity();
-  const Vec3<Expr> centre = carried ? vector(body.p) : Vec3<Expr>{};
-  const Vec3<Expr> axle = R * vector(wheel.axle);
+  const Vec3<Expr> centre = carried ? vec3(body.p) : Vec3<Expr>{};
+  const Vec3<Expr> axle = R * vec3(wheel.axle);
   Vec3<Expr> w = frame.w;
-  if (carried) w += rate(body.joint.displacement) * (R * vector(body.joint.axis));
+  if (carried) w += rate(body.joint.displacement) * (R * vec3(body.joint.axis));
 
   Touch touch;
-  const Vec3<Expr> world_normal = vector(wheel.ground.normal);
+  const Vec3<Expr> world_normal = vec3(wheel.ground.normal);
   const Frame& seen_from_reference = internal_[static_cast<std::size_t>(carried ? body.parent : wheel.body)];
   touch.normal = transposed_times(wheel.upright ? seen_from_reference.R : frame.R, world_normal);
   Vec3<Expr> arm = -wheel.crown * touch.normal;  // from the centre to the point of contact
@@ -143,7 +143,7 @@ Contact ContactGeometry::rolling(const Wheel& wheel) const {
 
 Contact ContactGeometry::rolling(const Ellipsoid& ellipsoid) const {
   const Frame& frame = world_[static_cast<std::size_t>(ellipsoid.body)];
-  const Vec3<Expr> world_normal = vector(ellipsoid.ground.normal);
+  const Vec3<Expr> world_normal = vec3(ellipsoid.ground.normal);
   const Vec3<Expr> normal = transposed_times(frame.R, world_normal);
   // The lowest point has its outward normal along -normal: x = -D normal / sqrt(normal . D normal), D =
   // diag(a_i^2).
@@ -153,13 +153,13 @@ Contact ContactGeometry::rolling(const Ellipsoid& ellipsoid) const {
     scaled[i] = a * a * normal[i];
   }
   const Expr support = sqrt(dot(normal, scaled));  // height of the centre above the plane
-  const Vec3<Expr> point = vector(ellipsoid.centre) - (Expr(1) / support) * scaled;
+  const Vec3<Expr> point = vec3(ellipsoid.centre) - (Expr(1) / support) * scaled;
   const Vec3<Expr> velocity = frame.v + cross(frame.w, point);
   Contact contact;
   add_force_rows(contact, velocity, normal, {});
   contact.positions.push_back(
       {"",
-       dot(world_normal, frame.p) + dot(normal, vector(ellipsoid.centre)) - support - ellipsoid.ground.height,
+       dot(world_normal, frame.p) + dot(normal, vec3(ellipsoid.centre)) - support - ellipsoid.ground.height,
        false});
   return contact;
 }
@@ -179,12 +179,12 @@ Contact ContactGeometry::rollers(const Wheel& wheel, const Expr& angle) const {
 Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const std::array<Expr, 3>& axis,
                                     const std::array<Expr, 3>& other_axis) const {
   Contact contact;
-  const Vec3<Expr> point = vector(a.point);
-  const std::array<Vec3<Expr>, 2> sides = across(vector(a.other ? other_axis : axis));
+  const Vec3<Expr> point = vec3(a.point);
+  const std::array<Vec3<Expr>, 2> sides = across(vec3(a.other ? other_axis : axis));
   if (!a.other) {
     const Frame& frame = world_[static_cast<std::size_t>(a.body)];
     const Vec3<Expr> v = frame.v + cross(frame.w, point);
-    const Vec3<Expr> normal = vector(a.ground.normal);
+    const Vec3<Expr> normal = vec3(a.ground.normal);
     const Vec3<Expr> forward = cross(world_[0].R * unit<Expr>(1), normal);  // of the reference body, level
     add_force_rows(contact, v, transposed_times(frame.R, normal),
                    transposed_times(frame.R, (Expr(1) / sqrt(dot(forward, forward))) * forward));
@@ -200,7 +200,7 @@ Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const 
     }
     // The turns are kept by the places of further points, a metre away.
     std::vector<Vec3<Expr>> points = {point};
-    if (turns == FreeTurns::about_axis) points.push_back(point + vector(axis));
+    if (turns == FreeTurns::about_axis) points.push_back(point + vec3(axis));
     if (turns == FreeTurns::none) {
       for (int i = 0; i < 3; ++i) points.push_back(point + unit<Expr>(i));
     }
@@ -212,14 +212,14 @@ Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const 
   }
   const Frame& frame = internal_[static_cast<std::size_t>(a.body)];
   const Frame& other = internal_[static_cast<std::size_t>(*a.other)];
-  const Vec3<Expr> gap = frame.p + frame.R * point - other.p - other.R * vector(a.other_point);
+  const Vec3<Expr> gap = frame.p + frame.R * point - other.p - other.R * vec3(a.other_point);
   const auto keep = [&](const std::string& suffix, const Expr& condition, bool from_start) {
     contact.rows.push_back({suffix, rate(condition), {}, false});
     contact.positions.push_back({"", condition, from_start});
   };
   for (int i = 0; i < 3; ++i) keep(axis_names[static_cast<std::size_t>(i)], gap[i], false);
   if (turns == FreeTurns::about_axis) {  // the axis stays across two directions of the other body
-    const Vec3<Expr> here = transposed_times(other.R, frame.R * vector(axis));
+    const Vec3<Expr> here = transposed_times(other.R, frame.R * vec3(axis));
     for (std::size_t i = 0; i < 2; ++i) keep("turn_" + std::to_string(i + 1), dot(sides[i], here), false);
   }
   if (turns == FreeTurns::none) {
@@ -234,7 +234,7 @@ Contact ContactGeometry::attachment(const Attachment& a, FreeTurns turns, const 
 Contact ContactGeometry::rod(const Attachment& a, const Expr& length) const {
   const Frame& frame = internal_[static_cast<std::size_t>(a.body)];
   const Frame& other = internal_[static_cast<std::size_t>(*a.other)];
-  const Vec3<Expr> d = frame.p + frame.R * vector(a.point) - other.p - other.R * vector(a.other_point);
+  const Vec3<Expr> d = frame.p + frame.R * vec3(a.point) - other.p - other.R * vec3(a.other_point);
   const Expr condition = (dot(d, d) - length * length) / (Expr(2) * length);
   Contact contact;
   contact.rows.push_back({"length", rate(condition), {}, false});

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "describe/ascii.hpp"
 #include "describe/names.hpp"
 
 namespace anholon {
@@ -13,29 +14,28 @@ namespace {
 constexpr std::size_t longest_text = 4096;
 constexpr int deepest = 200;
 constexpr std::size_t most_digits = 400;
-constexpr int largest_power = 64;
+constexpr int largest_exponent = 64;
 constexpr int largest_angle = 1000000;
 constexpr int largest_exponential = 600;
 
-struct Function {
+struct NamedOperation {
   std::string_view name;
   Op op;
 };
-constexpr auto functions = std::to_array<Function>({{"sin", Op::sin},
-                                                    {"cos", Op::cos},
-                                                    {"tan", Op::tan},
-                                                    {"asin", Op::asin},
-                                                    {"acos", Op::acos},
-                                                    {"atan2", Op::atan2},
-                                                    {"exp", Op::exp},
-                                                    {"log", Op::log},
-                                                    {"tanh", Op::tanh},
-                                                    {"sqrt", Op::sqrt},
-                                                    {"abs", Op::abs},
-                                                    {"sign", Op::sign}});
+constexpr auto functions = std::to_array<NamedOperation>({{"sin", Op::sin},
+                                                          {"cos", Op::cos},
+                                                          {"tan", Op::tan},
+                                                          {"asin", Op::asin},
+                                                          {"acos", Op::acos},
+                                                          {"atan2", Op::atan2},
+                                                          {"exp", Op::exp},
+                                                          {"log", Op::log},
+                                                          {"tanh", Op::tanh},
+                                                          {"sqrt", Op::sqrt},
+                                                          {"abs", Op::abs},
+                                                          {"sign", Op::sign}});
 
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool starts_name(char c) { return is_letter(c) || c == '_'; }
 
 /// Recursive descent; one function a level of precedence. Operands are read in sequenced statements, so that
 /// the nodes come in the same order whatever the compiler.
@@ -142,7 +142,7 @@ class ExpressionReader {
       fail(at_, "the expression ends where a value is expected", "write a number or a name there");
     const std::size_t where = at_;
     if (is_digit(peek()) || peek() == '.') return number();
-    if (is_letter(peek())) return name();
+    if (starts_name(peek())) return name();
     if (take('(')) {
       const Quantity inner = sum();
       close(where);
@@ -177,7 +177,7 @@ class ExpressionReader {
       if (!is_digit(peek())) fail(at_, "the exponent of this number has no digits", "write for example 1e-3");
       while (is_digit(peek())) ++at_;
     }
-    if (!at_end() && is_letter(peek()))
+    if (!at_end() && starts_name(peek()))
       fail(at_, fmt::format("{} is not expected behind a number", shown()), "write * between factors");
     const std::string_view digits_text = text_.substr(begin, at_ - begin);
     Exact value;
@@ -193,7 +193,7 @@ class ExpressionReader {
 
   Quantity name() {
     const std::size_t begin = at_;
-    while (!at_end() && (is_letter(peek()) || is_digit(peek()))) ++at_;
+    while (!at_end() && (starts_name(peek()) || is_digit(peek()))) ++at_;
     const std::string_view word = text_.substr(begin, at_ - begin);
     skip_spaces();
     if (peek() == '(') return call(begin, word);
@@ -203,7 +203,8 @@ class ExpressionReader {
 
   Quantity looked_up(std::size_t begin, std::string_view word, const Symbol* symbol) {
     if (symbol == nullptr) {
-      if (std::any_of(functions.begin(), functions.end(), [&](const Function& f) { return f.name == word; }))
+      if (std::any_of(functions.begin(), functions.end(),
+                      [&](const NamedOperation& f) { return f.name == word; }))
         fail(begin, fmt::format("'{}' is a function", word), fmt::format("write {}(...)", word));
       const std::vector<std::string> known = scope_.names(allowed_);
       fail(begin, fmt::format("'{}' is not a known name", word),
@@ -224,13 +225,13 @@ class ExpressionReader {
     const std::size_t open = at_;
     take('(');
     if (word == "dot") return rate(begin, open);
-    const auto* function =
-        std::find_if(functions.begin(), functions.end(), [&](const Function& f) { return f.name == word; });
+    const auto* function = std::find_if(functions.begin(), functions.end(),
+                                        [&](const NamedOperation& f) { return f.name == word; });
     if (function == functions.end()) {
       if (scope_.find(word) != nullptr)
         fail(open, fmt::format("'{}' is not a function", word), "write * between factors");
       std::vector<std::string> known{"dot"};
-      for (const Function& f : functions) known.emplace_back(f.name);
+      for (const NamedOperation& f : functions) known.emplace_back(f.name);
       fail(begin, fmt::format("'{}' is not a known function", word),
            did_you_mean(word, known, "docs/model-file.md lists the functions"));
     }
@@ -255,7 +256,7 @@ class ExpressionReader {
   /// dot(name)
   Quantity rate(std::size_t begin, std::size_t open) {
     const std::size_t inner = at_;
-    while (!at_end() && (is_letter(peek()) || is_digit(peek()))) ++at_;
+    while (!at_end() && (starts_name(peek()) || is_digit(peek()))) ++at_;
     const std::string_view word = text_.substr(inner, at_ - inner);
     skip_spaces();
     if (word.empty() || is_digit(word[0]))
@@ -376,8 +377,8 @@ class ExpressionReader {
       return {apply(where, Op::exp, scaled), base.unit && base.unit->is_number() ? base.unit : std::nullopt};
     }
     const Exact twice_exact = tape_.value(id) + tape_.value(id);
-    if (abs(twice_exact) > Exact(2 * largest_power)) {
-      fail(where, fmt::format("the exponent is beyond {}", largest_power),
+    if (abs(twice_exact) > Exact(2 * largest_exponent)) {
+      fail(where, fmt::format("the exponent is beyond {}", largest_exponent),
            "use exp(y*log(x)) if you mean it");
     }
     const int twice = static_cast<int>(twice_exact.to_double());
@@ -425,7 +426,7 @@ Quantity read_expression(Tape& tape, std::string_view text, const Scope& scope, 
 const std::vector<std::string>& expression_words() {
   static const std::vector<std::string> words = [] {
     std::vector<std::string> list{"pi", "dot", "ddot"};
-    for (const Function& f : functions) list.emplace_back(f.name);
+    for (const NamedOperation& f : functions) list.emplace_back(f.name);
     return list;
   }();
   return words;

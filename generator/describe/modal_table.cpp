@@ -20,9 +20,9 @@ const Exact& rounding() {  // of numbers that a finite-element program prints
   return value;
 }
 
-Tensor transposed(const Tensor& a) { return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]}; }
-Vector transposed(const Vector& a) { return a; }
-Exact transposed(const Exact& a) { return a; }
+Tensor transpose_of(const Tensor& a) { return {a[0], a[3], a[6], a[1], a[4], a[7], a[2], a[5], a[8]}; }
+Vector transpose_of(const Vector& a) { return a; }
+Exact transpose_of(const Exact& a) { return a; }
 
 Exact size_of(const Exact& a) { return abs(a); }
 template <std::size_t n>
@@ -192,17 +192,17 @@ class TableOfModes {
     Exact largest = 0, worst = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
       for (std::size_t j = 0; j <= i; ++j) {
-        const T other = transposed(a[j][i]);
+        const T other = transpose_of(a[j][i]);
         largest = std::max({largest, size_of(a[i][j]), size_of(other)});
         worst = std::max(worst, size_of(difference(a[i][j], other)));
         a[i][j] = mean(a[i][j], other);
-        a[j][i] = transposed(a[i][j]);
+        a[j][i] = transpose_of(a[i][j]);
       }
     }
     if (worst > rounding() * largest)
       findings_.error(root_.find_where(key),
                       fmt::format("'{}' is not symmetric: entries differ by {}", key, worst.decimal(3)),
-                      "entries of modes j and l are those of l and j, transposed");
+                      "entries of modes j and l are those of l and j, transpose_of");
   }
 
   void check() {

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "describe/ascii.hpp"
+
 namespace anholon {
 namespace {
 
@@ -26,9 +28,6 @@ constexpr auto cpp_keywords = std::to_array<std::string_view>(
      "true",        "try",       "typedef",    "typeid",    "typename", "union",        "unsigned",
      "using",       "virtual",   "void",       "volatile",  "wchar_t",  "while",        "xor",
      "xor_eq"});
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 /// Insertions, deletions, replacements and swaps of neighbours that turn a into b.
 std::size_t edit_distance(std::string_view a, std::string_view b) {

@@ -234,8 +234,6 @@ std::array<Expr, 3> turn_of(BeamFamily family, const Expr& value, const Expr& sl
   return {0, 0, 0};
 }
 
-bool bends(BeamFamily family) { return family == BeamFamily::bending_y || family == BeamFamily::bending_z; }
-
 /// The frame of a place on the axis: x = 0.5 is half way.
 BeamLine line_of(const std::vector<BeamMode>& modes, int first_coordinate, const Expr& length) {
   const auto at = [modes, first_coordinate, length](const Exact& x, Reading& reading) {

@@ -13,13 +13,13 @@ constexpr std::array<std::array<std::size_t, 2>, 6> entry_axes = {
     {{0, 0}, {1, 1}, {2, 2}, {0, 1}, {0, 2}, {1, 2}}};
 
 /// Inertia entries with a mark at those that were given.
-struct Tensor {
+struct TensorEntries {
   std::array<Expr, 6> entries = {0, 0, 0, 0, 0, 0};
   std::array<bool, 6> given = {};
 };
 
-Tensor read_tensor(const Value& value, const std::string& what, Reading& reading) {
-  Tensor tensor;
+TensorEntries read_tensor(const Value& value, const std::string& what, Reading& reading) {
+  TensorEntries tensor;
   TableReader table(value, what, reading.findings);
   for (std::size_t i = 0; i < 6; ++i) {
     const Value* entry = table.optional(entry_names[i]);
@@ -72,7 +72,7 @@ bool is_semidefinite(const std::array<Exact, 6>& I, const std::array<bool, 3>& a
 }
 
 /// The inertia about the mass centre, at the default parameters, belongs to a body that could exist.
-void check_physical(const Tensor& tensor, const BodyDescription& body, const Location& where,
+void check_physical(const TensorEntries& tensor, const BodyDescription& body, const Location& where,
                     const std::string& what, Reading& reading) {
   const std::array<bool, 3> axes = {tensor.given[0], tensor.given[1], tensor.given[2]};
   const Exact mass = reading.at_defaults(body.mass, where, what);
@@ -142,7 +142,7 @@ void read_inertia(BodyOutline& body, BodyDescription& described, Reading& readin
     reading.findings.error(about_origin->where,
                            fmt::format("{} has about_com and about_origin", table.what()), "keep one");
   const Value* given = about_com != nullptr ? about_com : about_origin;
-  Tensor tensor;
+  TensorEntries tensor;
   if (given != nullptr) {
     tensor = read_tensor(
         *given,

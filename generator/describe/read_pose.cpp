@@ -7,10 +7,10 @@
 namespace anholon {
 namespace {
 
-using Matrix = std::array<Expr, 9>;
+using RotationMatrix = std::array<Expr, 9>;
 
-Matrix product(const Matrix& a, const Matrix& b) {
-  Matrix c;
+RotationMatrix product(const RotationMatrix& a, const RotationMatrix& b) {
+  RotationMatrix c;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
       const std::array<Expr, 3> row = {a[3 * i], a[3 * i + 1], a[3 * i + 2]};
@@ -22,12 +22,12 @@ Matrix product(const Matrix& a, const Matrix& b) {
 }
 
 /// Turn by an angle about coordinate axis 0, 1 or 2.
-Matrix turn(std::size_t axis, const Expr& angle) {
+RotationMatrix turn(std::size_t axis, const Expr& angle) {
   const std::size_t i = (axis + 1) % 3;
   const std::size_t j = (axis + 2) % 3;
   const Expr c = cos(angle);
   const Expr s = sin(angle);
-  Matrix R = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+  RotationMatrix R = {0, 0, 0, 0, 0, 0, 0, 0, 0};
   R[4 * axis] = 1;
   R[4 * i] = c;
   R[4 * j] = c;
@@ -37,9 +37,9 @@ Matrix turn(std::size_t axis, const Expr& angle) {
 }
 
 /// One turn of a rotation: { axis = "x", angle = ... }.
-Matrix read_turn(const Value& value, const std::string& what, Reading& reading) {
+RotationMatrix read_turn(const Value& value, const std::string& what, Reading& reading) {
   TableReader table(value, what, reading.findings);
-  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  RotationMatrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   const auto axis = table.required_choice("axis", {"x", "y", "z"});
   const Value* angle = table.required("angle", "write it in rad");
   if (axis && angle != nullptr)
@@ -50,8 +50,8 @@ Matrix read_turn(const Value& value, const std::string& what, Reading& reading) 
 
 /// A turn, a list of turns each about the axes that the ones before it have moved, or { rpy = [roll, pitch,
 /// yaw] }.
-Matrix read_rotation(const Value& value, const std::string& what, Reading& reading) {
-  Matrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+RotationMatrix read_rotation(const Value& value, const std::string& what, Reading& reading) {
+  RotationMatrix R = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   if (value.kind == Value::Kind::array) {
     for (const Value& item : value.items) {
       if (item.kind == Value::Kind::table) {
@@ -74,8 +74,8 @@ Matrix read_rotation(const Value& value, const std::string& what, Reading& readi
   table.optional("rpy");
   table.report_unknown_keys();
   const auto angles = reading.vector3(*rpy, fmt::format("rpy of {}", what), units::one);
-  const Matrix yaw = turn(2, angles[2]);
-  const Matrix pitch = turn(1, angles[1]);
+  const RotationMatrix yaw = turn(2, angles[2]);
+  const RotationMatrix pitch = turn(1, angles[1]);
   return product(product(yaw, pitch), turn(0, angles[0]));
 }
 

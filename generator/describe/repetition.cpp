@@ -14,7 +14,7 @@
 namespace anholon {
 namespace {
 
-constexpr int largest_number = 1'000'000;
+constexpr int largest_integer = 1'000'000;
 constexpr int most_copies = 1000;
 
 using Numbers = std::map<std::string, int, std::less<>>;
@@ -37,7 +37,7 @@ class Arithmetic {
     return at_ < text_.size() ? text_[at_] : '\0';
   }
   static int checked(long x) {
-    if (x > largest_number || x < -largest_number)
+    if (x > largest_integer || x < -largest_integer)
       throw std::invalid_argument(fmt::format("the number {} is too large", x));
     return static_cast<int>(x);
   }
@@ -99,9 +99,9 @@ struct Range {
   int first = 0, last = 0;
 };
 
-class Writer {
+class CopyWriter {
  public:
-  Writer(const std::vector<Count>& counts, Findings& findings) : findings_(findings) {
+  CopyWriter(const std::vector<Count>& counts, Findings& findings) : findings_(findings) {
     for (const Count& count : counts) numbers_[count.name] = count.value;
   }
 
@@ -306,7 +306,7 @@ std::vector<Count> take_counts(Value& document, const CountValues& overrides, Fi
 
 void write_out(Value& document, const std::vector<Count>& counts, Findings& findings) {
   if (counts.empty() && !repeats(document)) return;
-  Writer(counts, findings).write_out(document);
+  CopyWriter(counts, findings).write_out(document);
 }
 
 CountValues read_count_values(const Value& document, Findings& findings) {

@@ -7,15 +7,15 @@ namespace anholon {
 namespace {
 
 template <class Map>
-const Symbol* found(const Map& map, std::string_view name) {
+const Symbol* lookup(const Map& map, std::string_view name) {
   const auto at = map.find(name);
   return at == map.end() ? nullptr : &at->second;
 }
 
 }  // namespace
 
-const Symbol* Scope::find(std::string_view name) const { return found(symbols_, name); }
-const Symbol* Scope::find_rate(std::string_view name) const { return found(rates_, name); }
+const Symbol* Scope::find(std::string_view name) const { return lookup(symbols_, name); }
+const Symbol* Scope::find_rate(std::string_view name) const { return lookup(rates_, name); }
 
 std::vector<std::string> Scope::names(Allowed allowed) const {
   std::vector<std::string> result;

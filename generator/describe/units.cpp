@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "describe/ascii.hpp"
 #include "describe/names.hpp"
 
 namespace anholon {
@@ -37,9 +38,6 @@ constexpr auto scaled_units = std::to_array<std::pair<std::string_view, std::str
 
 constexpr std::size_t longest_unit = 64;
 constexpr int largest_power = 12;
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 class UnitReader {
  public:

@@ -33,8 +33,6 @@ std::string c_literal(std::string_view text) {
   return literal + "\"";
 }
 
-std::string origin(std::string_view text) { return text.empty() ? "none" : one_line(text); }
-
 std::string double_literal(const Exact& value) {
   std::string text = fmt::format("{}", value.to_double());
   if (text.find_first_of(".e") == std::string::npos) text += ".0";

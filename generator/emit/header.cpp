@@ -27,8 +27,6 @@ std::string without_last_newline(std::string text) {
   return text;
 }
 
-std::string origin(std::string_view text) { return text.empty() ? "none" : one_line(text); }
-
 std::string joined(const std::vector<std::string>& parts, std::string_view separator) {
   return fmt::format("{}", fmt::join(parts, separator));
 }

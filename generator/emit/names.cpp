@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <array>
 
+#include "describe/ascii.hpp"
+
 namespace anholon {
 namespace {
 
@@ -111,9 +113,6 @@ template <std::size_t n>
 bool contains(const std::array<const char*, n>& list, const std::string& name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
-
-bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
 }  // namespace
 

@@ -18,10 +18,10 @@ constexpr std::size_t shortest_run =
     8;  // equal constants side by side that a split function fills in by a loop
 
 /// Writes one function; knows for each node in which block it is made and where it is kept.
-class Writer {
+class StatementWriter {
  public:
-  Writer(const Tape& tape, const std::vector<Assignment>& results, const GivenValues& given, NameScope names,
-         const StatementStyle& style)
+  StatementWriter(const Tape& tape, const std::vector<Assignment>& results, const GivenValues& given,
+                  NameScope names, const StatementStyle& style)
       : tape_(tape), results_(results), given_(given), names_(std::move(names)), style_(style) {}
 
   Statements write() {
@@ -372,7 +372,7 @@ std::size_t columns(std::string_view text) {
 
 Statements write_statements(const Tape& tape, const std::vector<Assignment>& results,
                             const GivenValues& given, NameScope names, const StatementStyle& style) {
-  return Writer(tape, results, given, std::move(names), style).write();
+  return StatementWriter(tape, results, given, std::move(names), style).write();
 }
 
 std::string constant_text(const Exact& value) {
@@ -429,5 +429,7 @@ std::string one_line(std::string_view text) {
   flat.pop_back();
   return flat;
 }
+
+std::string origin(std::string_view text) { return text.empty() ? "none" : one_line(text); }
 
 }  // namespace anholon

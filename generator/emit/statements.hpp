@@ -76,4 +76,7 @@ std::string comment(std::string_view text, std::string_view prefix, std::size_t 
 /// The text on one line, fit for a // comment.
 std::string one_line(std::string_view text);
 
+/// The same of what a file comes from; "none" where that is not known.
+std::string origin(std::string_view text);
+
 }  // namespace anholon

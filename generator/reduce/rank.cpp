@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-constexpr unsigned digits = 50;
+constexpr unsigned rank_digits = 50;
 
 /// Rank by elimination with complete pivoting; what is below 1e-25 of the largest entry is zero. The samples
 /// are exact doubles, so an entry that vanishes at a special angle is about 1e-17 there and still counts.
@@ -159,7 +159,7 @@ std::string RankAnalysis::table_I_class(const Partition& partition) const {
 RankAnalysis analyse_ranks(const MechanismDescription& description, const std::vector<Exact>& parameters,
                            const Partition& partition, const std::vector<SampleState>& samples,
                            const std::vector<int>& preferred_rows) {
-  const WorkingDigits precision(digits);
+  const WorkingDigits precision(rank_digits);
   const Mechanism<Exact> mechanism = mechanise<Exact>(description, parameters);
   FreeDynamics<Exact> dynamics(mechanism);
   const Exact zero_tolerance = Exact::from_decimal("1e-25");

@@ -9,7 +9,7 @@
 namespace anholon {
 namespace {
 
-constexpr double rank_threshold = 1e-10;  // relative: between rounding and the shares of real contacts
+constexpr double zero_share = 1e-10;  // relative: between rounding and the shares of real contacts
 
 /// Minimises |c + C s| over what earlier aims have left open, one aim after the other.
 class Priorities {
@@ -22,7 +22,7 @@ class Priorities {
     const Eigen::MatrixXd seen = C * open_;
     const SingularValues svd = singular_values(seen);
     // relative to the whole aim: what is left of it may be rounding
-    const double zero = rank_threshold * std::max(C.norm(), 1e-300);
+    const double zero = zero_share * std::max(C.norm(), 1e-300);
     Eigen::Index rank = 0;
     while (rank < svd.sigma.size() && svd.sigma(rank) > zero) ++rank;
     const Eigen::VectorXd aim = -(c + C * s_);

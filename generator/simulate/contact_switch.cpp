@@ -10,7 +10,7 @@
 namespace anholon {
 namespace {
 
-constexpr double rank_threshold = 1e-10;  // relative: between rounding and pivots of regular configurations
+constexpr double singular_pivot = 1e-10;  // relative: between rounding and pivots of regular configurations
 
 /// All velocities (n + s) of a state.
 Eigen::VectorXd velocities_of(const Model& model, const State<double>& state) {
@@ -41,7 +41,7 @@ VelocityJump velocity_jump(const Model& model, const Partition& partition, const
 
   if (A.rows() == 0) return {before, {}, 0, 0, 0};  // nothing holds: nothing changes
   const auto solution =
-      solve_constrained<double>(M, M * before, A, Eigen::VectorXd(B * active), rank_threshold);
+      solve_constrained<double>(M, M * before, A, Eigen::VectorXd(B * active), singular_pivot);
   VelocityJump jump;
   jump.velocities = solution.acceleration;
   jump.impulses = solution.multipliers;

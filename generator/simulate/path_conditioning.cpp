@@ -14,7 +14,7 @@
 namespace anholon {
 namespace {
 
-constexpr unsigned digits = 50;
+constexpr unsigned path_digits = 50;
 
 /// What the functions read at a row.
 struct Seen {
@@ -65,7 +65,7 @@ PathConditioning path_conditioning(const Scene& scene, const Progress& progress)
     parameters.push_back(Exact::from_double(p.value.to_double()));
   const auto generated = compiled_caller(code, parameters);
   const auto exact = interpreting_caller<Exact>(code, parameters);
-  const WorkingDigits precision(digits);
+  const WorkingDigits precision(path_digits);
   for (Seen& seen : rows) {
     if (progress) progress("comparing with exact arithmetic", seen.point.t);
     const std::string function = chart_prefix(seen.point.chart - 1) + "forward_dynamics";

@@ -12,7 +12,7 @@
 namespace anholon {
 namespace {
 
-constexpr unsigned digits = 60;
+constexpr unsigned monitor_digits = 60;
 constexpr double infinite = std::numeric_limits<double>::infinity();
 const char* const of_parameters = "parameters";  // no block of inputs has this name
 
@@ -37,7 +37,7 @@ RoundingLoss rounding_loss(const SceneProgram& program, Runner<double>& run) {
   for (const ParameterInfo& p : code.parameters)
     parameters.push_back(Exact::from_double(p.value.to_double()));
 
-  const WorkingDigits precision(digits);
+  const WorkingDigits precision(monitor_digits);
   const auto accelerations = [&](const NamedValues<Exact>& at) {
     return interpreting_caller<Exact>(code, at.at(of_parameters))(function, at).at("nu_dot");
   };

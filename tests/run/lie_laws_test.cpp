@@ -79,10 +79,8 @@ class EveryLieGroup : public ::testing::Test {
   }
 };
 
-using Groups =
-    ::testing::Types<SE3<double>, SE3<float>, SE3<long double>, SE2<double>, SE2<float>, SE2<long double>,
-                     SO3<double>, SO3<float>, SO3<long double>, Translation<double, 1>, Translation<float, 2>,
-                     Translation<long double, 3>, Trivial<double>>;
+using Groups = ::testing::Types<SE3<double>, SE3<float>, SE3<long double>, SE2<double>, SE2<float>,
+                                SE2<long double>, SO3<double>, Translation<long double, 3>, Trivial<double>>;
 TYPED_TEST_SUITE(EveryLieGroup, Groups);
 
 TYPED_TEST(EveryLieGroup, ComposesAsMatricesDo) {

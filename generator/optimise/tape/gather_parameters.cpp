@@ -8,7 +8,7 @@
 namespace anholon {
 namespace {
 
-struct Term {
+struct Operand {
   NodeId node;
   bool negative;  // of a product: never
 };
@@ -43,11 +43,11 @@ class GatherPass {
   NodeId operator()(Tape& tape, NodeId old, const std::vector<NodeId>& image) const {
     const Op op = tape.node(old).op;
     if (!is_chain(op) || inner_[old] != 0 || is_fixed_[old] != 0) return copied(tape, old, image);
-    std::vector<Term> fixed, moving;
+    std::vector<Operand> fixed, moving;
     flatten(tape, old, false, fixed, moving);
     if (fixed.size() < 2) return copied(tape, old, image);
-    const auto combined = [&](const std::vector<Term>& terms) {
-      Term total{image[terms[0].node], terms[0].negative};
+    const auto combined = [&](const std::vector<Operand>& terms) {
+      Operand total{image[terms[0].node], terms[0].negative};
       for (std::size_t i = 1; i < terms.size(); ++i) {
         const bool same = terms[i].negative == total.negative;
         total.node = tape.apply(op == Op::mul ? Op::mul
@@ -57,8 +57,8 @@ class GatherPass {
       }
       return total;
     };
-    const Term a = combined(moving);
-    const Term b = combined(fixed);
+    const Operand a = combined(moving);
+    const Operand b = combined(fixed);
     if (op == Op::mul) return tape.apply(Op::mul, a.node, b.node);
     const NodeId sum = tape.apply(a.negative == b.negative ? Op::add : Op::sub, a.node, b.node);
     return a.negative ? tape.apply(Op::neg, sum) : sum;
@@ -67,10 +67,10 @@ class GatherPass {
  private:
   static bool is_chain(Op op) { return op == Op::add || op == Op::sub || op == Op::mul; }
 
-  void flatten(const Tape& tape, NodeId id, bool negative, std::vector<Term>& fixed,
-               std::vector<Term>& moving) const {
+  void flatten(const Tape& tape, NodeId id, bool negative, std::vector<Operand>& fixed,
+               std::vector<Operand>& moving) const {
     const Node& n = tape.node(id);
-    for (const auto& [x, sign] : {Term{n.a, negative}, Term{n.b, negative != (n.op == Op::sub)}}) {
+    for (const auto& [x, sign] : {Operand{n.a, negative}, Operand{n.b, negative != (n.op == Op::sub)}}) {
       if (inner_[x] != 0) {
         flatten(tape, x, sign, fixed, moving);
       } else {
