@@ -2,13 +2,11 @@
 #include "derive/articulated_route.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <stdexcept>
 
 #include "anholon/articulated.hpp"
+#include "optimise/accuracy/rounding_error.hpp"
 #include "reduce/samples.hpp"
-#include "tape/interpret.hpp"
 
 namespace anholon {
 
@@ -45,35 +43,18 @@ std::vector<Expr> articulated_accelerations(const Mechanism<Expr>& mechanism, co
 
 double rounding_of(const Tape& tape, const std::vector<NodeId>& nodes, std::span<const NodeId> parameters,
                    std::span<const Exact> values) {
-  constexpr int states = 6;
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  const WorkingDigits precision(60);
-  Interpreter<Exact> exactly(tape, nodes);
-  Interpreter<double> rounded(tape, nodes);
-  std::vector<Exact> in(tape.inputs().size()), want(nodes.size());
-  std::vector<double> in_double(in.size()), got(nodes.size());
   SampleSource source(8);
-  double worst = 0;
-  for (int s = 0; s < states; ++s) {
-    for (Exact& x : in) x = source.uniform(Exact(-3), Exact(3));
+  std::vector<std::vector<double>> states(6, std::vector<double>(tape.inputs().size()));
+  for (std::vector<double>& state : states) {
+    for (double& x : state) x = source.uniform(Exact(-3), Exact(3)).to_double();
     for (std::size_t i = 0; i < parameters.size(); ++i)
-      in[tape.node(parameters[i]).a] = Exact::from_double(values[i].to_double());
-    std::ranges::transform(in, in_double.begin(), [](const Exact& x) { return x.to_double(); });
-    try {
-      exactly(in, want);
-    } catch (const std::domain_error&) {
-      return infinite;
-    }
-    rounded(in_double, got);
-    double error = 0, size = std::numeric_limits<double>::min();
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      if (!std::isfinite(got[i])) return infinite;
-      error = std::max(error, abs(Exact::from_double(got[i]) - want[i]).to_double());
-      size = std::max(size, std::abs(want[i].to_double()));
-    }
-    worst = std::max(worst, error / size);
+      state[tape.node(parameters[i]).a] = values[i].to_double();
   }
-  return worst;
+  OutputBlock all;
+  all.nodes = nodes;
+  const RoundingError error = rounding_errors(tape, {{all}}, states).front();
+  return error.is_measured() ? error.worst * std::numeric_limits<double>::epsilon()
+                             : std::numeric_limits<double>::infinity();
 }
 
 }  // namespace anholon
