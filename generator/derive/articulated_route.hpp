@@ -24,7 +24,8 @@ std::vector<Expr> articulated_accelerations(const Mechanism<Expr>& mechanism, co
                                             const std::vector<Expr>& torque);
 
 /// How much of nodes' values is rounding: their largest error in double, relative to the largest of them, at
-/// a few states whose inputs are drawn from +-3, the same on every machine. Infinite where a value is not finite.
+/// a few states whose inputs are drawn from +-3, the same on every machine. Infinite where a value is not
+/// finite.
 /// @param parameters  input nodes, with the values that they have
 double rounding_of(const Tape& tape, const std::vector<NodeId>& nodes, std::span<const NodeId> parameters,
                    std::span<const Exact> values);

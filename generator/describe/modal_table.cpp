@@ -202,7 +202,7 @@ class TableOfModes {
     if (worst > rounding() * largest)
       findings_.error(root_.find_where(key),
                       fmt::format("'{}' is not symmetric: entries differ by {}", key, worst.decimal(3)),
-                      "entries of modes j and l are those of l and j, transpose_of");
+                      "entries of modes j and l are those of l and j, transposed");
   }
 
   void check() {

@@ -90,7 +90,7 @@ struct Case {
   std::string name, text;  // of a model; empty: a shipped one
 };
 
-class ContactGeometryOf : public testing::TestWithParam<Case> {
+class ContactGeometryOf : public ::testing::TestWithParam<Case> {
  protected:
   static Model read(const Case& c) {
     if (!c.text.empty()) return read_model_text(described(c.text), c.name + ".toml");
@@ -137,7 +137,7 @@ TEST_P(ContactGeometryOf, ConditionsOnThePositionMoveWithTheRows) {
 
 INSTANTIATE_TEST_SUITE_P(
     Contacts, ContactGeometryOf,
-    testing::Values(
+    ::testing::Values(
         Case{"rolling_disc", ""}, Case{"rattleback", ""}, Case{"ball_on_incline", ""},
         Case{"whipple_bicycle", ""},
         Case{"crowned_wheel", "kind = 'wheel'\nwheel = 'right'\nradius = 0.2\ncrown = 0.03"},
@@ -207,7 +207,7 @@ struct Surface {
   std::function<Point(long double, long double)> point;
 };
 
-class LowestPoint : public testing::TestWithParam<Surface> {};
+class LowestPoint : public ::testing::TestWithParam<Surface> {};
 
 TEST_P(LowestPoint, HasTheMaterialVelocityOfTheRowsAndTheHeightOfTheCondition) {
   const Surface& surface = GetParam();
@@ -241,22 +241,22 @@ TEST_P(LowestPoint, HasTheMaterialVelocityOfTheRowsAndTheHeightOfTheCondition) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Surfaces, LowestPoint,
-                         testing::Values(Surface{"rolling_disc",
-                                                 [](long double u, long double) {
-                                                   return Point{0.4L * std::cos(u), 0, 0.4L * std::sin(u)};
-                                                 }},
-                                         Surface{"rattleback",
-                                                 [](long double u, long double v) {
-                                                   return Point{0.1L * std::cos(u) * std::cos(v),
-                                                                0.02L * std::sin(u) * std::cos(v),
-                                                                0.008L + 0.02L * std::sin(v)};
-                                                 }},
-                                         Surface{"ball_on_incline",
-                                                 [](long double u, long double v) {
-                                                   return Point{0.05L * std::cos(u) * std::cos(v),
-                                                                0.05L * std::sin(u) * std::cos(v),
-                                                                0.05L * std::sin(v)};
-                                                 }}),
+                         ::testing::Values(Surface{"rolling_disc",
+                                                   [](long double u, long double) {
+                                                     return Point{0.4L * std::cos(u), 0, 0.4L * std::sin(u)};
+                                                   }},
+                                           Surface{"rattleback",
+                                                   [](long double u, long double v) {
+                                                     return Point{0.1L * std::cos(u) * std::cos(v),
+                                                                  0.02L * std::sin(u) * std::cos(v),
+                                                                  0.008L + 0.02L * std::sin(v)};
+                                                   }},
+                                           Surface{"ball_on_incline",
+                                                   [](long double u, long double v) {
+                                                     return Point{0.05L * std::cos(u) * std::cos(v),
+                                                                  0.05L * std::sin(u) * std::cos(v),
+                                                                  0.05L * std::sin(v)};
+                                                   }}),
                          [](const auto& info) { return info.param.model; });
 
 }  // namespace

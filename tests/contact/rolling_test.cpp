@@ -59,7 +59,7 @@ class Disc {
 
 /// Upright rolling at the rate w obeys (J_d + m R^2) a'' = m g R a + (J_a + m R^2) w b', J_d b'' = -J_a w a'
 /// in lean a and heading b; so s^2 (J_d + m R^2) = m g R - (J_a + m R^2) J_a w^2 / J_d.
-class UprightRolling : public testing::TestWithParam<bool> {};
+class UprightRolling : public ::testing::TestWithParam<bool> {};
 
 TEST_P(UprightRolling, HasTheEigenvaluesAndTheStabilityLimitOfTheClosedForm) {
   const WorkingDigits digits(50);
@@ -92,7 +92,7 @@ TEST_P(UprightRolling, HasTheEigenvaluesAndTheStabilityLimitOfTheClosedForm) {
   EXPECT_GT(square(limit * decimal("0.999")).to_double(), 0);
 }
 
-INSTANTIATE_TEST_SUITE_P(DiscAndHoop, UprightRolling, testing::Bool());
+INSTANTIATE_TEST_SUITE_P(DiscAndHoop, UprightRolling, ::testing::Bool());
 
 /// At a constant lean a and heading rate b' the disc rolls in a circle if the moments about the point of
 /// contact balance: (J_a + m R^2) W b' cos a - J_d b'^2 cos a sin a + m g R sin a = 0, W the rate about the

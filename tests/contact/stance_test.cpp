@@ -235,7 +235,7 @@ TEST(QuadrupedStance, ForcesOfTwoThreeAndFourFeetCarryTheWeightAndTheChangeOfMom
   for (const ContactSet& set : scene.contact_sets) {
     const int feet = static_cast<int>(set.contacts.size());
     for (const bool by_torque : {true, false}) {
-      SCOPED_TRACE(testing::Message() << set.name << (by_torque ? ", torques" : ", motion"));
+      SCOPED_TRACE(::testing::Message() << set.name << (by_torque ? ", torques" : ", motion"));
       scene.contact_set = set.name;
       const Quadruped robot(scene, by_torque);
       // two feet leave the turn about the line through them free, three or four nothing

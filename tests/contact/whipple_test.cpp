@@ -15,7 +15,7 @@ namespace {
 
 using Two = Eigen::Matrix<long double, 2, 2>;
 
-long double number(const Exact& x) { return FromExact<long double>{}(x); }
+long double long_double(const Exact& x) { return FromExact<long double>{}(x); }
 
 /// Coefficients of the linearised program at a forward speed.
 struct Linear {
@@ -33,17 +33,17 @@ Linear linearised(const ProgramValues& program, const Exact& v) {
   Linear linear;
   const Values M = program("reduced_dynamics", "M_r", straight);
   for (int i = 0; i < 2; ++i) {
-    for (int j = 0; j < 2; ++j) linear.M(i, j) = number(M[static_cast<std::size_t>(3 * i + j)]);
+    for (int j = 0; j < 2; ++j) linear.M(i, j) = long_double(M[static_cast<std::size_t>(3 * i + j)]);
     const auto at = static_cast<std::size_t>(i);
-    linear.stiffness(i, 0) = -number(column(lean)[at]);
-    linear.stiffness(i, 1) = -number(column(steer)[at]);
-    linear.damping(i, 0) = -number(column({{"nu", {1, 0, 0}}})[at]);
-    linear.damping(i, 1) = -number(column({{"nu", {0, 1, 0}}})[at]);
+    linear.stiffness(i, 0) = -long_double(column(lean)[at]);
+    linear.stiffness(i, 1) = -long_double(column(steer)[at]);
+    linear.damping(i, 0) = -long_double(column({{"nu", {1, 0, 0}}})[at]);
+    linear.damping(i, 1) = -long_double(column({{"nu", {0, 1, 0}}})[at]);
   }
   return linear;
 }
 
-struct Whipple : testing::Test {
+struct Whipple : ::testing::Test {
   ProgramValues program{"whipple_bicycle", {}, {"kinematics", "reduced_dynamics"}};
   const Two M = (Two() << 80.81722L, 2.31941332208709L, 2.31941332208709L, 0.29784188199686L).finished();
   const Two C1 = (Two() << 0, 33.86641391492494L, -0.85035641456978L, 1.68540397397560L).finished();

@@ -110,7 +110,7 @@ constexpr Shown all_shown[] = {{"A", "constraints", "A"},
                                {"f_r", "reduced_dynamics", "f_r"},
                                {"\\tau_a", "inverse_torques", "tau_a"}};
 
-class EquationsOf : public testing::TestWithParam<const char*> {};
+class EquationsOf : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(EquationsOf, ReadBackAsTheProgram) {
   const Page page = page_of(GetParam());
@@ -147,8 +147,8 @@ TEST_P(EquationsOf, ReadBackAsTheProgram) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, EquationsOf,
-                         testing::Values("mobile_pendulum", "bicycle", "rigid_snakeboard", "soft_snakeboard",
-                                         "trailer", "double_pendulum", "wheeled_snake3"),
+                         ::testing::Values("mobile_pendulum", "bicycle", "rigid_snakeboard",
+                                           "soft_snakeboard", "trailer", "double_pendulum", "wheeled_snake3"),
                          [](const auto& info) { return std::string(info.param); });
 
 TEST(Equations, AreBriefWhereAsked) {

@@ -81,9 +81,9 @@ const NamedProgram programs[] = {
     {"no_parameters", no_parameters, {}},
     {"constants_only", constants_only, {}}};
 
-class EveryProgram : public testing::TestWithParam<NamedProgram> {};
+class EveryProgram : public ::testing::TestWithParam<NamedProgram> {};
 void PrintTo(const NamedProgram& program, std::ostream* out) { *out << program.name; }
-INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram, testing::ValuesIn(programs),
+INSTANTIATE_TEST_SUITE_P(Programs, EveryProgram, ::testing::ValuesIn(programs),
                          [](const auto& info) { return std::string(info.param.name); });
 
 TEST_P(EveryProgram, CompilesAloneAndNeedsNothingButTheMathLibrary) {

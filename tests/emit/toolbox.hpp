@@ -28,7 +28,7 @@ inline void write_text(const std::filesystem::path& file, const std::string& tex
 
 /// A folder of the running test in the build tree, empty at the start.
 inline std::filesystem::path test_folder() {
-  const auto* const info = testing::UnitTest::GetInstance()->current_test_info();
+  const auto* const info = ::testing::UnitTest::GetInstance()->current_test_info();
   std::string name = fmt::format("{}.{}", info->test_suite_name(), info->name());
   for (char& c : name) c = c == '/' ? '_' : c;
   const std::filesystem::path folder = std::filesystem::path(ANHOLON_BINARY_DIR) / "test-scratch" / name;

@@ -63,7 +63,7 @@ std::vector<std::string> functions_of(const std::string& header) {
 }
 
 using HeaderAndCompiler = std::tuple<std::string, std::string>;
-class EveryHeader : public testing::TestWithParam<HeaderAndCompiler> {};
+class EveryHeader : public ::testing::TestWithParam<HeaderAndCompiler> {};
 
 TEST_P(EveryHeader, CompilesAloneAndNeedsNothingButTheMathLibrary) {
   const auto& [name, compiler] = GetParam();
@@ -106,8 +106,8 @@ TEST_P(EveryHeader, CompilesAloneAndNeedsNothingButTheMathLibrary) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Headers, EveryHeader,
-                         testing::Combine(testing::ValuesIn(header_names()),
-                                          testing::Values("g++", "clang++")));
+                         ::testing::Combine(::testing::ValuesIn(header_names()),
+                                            ::testing::Values("g++", "clang++")));
 
 }  // namespace
 }  // namespace anholon

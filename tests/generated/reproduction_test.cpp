@@ -87,7 +87,7 @@ std::string generated_text(const std::string& name) {
   return emit_header(derive_tree(read_robot(urdf, options), request)->program);
 }
 
-class EveryModel : public testing::TestWithParam<std::string> {};
+class EveryModel : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryModel, IsReproducedByteForByte) {
   const fs::path kept = root / "generated" / GetParam() / "standard.hpp";
@@ -101,7 +101,7 @@ TEST_P(EveryModel, IsReproducedByteForByte) {
 }
 
 /// Models that are described by a model file: their pages show equations, which those of URDF files do not.
-class EveryModelFile : public testing::TestWithParam<std::string> {};
+class EveryModelFile : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryModelFile, ShowsItsEquationsOnItsPage) {
   const std::string page = bytes_of(root / "models" / GetParam() / "README.md");
@@ -122,8 +122,8 @@ TEST_P(EveryModelFile, ShowsItsEquationsOnItsPage) {
                                  << "\nif this is meant, run scripts/regenerate and commit the result";
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, EveryModel, testing::ValuesIn(model_names()));
-INSTANTIATE_TEST_SUITE_P(Models, EveryModelFile, testing::ValuesIn(names_of_model_files()));
+INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(model_names()));
+INSTANTIATE_TEST_SUITE_P(Models, EveryModelFile, ::testing::ValuesIn(names_of_model_files()));
 
 }  // namespace
 }  // namespace anholon

@@ -20,7 +20,7 @@
 namespace anholon::testing {
 namespace {
 
-const std::string section = "Bodies that turn";
+const std::string of_turns = "Bodies that turn";
 
 /// Errors of the final state by generated code and by recursion, at one rung; against collocation in
 /// long double.
@@ -85,16 +85,16 @@ TEST(HardRotations, HeavyTopOfTheIntegrationBenchmarks) {
   EXPECT_LT(errors.reference, 1e-16);
   EXPECT_LT(errors.generated, 1e-14);
   EXPECT_LT(errors.recursion, 1e-14);
-  note({section, "heavy top, spin of 150 rad/s", "world rate about y at 0.01 s",
+  note({of_turns, "heavy top, spin of 150 rad/s", "world rate about y at 0.01 s",
         digits_text(std::abs(found / world.to_double() - 1)), "", "", "",
         fmt::format(
             "found {2:.13f}; Euler's equations to 30 digits say {0}; published is {1}, of which the last two "
             "digits are not those of the motion",
             world.decimal(16), published, found)});
-  note({section, "heavy top, spin of 150 rad/s", "body rate about its axis",
+  note({of_turns, "heavy top, spin of 150 rad/s", "body rate about its axis",
         digits_text(std::abs(end("Omega_Y") / 150 - 1)), "", "", "",
         "gravity has no moment about the axis, and the terms of equal inertias cancel in the program"});
-  note({section, "heavy top, spin of 150 rad/s", "final state", digits_text(errors.generated), "",
+  note({of_turns, "heavy top, spin of 150 rad/s", "final state", digits_text(errors.generated), "",
         digits_text(errors.recursion), "", "rounding; against collocation in long double"});
 }
 
@@ -126,8 +126,8 @@ void tumble(const std::string& name, long steps, const std::string& method, doub
   }
   EXPECT_LT(result.energy_balance, allowed_energy);
   EXPECT_LT(worst, allowed_momentum);
-  note({section, name, "energy", digits_text(result.energy_balance), "", "", "", why});
-  note({section, name, "angular momentum in the world", digits_text(worst), "", "", "", why});
+  note({of_turns, name, "energy", digits_text(result.energy_balance), "", "", "", why});
+  note({of_turns, name, "angular momentum in the world", digits_text(worst), "", "", "", why});
   if (steps > 100'000)
     draw_picture("tumble_" + method, fmt::format("free tumbling body, {}: angular momentum", method), "t [s]",
                  "error relative to its size", {momentum}, true);
@@ -190,12 +190,12 @@ void flip(double small) {
   EXPECT_LT(result.energy_balance, 1e-13);
   const std::string name =
       fmt::format("Dzhanibekov's flips, {:g} rad/s across 3 rad/s, one period of {:.2f} s", small, T);
-  note({section, name, "spin", digits_text(std::abs(end("Omega_Y") / 3 - 1)), "", "", "",
+  note({of_turns, name, "spin", digits_text(std::abs(end("Omega_Y") / 3 - 1)), "", "", "",
         "against Jacobi's elliptic functions: reversed at half the period, back at its end"});
-  note({section, name, "rates across it", digits_text(error), "", "", fmt::format("{:.1g}", kappa),
+  note({of_turns, name, "rates across it", digits_text(error), "", "", fmt::format("{:.1g}", kappa),
         "the phase hangs on L^2 - 2 E J_2, which is 1/kappa of the terms that make it, and these are "
         "rounded"});
-  note({section, name, "energy", digits_text(result.energy_balance), "", "", "", "rounding"});
+  note({of_turns, name, "energy", digits_text(result.energy_balance), "", "", "", "rounding"});
 }
 TEST(HardRotations, DzhanibekovFlipsKeepHalfTheDigits) { flip(1e-4); }
 TEST(HardRotations, DzhanibekovFlipsNextToTheSeparatrix) { flip(1e-8); }

@@ -22,7 +22,7 @@ namespace anholon::testing {
 namespace {
 
 constexpr int states = 40;
-const std::string section = "One evaluation of the accelerations, the worst of 40 random states";
+const std::string of_states = "One evaluation of the accelerations, the worst of 40 random states";
 using StateSource = std::function<NamedValues<double>(std::mt19937_64&)>;
 
 /// Random angles, and rates of size v.
@@ -51,7 +51,7 @@ Kept check(Robot& robot, const Case& c, const StateSource& state) {
   EXPECT_LE(kept.of_bound, 1);
   EXPECT_LE(kept.of_recursion_bound, 1);
   EXPECT_LE(kept.of_float_bound, 1);
-  note({section, c.name, "accelerations", digits_text(kept.in_double),
+  note({of_states, c.name, "accelerations", digits_text(kept.in_double),
         c.with_float ? digits_text(kept.in_float) : "", digits_text(kept.recursion),
         c.shows_M ? fmt::format("{:.2g}; of M {:.2g}", kept.kappa, kept.kappa_M)
                   : fmt::format("{:.2g}", kept.kappa),
@@ -174,7 +174,7 @@ TEST(HardStates, RatesWhoseSquaresAreDenormalOrVanish) {
       }
     }
   }
-  note({section, "rates of 1e-155 rad/s down to the least denormal, no gravity", "accelerations",
+  note({of_states, "rates of 1e-155 rad/s down to the least denormal, no gravity", "accelerations",
         fmt::format("to {:.0f} units of 4.9e-324", std::ceil(worst)), "", "", "",
         "squares are denormal or vanish: digits go one by one, the absolute error stays"});
 }

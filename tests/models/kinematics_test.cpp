@@ -11,7 +11,7 @@ namespace {
 
 constexpr double formula = 1e-30;  // 60 digits are carried; what is left is the rounding of the formulas
 
-Exact number(const char* text) { return Exact::from_decimal(text); }
+Exact decimal(const char* text) { return Exact::from_decimal(text); }
 
 void expect_equal(const Values& got, const Values& want, const std::string& what,
                   double tolerance = formula) {
@@ -24,14 +24,14 @@ TEST(DifferentialDrive, MovesByTheMeanAndTurnsByTheDifferenceOfItsWheels) {
   const WorkingDigits digits(60);
   const ProgramValues robot("differential_drive", {}, {"kinematics", "inverse_torques"});
   EXPECT_EQ(robot.derivation().reduction.ranks.m_locked, 3);
-  const Exact R = number("0.1"), b = number("0.2"), left = number("3.7"), right = number("-1.2");
-  Inputs in = {{"r_a_dot", {left, right}}, {"g", {number("1"), number("2"), number("0.4")}}};
+  const Exact R = decimal("0.1"), b = decimal("0.2"), left = decimal("3.7"), right = decimal("-1.2");
+  Inputs in = {{"r_a_dot", {left, right}}, {"g", {decimal("1"), decimal("2"), decimal("0.4")}}};
   expect_equal(robot("kinematics", "eta", in),
                {R * (left + right) / Exact(2), Exact(0), R * (right - left) / (Exact(2) * b)}, "twist");
   // Straight on from rest: each motor moves half of the mass and its own wheel.
-  const Exact alpha = number("2.5"), mass = number("12") + Exact(2) * number("0.8");
+  const Exact alpha = decimal("2.5"), mass = decimal("12") + Exact(2) * decimal("0.8");
   in = {{"r_a_ddot", {alpha, alpha}}};
-  const Exact tau = (mass * R * R / Exact(2) + number("0.004")) * alpha;
+  const Exact tau = (mass * R * R / Exact(2) + decimal("0.004")) * alpha;
   expect_equal(robot("inverse_torques", "tau_a", in), {tau, tau}, "torques");
 }
 
@@ -40,8 +40,8 @@ TEST(MecanumBase, HasTheWheelSpeedsOfTheTextbook) {
   const ProgramValues base("mecanum_base", {}, {"kinematics", "compatibility"});
   EXPECT_EQ(base.derivation().reduction.ranks.m, 4);
   EXPECT_EQ(base.derivation().reduction.ranks.m_locked, 3);
-  const Exact R = number("0.08"), k = number("0.25") + number("0.2");
-  const Exact x = number("0.7"), y = number("-0.3"), turn = number("1.1");
+  const Exact R = decimal("0.08"), k = decimal("0.25") + decimal("0.2");
+  const Exact x = decimal("0.7"), y = decimal("-0.3"), turn = decimal("1.1");
   const Inputs in = {
       {"r_a_dot",
        {(x - y - k * turn) / R, (x + y + k * turn) / R, (x + y - k * turn) / R, (x - y + k * turn) / R}}};
@@ -59,9 +59,9 @@ TEST(AckermannCar, TurnsAboutTheCentreInWhichAllAxlesMeet) {
   EXPECT_EQ(reduction.ranks.rows, 12);
   EXPECT_EQ(reduction.ranks.m, 9);
   EXPECT_EQ(reduction.ranks.m_locked, 9);  // three loadings are left open: two axles, and one diagonal
-  const Exact L = number("2.6"), w = number("0.75"), R = number("0.3"), speed = number("8"), zero = 0;
+  const Exact L = decimal("2.6"), w = decimal("0.75"), R = decimal("0.3"), speed = decimal("8"), zero = 0;
   for (const char* angle : {"0.4", "-0.55", "0.001"}) {
-    const Exact steer = number(angle);
+    const Exact steer = decimal(angle);
     const Exact radius = L * cos(steer) / sin(steer);  // from the centre to the middle of the rear axle
     const Exact turn = speed / radius;
     const Inputs in = {{"nu", {speed}}, {"r_a", {steer}}, {"r_p", Values(4, Exact(0))}};
@@ -80,7 +80,7 @@ TEST(FiveBar, RodsFollowTheIntersectionOfTwoCircles) {
   const WorkingDigits digits(60);
   const ProgramValues linkage("five_bar", {}, {"kinematics", "position_conditions"});
   EXPECT_EQ(linkage.derivation().reduction.kernel.H.cols(), 0);
-  const Exact b = number("0.15"), l_1 = number("0.25"), l_2 = number("0.4");
+  const Exact b = decimal("0.15"), l_1 = decimal("0.25"), l_2 = decimal("0.4");
   /// (left_elbow, right_elbow) at angles of the cranks, tip up.
   const auto elbows = [&](const Exact& left, const Exact& right) -> Values {
     const Exact px = l_1 * cos(left) - b, py = l_1 * sin(left);
@@ -90,8 +90,8 @@ TEST(FiveBar, RodsFollowTheIntersectionOfTwoCircles) {
     const Exact tx = px + dx - height * dy / half, ty = py + dy + height * dx / half;
     return {atan2(ty - py, tx - px) - left, atan2(ty - qy, tx - qx) - right};
   };
-  const Exact left = number("2.1"), right = number("0.8"), h = number("1e-20");
-  const Exact left_rate = number("1.3"), right_rate = number("-0.7");
+  const Exact left = decimal("2.1"), right = decimal("0.8"), h = decimal("1e-20");
+  const Exact left_rate = decimal("1.3"), right_rate = decimal("-0.7");
   const Values at = elbows(left, right);
   const Inputs in = {{"r_a", {left, right}}, {"r_p", at}, {"r_a_dot", {left_rate, right_rate}}};
   expect_equal(linkage("position_conditions", "Phi", in), {Exact(0), Exact(0)}, "closure");

@@ -64,7 +64,7 @@ void PrintTo(const Difference& d, std::ostream* out) { *out << d.name; }
 
 Expr number(Tape& tape, const char* decimal) { return {tape, tape.constant(Exact::from_decimal(decimal))}; }
 
-class StableForm : public testing::TestWithParam<Difference> {};
+class StableForm : public ::testing::TestWithParam<Difference> {};
 
 TEST_P(StableForm, HasTheSameValueAndKeepsTheDigitsThatTheDifferenceLoses) {
   const Difference& d = GetParam();
@@ -86,7 +86,7 @@ TEST_P(StableForm, HasTheSameValueAndKeepsTheDigitsThatTheDifferenceLoses) {
 
 INSTANTIATE_TEST_SUITE_P(
     Forms, StableForm,
-    testing::Values(
+    ::testing::Values(
         Difference{"versine", [](Tape&, Expr x, Expr) { return Expr(1) - cos(x); }, 1e-5, 0},
         Difference{
             "scaled versine",
@@ -125,7 +125,7 @@ TEST(StableForms, LeavesSumsAloneThatDoNotCancel) {
 }
 
 /// Two candidates: a short one that loses digits where x is small, and a longer one.
-class Choice : public testing::Test {
+class Choice : public ::testing::Test {
  protected:
   Choice() {
     const Expr x(tape, tape.input("x"));

@@ -32,9 +32,9 @@ std::vector<NodeId> parameters_of(const Program& program) {
   return nodes;
 }
 
-class EveryNodeOrder : public testing::TestWithParam<NodeOrder> {};
+class EveryNodeOrder : public ::testing::TestWithParam<NodeOrder> {};
 INSTANTIATE_TEST_SUITE_P(Orders, EveryNodeOrder,
-                         testing::Values(NodeOrder::levels, NodeOrder::depth_first, NodeOrder::lifetimes));
+                         ::testing::Values(NodeOrder::levels, NodeOrder::depth_first, NodeOrder::lifetimes));
 
 TEST_P(EveryNodeOrder, PutsEveryOperandBeforeItsUser) {
   for (std::uint64_t seed = 1; seed <= 50; ++seed) {

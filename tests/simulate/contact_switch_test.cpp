@@ -15,9 +15,9 @@ namespace {
 
 /// A model and a scene of it, written to a folder of the test.
 Scene scene_of(const std::string& model, const std::string& scene) {
-  const std::filesystem::path folder = std::filesystem::path(testing::TempDir()) / "contact_switch";
+  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "contact_switch";
   std::filesystem::create_directories(folder);
-  const std::string name = testing::UnitTest::GetInstance()->current_test_info()->name();
+  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
   std::ofstream(folder / (name + ".toml")) << model;
   return read_scene_text("anholon = 1\nname = \"scene\"\nmodel = \"" + name + ".toml\"\n" + scene,
                          folder / "scene.toml");

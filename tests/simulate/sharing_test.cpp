@@ -16,7 +16,7 @@ namespace {
 
 const std::string root = ANHOLON_SOURCE_DIR;
 
-std::size_t column(const SimulationResult& result, const std::string& name) {
+std::size_t column_of(const SimulationResult& result, const std::string& name) {
   const auto at =
       std::ranges::find_if(result.columns, [&](const std::string& c) { return c.starts_with(name); });
   EXPECT_NE(at, result.columns.end()) << name;
@@ -53,7 +53,7 @@ TEST(Sharing, OfTheCarChangesItsContactForcesAndNothingElse) {
   const std::vector<std::string> wheels = {"rear_left", "rear_right", "front_left", "front_right"};
   for (std::size_t i = 0; i < least.rows.size(); ++i) {
     const auto difference = [&](const std::string& name) {
-      const std::size_t c = column(least, name);
+      const std::size_t c = column_of(least, name);
       return equal.rows[i][c] - least.rows[i][c];
     };
     for (const char* name : {"p_X", "p_Y", "V_X", "Omega_Z", "rear_left_spin"})
@@ -61,14 +61,14 @@ TEST(Sharing, OfTheCarChangesItsContactForcesAndNothingElse) {
     double load = 0, load_change = 0;
     for (const std::string& wheel : wheels) {
       changed = std::max(changed, std::abs(difference(wheel + ".lateral")));
-      load += equal.rows[i][column(equal, wheel + ".normal")];
+      load += equal.rows[i][column_of(equal, wheel + ".normal")];
       load_change += difference(wheel + ".normal");
     }
     unbalanced = std::max(unbalanced, std::abs(load_change) / load);
     EXPECT_NEAR(load, (1100 + 4 * 18) * 9.81, 1e-9 * load);  // the whole weight; the car stays level
     const auto use = [&](const std::string& wheel) {         // of one axle, side force over load
-      return equal.rows[i][column(equal, wheel + ".lateral")] /
-             equal.rows[i][column(equal, wheel + ".normal")];
+      return equal.rows[i][column_of(equal, wheel + ".lateral")] /
+             equal.rows[i][column_of(equal, wheel + ".normal")];
     };
     uneven = std::max(uneven, std::abs(use("rear_left") - use("rear_right")));
   }
@@ -97,7 +97,7 @@ TEST(Sharing, FlagsTheWheelThatWouldLiftAndTheOneThatWouldSlip) {
 
 // Remark 7: springs in the contacts determine lambda; as they stiffen, it tends to the least norm, that of
 // equal springs.
-class Ladder : public testing::TestWithParam<std::string> {};
+class Ladder : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(Ladder, SharesOfElasticContactsTendToTheLeastNorm) {
   const Scene scene = read_scene(root + "/models/" + GetParam());
@@ -111,8 +111,8 @@ TEST_P(Ladder, SharesOfElasticContactsTendToTheLeastNorm) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Models, Ladder,
-                         testing::Values("mobile_pendulum/elastic_contacts.scene.toml",
-                                         "ackermann_car/elastic_contacts.scene.toml"),
+                         ::testing::Values("mobile_pendulum/elastic_contacts.scene.toml",
+                                           "ackermann_car/elastic_contacts.scene.toml"),
                          [](const auto& info) { return info.param.substr(0, info.param.find('/')); });
 
 }  // namespace

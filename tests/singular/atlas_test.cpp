@@ -38,7 +38,7 @@ std::vector<double> attitude(const Eigen::Vector3d& u, double heading) {
   return rows;
 }
 
-class SpinlessBody : public testing::Test {
+class SpinlessBody : public ::testing::Test {
  protected:
   SpinlessBody()
       : model(read_model(here + "without_spin.toml")),
@@ -87,7 +87,7 @@ TEST_F(SpinlessBody, KeepsAllDigitsAtEveryAttitude) {
   const auto chart_at = chart_finder<double>(*derivation);
   double worst = 0;
   for (const Eigen::Vector3d& u : verticals()) {
-    SCOPED_TRACE(testing::Message() << u.transpose());
+    SCOPED_TRACE(::testing::Message() << u.transpose());
     BothInputs in;
     in.set("R", attitude(u, 0.4));
     in.set("nu", {0.7, -1.3});

@@ -36,7 +36,7 @@ TEST(LevelBody, MovesStraightOnAndTurnsByEulersEquationsInEveryChart) {
       up.normalize();
       const Eigen::Matrix3d R =
           Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-      SCOPED_TRACE(testing::Message() << up.transpose());
+      SCOPED_TRACE(::testing::Message() << up.transpose());
       BothInputs in;
       std::vector<double> rotation;
       for (int i = 0; i < 9; ++i) rotation.push_back(R(i / 3, i % 3));
@@ -93,7 +93,7 @@ joint   = { kind = "revolute", axis = [0, 0, 1], coordinate = "r1", drive = "act
       up(axis) = 1;
       const Eigen::Matrix3d R =
           Eigen::Quaterniond::FromTwoVectors(up, Eigen::Vector3d::UnitZ()).toRotationMatrix();
-      SCOPED_TRACE(testing::Message() << up.transpose());
+      SCOPED_TRACE(::testing::Message() << up.transpose());
       BothInputs in;
       std::vector<double> rotation;
       for (int i = 0; i < 9; ++i) rotation.push_back(R(i / 3, i % 3));

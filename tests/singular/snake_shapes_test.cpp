@@ -24,7 +24,7 @@ struct Drives {
   std::string joint_1, joint_2;
 };
 
-class SnakeShape : public testing::TestWithParam<Drives> {};
+class SnakeShape : public ::testing::TestWithParam<Drives> {};
 
 // Straight, arcs, and what is a little off them.
 TEST_P(SnakeShape, KeepsAllDigits) {
@@ -41,7 +41,7 @@ TEST_P(SnakeShape, KeepsAllDigits) {
   const Partition partition = partition_of(model);
   for (const double bend : {0.0, 0.5, -1.3, std::numbers::pi / 2}) {
     for (const double offset : {0.0, 1e-14, 1e-9, -1e-5, 1e-2}) {
-      SCOPED_TRACE(testing::Message() << bend << " + " << offset);
+      SCOPED_TRACE(::testing::Message() << bend << " + " << offset);
       BothInputs in;
       const double r_1 = bend, r_2 = bend + offset;
       in.set("g", {0.1, -0.2, 0.3});
@@ -83,8 +83,8 @@ TEST_P(SnakeShape, KeepsAllDigits) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Drives, SnakeShape,
-                         testing::Values(Drives{"passive", "passive"}, Drives{"active", "passive"},
-                                         Drives{"active", "active"}),
+                         ::testing::Values(Drives{"passive", "passive"}, Drives{"active", "passive"},
+                                           Drives{"active", "active"}),
                          [](const auto& info) { return info.param.joint_1 + "_" + info.param.joint_2; });
 
 SimulationResult simulated(const std::string& model, const std::string& lines) {

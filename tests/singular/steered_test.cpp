@@ -29,7 +29,7 @@ TEST(SteeredBicycle, KeepsTheDigitsThatItsConditionLeaves) {
   const double degree = std::numbers::pi / 180;
   for (const double steer : {80.5, -82.0, 85.0, 88.0, -89.0}) {
     for (const double lean : {0.0, 0.2, -0.5}) {
-      SCOPED_TRACE(testing::Message() << steer << " degrees, lean " << lean);
+      SCOPED_TRACE(::testing::Message() << steer << " degrees, lean " << lean);
       const Eigen::Matrix3d R = Eigen::AngleAxisd(lean, Eigen::Vector3d::UnitX()).toRotationMatrix();
       test::BothInputs in;
       std::vector<double> rotation;

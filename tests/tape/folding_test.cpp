@@ -111,7 +111,7 @@ TEST(Folding, KeepsEveryFunctionToTheWorkingDigits) {
   EXPECT_GT(compared, 1500);
 }
 
-class FoldsTo : public testing::Test {
+class FoldsTo : public ::testing::Test {
  protected:
   Tape tape;
   Expr x{tape, tape.input("x")}, y{tape, tape.input("y")};
