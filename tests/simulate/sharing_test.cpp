@@ -97,9 +97,9 @@ TEST(Sharing, FlagsTheWheelThatWouldLiftAndTheOneThatWouldSlip) {
 
 // Remark 7: springs in the contacts determine lambda; as they stiffen, it tends to the least norm, that of
 // equal springs.
-class Ladder : public ::testing::TestWithParam<std::string> {};
+class StiffeningLadder : public ::testing::TestWithParam<std::string> {};
 
-TEST_P(Ladder, SharesOfElasticContactsTendToTheLeastNorm) {
+TEST_P(StiffeningLadder, SharesOfElasticContactsTendToTheLeastNorm) {
   const Scene scene = read_scene(root + "/models/" + GetParam());
   const StiffnessLadder ladder = stiffness_ladder(scene, {1, 10, 100});
   ASSERT_EQ(ladder.steps.size(), 3U);
@@ -110,7 +110,7 @@ TEST_P(Ladder, SharesOfElasticContactsTendToTheLeastNorm) {
   EXPECT_LT(ladder.steps.back().distance, 1e-3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Models, Ladder,
+INSTANTIATE_TEST_SUITE_P(Models, StiffeningLadder,
                          ::testing::Values("mobile_pendulum/elastic_contacts.scene.toml",
                                            "ackermann_car/elastic_contacts.scene.toml"),
                          [](const auto& info) { return info.param.substr(0, info.param.find('/')); });
