@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 
 #include "check/evaluate_program.hpp"
@@ -15,6 +15,7 @@
 #include "describe/read_model.hpp"
 #include "describe/scene.hpp"
 #include "describe/specialise.hpp"
+#include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon::test {
@@ -152,7 +153,7 @@ TEST(Stance, OnNearlyCollinearFeetKeepsTheDigitsThatTheConditionLeaves) {
     Eigen::MatrixXd rows(static_cast<Eigen::Index>(A.size()) / 6, 6);
     for (Eigen::Index i = 0; i < rows.size(); ++i)
       rows(i / 6, i % 6) = A[static_cast<std::size_t>(i)].to_double();
-    const Eigen::VectorXd s = Eigen::JacobiSVD<Eigen::MatrixXd>(rows).singularValues();
+    const Eigen::VectorXd s = singular_values(rows).sigma;
     const double condition = s(0) / s(5);
     const auto error = [&](const char* function, const char* output) {
       const Values exact = stool.call(function, in).at(output);

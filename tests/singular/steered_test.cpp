@@ -4,10 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
 #include <cmath>
 #include <numbers>
 
+#include "reduce/decompositions.hpp"
 #include "singular/exact_inputs.hpp"
 #include "singular/wheeled_snake.hpp"
 
@@ -47,7 +48,7 @@ TEST(SteeredBicycle, KeepsTheDigitsThatItsConditionLeaves) {
         for (Eigen::Index j = 0; j < 3; ++j)
           A(i, 6 + j) = rows.at("B_p")[static_cast<std::size_t>(3 * i + j)];
       }
-      const Eigen::VectorXd sigma = Eigen::JacobiSVD<Eigen::MatrixXd>(A).singularValues();
+      const Eigen::VectorXd sigma = singular_values(A).sigma;
       double largest =
           1;  // of H: near 90 degrees the rear wheel, which the description names as free, is blocked
       const auto kinematics = generated("kinematics", in.rounded);
