@@ -56,17 +56,17 @@ need_packages() {
   fi
 }
 
-# Jobs that the processors and the memory allow: one compiler of this project takes up to about 1 GB.
+# Jobs that the processors and the memory allow: one compiler of this project takes up to about 2 GB.
 jobs_that_fit() {
   local cpus megabytes
   cpus=$(nproc)
   megabytes=$(awk '/^MemAvailable:/ { print int($2 / 1024) }' /proc/meminfo 2>/dev/null || true)
-  local by_memory=$((${megabytes:-2000} / 1200))
+  local by_memory=$((${megabytes:-2000} / 2200))
   if ((by_memory < 1)); then by_memory=1; fi
   echo $((cpus < by_memory ? cpus : by_memory))
 }
 
-# configure FOLDER [CMAKE OPTION...]; several files of the generator at a time, which halves a build from nothing; the
+# configure FOLDER [CMAKE OPTION...]; several files of the generator at a time, which shortens a build from nothing; the
 # compiler cache is used where there is one.
 configure() {
   local folder=$1
