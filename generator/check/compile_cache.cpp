@@ -72,12 +72,16 @@ int run(const std::vector<std::string>& command, const fs::path& printed) {
   }
 }
 
+std::vector<std::string> words_of(const std::string& text) {
+  std::istringstream words(text);
+  return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
+}
+
 std::vector<std::string> compiler_command(const CompileOptions& options) {
   std::string text = options.compiler.empty() ? environment("CXX") : options.compiler;
   if (text.empty()) text = "c++";
   if (fs::exists(text)) return {text};  // a path that may hold blanks
-  std::istringstream words(text);
-  return {std::istream_iterator<std::string>(words), std::istream_iterator<std::string>()};
+  return words_of(text);
 }
 
 fs::path cache_folder(const CompileOptions& options) {
@@ -157,9 +161,16 @@ void append(std::string& text, std::string_view part) { text += fmt::format("{}:
 
 }  // namespace
 
+std::vector<std::string> flags_of(const CompileOptions& options) {
+  std::vector<std::string> flags = options.flags;
+  for (std::string& word : words_of(environment("ANHOLON_CXXFLAGS"))) flags.push_back(std::move(word));
+  return flags;
+}
+
 CompiledFile compile_cached(const std::string& header, const std::string& source,
                             const CompileOptions& options) {
   const std::vector<std::string> compiler = compiler_command(options);
+  const std::vector<std::string> flags = flags_of(options);
   const fs::path cache = cache_folder(options);
   std::string identity;
   append(identity, header);
@@ -167,14 +178,14 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
   append(identity, embedded::abi_header);
   for (const std::string& word : compiler) append(identity, word);
   append(identity, compiler_version(compiler, cache));
-  for (const std::string& flag : options.flags) append(identity, flag);
+  for (const std::string& flag : flags) append(identity, flag);
   const fs::path folder = cache / sha256_hex(identity);
   const fs::path library = folder / "program.so";
   if (fs::exists(library)) return {library, true};
 
   const TemporaryFolder scratch(cache);
   const fs::path work = scratch.path() / "program";
-  compile(compiler, options.flags, header, source, work, work / "program.so");
+  compile(compiler, flags, header, source, work, work / "program.so");
   std::error_code error;
   fs::rename(work, folder, error);
   if (error && !fs::exists(library)) {  // else another process was faster, with the same bytes
@@ -187,7 +198,7 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
 CompileEffort compile_effort(const Program& program, const CompileOptions& options) {
   const std::vector<std::string> compiler = compiler_command(options);
   const TemporaryFolder scratch(cache_folder(options));
-  std::vector<std::string> flags = options.flags;
+  std::vector<std::string> flags = flags_of(options);
   std::erase(flags, "-shared");
   flags.emplace_back("-c");
   const fs::path object = scratch.path() / "program.o";

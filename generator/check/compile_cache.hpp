@@ -37,6 +37,10 @@ struct CompileOptions {
   AbiScalar scalar = AbiScalar::is_double;
 };
 
+/// Those of the options, then the words of $ANHOLON_CXXFLAGS: of two that contradict each other compilers
+/// take the last.
+std::vector<std::string> flags_of(const CompileOptions& options);
+
 /// The compiler refused, could not be run, or its library could not be loaded; what() carries its messages.
 class CompileError : public std::runtime_error {
  public:

@@ -74,8 +74,8 @@ void print_effort(const Program& program, const StatementStyle& style, double se
   options.style = style;
   try {
     const CompileEffort effort = compile_effort(program, options);
-    fmt::print("compiled with -O2 in {:.2f} s of processor time, object of {} bytes\n", effort.seconds,
-               effort.object_bytes);
+    fmt::print("compiled with {} in {:.2f} s of processor time, object of {} bytes\n",
+               fmt::join(flags_of(options), " "), effort.seconds, effort.object_bytes);
   } catch (const CompileError& error) {
     fmt::print("not compiled: {}\n", error.what());
   }

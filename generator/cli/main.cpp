@@ -21,7 +21,12 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", ANHOLON_VERSION);
   app.footer(
       "Exit status: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 unsupported, 70 a fault of this "
-      "program.");
+      "program.\n\n"
+      "Environment, for generated code that verify, evaluate, simulate and report compile: CXX, the "
+      "compiler; "
+      "ANHOLON_CXXFLAGS, flags after its own, such as -march=native; ANHOLON_CACHE, the folder that keeps "
+      "what "
+      "was compiled.");
   std::function<int()> run;
 
   const auto optimise_option = [](CLI::App* verb, std::string& optimise) {

@@ -199,7 +199,7 @@ ordered_json machine_record() {
   }
   const CompileOptions options;
   ordered_json flags = ordered_json::array();
-  for (const std::string& flag : options.flags) flags.push_back(flag);
+  for (const std::string& flag : flags_of(options)) flags.push_back(flag);
   return {{"processor", processor},
           {"compiler", compiler_name(options)},
           {"flags", flags},

@@ -15,7 +15,7 @@
 #include "emit/toolbox.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::compiled_program_test {
 namespace {
 
 CompileOptions options_for_test() {
@@ -217,12 +217,16 @@ TEST(CompileCache, CompilesOnceForOneTextAndCompilerAndFlags) {
   EXPECT_TRUE(CompiledProgram(test::cart_pendulum(), options).was_cached());
   options.flags[0] = "-O1";
   EXPECT_FALSE(CompiledProgram(test::cart_pendulum(), options).was_cached());
+  ::setenv("ANHOLON_CXXFLAGS", "-O0  -DANY", 1);
+  EXPECT_FALSE(CompiledProgram(test::cart_pendulum(), options).was_cached());
+  EXPECT_EQ(flags_of(options).back(), "-DANY");
+  ::unsetenv("ANHOLON_CXXFLAGS");
   std::size_t entries = 0;
   for (const auto& entry : std::filesystem::directory_iterator(options.cache)) {
     ++entries;
     EXPECT_EQ(entry.path().filename().string().size(), 64U) << "a temporary stays: " << entry.path();
   }
-  EXPECT_EQ(entries, 2U);
+  EXPECT_EQ(entries, 3U);
 }
 
 TEST(CompileCache, RepairsADamagedLibrary) {
@@ -283,4 +287,4 @@ TEST(CompileCache, PassesOnWhatTheCompilerSays) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::compiled_program_test
