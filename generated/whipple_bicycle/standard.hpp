@@ -14,7 +14,7 @@
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
 //   reduced_dynamics     604 add, 869 mul, 9 div, 2 sqrt, 3 sin, 3 cos
-//   forward_dynamics     632 add, 903 mul, 12 div, 1 neg, 2 sqrt, 3 sin, 3 cos
+//   forward_dynamics     728 add, 1003 mul, 14 div, 2 sqrt, 3 sin, 3 cos
 //   multipliers          323 add, 467 mul, 9 div, 2 sqrt, 3 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
@@ -3802,8 +3802,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: projected recursion
-/// operations: 632 add, 903 mul, 12 div, 1 neg, 2 sqrt, 3 sin, 3 cos
+/// route: orthogonal basis, projected recursion
+/// operations: 728 add, 1003 mul, 14 div, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -3851,1655 +3851,2696 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t18 = t13 + t17;
   const Real t19 = sqrt(t18);
   const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t12 * t20;
-  const Real t22 = par.r_F * t21;
-  const Real t23 = par.k1 * t22;
-  const Real t24 = t20 * t16;
-  const Real t25 = t24 * par.r_F;
-  const Real t26 = t25 * par.k2;
-  const Real t27 = t23 + t26;
-  const Real t28 = t27 + par.k12;
-  const Real t29 = par.k1 * c_r_p_1_;
-  const Real t30 = par.k1 * t29;
-  const Real t31 = par.k18 + t30;
-  const Real t32 = t31 * t25;
-  const Real t33 = t29 * par.k2;
-  const Real t34 = par.k22 - t33;
-  const Real t35 = t22 * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = c_r_p_1_ * par.k13;
-  const Real t38 = t34 * par.r_F;
-  const Real t39 = t31 * par.c;
-  const Real t40 = t38 - t39;
-  const Real t41 = t37 + t40;
-  const Real t42 = t36 + t41;
-  const Real t43 = s_r_p_1_ * par.k13;
-  const Real t44 = par.k2 * t43;
-  const Real t45 = s_r_p_1_ * par.k1;
-  const Real t46 = par.r_F * t45;
-  const Real t47 = t44 - t46;
-  const Real t48 = t22 * t45;
-  const Real t49 = t47 - t48;
-  const Real t50 = R[6] * R[6];
-  const Real t51 = R[8] * R[8];
-  const Real t52 = t50 + t51;
-  const Real t53 = sqrt(t52);
-  const Real t54 = constant<Real>(2.0L) * t53;
-  const Real t55 = constant<Real>(1.0L) / t53;
-  const Real t56 = R[8] * t55;
-  const Real t57 = t56 * par.r_R;
-  const Real t58 = t57 - par.r_R;
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t25 * t59;
-  const Real t61 = t59 * par.c;
-  const Real t62 = t60 - t61;
-  const Real t63 = par.r_R - t57;
-  const Real t64 = c_r_p_1_ * par.c;
-  const Real t65 = c_r_p_1_ * par.k23;
-  const Real t66 = t65 * par.k1;
-  const Real t67 = t66 + par.k21;
-  const Real t68 = t64 - t67;
-  const Real t69 = t25 * c_r_p_1_;
-  const Real t70 = t68 - t69;
-  const Real t71 = constant<Real>(2.0L) * t19;
-  const Real t72 = t59 * par.r_F;
-  const Real t73 = t22 * t59;
-  const Real t74 = t72 + t73;
-  const Real t75 = t65 * par.k2;
-  const Real t76 = t75 - par.k24;
-  const Real t77 = c_r_p_1_ * par.r_F;
-  const Real t78 = t76 - t77;
-  const Real t79 = t22 * c_r_p_1_;
-  const Real t80 = t78 - t79;
-  const Real t81 = t25 * t45;
-  const Real t82 = t73 - t81;
-  const Real t83 = par.c * t45;
-  const Real t84 = t72 + t83;
-  const Real t85 = s_r_p_1_ * par.k23;
-  const Real t86 = t84 - t85;
-  const Real t87 = t82 + t86;
-  const Real t88 = c_r_p_1_ * par.k2;
-  const Real t89 = par.k2 * t88;
-  const Real t90 = par.k19 + t89;
-  const Real t91 = par.r_F * t90;
-  const Real t92 = par.k1 * t88;
-  const Real t93 = par.k22 - t92;
-  const Real t94 = t93 * par.c;
-  const Real t95 = t91 - t94;
-  const Real t96 = t25 * t93;
-  const Real t97 = t22 * t90;
-  const Real t98 = t96 + t97;
-  const Real t99 = t95 + t98;
-  const Real t100 = t55 * R[6];
-  const Real t101 = t100 * par.r_R;
-  const Real t102 = par.k1 * t43;
-  const Real t103 = t83 - t102;
-  const Real t104 = t103 - t81;
+  const Real t21 = t20 * t16;
+  const Real t22 = t21 * par.r_F;
+  const Real t23 = par.k1 * c_r_p_1_;
+  const Real t24 = par.k1 * t23;
+  const Real t25 = par.k18 + t24;
+  const Real t26 = t25 * t22;
+  const Real t27 = t12 * t20;
+  const Real t28 = par.r_F * t27;
+  const Real t29 = t23 * par.k2;
+  const Real t30 = par.k22 - t29;
+  const Real t31 = t28 * t30;
+  const Real t32 = t26 + t31;
+  const Real t33 = t30 * par.r_F;
+  const Real t34 = t25 * par.c;
+  const Real t35 = t33 - t34;
+  const Real t36 = c_r_p_1_ * par.k13;
+  const Real t37 = t36 + t35;
+  const Real t38 = t32 + t37;
+  const Real t39 = R[6] * R[6];
+  const Real t40 = R[8] * R[8];
+  const Real t41 = t39 + t40;
+  const Real t42 = sqrt(t41);
+  const Real t43 = constant<Real>(1.0L) / t42;
+  const Real t44 = t43 * R[6];
+  const Real t45 = t44 * par.r_R;
 
   // kernel
-  const Real t105 = t31 * t101;
-  const Real t106 = t93 * t57;
-  const Real t107 = t105 - t106;
-  const Real t108 = t45 * t101;
-  const Real t109 = t108 + t104;
-  const Real t110 = c_r_p_1_ * t101;
-  const Real t111 = t42 - t110;
-  const Real t112 = constant<Real>(1.0L) / t111;
-  const Real t113 = t109 * t112;
-  const Real t114 = t59 * t57;
-  const Real t115 = t108 + t114;
-  const Real t116 = t113 * t115;
-  const Real t117 = t107 - t116;
-  const Real t118 = t34 * t101;
-  const Real t119 = t57 * t90;
-  const Real t120 = t118 - t119;
-  const Real t121 = t59 * t101;
-  const Real t122 = t49 - t121;
-  const Real t123 = t112 * t122;
-  const Real t124 = t115 * t123;
-  const Real t125 = t120 - t124;
-  const Real t126 = t58 * t90;
-  const Real t127 = t80 - t126;
-  const Real t128 = t127 + t118;
-  const Real t129 = t58 * t59;
-  const Real t130 = t129 + t87;
-  const Real t131 = t130 + t108;
-  const Real t132 = t131 * t123;
-  const Real t133 = t128 - t132;
-  const Real t134 = t58 * t93;
-  const Real t135 = t70 - t134;
-  const Real t136 = t105 + t135;
-  const Real t137 = t113 * t131;
-  const Real t138 = t136 - t137;
-  const Real t139 = constant<Real>(1.0L) / t138;
-  const Real t140 = t133 * t139;
-  const Real t141 = t117 * t140;
-  const Real t142 = t125 - t141;
-  const Real t143 = t25 * t140;
-  const Real t144 = t143 - t22;
-  const Real t145 = constant<Real>(1.0L) / t144;
-  const Real t146 = t142 * t145;
-  const Real t147 = t25 * t146;
-  const Real t148 = t117 + t147;
-  const Real t149 = t148 * t139;
-  const Real t150 = t149 * t101;
-  const Real t151 = t101 - t150;
-  const Real t152 = nu[2] * t151;
-  const Real t153 = t113 * t28;
-  const Real t154 = t153 * t140;
-  const Real t155 = t28 * t123;
-  const Real t156 = t154 - t155;
-  const Real t157 = t156 * t145;
-  const Real t158 = t157 * t25;
-  const Real t159 = t158 - t153;
-  const Real t160 = t159 * t139;
-  const Real t161 = t160 * t101;
-  const Real t162 = t161 * nu[1];
-  const Real t163 = t63 * t45;
-  const Real t164 = t62 + t163;
-  const Real t165 = c_r_p_1_ * t63;
-  const Real t166 = t99 - t165;
-  const Real t167 = t113 * t166;
-  const Real t168 = t164 - t167;
-  const Real t169 = t59 * t63;
-  const Real t170 = t74 - t169;
-  const Real t171 = t166 * t123;
-  const Real t172 = t170 - t171;
-  const Real t173 = t168 * t140;
-  const Real t174 = t172 - t173;
-  const Real t175 = t174 * t145;
-  const Real t176 = t25 * t175;
-  const Real t177 = t168 + t176;
-  const Real t178 = t139 * t177;
-  const Real t179 = t178 * t101;
-  const Real t180 = t179 * nu[0];
-  const Real t181 = t162 + t180;
-  const Real t182 = t152 - t181;
-  const Real t183 = t131 * t178;
-  const Real t184 = t166 - t183;
-  const Real t185 = t184 * t112;
-  const Real t186 = t185 * nu[0];
-  const Real t187 = t160 * t131;
-  const Real t188 = t28 - t187;
-  const Real t189 = t112 * t188;
-  const Real t190 = t189 * nu[1];
-  const Real t191 = t186 + t190;
-  const Real t192 = t149 * t131;
-  const Real t193 = t115 - t192;
-  const Real t194 = t193 * t112;
-  const Real t195 = t194 * nu[2];
-  const Real t196 = t191 + t195;
-  const Real t197 = t149 * nu[2];
-  const Real t198 = t160 * nu[1];
-  const Real t199 = t178 * nu[0];
-  const Real t200 = t198 + t199;
-  const Real t201 = t197 + t200;
-  const Real t202 = t149 * t58;
-  const Real t203 = t202 - t57;
-  const Real t204 = t203 * nu[2];
-  const Real t205 = t58 * t160;
-  const Real t206 = t205 * nu[1];
-  const Real t207 = t58 * t178;
-  const Real t208 = t207 * nu[0];
-  const Real t209 = t206 + t208;
-  const Real t210 = t204 + t209;
-  const Real t211 = t175 * nu[0];
-  const Real t212 = t157 * nu[1];
-  const Real t213 = t211 + t212;
-  const Real t214 = t146 * nu[2];
-  const Real t215 = t213 + t214;
-  const Real t216 = t194 * t101;
-  const Real t217 = t216 * nu[2];
-  const Real t218 = t189 * t101;
-  const Real t219 = t218 * nu[1];
-  const Real t220 = t101 * t185;
-  const Real t221 = t220 - t63;
-  const Real t222 = t221 * nu[0];
-  const Real t223 = t219 + t222;
-  const Real t224 = t217 + t223;
-
-  // frame: acceleration
-  const Real t225 = par.g * R[7];
-  const Real t226 = par.g * R[8];
-  const Real t227 = par.g * R[6];
+  const Real t46 = c_r_p_1_ * t45;
+  const Real t47 = t38 - t46;
+  const Real t48 = constant<Real>(1.0L) / t47;
 
   // joint angles
-  const Real t228 = nu[2] - t201;
-  const Real t229 = R[8] * t201;
-  const Real t230 = t196 * R[7];
-  const Real t231 = t229 - t230;
-  const Real t232 = R[6] * t231;
-  const Real t233 = t232 * constant<Real>(2.0L);
-  const Real t234 = t201 * R[6];
-  const Real t235 = nu[0] * R[7];
-  const Real t236 = t234 + t235;
-  const Real t237 = t236 * R[8];
-  const Real t238 = t237 * constant<Real>(2.0L);
-  const Real t239 = t233 - t238;
-  const Real t240 = t239 / t54;
-  const Real t241 = t240 * t55;
-  const Real t242 = t241 / t53;
-  const Real t243 = R[8] * t242;
-  const Real t244 = t236 * t55;
-  const Real t245 = t243 + t244;
-  const Real t246 = t245 * par.r_R;
-  const Real t247 = t228 * t246;
-  const Real t248 = par.k1 * nu[0];
-  const Real t249 = t196 * par.k2;
-  const Real t250 = t248 - t249;
-  const Real t251 = t250 + nu[1];
-  const Real t252 = t251 * par.k2;
-  const Real t253 = par.k2 * nu[0];
-  const Real t254 = par.k1 * t196;
-  const Real t255 = t253 + t254;
-  const Real t256 = t255 * c_r_p_1_;
-  const Real t257 = s_r_p_1_ * t201;
-  const Real t258 = t256 - t257;
-  const Real t259 = t258 * par.k1;
-  const Real t260 = t252 - t259;
-  const Real t261 = par.k1 * t231;
-  const Real t262 = t236 * par.k2;
-  const Real t263 = t261 - t262;
-  const Real t264 = t263 * par.k1;
-  const Real t265 = par.k2 * t231;
-  const Real t266 = t236 * par.k1;
-  const Real t267 = t265 + t266;
-  const Real t268 = c_r_p_1_ * t267;
-  const Real t269 = s_r_p_1_ * nu[1];
-  const Real t270 = t269 * t3;
-  const Real t271 = t268 - t270;
-  const Real t272 = R[8] * nu[0];
-  const Real t273 = t196 * R[6];
-  const Real t274 = t272 + t273;
-  const Real t275 = s_r_p_1_ * t274;
-  const Real t276 = c_r_p_1_ * nu[1];
-  const Real t277 = t276 * R[7];
-  const Real t278 = t275 + t277;
-  const Real t279 = t271 + t278;
-  const Real t280 = t279 * par.k2;
-  const Real t281 = t264 + t280;
-  const Real t282 = t281 * t20;
-  const Real t283 = t281 * t16;
-  const Real t284 = t283 * constant<Real>(2.0L);
-  const Real t285 = t279 * par.k1;
-  const Real t286 = t263 * par.k2;
-  const Real t287 = t285 - t286;
-  const Real t288 = t287 * t12;
-  const Real t289 = t288 * constant<Real>(2.0L);
-  const Real t290 = t284 + t289;
-  const Real t291 = t290 / t71;
-  const Real t292 = t291 * t20;
-  const Real t293 = t292 / t19;
-  const Real t294 = t293 * t16;
-  const Real t295 = t282 - t294;
-  const Real t296 = t295 * par.r_F;
-  const Real t297 = t260 * t296;
-  const Real t298 = t201 * t276;
-  const Real t299 = t255 * t269;
-  const Real t300 = t298 + t299;
-  const Real t301 = par.k1 * t300;
-  const Real t302 = t25 * t301;
-  const Real t303 = t297 + t302;
-  const Real t304 = t251 * par.k1;
-  const Real t305 = t258 * par.k2;
-  const Real t306 = t304 + t305;
-  const Real t307 = t287 * t20;
-  const Real t308 = t293 * t12;
-  const Real t309 = t307 - t308;
-  const Real t310 = par.r_F * t309;
-  const Real t311 = t306 * t310;
-  const Real t312 = par.k2 * t300;
-  const Real t313 = t22 * t312;
-  const Real t314 = t311 - t313;
-  const Real t315 = t303 + t314;
-  const Real t316 = t55 * t231;
-  const Real t317 = t242 * R[6];
-  const Real t318 = t316 - t317;
-  const Real t319 = t318 * par.r_R;
-  const Real t320 = t196 * t319;
-  const Real t321 = par.c * t301;
-  const Real t322 = par.r_F * t312;
-  const Real t323 = t321 + t322;
-  const Real t324 = par.k2 * t210;
-  const Real t325 = t201 * par.k13;
-  const Real t326 = t182 + t325;
-  const Real t327 = t326 * par.k1;
-  const Real t328 = t324 - t327;
-  const Real t329 = t328 * t276;
-  const Real t330 = t196 * par.k13;
-  const Real t331 = t224 - t330;
-  const Real t332 = t269 * t331;
-  const Real t333 = t329 + t332;
-  const Real t334 = t323 + t333;
-  const Real t335 = t228 * t319;
-  const Real t336 = t255 * t276;
-  const Real t337 = t201 * t269;
-  const Real t338 = t336 - t337;
-  const Real t339 = t338 * par.c;
-  const Real t340 = t276 * t331;
-  const Real t341 = t328 * t269;
-  const Real t342 = t340 - t341;
-  const Real t343 = t342 * par.k1;
-  const Real t344 = t339 + t343;
-  const Real t345 = t201 * c_r_p_1_;
-  const Real t346 = t255 * s_r_p_1_;
-  const Real t347 = t345 + t346;
-  const Real t348 = t215 + t347;
-  const Real t349 = t348 * t296;
-  const Real t350 = t25 * t338;
-  const Real t351 = t349 + t350;
-  const Real t352 = t344 - t351;
-  const Real t353 = t342 * par.k2;
-  const Real t354 = t338 * par.r_F;
-  const Real t355 = t353 + t354;
-  const Real t356 = t22 * t338;
-  const Real t357 = t348 * t310;
-  const Real t358 = t356 + t357;
-  const Real t359 = t355 + t358;
-  const Real t360 = t246 * nu[0];
+  const Real t49 = s_r_p_1_ * par.k1;
+  const Real t50 = t22 * t49;
+  const Real t51 = par.c * t49;
+  const Real t52 = s_r_p_1_ * par.k13;
+  const Real t53 = par.k1 * t52;
+  const Real t54 = t51 - t53;
+  const Real t55 = t54 - t50;
+
+  // kernel
+  const Real t56 = t49 * t45;
+  const Real t57 = t56 + t55;
+  const Real t58 = t57 * t48;
+
+  // joint angles
+  const Real t59 = s_r_p_1_ * par.k2;
+  const Real t60 = t28 * t59;
+  const Real t61 = t60 - t50;
+  const Real t62 = t59 * par.r_F;
+  const Real t63 = t62 + t51;
+  const Real t64 = s_r_p_1_ * par.k23;
+  const Real t65 = t63 - t64;
+  const Real t66 = t61 + t65;
+  const Real t67 = R[8] * t43;
+  const Real t68 = t67 * par.r_R;
+  const Real t69 = t68 - par.r_R;
+
+  // kernel
+  const Real t70 = t69 * t59;
+  const Real t71 = t70 + t66;
+  const Real t72 = t71 + t56;
+  const Real t73 = t58 * t72;
+
+  // joint angles
+  const Real t74 = t22 * c_r_p_1_;
+  const Real t75 = c_r_p_1_ * par.k23;
+  const Real t76 = t75 * par.k1;
+  const Real t77 = t76 + par.k21;
+  const Real t78 = c_r_p_1_ * par.c;
+  const Real t79 = t78 - t77;
+  const Real t80 = t79 - t74;
+  const Real t81 = c_r_p_1_ * par.k2;
+  const Real t82 = par.k1 * t81;
+  const Real t83 = par.k22 - t82;
+
+  // kernel
+  const Real t84 = t69 * t83;
+  const Real t85 = t80 - t84;
+  const Real t86 = t25 * t45;
+  const Real t87 = t86 + t85;
+  const Real t88 = t87 - t73;
+  const Real t89 = constant<Real>(1.0L) / t88;
+
+  // joint angles
+  const Real t90 = t28 * t49;
+  const Real t91 = par.k2 * t52;
+  const Real t92 = par.r_F * t49;
+  const Real t93 = t91 - t92;
+  const Real t94 = t93 - t90;
+
+  // kernel
+  const Real t95 = t59 * t45;
+  const Real t96 = t94 - t95;
+  const Real t97 = t48 * t96;
+  const Real t98 = t72 * t97;
+
+  // joint angles
+  const Real t99 = t28 * c_r_p_1_;
+  const Real t100 = t75 * par.k2;
+  const Real t101 = t100 - par.k24;
+  const Real t102 = c_r_p_1_ * par.r_F;
+  const Real t103 = t101 - t102;
+  const Real t104 = t103 - t99;
+  const Real t105 = par.k2 * t81;
+  const Real t106 = par.k19 + t105;
+
+  // kernel
+  const Real t107 = t69 * t106;
+  const Real t108 = t104 - t107;
+  const Real t109 = t30 * t45;
+  const Real t110 = t108 + t109;
+  const Real t111 = t110 - t98;
+  const Real t112 = t111 * t89;
+  const Real t113 = t22 * t112;
+  const Real t114 = t113 - t28;
+  const Real t115 = constant<Real>(1.0L) / t114;
+
+  // joint angles
+  const Real t116 = t22 * t83;
+  const Real t117 = t28 * t106;
+  const Real t118 = t116 + t117;
+  const Real t119 = par.r_F * t106;
+  const Real t120 = t83 * par.c;
+  const Real t121 = t119 - t120;
+  const Real t122 = t121 + t118;
+  const Real t123 = par.r_R - t68;
+
+  // kernel
+  const Real t124 = c_r_p_1_ * t123;
+  const Real t125 = t122 - t124;
+  const Real t126 = t58 * t125;
+
+  // joint angles
+  const Real t127 = t22 * t59;
+  const Real t128 = t59 * par.c;
+  const Real t129 = t127 - t128;
+
+  // kernel
+  const Real t130 = t123 * t49;
+  const Real t131 = t129 + t130;
+  const Real t132 = t131 - t126;
+  const Real t133 = t132 * t112;
+  const Real t134 = t125 * t97;
+
+  // joint angles
+  const Real t135 = t62 + t60;
+
+  // kernel
+  const Real t136 = t59 * t123;
+  const Real t137 = t135 - t136;
+  const Real t138 = t137 - t134;
+  const Real t139 = t138 - t133;
+  const Real t140 = t139 * t115;
+  const Real t141 = t22 * t140;
+  const Real t142 = t132 + t141;
+  const Real t143 = t89 * t142;
+  const Real t144 = t72 * t143;
+  const Real t145 = t125 - t144;
+  const Real t146 = t145 * t48;
+  const Real t147 = t146 * nu[0];
+
+  // joint angles
+  const Real t148 = par.k1 * t28;
+  const Real t149 = t22 * par.k2;
+  const Real t150 = t148 + t149;
+  const Real t151 = t150 + par.k12;
+
+  // kernel
+  const Real t152 = t58 * t151;
+  const Real t153 = t152 * t112;
+  const Real t154 = t151 * t97;
+  const Real t155 = t153 - t154;
+  const Real t156 = t155 * t115;
+  const Real t157 = t156 * t22;
+  const Real t158 = t157 - t152;
+  const Real t159 = t158 * t89;
+  const Real t160 = t159 * t72;
+  const Real t161 = t151 - t160;
+  const Real t162 = t48 * t161;
+  const Real t163 = t162 * nu[1];
+  const Real t164 = t147 + t163;
+  const Real t165 = t59 * t68;
+  const Real t166 = t56 + t165;
+  const Real t167 = t58 * t166;
+  const Real t168 = t83 * t68;
+  const Real t169 = t86 - t168;
+  const Real t170 = t169 - t167;
+  const Real t171 = t170 * t112;
+  const Real t172 = t166 * t97;
+  const Real t173 = t68 * t106;
+  const Real t174 = t109 - t173;
+  const Real t175 = t174 - t172;
+  const Real t176 = t175 - t171;
+  const Real t177 = t176 * t115;
+  const Real t178 = t22 * t177;
+  const Real t179 = t170 + t178;
+  const Real t180 = t179 * t89;
+  const Real t181 = t180 * t72;
+  const Real t182 = t166 - t181;
+  const Real t183 = t182 * t48;
+  const Real t184 = t183 * nu[2];
+  const Real t185 = t164 + t184;
+
+  // joint angles
+  const Real t186 = t185 * R[7];
+
+  // kernel
+  const Real t187 = t159 * nu[1];
+  const Real t188 = t143 * nu[0];
+  const Real t189 = t187 + t188;
+  const Real t190 = t180 * nu[2];
+  const Real t191 = t190 + t189;
+
+  // joint angles
+  const Real t192 = R[8] * t191;
+  const Real t193 = t192 - t186;
+  const Real t194 = par.k2 * t193;
+  const Real t195 = t191 * R[6];
+  const Real t196 = nu[0] * R[7];
+  const Real t197 = t195 + t196;
+  const Real t198 = t197 * par.k1;
+  const Real t199 = t194 + t198;
+  const Real t200 = c_r_p_1_ * t199;
+  const Real t201 = s_r_p_1_ * nu[1];
+  const Real t202 = t201 * t3;
+  const Real t203 = t200 - t202;
+  const Real t204 = t185 * R[6];
+  const Real t205 = R[8] * nu[0];
+  const Real t206 = t205 + t204;
+  const Real t207 = s_r_p_1_ * t206;
+  const Real t208 = c_r_p_1_ * nu[1];
+  const Real t209 = t208 * R[7];
+  const Real t210 = t207 + t209;
+  const Real t211 = t203 + t210;
+  const Real t212 = t211 * par.k2;
+  const Real t213 = par.k1 * t193;
+  const Real t214 = t197 * par.k2;
+  const Real t215 = t213 - t214;
+  const Real t216 = t215 * par.k1;
+  const Real t217 = t216 + t212;
+  const Real t218 = t217 * t16;
+  const Real t219 = t218 * constant<Real>(2.0L);
+  const Real t220 = t211 * par.k1;
+  const Real t221 = t215 * par.k2;
+  const Real t222 = t220 - t221;
+  const Real t223 = t222 * t12;
+  const Real t224 = t223 * constant<Real>(2.0L);
+  const Real t225 = t219 + t224;
+
+  // joint angles
+  const Real t226 = constant<Real>(2.0L) * t19;
+
+  // joint angles
+  const Real t227 = t225 / t226;
+  const Real t228 = t227 * t20;
+  const Real t229 = t228 / t19;
+  const Real t230 = t229 * t16;
+  const Real t231 = t217 * t20;
+  const Real t232 = t231 - t230;
+  const Real t233 = t232 * par.r_F;
+  const Real t234 = par.k1 * t185;
+  const Real t235 = par.k2 * nu[0];
+  const Real t236 = t235 + t234;
+  const Real t237 = t236 * c_r_p_1_;
+  const Real t238 = s_r_p_1_ * t191;
+  const Real t239 = t237 - t238;
+  const Real t240 = t239 * par.k1;
+  const Real t241 = t185 * par.k2;
+  const Real t242 = par.k1 * nu[0];
+  const Real t243 = t242 - t241;
+  const Real t244 = t243 + nu[1];
+  const Real t245 = t244 * par.k2;
+  const Real t246 = t245 - t240;
+  const Real t247 = t246 * t233;
+  const Real t248 = t236 * t201;
+  const Real t249 = t191 * t208;
+  const Real t250 = t249 + t248;
+  const Real t251 = par.k1 * t250;
+  const Real t252 = t22 * t251;
+  const Real t253 = t247 + t252;
+  const Real t254 = t229 * t12;
+  const Real t255 = t222 * t20;
+  const Real t256 = t255 - t254;
+  const Real t257 = par.r_F * t256;
+  const Real t258 = t239 * par.k2;
+  const Real t259 = t244 * par.k1;
+  const Real t260 = t259 + t258;
+  const Real t261 = t260 * t257;
+  const Real t262 = par.k2 * t250;
+  const Real t263 = t28 * t262;
+  const Real t264 = t261 - t263;
+  const Real t265 = t253 + t264;
+  const Real t266 = par.c * t251;
+  const Real t267 = par.r_F * t262;
+  const Real t268 = t266 + t267;
+
+  // kernel
+  const Real t269 = t45 * t146;
+  const Real t270 = t269 - t123;
+  const Real t271 = t270 * nu[0];
+  const Real t272 = t162 * t45;
+  const Real t273 = t272 * nu[1];
+  const Real t274 = t273 + t271;
+  const Real t275 = t183 * t45;
+  const Real t276 = t275 * nu[2];
+  const Real t277 = t276 + t274;
+
+  // joint angles
+  const Real t278 = t185 * par.k13;
+  const Real t279 = t277 - t278;
+  const Real t280 = t201 * t279;
+
+  // kernel
+  const Real t281 = t180 * t45;
+  const Real t282 = t45 - t281;
+  const Real t283 = nu[2] * t282;
+  const Real t284 = t159 * t45;
+  const Real t285 = t284 * nu[1];
+  const Real t286 = t143 * t45;
+  const Real t287 = t286 * nu[0];
+  const Real t288 = t285 + t287;
+  const Real t289 = t283 - t288;
+
+  // joint angles
+  const Real t290 = t191 * par.k13;
+  const Real t291 = t289 + t290;
+  const Real t292 = t291 * par.k1;
+
+  // kernel
+  const Real t293 = t180 * t69;
+  const Real t294 = t293 - t68;
+  const Real t295 = t294 * nu[2];
+  const Real t296 = t69 * t159;
+  const Real t297 = t296 * nu[1];
+  const Real t298 = t69 * t143;
+  const Real t299 = t298 * nu[0];
+  const Real t300 = t297 + t299;
+  const Real t301 = t295 + t300;
+
+  // joint angles
+  const Real t302 = par.k2 * t301;
+  const Real t303 = t302 - t292;
+  const Real t304 = t303 * t208;
+  const Real t305 = t304 + t280;
+  const Real t306 = t268 + t305;
 
   // drift of the kernel
-  const Real t361 = t320 - t360;
-  const Real t362 = t247 * t59;
-  const Real t363 = t334 - t315;
-  const Real t364 = t362 + t363;
-  const Real t365 = c_r_p_1_ * t361;
-  const Real t366 = t364 - t365;
-  const Real t367 = t335 * t45;
-  const Real t368 = t366 - t367;
-  const Real t369 = t361 * t45;
-  const Real t370 = t247 * t93;
-  const Real t371 = t352 - t370;
-  const Real t372 = t369 + t371;
-  const Real t373 = t31 * t335;
-  const Real t374 = t372 - t373;
-  const Real t375 = t113 * t368;
-  const Real t376 = t374 - t375;
-  const Real t377 = t376 * t140;
-  const Real t378 = t368 * t123;
-  const Real t379 = t59 * t361;
-  const Real t380 = t247 * t90;
-  const Real t381 = t380 + t359;
-  const Real t382 = t379 + t381;
-  const Real t383 = t34 * t335;
-  const Real t384 = t382 + t383;
-  const Real t385 = t378 + t384;
-  const Real t386 = t377 + t385;
-  const Real t387 = t386 * t145;
-  const Real t388 = t25 * t387;
-  const Real t389 = t376 - t388;
-  const Real t390 = t389 * t139;
-  const Real t391 = t131 * t390;
-  const Real t392 = t368 - t391;
-  const Real t393 = t112 * t392;
-  const Real t394 = t393 * t101;
-  const Real t395 = t361 - t394;
-  const Real t396 = t390 * t101;
-  const Real t397 = t396 + t335;
-  const Real t398 = t58 * t390;
-  const Real t399 = t247 - t398;
+  const Real t307 = t306 - t265;
 
-  // rear_wheel: twist
-  const Real t400 = nu[0] * s_r_p_0_;
-  const Real t401 = t196 * c_r_p_0_;
-  const Real t402 = t400 - t401;
-  const Real t403 = nu[0] * c_r_p_0_;
-  const Real t404 = t196 * s_r_p_0_;
-  const Real t405 = t403 + t404;
+  // joint angles
+  const Real t308 = R[6] * t193;
+  const Real t309 = t308 * constant<Real>(2.0L);
+  const Real t310 = t197 * R[8];
+  const Real t311 = t310 * constant<Real>(2.0L);
+  const Real t312 = t309 - t311;
 
-  // front_wheel: twist
-  const Real t406 = t306 * s_r_p_2_;
-  const Real t407 = t260 * c_r_p_2_;
-  const Real t408 = t406 + t407;
-  const Real t409 = t306 * c_r_p_2_;
-  const Real t410 = t260 * s_r_p_2_;
-  const Real t411 = t409 - t410;
+  // joint angles
+  const Real t313 = constant<Real>(2.0L) * t42;
+
+  // joint angles
+  const Real t314 = t312 / t313;
+  const Real t315 = t314 * t43;
+  const Real t316 = t315 / t42;
+  const Real t317 = R[8] * t316;
+  const Real t318 = t197 * t43;
+  const Real t319 = t317 + t318;
+  const Real t320 = t319 * par.r_R;
+  const Real t321 = nu[2] - t191;
+  const Real t322 = t321 * t320;
+
+  // drift of the kernel
+  const Real t323 = t322 * t59;
+  const Real t324 = t323 + t307;
+
+  // joint angles
+  const Real t325 = t316 * R[6];
+  const Real t326 = t43 * t193;
+  const Real t327 = t326 - t325;
+  const Real t328 = t327 * par.r_R;
+  const Real t329 = t185 * t328;
+  const Real t330 = t320 * nu[0];
+
+  // drift of the kernel
+  const Real t331 = t329 - t330;
+  const Real t332 = c_r_p_1_ * t331;
+  const Real t333 = t324 - t332;
+
+  // joint angles
+  const Real t334 = t321 * t328;
+
+  // drift of the kernel
+  const Real t335 = t334 * t49;
+  const Real t336 = t333 - t335;
+  const Real t337 = t58 * t336;
+
+  // joint angles
+  const Real t338 = t236 * s_r_p_1_;
+  const Real t339 = t191 * c_r_p_1_;
+  const Real t340 = t339 + t338;
+
+  // kernel
+  const Real t341 = t140 * nu[0];
+  const Real t342 = t156 * nu[1];
+  const Real t343 = t341 + t342;
+  const Real t344 = t177 * nu[2];
+  const Real t345 = t343 + t344;
+
+  // joint angles
+  const Real t346 = t345 + t340;
+  const Real t347 = t346 * t233;
+  const Real t348 = t236 * t208;
+  const Real t349 = t191 * t201;
+  const Real t350 = t348 - t349;
+  const Real t351 = t22 * t350;
+  const Real t352 = t347 + t351;
+  const Real t353 = t208 * t279;
+  const Real t354 = t303 * t201;
+  const Real t355 = t353 - t354;
+  const Real t356 = t355 * par.k1;
+  const Real t357 = t350 * par.c;
+  const Real t358 = t357 + t356;
+  const Real t359 = t358 - t352;
+
+  // drift of the kernel
+  const Real t360 = t322 * t83;
+  const Real t361 = t359 - t360;
+  const Real t362 = t331 * t49;
+  const Real t363 = t362 + t361;
+  const Real t364 = t25 * t334;
+  const Real t365 = t363 - t364;
+  const Real t366 = t365 - t337;
+  const Real t367 = t366 * t112;
+  const Real t368 = t336 * t97;
+
+  // joint angles
+  const Real t369 = t346 * t257;
+  const Real t370 = t28 * t350;
+  const Real t371 = t370 + t369;
+  const Real t372 = t355 * par.k2;
+  const Real t373 = t350 * par.r_F;
+  const Real t374 = t372 + t373;
+  const Real t375 = t374 + t371;
+
+  // drift of the kernel
+  const Real t376 = t322 * t106;
+  const Real t377 = t376 + t375;
+  const Real t378 = t59 * t331;
+  const Real t379 = t378 + t377;
+  const Real t380 = t30 * t334;
+  const Real t381 = t379 + t380;
+  const Real t382 = t368 + t381;
+  const Real t383 = t367 + t382;
+  const Real t384 = t383 * t115;
+  const Real t385 = t22 * t384;
+  const Real t386 = t366 - t385;
+  const Real t387 = t386 * t89;
+  const Real t388 = t72 * t387;
+  const Real t389 = t336 - t388;
+  const Real t390 = t48 * t389;
+
+  // fork: acceleration
+  const Real t391 = t390 * par.k1;
+  const Real t392 = s_r_p_1_ * t391;
+  const Real t393 = c_r_p_1_ * t387;
+  const Real t394 = t393 + t392;
+  const Real t395 = t239 * nu[1];
+  const Real t396 = t394 - t395;
+  const Real t397 = t244 * t239;
+  const Real t398 = t397 - t396;
+
+  // front_wheel: acceleration
+  const Real t399 = t398 * par.k12;
+
+  // fork: acceleration
+  const Real t400 = t340 * t340;
+  const Real t401 = t239 * t239;
+  const Real t402 = t400 + t401;
+
+  // front_wheel: acceleration
+  const Real t403 = par.k11 * t402;
+  const Real t404 = t403 + t399;
+
+  // drift of the kernel
+  const Real t405 = t69 * t387;
+  const Real t406 = t322 - t405;
 
   // frame: acceleration
-  const Real t412 = t201 * t210;
-  const Real t413 = nu[0] * t224;
-  const Real t414 = t412 + t413;
-  const Real t415 = t397 + t414;
-  const Real t416 = t415 - t226;
-  const Real t417 = t196 * nu[0];
-  const Real t418 = t390 - t417;
-  const Real t419 = t196 * t210;
-  const Real t420 = t182 * nu[0];
-  const Real t421 = t419 + t420;
-  const Real t422 = t395 - t421;
-  const Real t423 = t422 - t225;
-  const Real t424 = nu[0] * nu[0];
-  const Real t425 = t201 * t201;
-  const Real t426 = t424 + t425;
-  const Real t427 = t196 * t201;
-  const Real t428 = t417 + t390;
-  const Real t429 = t196 * t224;
-  const Real t430 = t182 * t201;
-  const Real t431 = t429 - t430;
-  const Real t432 = t431 + t399;
-  const Real t433 = t432 - t227;
-  const Real t434 = t201 * nu[0];
-  const Real t435 = t393 - t434;
-  const Real t436 = t196 * t196;
-  const Real t437 = t436 + t425;
+  const Real t407 = t185 * t277;
+  const Real t408 = t289 * t191;
+  const Real t409 = t407 - t408;
+  const Real t410 = t409 + t406;
 
-  // rear_wheel: acceleration
-  const Real t438 = t427 * par.r_R;
-  const Real t439 = t423 - t438;
-  const Real t440 = t402 * nu[2];
-  const Real t441 = t393 * s_r_p_0_;
-  const Real t442 = t440 + t441;
-  const Real t443 = t418 * par.r_R;
-  const Real t444 = t433 - t443;
-  const Real t445 = t444 * s_r_p_0_;
-  const Real t446 = t426 * par.r_R;
-  const Real t447 = t416 + t446;
-  const Real t448 = t447 * c_r_p_0_;
-  const Real t449 = t445 + t448;
-  const Real t450 = t405 * nu[2];
-  const Real t451 = t393 * c_r_p_0_;
-  const Real t452 = t450 + t451;
-  const Real t453 = t405 * t228;
-  const Real t454 = t402 * t228;
-  const Real t455 = t444 * c_r_p_0_;
-  const Real t456 = t447 * s_r_p_0_;
-  const Real t457 = t455 - t456;
+  // frame: acceleration
+  const Real t411 = par.g * R[6];
+
+  // frame: acceleration
+  const Real t412 = t410 - t411;
+  const Real t413 = t185 * t185;
+  const Real t414 = t191 * t191;
+  const Real t415 = t413 + t414;
 
   // fork: acceleration
-  const Real t458 = par.k13 * t437;
-  const Real t459 = t433 - t458;
-  const Real t460 = par.k1 * t459;
-  const Real t461 = t428 * par.k13;
-  const Real t462 = t416 - t461;
-  const Real t463 = par.k2 * t462;
-  const Real t464 = t460 + t463;
-  const Real t465 = c_r_p_1_ * t390;
-  const Real t466 = t393 * par.k1;
-  const Real t467 = s_r_p_1_ * t466;
-  const Real t468 = t465 + t467;
-  const Real t469 = t258 * nu[1];
-  const Real t470 = t468 - t469;
-  const Real t471 = t251 * t258;
-  const Real t472 = t470 + t471;
-  const Real t473 = t251 * t251;
-  const Real t474 = t347 * t347;
-  const Real t475 = t473 + t474;
-  const Real t476 = t471 - t470;
-  const Real t477 = t251 * t347;
-  const Real t478 = s_r_p_1_ * t390;
-  const Real t479 = t466 * c_r_p_1_;
-  const Real t480 = t478 - t479;
-  const Real t481 = t347 * nu[1];
-  const Real t482 = t480 - t481;
-  const Real t483 = t477 + t482;
-  const Real t484 = t258 * t258;
-  const Real t485 = t474 + t484;
-  const Real t486 = t393 * par.k2;
-  const Real t487 = t258 * t347;
-  const Real t488 = t486 - t487;
-  const Real t489 = par.k13 * t435;
-  const Real t490 = t489 + t423;
-  const Real t491 = c_r_p_1_ * t490;
-  const Real t492 = t459 * par.k2;
-  const Real t493 = par.k1 * t462;
-  const Real t494 = t492 - t493;
-  const Real t495 = s_r_p_1_ * t494;
-  const Real t496 = t491 - t495;
-  const Real t497 = t494 * c_r_p_1_;
-  const Real t498 = s_r_p_1_ * t490;
-  const Real t499 = t497 + t498;
+  const Real t416 = par.k13 * t415;
+  const Real t417 = t412 - t416;
+  const Real t418 = par.k1 * t417;
+
+  // drift of the kernel
+  const Real t419 = t387 * t45;
+  const Real t420 = t419 + t334;
+
+  // frame: acceleration
+  const Real t421 = nu[0] * t277;
+  const Real t422 = t191 * t301;
+  const Real t423 = t422 + t421;
+  const Real t424 = t420 + t423;
+
+  // frame: acceleration
+  const Real t425 = par.g * R[8];
+
+  // frame: acceleration
+  const Real t426 = t424 - t425;
+  const Real t427 = t185 * nu[0];
+  const Real t428 = t427 + t387;
+
+  // fork: acceleration
+  const Real t429 = t428 * par.k13;
+  const Real t430 = t426 - t429;
+  const Real t431 = par.k2 * t430;
+  const Real t432 = t418 + t431;
 
   // front_wheel: acceleration
-  const Real t500 = par.k11 * t485;
-  const Real t501 = t476 * par.k12;
-  const Real t502 = t500 + t501;
-  const Real t503 = t464 + t502;
-  const Real t504 = par.k2 * t503;
-  const Real t505 = t472 * par.k11;
-  const Real t506 = t475 * par.k12;
-  const Real t507 = t505 + t506;
-  const Real t508 = t499 - t507;
-  const Real t509 = t508 * par.k1;
-  const Real t510 = t504 - t509;
-  const Real t511 = c_r_p_2_ * t510;
-  const Real t512 = par.k1 * t503;
-  const Real t513 = t508 * par.k2;
-  const Real t514 = t512 + t513;
-  const Real t515 = t514 * s_r_p_2_;
-  const Real t516 = t511 + t515;
-  const Real t517 = t470 - t387;
-  const Real t518 = t514 * c_r_p_2_;
-  const Real t519 = t510 * s_r_p_2_;
-  const Real t520 = t518 - t519;
-  const Real t521 = t483 * par.k11;
-  const Real t522 = par.k12 * t488;
-  const Real t523 = t521 + t522;
-  const Real t524 = t523 + t496;
-  const Real t525 = par.k2 * t482;
-  const Real t526 = t486 * par.k1;
-  const Real t527 = t525 + t526;
-  const Real t528 = t527 * s_r_p_2_;
-  const Real t529 = t486 * par.k2;
-  const Real t530 = par.k1 * t482;
-  const Real t531 = t529 - t530;
-  const Real t532 = c_r_p_2_ * t531;
-  const Real t533 = t528 + t532;
-  const Real t534 = t411 * t215;
-  const Real t535 = t533 - t534;
-  const Real t536 = t348 * t411;
-  const Real t537 = t348 * t408;
-  const Real t538 = c_r_p_2_ * t527;
-  const Real t539 = t531 * s_r_p_2_;
-  const Real t540 = t538 - t539;
-  const Real t541 = t408 * t215;
-  const Real t542 = t540 + t541;
+  const Real t433 = t432 + t404;
+  const Real t434 = par.k1 * t433;
 
-  // frame: wrench
-  const Real t543 = par.k3 * t435;
-  const Real t544 = t427 * par.k26;
-  const Real t545 = t543 + t544;
-  const Real t546 = t423 * par.k15;
-  const Real t547 = t545 - t546;
-  const Real t548 = t423 * par.m_B;
-  const Real t549 = t435 * par.k16;
-  const Real t550 = t427 * par.k15;
-  const Real t551 = t549 + t550;
-  const Real t552 = t548 + t551;
-  const Real t553 = t418 * par.k15;
-  const Real t554 = par.k16 * t437;
-  const Real t555 = t553 - t554;
-  const Real t556 = t433 * par.m_B;
-  const Real t557 = t555 + t556;
-  const Real t558 = t416 * par.m_B;
-  const Real t559 = t428 * par.k16;
-  const Real t560 = t426 * par.k15;
-  const Real t561 = t559 + t560;
-  const Real t562 = t558 - t561;
-  const Real t563 = t423 * par.k16;
-  const Real t564 = t393 * par.k14;
-  const Real t565 = par.k25 * t434;
-  const Real t566 = t564 - t565;
-  const Real t567 = par.k3 * t427;
-  const Real t568 = t566 - t567;
-  const Real t569 = t563 + t568;
-  const Real t570 = t433 * par.k15;
-  const Real t571 = t416 * par.k16;
-  const Real t572 = t570 - t571;
-  const Real t573 = t436 - t424;
-  const Real t574 = par.k3 * t573;
-  const Real t575 = par.k4 * t390;
-  const Real t576 = t417 * par.k27;
-  const Real t577 = t575 - t576;
-  const Real t578 = t574 + t577;
-  const Real t579 = t572 + t578;
+  // drift of the kernel
+  const Real t435 = t390 * t45;
+  const Real t436 = t331 - t435;
 
-  // rear_wheel: wrench
-  const Real t580 = t439 * par.m_R;
-  const Real t581 = t449 * par.m_R;
-  const Real t582 = par.m_R * t457;
-  const Real t583 = par.I_Ryy * t390;
-  const Real t584 = t454 * par.k29;
-  const Real t585 = t442 * par.I_Rxx;
-  const Real t586 = t584 - t585;
-  const Real t587 = par.I_Rxx * t452;
-  const Real t588 = par.k28 * t453;
-  const Real t589 = t587 + t588;
+  // frame: acceleration
+  const Real t437 = t185 * t301;
+  const Real t438 = t289 * nu[0];
+  const Real t439 = t437 + t438;
+  const Real t440 = t436 - t439;
 
-  // fork: wrench
-  const Real t590 = par.k5 * t488;
-  const Real t591 = par.k17 * t482;
-  const Real t592 = t477 * par.k30;
-  const Real t593 = t591 - t592;
-  const Real t594 = t590 + t593;
-  const Real t595 = par.k8 * t496;
-  const Real t596 = t594 - t595;
-  const Real t597 = par.m_H * t499;
-  const Real t598 = par.k8 * t472;
-  const Real t599 = t475 * par.k10;
-  const Real t600 = t598 - t599;
-  const Real t601 = t597 + t600;
-  const Real t602 = t476 * par.k10;
-  const Real t603 = par.k8 * t485;
-  const Real t604 = t602 - t603;
-  const Real t605 = t464 * par.m_H;
-  const Real t606 = t604 + t605;
-  const Real t607 = par.m_H * t496;
-  const Real t608 = par.k10 * t488;
-  const Real t609 = par.k8 * t483;
-  const Real t610 = t608 - t609;
-  const Real t611 = t607 + t610;
-  const Real t612 = par.k8 * t499;
-  const Real t613 = t464 * par.k10;
-  const Real t614 = t612 - t613;
-  const Real t615 = t473 - t484;
-  const Real t616 = par.k5 * t615;
-  const Real t617 = t470 * par.k7;
-  const Real t618 = par.k31 * t471;
-  const Real t619 = t617 + t618;
-  const Real t620 = t616 + t619;
-  const Real t621 = t614 + t620;
-  const Real t622 = t486 * par.k6;
-  const Real t623 = t487 * par.k32;
-  const Real t624 = t622 - t623;
-  const Real t625 = par.k5 * t483;
-  const Real t626 = t624 + t625;
-  const Real t627 = par.k10 * t496;
-  const Real t628 = t626 + t627;
+  // frame: acceleration
+  const Real t441 = par.g * R[7];
+
+  // frame: acceleration
+  const Real t442 = t440 - t441;
+  const Real t443 = t191 * nu[0];
+  const Real t444 = t390 - t443;
+
+  // fork: acceleration
+  const Real t445 = par.k13 * t444;
+  const Real t446 = t445 + t442;
+  const Real t447 = s_r_p_1_ * t446;
+  const Real t448 = t417 * par.k2;
+  const Real t449 = par.k1 * t430;
+  const Real t450 = t448 - t449;
+  const Real t451 = t450 * c_r_p_1_;
+  const Real t452 = t451 + t447;
+  const Real t453 = t396 + t397;
+
+  // front_wheel: acceleration
+  const Real t454 = t453 * par.k11;
+
+  // fork: acceleration
+  const Real t455 = t244 * t244;
+  const Real t456 = t455 + t400;
+
+  // front_wheel: acceleration
+  const Real t457 = t456 * par.k12;
+  const Real t458 = t454 + t457;
+  const Real t459 = t452 - t458;
+  const Real t460 = t459 * par.k2;
+  const Real t461 = t434 + t460;
+  const Real t462 = t461 * c_r_p_2_;
+  const Real t463 = par.k2 * t433;
+  const Real t464 = t459 * par.k1;
+  const Real t465 = t463 - t464;
+  const Real t466 = t465 * s_r_p_2_;
+  const Real t467 = t462 - t466;
 
   // front_wheel: wrench
-  const Real t629 = t524 * par.m_F;
-  const Real t630 = par.I_Fxx * t542;
-  const Real t631 = par.k35 * t537;
-  const Real t632 = t630 - t631;
-  const Real t633 = t517 * par.I_Fyy;
-  const Real t634 = t520 * par.m_F;
-  const Real t635 = par.I_Fxx * t535;
-  const Real t636 = par.k36 * t536;
-  const Real t637 = t635 - t636;
-  const Real t638 = t516 * par.m_F;
+  const Real t468 = t467 * par.m_F;
 
   // front_wheel: joint force
-  const Real t639 = t629 + t611;
-  const Real t640 = t637 * s_r_p_2_;
-  const Real t641 = t632 * c_r_p_2_;
-  const Real t642 = t640 + t641;
-  const Real t643 = t642 * par.k1;
-  const Real t644 = c_r_p_2_ * t637;
-  const Real t645 = t632 * s_r_p_2_;
-  const Real t646 = t644 - t645;
-  const Real t647 = t646 * par.k2;
-  const Real t648 = t643 + t647;
-  const Real t649 = t629 * par.k12;
-  const Real t650 = t648 + t649;
-  const Real t651 = t650 + t628;
-  const Real t652 = c_r_p_2_ * t634;
-  const Real t653 = t638 * s_r_p_2_;
-  const Real t654 = t652 + t653;
-  const Real t655 = par.k1 * t654;
-  const Real t656 = c_r_p_2_ * t638;
-  const Real t657 = t634 * s_r_p_2_;
-  const Real t658 = t656 - t657;
-  const Real t659 = t658 * par.k2;
-  const Real t660 = t655 + t659;
-  const Real t661 = t660 + t606;
-  const Real t662 = t642 * par.k2;
-  const Real t663 = t646 * par.k1;
-  const Real t664 = t662 - t663;
-  const Real t665 = t629 * par.k11;
-  const Real t666 = t664 + t665;
-  const Real t667 = t596 + t666;
-  const Real t668 = par.k2 * t654;
-  const Real t669 = par.k1 * t658;
-  const Real t670 = t668 - t669;
-  const Real t671 = t601 + t670;
-  const Real t672 = t670 * par.k11;
-  const Real t673 = t660 * par.k12;
-  const Real t674 = t672 + t673;
-  const Real t675 = t633 - t674;
-  const Real t676 = t621 + t675;
+  const Real t469 = c_r_p_2_ * t468;
+
+  // front_wheel: acceleration
+  const Real t470 = c_r_p_2_ * t465;
+  const Real t471 = t461 * s_r_p_2_;
+  const Real t472 = t470 + t471;
+
+  // front_wheel: wrench
+  const Real t473 = t472 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t474 = t473 * s_r_p_2_;
+  const Real t475 = t469 + t474;
+  const Real t476 = par.k2 * t475;
+  const Real t477 = c_r_p_2_ * t473;
+  const Real t478 = t468 * s_r_p_2_;
+  const Real t479 = t477 - t478;
+  const Real t480 = par.k1 * t479;
+  const Real t481 = t476 - t480;
+  const Real t482 = t481 * par.k11;
+  const Real t483 = par.k1 * t475;
+  const Real t484 = t479 * par.k2;
+  const Real t485 = t483 + t484;
+  const Real t486 = t485 * par.k12;
+  const Real t487 = t482 + t486;
+
+  // front_wheel: acceleration
+  const Real t488 = t396 - t384;
+
+  // front_wheel: wrench
+  const Real t489 = t488 * par.I_Fyy;
+
+  // front_wheel: joint force
+  const Real t490 = t489 - t487;
+
+  // fork: wrench
+  const Real t491 = par.k8 * t452;
+  const Real t492 = t432 * par.k10;
+  const Real t493 = t491 - t492;
+  const Real t494 = t396 * par.k7;
+  const Real t495 = par.k31 * t397;
+  const Real t496 = t494 + t495;
+  const Real t497 = t455 - t401;
+  const Real t498 = par.k5 * t497;
+  const Real t499 = t498 + t496;
+  const Real t500 = t493 + t499;
+
+  // front_wheel: joint force
+  const Real t501 = t500 + t490;
 
   // fork: joint force
-  const Real t677 = t661 * par.k2;
-  const Real t678 = c_r_p_1_ * t671;
-  const Real t679 = s_r_p_1_ * t639;
-  const Real t680 = t678 - t679;
-  const Real t681 = par.k1 * t680;
-  const Real t682 = t677 - t681;
-  const Real t683 = t562 + t682;
-  const Real t684 = t639 * c_r_p_1_;
-  const Real t685 = s_r_p_1_ * t671;
-  const Real t686 = t684 + t685;
-  const Real t687 = t552 + t686;
-  const Real t688 = par.k1 * t651;
-  const Real t689 = c_r_p_1_ * t667;
-  const Real t690 = s_r_p_1_ * t676;
-  const Real t691 = t689 - t690;
-  const Real t692 = par.k2 * t691;
-  const Real t693 = t688 + t692;
-  const Real t694 = t547 + t693;
-  const Real t695 = par.k1 * t661;
-  const Real t696 = par.k2 * t680;
-  const Real t697 = t695 + t696;
-  const Real t698 = t697 + t557;
-  const Real t699 = t686 * par.k13;
-  const Real t700 = t651 * par.k2;
-  const Real t701 = par.k1 * t691;
-  const Real t702 = t700 - t701;
-  const Real t703 = t699 + t702;
-  const Real t704 = t569 + t703;
-  const Real t705 = c_r_p_1_ * t676;
-  const Real t706 = s_r_p_1_ * t667;
-  const Real t707 = t705 + t706;
-  const Real t708 = par.k13 * t682;
-  const Real t709 = t707 - t708;
-  const Real t710 = t709 + t579;
+  const Real t502 = s_r_p_1_ * t501;
+
+  // fork: acceleration
+  const Real t503 = t391 * c_r_p_1_;
+  const Real t504 = s_r_p_1_ * t387;
+  const Real t505 = t504 - t503;
+  const Real t506 = t340 * nu[1];
+  const Real t507 = t505 - t506;
+
+  // front_wheel: acceleration
+  const Real t508 = par.k2 * t507;
+
+  // fork: acceleration
+  const Real t509 = t390 * par.k2;
+
+  // front_wheel: acceleration
+  const Real t510 = t509 * par.k1;
+  const Real t511 = t508 + t510;
+  const Real t512 = t511 * s_r_p_2_;
+  const Real t513 = par.k1 * t507;
+  const Real t514 = t509 * par.k2;
+  const Real t515 = t514 - t513;
+  const Real t516 = c_r_p_2_ * t515;
+  const Real t517 = t512 + t516;
+
+  // front_wheel: twist
+  const Real t518 = t260 * c_r_p_2_;
+  const Real t519 = t246 * s_r_p_2_;
+  const Real t520 = t518 - t519;
+
+  // front_wheel: acceleration
+  const Real t521 = t520 * t345;
+  const Real t522 = t517 - t521;
+
+  // front_wheel: wrench
+  const Real t523 = par.I_Fxx * t522;
+
+  // front_wheel: acceleration
+  const Real t524 = t346 * t520;
+
+  // front_wheel: wrench
+  const Real t525 = par.k36 * t524;
+  const Real t526 = t523 - t525;
+
+  // front_wheel: joint force
+  const Real t527 = t526 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t528 = c_r_p_2_ * t511;
+  const Real t529 = t515 * s_r_p_2_;
+  const Real t530 = t528 - t529;
+
+  // front_wheel: twist
+  const Real t531 = t260 * s_r_p_2_;
+  const Real t532 = t246 * c_r_p_2_;
+  const Real t533 = t531 + t532;
+
+  // front_wheel: acceleration
+  const Real t534 = t533 * t345;
+  const Real t535 = t530 + t534;
+
+  // front_wheel: wrench
+  const Real t536 = par.I_Fxx * t535;
+
+  // front_wheel: acceleration
+  const Real t537 = t346 * t533;
+
+  // front_wheel: wrench
+  const Real t538 = par.k35 * t537;
+  const Real t539 = t536 - t538;
+
+  // front_wheel: joint force
+  const Real t540 = t539 * c_r_p_2_;
+  const Real t541 = t527 + t540;
+  const Real t542 = t541 * par.k2;
+  const Real t543 = c_r_p_2_ * t526;
+  const Real t544 = t539 * s_r_p_2_;
+  const Real t545 = t543 - t544;
+  const Real t546 = t545 * par.k1;
+  const Real t547 = t542 - t546;
+
+  // fork: acceleration
+  const Real t548 = t244 * t340;
+  const Real t549 = t548 + t507;
+
+  // front_wheel: acceleration
+  const Real t550 = t549 * par.k11;
+
+  // fork: acceleration
+  const Real t551 = t239 * t340;
+  const Real t552 = t509 - t551;
+
+  // front_wheel: acceleration
+  const Real t553 = par.k12 * t552;
+  const Real t554 = t550 + t553;
+
+  // fork: acceleration
+  const Real t555 = c_r_p_1_ * t446;
+  const Real t556 = s_r_p_1_ * t450;
+  const Real t557 = t555 - t556;
+
+  // front_wheel: acceleration
+  const Real t558 = t554 + t557;
+
+  // front_wheel: wrench
+  const Real t559 = t558 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t560 = t559 * par.k11;
+  const Real t561 = t547 + t560;
+
+  // fork: wrench
+  const Real t562 = par.k8 * t557;
+  const Real t563 = par.k17 * t507;
+  const Real t564 = t548 * par.k30;
+  const Real t565 = t563 - t564;
+  const Real t566 = par.k5 * t552;
+  const Real t567 = t566 + t565;
+  const Real t568 = t567 - t562;
+
+  // front_wheel: joint force
+  const Real t569 = t568 + t561;
+
+  // fork: joint force
+  const Real t570 = c_r_p_1_ * t569;
+  const Real t571 = t570 - t502;
+  const Real t572 = par.k2 * t571;
+
+  // front_wheel: joint force
+  const Real t573 = t541 * par.k1;
+  const Real t574 = t545 * par.k2;
+  const Real t575 = t573 + t574;
+  const Real t576 = t559 * par.k12;
+  const Real t577 = t575 + t576;
+
+  // fork: wrench
+  const Real t578 = par.k10 * t557;
+  const Real t579 = par.k5 * t549;
+  const Real t580 = t509 * par.k6;
+  const Real t581 = t551 * par.k32;
+  const Real t582 = t580 - t581;
+  const Real t583 = t582 + t579;
+  const Real t584 = t583 + t578;
+
+  // front_wheel: joint force
+  const Real t585 = t577 + t584;
+
+  // fork: joint force
+  const Real t586 = par.k1 * t585;
+  const Real t587 = t586 + t572;
+
+  // frame: wrench
+  const Real t588 = t442 * par.k15;
+  const Real t589 = par.k3 * t444;
+
+  // frame: acceleration
+  const Real t590 = t185 * t191;
+
+  // frame: wrench
+  const Real t591 = t590 * par.k26;
+  const Real t592 = t589 + t591;
+  const Real t593 = t592 - t588;
+
+  // fork: joint force
+  const Real t594 = t593 + t587;
+
+  // rear_wheel: acceleration
+  const Real t595 = t590 * par.r_R;
+  const Real t596 = t442 - t595;
+
+  // rear_wheel: wrench
+  const Real t597 = t596 * par.m_R;
 
   // rear_wheel: joint force
-  const Real t711 = t580 + t687;
-  const Real t712 = t582 * c_r_p_0_;
-  const Real t713 = t581 * s_r_p_0_;
-  const Real t714 = t712 + t713;
-  const Real t715 = t714 + t698;
-  const Real t716 = c_r_p_0_ * t589;
-  const Real t717 = t586 * s_r_p_0_;
-  const Real t718 = t716 - t717;
-  const Real t719 = t718 + t704;
-  const Real t720 = t581 * c_r_p_0_;
-  const Real t721 = t582 * s_r_p_0_;
-  const Real t722 = t720 - t721;
-  const Real t723 = t683 + t722;
-  const Real t724 = t580 * par.r_R;
-  const Real t725 = s_r_p_0_ * t589;
-  const Real t726 = t586 * c_r_p_0_;
-  const Real t727 = t725 + t726;
-  const Real t728 = t724 + t727;
-  const Real t729 = t694 + t728;
-  const Real t730 = t714 * par.r_R;
-  const Real t731 = t583 - t730;
-  const Real t732 = t710 + t731;
+  const Real t598 = t597 * par.r_R;
+
+  // rear_wheel: acceleration
+  const Real t599 = t390 * c_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t600 = t185 * s_r_p_0_;
+  const Real t601 = nu[0] * c_r_p_0_;
+  const Real t602 = t601 + t600;
+
+  // rear_wheel: acceleration
+  const Real t603 = t602 * nu[2];
+  const Real t604 = t603 + t599;
+
+  // rear_wheel: wrench
+  const Real t605 = par.I_Rxx * t604;
+
+  // rear_wheel: acceleration
+  const Real t606 = t602 * t321;
+
+  // rear_wheel: wrench
+  const Real t607 = par.k28 * t606;
+  const Real t608 = t605 + t607;
+
+  // rear_wheel: joint force
+  const Real t609 = s_r_p_0_ * t608;
+
+  // rear_wheel: acceleration
+  const Real t610 = t390 * s_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t611 = t185 * c_r_p_0_;
+  const Real t612 = nu[0] * s_r_p_0_;
+  const Real t613 = t612 - t611;
+
+  // rear_wheel: acceleration
+  const Real t614 = t613 * nu[2];
+  const Real t615 = t614 + t610;
+
+  // rear_wheel: wrench
+  const Real t616 = t615 * par.I_Rxx;
+
+  // rear_wheel: acceleration
+  const Real t617 = t613 * t321;
+
+  // rear_wheel: wrench
+  const Real t618 = t617 * par.k29;
+  const Real t619 = t618 - t616;
+
+  // rear_wheel: joint force
+  const Real t620 = t619 * c_r_p_0_;
+  const Real t621 = t609 + t620;
+  const Real t622 = t598 + t621;
+  const Real t623 = t594 + t622;
+
+  // orthogonal basis
+  const Real t624 = t270 * t270;
+  const Real t625 = t298 * t298;
+  const Real t626 = t624 + t625;
+  const Real t627 = t286 * t286;
+  const Real t628 = t627 + t626;
+  const Real t629 = t628 + constant<Real>(1.0L);
+  const Real t630 = t143 * t143;
+  const Real t631 = t630 + t629;
+  const Real t632 = t146 * t146;
+  const Real t633 = t631 + t632;
+  const Real t634 = t140 * t140;
+  const Real t635 = t633 + t634;
+  const Real t636 = constant<Real>(1.0L) / t635;
+  const Real t637 = t272 * t270;
+  const Real t638 = t296 * t298;
+  const Real t639 = t638 + t637;
+  const Real t640 = t286 * t284;
+  const Real t641 = t639 + t640;
+  const Real t642 = t159 * t143;
+  const Real t643 = t641 + t642;
+  const Real t644 = t162 * t146;
+  const Real t645 = t643 + t644;
+  const Real t646 = t156 * t140;
+  const Real t647 = t645 + t646;
+  const Real t648 = t647 * t636;
+  const Real t649 = t648 * t298;
+  const Real t650 = t296 - t649;
+  const Real t651 = t650 * t650;
+  const Real t652 = t648 * t270;
+  const Real t653 = t272 - t652;
+  const Real t654 = t653 * t653;
+  const Real t655 = t651 + t654;
+  const Real t656 = t648 * t286;
+  const Real t657 = t656 - t284;
+  const Real t658 = t657 * t657;
+  const Real t659 = t658 + t655;
+  const Real t660 = t648 * t648;
+  const Real t661 = t660 + t659;
+  const Real t662 = t648 * t143;
+  const Real t663 = t662 - t159;
+  const Real t664 = t663 * t663;
+  const Real t665 = t661 + t664;
+  const Real t666 = t648 * t146;
+  const Real t667 = t666 - t162;
+  const Real t668 = t667 * t667;
+  const Real t669 = t665 + t668;
+  const Real t670 = constant<Real>(1.0L) + t669;
+  const Real t671 = t648 * t140;
+  const Real t672 = t671 - t156;
+  const Real t673 = t672 * t672;
+  const Real t674 = t670 + t673;
+  const Real t675 = constant<Real>(1.0L) / t674;
+  const Real t676 = t275 * t270;
+  const Real t677 = t294 * t298;
+  const Real t678 = t676 + t677;
+  const Real t679 = t286 * t282;
+  const Real t680 = t678 - t679;
+  const Real t681 = t180 * t143;
+  const Real t682 = t681 + t680;
+  const Real t683 = t183 * t146;
+  const Real t684 = t682 + t683;
+  const Real t685 = t177 * t140;
+  const Real t686 = t684 + t685;
+  const Real t687 = t636 * t686;
+  const Real t688 = t687 * t298;
+  const Real t689 = t294 - t688;
+  const Real t690 = t689 * t650;
+  const Real t691 = t687 * t270;
+  const Real t692 = t275 - t691;
+  const Real t693 = t692 * t653;
+  const Real t694 = t690 + t693;
+  const Real t695 = t286 * t687;
+  const Real t696 = t695 + t282;
+  const Real t697 = t696 * t657;
+  const Real t698 = t697 + t694;
+  const Real t699 = t648 * t687;
+  const Real t700 = t698 + t699;
+  const Real t701 = t687 * t143;
+  const Real t702 = t701 - t180;
+  const Real t703 = t702 * t663;
+  const Real t704 = t700 + t703;
+  const Real t705 = t687 * t146;
+  const Real t706 = t705 - t183;
+  const Real t707 = t667 * t706;
+  const Real t708 = t707 + t704;
+  const Real t709 = t140 * t687;
+  const Real t710 = t709 - t177;
+  const Real t711 = t672 * t710;
+  const Real t712 = t711 + t708;
+  const Real t713 = t712 * t675;
+  const Real t714 = t648 * t713;
+  const Real t715 = t714 - t687;
 
   // reduced forces
-  const Real t733 = t633 * t175;
-  const Real t734 = t178 * t732;
-  const Real t735 = t179 * t723;
-  const Real t736 = t711 * t221;
-  const Real t737 = t715 * t207;
-  const Real t738 = t736 + t737;
-  const Real t739 = t735 - t738;
-  const Real t740 = t739 - t729;
-  const Real t741 = t734 + t740;
-  const Real t742 = t719 * t185;
-  const Real t743 = t741 + t742;
-  const Real t744 = t733 + t743;
-  const Real t745 = t157 * t633;
-  const Real t746 = t189 * t719;
-  const Real t747 = t723 * t161;
-  const Real t748 = t711 * t218;
-  const Real t749 = t715 * t205;
-  const Real t750 = t748 + t749;
-  const Real t751 = t747 - t750;
-  const Real t752 = t160 * t732;
-  const Real t753 = t751 + t752;
-  const Real t754 = t746 + t753;
-  const Real t755 = t754 - t651;
-  const Real t756 = t745 + t755;
-  const Real t757 = t633 * t146;
-  const Real t758 = t194 * t719;
-  const Real t759 = t149 * t732;
-  const Real t760 = t715 * t203;
-  const Real t761 = t711 * t216;
-  const Real t762 = t760 + t761;
-  const Real t763 = t723 * t151;
-  const Real t764 = t762 + t763;
-  const Real t765 = t759 - t764;
-  const Real t766 = t758 + t765;
-  const Real t767 = t766 - t583;
-  const Real t768 = t757 + t767;
+  const Real t716 = t715 * t623;
+
+  // fork: wrench
+  const Real t717 = par.m_H * t452;
+  const Real t718 = par.k8 * t453;
+  const Real t719 = t456 * par.k10;
+  const Real t720 = t718 - t719;
+  const Real t721 = t717 + t720;
+
+  // front_wheel: joint force
+  const Real t722 = t721 + t481;
+
+  // fork: joint force
+  const Real t723 = c_r_p_1_ * t722;
+
+  // fork: wrench
+  const Real t724 = par.m_H * t557;
+  const Real t725 = par.k8 * t549;
+  const Real t726 = par.k10 * t552;
+  const Real t727 = t726 - t725;
+  const Real t728 = t724 + t727;
+
+  // front_wheel: joint force
+  const Real t729 = t559 + t728;
+
+  // fork: joint force
+  const Real t730 = s_r_p_1_ * t729;
+  const Real t731 = t723 - t730;
+  const Real t732 = par.k2 * t731;
+
+  // fork: wrench
+  const Real t733 = t398 * par.k10;
+  const Real t734 = par.k8 * t402;
+  const Real t735 = t733 - t734;
+  const Real t736 = t432 * par.m_H;
+  const Real t737 = t735 + t736;
+
+  // front_wheel: joint force
+  const Real t738 = t485 + t737;
+
+  // fork: joint force
+  const Real t739 = par.k1 * t738;
+  const Real t740 = t739 + t732;
+
+  // frame: wrench
+  const Real t741 = t412 * par.m_B;
+
+  // frame: acceleration
+  const Real t742 = t387 - t427;
+
+  // frame: wrench
+  const Real t743 = t742 * par.k15;
+  const Real t744 = par.k16 * t415;
+  const Real t745 = t743 - t744;
+  const Real t746 = t745 + t741;
+
+  // fork: joint force
+  const Real t747 = t740 + t746;
 
   // rear_wheel: acceleration
-  const Real t769 = t178 * par.r_R;
-  const Real t770 = t207 + t769;
-  const Real t771 = t770 * s_r_p_0_;
-  const Real t772 = t179 * c_r_p_0_;
-  const Real t773 = t771 - t772;
-  const Real t774 = t179 * s_r_p_0_;
-  const Real t775 = t770 * c_r_p_0_;
-  const Real t776 = t774 + t775;
-  const Real t777 = t221 + par.r_R;
-  const Real t778 = t185 * c_r_p_0_;
-  const Real t779 = s_r_p_0_ - t778;
-  const Real t780 = t185 * s_r_p_0_;
-  const Real t781 = t780 + c_r_p_0_;
+  const Real t748 = t742 * par.r_R;
+  const Real t749 = t412 - t748;
+  const Real t750 = t749 * c_r_p_0_;
 
-  // fork: acceleration
-  const Real t782 = par.k2 * t185;
-  const Real t783 = par.k1 - t782;
-  const Real t784 = s_r_p_1_ * t178;
-  const Real t785 = par.k1 * t185;
-  const Real t786 = t785 + par.k2;
-  const Real t787 = c_r_p_1_ * t786;
-  const Real t788 = t784 - t787;
-  const Real t789 = par.k1 * t207;
-  const Real t790 = t178 * par.k13;
-  const Real t791 = t790 - t179;
-  const Real t792 = t791 * par.k2;
-  const Real t793 = t789 + t792;
-  const Real t794 = par.k2 * t207;
-  const Real t795 = par.k1 * t791;
-  const Real t796 = t794 - t795;
-  const Real t797 = t796 * c_r_p_1_;
-  const Real t798 = par.k13 * t185;
-  const Real t799 = t221 - t798;
-  const Real t800 = s_r_p_1_ * t799;
-  const Real t801 = t797 + t800;
-  const Real t802 = s_r_p_1_ * t786;
-  const Real t803 = c_r_p_1_ * t178;
-  const Real t804 = t802 + t803;
-  const Real t805 = t787 - t784;
-  const Real t806 = t799 * c_r_p_1_;
-  const Real t807 = s_r_p_1_ * t796;
+  // frame: acceleration
+  const Real t751 = nu[0] * nu[0];
+  const Real t752 = t751 + t414;
+
+  // rear_wheel: acceleration
+  const Real t753 = t752 * par.r_R;
+  const Real t754 = t426 + t753;
+  const Real t755 = t754 * s_r_p_0_;
+  const Real t756 = t750 - t755;
+
+  // rear_wheel: wrench
+  const Real t757 = par.m_R * t756;
+
+  // rear_wheel: joint force
+  const Real t758 = t757 * c_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t759 = t749 * s_r_p_0_;
+  const Real t760 = t754 * c_r_p_0_;
+  const Real t761 = t759 + t760;
+
+  // rear_wheel: wrench
+  const Real t762 = t761 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t763 = t762 * s_r_p_0_;
+  const Real t764 = t758 + t763;
+  const Real t765 = t764 + t747;
+
+  // orthogonal basis
+  const Real t766 = t650 * t713;
+  const Real t767 = t689 - t766;
+
+  // reduced forces
+  const Real t768 = t765 * t767;
+
+  // fork: joint force
+  const Real t769 = s_r_p_1_ * t722;
+  const Real t770 = t729 * c_r_p_1_;
+  const Real t771 = t770 + t769;
+
+  // frame: wrench
+  const Real t772 = t442 * par.m_B;
+  const Real t773 = t444 * par.k16;
+  const Real t774 = t590 * par.k15;
+  const Real t775 = t773 + t774;
+  const Real t776 = t772 + t775;
+
+  // fork: joint force
+  const Real t777 = t776 + t771;
+
+  // rear_wheel: joint force
+  const Real t778 = t597 + t777;
+
+  // orthogonal basis
+  const Real t779 = t653 * t713;
+  const Real t780 = t692 - t779;
+
+  // reduced forces
+  const Real t781 = t778 * t780;
+  const Real t782 = t781 + t768;
+
+  // fork: joint force
+  const Real t783 = par.k1 * t731;
+  const Real t784 = t738 * par.k2;
+  const Real t785 = t784 - t783;
+
+  // frame: wrench
+  const Real t786 = t426 * par.m_B;
+  const Real t787 = t428 * par.k16;
+  const Real t788 = t752 * par.k15;
+  const Real t789 = t787 + t788;
+  const Real t790 = t786 - t789;
+
+  // fork: joint force
+  const Real t791 = t790 + t785;
+
+  // rear_wheel: joint force
+  const Real t792 = t762 * c_r_p_0_;
+  const Real t793 = t757 * s_r_p_0_;
+  const Real t794 = t792 - t793;
+  const Real t795 = t791 + t794;
+
+  // orthogonal basis
+  const Real t796 = t713 * t657;
+  const Real t797 = t696 - t796;
+
+  // reduced forces
+  const Real t798 = t795 * t797;
+  const Real t799 = t798 + t782;
+  const Real t800 = t716 + t799;
+
+  // fork: joint force
+  const Real t801 = c_r_p_1_ * t501;
+  const Real t802 = s_r_p_1_ * t569;
+  const Real t803 = t801 + t802;
+  const Real t804 = par.k13 * t785;
+  const Real t805 = t803 - t804;
+
+  // frame: wrench
+  const Real t806 = t412 * par.k15;
+  const Real t807 = t426 * par.k16;
   const Real t808 = t806 - t807;
-
-  // front_wheel: acceleration
-  const Real t809 = t783 * par.k1;
-  const Real t810 = par.k2 * t805;
-  const Real t811 = t809 + t810;
-  const Real t812 = c_r_p_2_ * t811;
-  const Real t813 = t783 * par.k2;
-  const Real t814 = par.k1 * t805;
-  const Real t815 = t813 - t814;
-  const Real t816 = t815 * s_r_p_2_;
-  const Real t817 = t812 - t816;
-  const Real t818 = t175 + t804;
-  const Real t819 = t811 * s_r_p_2_;
-  const Real t820 = c_r_p_2_ * t815;
-  const Real t821 = t819 + t820;
-  const Real t822 = t783 * par.k12;
-  const Real t823 = t788 * par.k11;
-  const Real t824 = t822 - t823;
-  const Real t825 = t824 + t808;
-  const Real t826 = par.k12 * t804;
-  const Real t827 = t793 + t826;
-  const Real t828 = par.k1 * t827;
-  const Real t829 = par.k11 * t804;
-  const Real t830 = t801 + t829;
-  const Real t831 = t830 * par.k2;
-  const Real t832 = t828 + t831;
-  const Real t833 = c_r_p_2_ * t832;
-  const Real t834 = par.k2 * t827;
-  const Real t835 = par.k1 * t830;
-  const Real t836 = t834 - t835;
-  const Real t837 = t836 * s_r_p_2_;
-  const Real t838 = t833 - t837;
-  const Real t839 = t832 * s_r_p_2_;
-  const Real t840 = t836 * c_r_p_2_;
-  const Real t841 = t839 + t840;
-
-  // frame: wrench
-  const Real t842 = t178 * par.k16;
-  const Real t843 = t179 * par.m_B;
-  const Real t844 = t842 - t843;
-  const Real t845 = t221 * par.k16;
-  const Real t846 = par.k14 * t185;
-  const Real t847 = par.k41 + t846;
-  const Real t848 = t845 - t847;
-  const Real t849 = t179 * par.k16;
-  const Real t850 = t207 * par.k15;
-  const Real t851 = t849 + t850;
-  const Real t852 = par.k4 * t178;
-  const Real t853 = t851 - t852;
-  const Real t854 = t221 * par.m_B;
-  const Real t855 = par.k16 * t185;
-  const Real t856 = par.k15 + t855;
-  const Real t857 = t854 - t856;
-  const Real t858 = t207 * par.m_B;
-  const Real t859 = t178 * par.k15;
-  const Real t860 = t858 - t859;
-  const Real t861 = par.k3 * t185;
-  const Real t862 = par.k9 - t861;
-  const Real t863 = t221 * par.k15;
-  const Real t864 = t862 - t863;
-
-  // rear_wheel: wrench
-  const Real t865 = t773 * par.m_R;
-  const Real t866 = t777 * par.m_R;
-  const Real t867 = par.I_Rxx * t779;
-  const Real t868 = t776 * par.m_R;
-  const Real t869 = par.I_Ryy * t178;
-  const Real t870 = par.I_Rxx * t781;
-
-  // fork: wrench
-  const Real t871 = t793 * par.m_H;
-  const Real t872 = par.k10 * t804;
-  const Real t873 = t871 + t872;
-  const Real t874 = t783 * par.k10;
-  const Real t875 = t788 * par.k8;
-  const Real t876 = t874 + t875;
-  const Real t877 = par.m_H * t808;
-  const Real t878 = t876 + t877;
-  const Real t879 = t783 * par.k6;
-  const Real t880 = t788 * par.k5;
-  const Real t881 = t879 - t880;
-  const Real t882 = par.k10 * t808;
-  const Real t883 = t881 + t882;
-  const Real t884 = par.k8 * t801;
-  const Real t885 = t793 * par.k10;
-  const Real t886 = t884 - t885;
-  const Real t887 = par.k7 * t804;
-  const Real t888 = t886 - t887;
-  const Real t889 = par.m_H * t801;
-  const Real t890 = par.k8 * t804;
-  const Real t891 = t889 - t890;
-  const Real t892 = t783 * par.k5;
-  const Real t893 = par.k17 * t805;
-  const Real t894 = t892 + t893;
-  const Real t895 = par.k8 * t808;
-  const Real t896 = t894 - t895;
-
-  // front_wheel: wrench
-  const Real t897 = par.m_F * t841;
-  const Real t898 = t817 * par.I_Fxx;
-  const Real t899 = par.I_Fxx * t821;
-  const Real t900 = t818 * par.I_Fyy;
-  const Real t901 = t825 * par.m_F;
-  const Real t902 = par.m_F * t838;
-
-  // front_wheel: joint force
-  const Real t903 = t878 + t901;
-  const Real t904 = t901 * par.k12;
-  const Real t905 = t898 * c_r_p_2_;
-  const Real t906 = t899 * s_r_p_2_;
-  const Real t907 = t905 + t906;
-  const Real t908 = par.k1 * t907;
-  const Real t909 = c_r_p_2_ * t899;
-  const Real t910 = t898 * s_r_p_2_;
-  const Real t911 = t909 - t910;
-  const Real t912 = t911 * par.k2;
-  const Real t913 = t908 + t912;
-  const Real t914 = t904 + t913;
-  const Real t915 = t914 + t883;
-  const Real t916 = c_r_p_2_ * t902;
-  const Real t917 = t897 * s_r_p_2_;
-  const Real t918 = t916 + t917;
-  const Real t919 = par.k1 * t918;
-  const Real t920 = t897 * c_r_p_2_;
-  const Real t921 = t902 * s_r_p_2_;
-  const Real t922 = t920 - t921;
-  const Real t923 = t922 * par.k2;
-  const Real t924 = t919 + t923;
-  const Real t925 = t924 * par.k12;
-  const Real t926 = t918 * par.k2;
-  const Real t927 = t922 * par.k1;
-  const Real t928 = t926 - t927;
-  const Real t929 = t928 * par.k11;
-  const Real t930 = t925 + t929;
-  const Real t931 = t930 + t900;
-  const Real t932 = t888 - t931;
-  const Real t933 = par.k2 * t907;
-  const Real t934 = t911 * par.k1;
-  const Real t935 = t933 - t934;
-  const Real t936 = t901 * par.k11;
-  const Real t937 = t935 + t936;
-  const Real t938 = t937 + t896;
-  const Real t939 = t873 + t924;
-  const Real t940 = t928 + t891;
+  const Real t809 = par.k4 * t387;
+  const Real t810 = t427 * par.k27;
+  const Real t811 = t809 - t810;
+  const Real t812 = t413 - t751;
+  const Real t813 = par.k3 * t812;
+  const Real t814 = t813 + t811;
+  const Real t815 = t808 + t814;
 
   // fork: joint force
-  const Real t941 = s_r_p_1_ * t940;
-  const Real t942 = t903 * c_r_p_1_;
-  const Real t943 = t941 + t942;
-  const Real t944 = t943 + t857;
-  const Real t945 = par.k1 * t939;
-  const Real t946 = c_r_p_1_ * t940;
-  const Real t947 = s_r_p_1_ * t903;
+  const Real t816 = t805 + t815;
+
+  // rear_wheel: joint force
+  const Real t817 = t764 * par.r_R;
+
+  // rear_wheel: wrench
+  const Real t818 = par.I_Ryy * t387;
+
+  // rear_wheel: joint force
+  const Real t819 = t818 - t817;
+  const Real t820 = t816 + t819;
+
+  // orthogonal basis
+  const Real t821 = t713 * t663;
+  const Real t822 = t702 - t821;
+
+  // reduced forces
+  const Real t823 = t822 * t820;
+  const Real t824 = t800 + t823;
+
+  // fork: joint force
+  const Real t825 = par.k1 * t571;
+  const Real t826 = t585 * par.k2;
+  const Real t827 = t826 - t825;
+  const Real t828 = t771 * par.k13;
+  const Real t829 = t828 + t827;
+
+  // frame: wrench
+  const Real t830 = t442 * par.k16;
+  const Real t831 = t390 * par.k14;
+  const Real t832 = par.k25 * t443;
+  const Real t833 = t831 - t832;
+  const Real t834 = par.k3 * t590;
+  const Real t835 = t833 - t834;
+  const Real t836 = t830 + t835;
+
+  // fork: joint force
+  const Real t837 = t836 + t829;
+
+  // rear_wheel: joint force
+  const Real t838 = c_r_p_0_ * t608;
+  const Real t839 = t619 * s_r_p_0_;
+  const Real t840 = t838 - t839;
+  const Real t841 = t840 + t837;
+
+  // orthogonal basis
+  const Real t842 = t667 * t713;
+  const Real t843 = t706 - t842;
+
+  // reduced forces
+  const Real t844 = t843 * t841;
+  const Real t845 = t844 + t824;
+  const Real t846 = t845 + t818;
+  const Real t847 = t585 * t713;
+  const Real t848 = t847 - t846;
+
+  // orthogonal basis
+  const Real t849 = t713 * t672;
+  const Real t850 = t710 - t849;
+
+  // reduced forces
+  const Real t851 = t489 * t850;
+  const Real t852 = t848 - t851;
+
+  // reduced forces
+  const Real t853 = t765 * t298;
+  const Real t854 = t778 * t270;
+  const Real t855 = t854 + t853;
+  const Real t856 = t286 * t795;
+  const Real t857 = t856 - t855;
+  const Real t858 = t857 - t623;
+  const Real t859 = t143 * t820;
+  const Real t860 = t859 + t858;
+  const Real t861 = t841 * t146;
+  const Real t862 = t860 + t861;
+  const Real t863 = t489 * t140;
+  const Real t864 = t863 + t862;
+
+  // fork: acceleration
+  const Real t865 = par.k1 * t146;
+  const Real t866 = t865 + par.k2;
+  const Real t867 = s_r_p_1_ * t866;
+  const Real t868 = c_r_p_1_ * t143;
+  const Real t869 = t867 + t868;
+
+  // front_wheel: acceleration
+  const Real t870 = par.k12 * t869;
+
+  // fork: acceleration
+  const Real t871 = t143 * par.k13;
+  const Real t872 = t871 - t286;
+  const Real t873 = t872 * par.k2;
+  const Real t874 = par.k1 * t298;
+  const Real t875 = t874 + t873;
+
+  // front_wheel: acceleration
+  const Real t876 = t875 + t870;
+  const Real t877 = par.k1 * t876;
+
+  // fork: acceleration
+  const Real t878 = par.k13 * t146;
+  const Real t879 = t270 - t878;
+  const Real t880 = s_r_p_1_ * t879;
+  const Real t881 = par.k1 * t872;
+  const Real t882 = par.k2 * t298;
+  const Real t883 = t882 - t881;
+  const Real t884 = t883 * c_r_p_1_;
+  const Real t885 = t884 + t880;
+
+  // front_wheel: acceleration
+  const Real t886 = par.k11 * t869;
+  const Real t887 = t885 + t886;
+  const Real t888 = t887 * par.k2;
+  const Real t889 = t877 + t888;
+  const Real t890 = c_r_p_2_ * t889;
+  const Real t891 = par.k2 * t876;
+  const Real t892 = par.k1 * t887;
+  const Real t893 = t891 - t892;
+  const Real t894 = t893 * s_r_p_2_;
+  const Real t895 = t890 - t894;
+
+  // front_wheel: wrench
+  const Real t896 = par.m_F * t895;
+
+  // front_wheel: joint force
+  const Real t897 = c_r_p_2_ * t896;
+
+  // front_wheel: acceleration
+  const Real t898 = t889 * s_r_p_2_;
+  const Real t899 = t893 * c_r_p_2_;
+  const Real t900 = t898 + t899;
+
+  // front_wheel: wrench
+  const Real t901 = par.m_F * t900;
+
+  // front_wheel: joint force
+  const Real t902 = t901 * s_r_p_2_;
+  const Real t903 = t897 + t902;
+  const Real t904 = t903 * par.k2;
+  const Real t905 = t901 * c_r_p_2_;
+  const Real t906 = t896 * s_r_p_2_;
+  const Real t907 = t905 - t906;
+  const Real t908 = t907 * par.k1;
+  const Real t909 = t904 - t908;
+
+  // fork: wrench
+  const Real t910 = par.m_H * t885;
+  const Real t911 = par.k8 * t869;
+  const Real t912 = t910 - t911;
+
+  // front_wheel: joint force
+  const Real t913 = t909 + t912;
+
+  // fork: joint force
+  const Real t914 = c_r_p_1_ * t913;
+
+  // fork: acceleration
+  const Real t915 = c_r_p_1_ * t866;
+  const Real t916 = s_r_p_1_ * t143;
+  const Real t917 = t916 - t915;
+
+  // front_wheel: acceleration
+  const Real t918 = t917 * par.k11;
+
+  // fork: acceleration
+  const Real t919 = par.k2 * t146;
+  const Real t920 = par.k1 - t919;
+
+  // front_wheel: acceleration
+  const Real t921 = t920 * par.k12;
+  const Real t922 = t921 - t918;
+
+  // fork: acceleration
+  const Real t923 = t879 * c_r_p_1_;
+  const Real t924 = s_r_p_1_ * t883;
+  const Real t925 = t923 - t924;
+
+  // front_wheel: acceleration
+  const Real t926 = t922 + t925;
+
+  // front_wheel: wrench
+  const Real t927 = t926 * par.m_F;
+
+  // fork: wrench
+  const Real t928 = t917 * par.k8;
+  const Real t929 = t920 * par.k10;
+  const Real t930 = t929 + t928;
+  const Real t931 = par.m_H * t925;
+  const Real t932 = t930 + t931;
+
+  // front_wheel: joint force
+  const Real t933 = t932 + t927;
+
+  // fork: joint force
+  const Real t934 = s_r_p_1_ * t933;
+  const Real t935 = t914 - t934;
+  const Real t936 = t935 * par.k2;
+
+  // front_wheel: joint force
+  const Real t937 = par.k1 * t903;
+  const Real t938 = t907 * par.k2;
+  const Real t939 = t937 + t938;
+
+  // fork: wrench
+  const Real t940 = par.k10 * t869;
+  const Real t941 = t875 * par.m_H;
+  const Real t942 = t941 + t940;
+
+  // front_wheel: joint force
+  const Real t943 = t942 + t939;
+
+  // fork: joint force
+  const Real t944 = par.k1 * t943;
+  const Real t945 = t944 + t936;
+
+  // frame: wrench
+  const Real t946 = t298 * par.m_B;
+  const Real t947 = t143 * par.k15;
   const Real t948 = t946 - t947;
-  const Real t949 = t948 * par.k2;
-  const Real t950 = t945 + t949;
-  const Real t951 = t860 + t950;
-  const Real t952 = par.k2 * t939;
-  const Real t953 = par.k1 * t948;
+
+  // fork: joint force
+  const Real t949 = t948 + t945;
+
+  // rear_wheel: acceleration
+  const Real t950 = t143 * par.r_R;
+  const Real t951 = t298 + t950;
+  const Real t952 = t951 * s_r_p_0_;
+  const Real t953 = t286 * c_r_p_0_;
   const Real t954 = t952 - t953;
-  const Real t955 = t844 + t954;
-  const Real t956 = t938 * c_r_p_1_;
-  const Real t957 = s_r_p_1_ * t932;
-  const Real t958 = t956 - t957;
-  const Real t959 = t958 * par.k2;
-  const Real t960 = t915 * par.k1;
-  const Real t961 = t959 + t960;
-  const Real t962 = t961 + t864;
-  const Real t963 = t915 * par.k2;
-  const Real t964 = t958 * par.k1;
-  const Real t965 = t963 - t964;
-  const Real t966 = t943 * par.k13;
+
+  // rear_wheel: wrench
+  const Real t955 = t954 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t956 = t955 * s_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t957 = t951 * c_r_p_0_;
+  const Real t958 = t286 * s_r_p_0_;
+  const Real t959 = t958 + t957;
+
+  // rear_wheel: wrench
+  const Real t960 = t959 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t961 = t960 * c_r_p_0_;
+  const Real t962 = t956 + t961;
+  const Real t963 = t949 + t962;
+
+  // reduced mass matrix
+  const Real t964 = t963 * t767;
+
+  // fork: joint force
+  const Real t965 = s_r_p_1_ * t913;
+  const Real t966 = t933 * c_r_p_1_;
   const Real t967 = t965 + t966;
-  const Real t968 = t848 + t967;
-  const Real t969 = s_r_p_1_ * t938;
-  const Real t970 = t932 * c_r_p_1_;
-  const Real t971 = t969 + t970;
-  const Real t972 = t954 * par.k13;
-  const Real t973 = t971 - t972;
-  const Real t974 = t973 + t853;
+
+  // frame: wrench
+  const Real t968 = t270 * par.m_B;
+  const Real t969 = par.k16 * t146;
+  const Real t970 = par.k15 + t969;
+  const Real t971 = t968 - t970;
+
+  // fork: joint force
+  const Real t972 = t967 + t971;
+
+  // rear_wheel: acceleration
+  const Real t973 = t270 + par.r_R;
+
+  // rear_wheel: wrench
+  const Real t974 = t973 * par.m_R;
 
   // rear_wheel: joint force
-  const Real t975 = t865 * c_r_p_0_;
-  const Real t976 = t868 * s_r_p_0_;
-  const Real t977 = t975 - t976;
-  const Real t978 = t977 + t955;
-  const Real t979 = t865 * s_r_p_0_;
-  const Real t980 = t868 * c_r_p_0_;
-  const Real t981 = t979 + t980;
-  const Real t982 = t951 + t981;
-  const Real t983 = t944 + t866;
-  const Real t984 = t866 * par.r_R;
-  const Real t985 = t870 * c_r_p_0_;
-  const Real t986 = t867 * s_r_p_0_;
-  const Real t987 = t985 + t986;
-  const Real t988 = t984 + t987;
-  const Real t989 = t962 + t988;
-  const Real t990 = t867 * c_r_p_0_;
-  const Real t991 = t870 * s_r_p_0_;
-  const Real t992 = t990 - t991;
-  const Real t993 = t992 + t968;
-  const Real t994 = t981 * par.r_R;
-  const Real t995 = t994 + t869;
-  const Real t996 = t974 - t995;
+  const Real t975 = t972 + t974;
 
   // reduced mass matrix
-  const Real t997 = t221 * t983;
-  const Real t998 = t982 * t207;
-  const Real t999 = t997 + t998;
-  const Real t1000 = t179 * t978;
+  const Real t976 = t975 * t780;
+  const Real t977 = t964 + t976;
+
+  // fork: joint force
+  const Real t978 = par.k1 * t935;
+  const Real t979 = par.k2 * t943;
+  const Real t980 = t979 - t978;
+
+  // frame: wrench
+  const Real t981 = t286 * par.m_B;
+  const Real t982 = t143 * par.k16;
+  const Real t983 = t982 - t981;
+
+  // fork: joint force
+  const Real t984 = t983 + t980;
+
+  // rear_wheel: joint force
+  const Real t985 = t955 * c_r_p_0_;
+  const Real t986 = t960 * s_r_p_0_;
+  const Real t987 = t985 - t986;
+  const Real t988 = t987 + t984;
+
+  // reduced mass matrix
+  const Real t989 = t988 * t797;
+  const Real t990 = t977 + t989;
+
+  // front_wheel: joint force
+  const Real t991 = t939 * par.k12;
+  const Real t992 = t909 * par.k11;
+  const Real t993 = t991 + t992;
+
+  // front_wheel: acceleration
+  const Real t994 = t140 + t869;
+
+  // front_wheel: wrench
+  const Real t995 = t994 * par.I_Fyy;
+
+  // front_wheel: joint force
+  const Real t996 = t993 + t995;
+
+  // fork: wrench
+  const Real t997 = par.k8 * t885;
+  const Real t998 = t875 * par.k10;
+  const Real t999 = t997 - t998;
+  const Real t1000 = par.k7 * t869;
   const Real t1001 = t999 - t1000;
-  const Real t1002 = t1001 + t989;
-  const Real t1003 = t178 * t996;
-  const Real t1004 = t1002 - t1003;
-  const Real t1005 = t185 * t993;
-  const Real t1006 = t1004 - t1005;
-  const Real t1007 = t175 * t900;
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = t216 * t983;
-  const Real t1010 = t982 * t203;
-  const Real t1011 = t1009 + t1010;
-  const Real t1012 = t978 * t151;
-  const Real t1013 = t1011 + t1012;
-  const Real t1014 = t149 * t996;
-  const Real t1015 = t1013 - t1014;
-  const Real t1016 = t194 * t993;
-  const Real t1017 = t1015 - t1016;
-  const Real t1018 = t1017 - t869;
-  const Real t1019 = t146 * t900;
-  const Real t1020 = t1018 + t1019;
-  const Real t1021 = t982 * t205;
-  const Real t1022 = t218 * t983;
-  const Real t1023 = t1021 + t1022;
-  const Real t1024 = t978 * t161;
+
+  // front_wheel: joint force
+  const Real t1002 = t1001 - t996;
+
+  // fork: joint force
+  const Real t1003 = s_r_p_1_ * t1002;
+
+  // fork: acceleration
+  const Real t1004 = t915 - t916;
+
+  // front_wheel: acceleration
+  const Real t1005 = par.k2 * t1004;
+  const Real t1006 = t920 * par.k1;
+  const Real t1007 = t1006 + t1005;
+  const Real t1008 = c_r_p_2_ * t1007;
+  const Real t1009 = par.k1 * t1004;
+  const Real t1010 = t920 * par.k2;
+  const Real t1011 = t1010 - t1009;
+  const Real t1012 = t1011 * s_r_p_2_;
+  const Real t1013 = t1008 - t1012;
+
+  // front_wheel: wrench
+  const Real t1014 = t1013 * par.I_Fxx;
+
+  // front_wheel: joint force
+  const Real t1015 = t1014 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1016 = t1007 * s_r_p_2_;
+  const Real t1017 = c_r_p_2_ * t1011;
+  const Real t1018 = t1016 + t1017;
+
+  // front_wheel: wrench
+  const Real t1019 = par.I_Fxx * t1018;
+
+  // front_wheel: joint force
+  const Real t1020 = t1019 * s_r_p_2_;
+  const Real t1021 = t1015 + t1020;
+  const Real t1022 = par.k2 * t1021;
+  const Real t1023 = c_r_p_2_ * t1019;
+  const Real t1024 = t1014 * s_r_p_2_;
   const Real t1025 = t1023 - t1024;
-  const Real t1026 = t160 * t996;
-  const Real t1027 = t1025 - t1026;
-  const Real t1028 = t189 * t993;
-  const Real t1029 = t1027 - t1028;
-  const Real t1030 = t1029 + t915;
-  const Real t1031 = t157 * t900;
-  const Real t1032 = t1030 + t1031;
+  const Real t1026 = t1025 * par.k1;
+  const Real t1027 = t1022 - t1026;
+  const Real t1028 = t927 * par.k11;
+  const Real t1029 = t1027 + t1028;
+
+  // fork: wrench
+  const Real t1030 = par.k17 * t1004;
+  const Real t1031 = t920 * par.k5;
+  const Real t1032 = t1031 + t1030;
+  const Real t1033 = par.k8 * t925;
+  const Real t1034 = t1032 - t1033;
+
+  // front_wheel: joint force
+  const Real t1035 = t1029 + t1034;
+
+  // fork: joint force
+  const Real t1036 = t1035 * c_r_p_1_;
+  const Real t1037 = t1036 - t1003;
+  const Real t1038 = t1037 * par.k2;
+
+  // front_wheel: joint force
+  const Real t1039 = par.k1 * t1021;
+  const Real t1040 = t1025 * par.k2;
+  const Real t1041 = t1039 + t1040;
+  const Real t1042 = t927 * par.k12;
+  const Real t1043 = t1042 + t1041;
+
+  // fork: wrench
+  const Real t1044 = t917 * par.k5;
+  const Real t1045 = t920 * par.k6;
+  const Real t1046 = t1045 - t1044;
+  const Real t1047 = par.k10 * t925;
+  const Real t1048 = t1046 + t1047;
+
+  // front_wheel: joint force
+  const Real t1049 = t1043 + t1048;
+
+  // fork: joint force
+  const Real t1050 = t1049 * par.k1;
+  const Real t1051 = t1038 + t1050;
+
+  // frame: wrench
+  const Real t1052 = t270 * par.k15;
+  const Real t1053 = par.k3 * t146;
+  const Real t1054 = par.k9 - t1053;
+  const Real t1055 = t1054 - t1052;
+
+  // fork: joint force
+  const Real t1056 = t1051 + t1055;
+
+  // rear_wheel: joint force
+  const Real t1057 = t974 * par.r_R;
 
   // rear_wheel: acceleration
-  const Real t1033 = t189 * s_r_p_0_;
-  const Real t1034 = t189 * c_r_p_0_;
-  const Real t1035 = t160 * par.r_R;
-  const Real t1036 = t205 + t1035;
-  const Real t1037 = t1036 * s_r_p_0_;
-  const Real t1038 = t161 * c_r_p_0_;
-  const Real t1039 = t1037 - t1038;
-  const Real t1040 = t1036 * c_r_p_0_;
-  const Real t1041 = t161 * s_r_p_0_;
-  const Real t1042 = t1040 + t1041;
+  const Real t1058 = t146 * s_r_p_0_;
+  const Real t1059 = t1058 + c_r_p_0_;
 
-  // fork: acceleration
-  const Real t1043 = t189 * par.k1;
-  const Real t1044 = t1043 * s_r_p_1_;
-  const Real t1045 = t160 * c_r_p_1_;
-  const Real t1046 = t1044 + t1045;
-  const Real t1047 = par.k1 * t205;
-  const Real t1048 = t160 * par.k13;
-  const Real t1049 = t1048 - t161;
-  const Real t1050 = t1049 * par.k2;
-  const Real t1051 = t1047 + t1050;
-  const Real t1052 = t189 * par.k2;
-  const Real t1053 = constant<Real>(1.0L) - t1052;
-  const Real t1054 = t1043 * c_r_p_1_;
-  const Real t1055 = s_r_p_1_ * t160;
-  const Real t1056 = t1054 - t1055;
-  const Real t1057 = t1055 - t1054;
-  const Real t1058 = t189 * par.k13;
-  const Real t1059 = t218 - t1058;
-  const Real t1060 = t1059 * s_r_p_1_;
-  const Real t1061 = t205 * par.k2;
-  const Real t1062 = par.k1 * t1049;
-  const Real t1063 = t1061 - t1062;
-  const Real t1064 = c_r_p_1_ * t1063;
-  const Real t1065 = t1060 + t1064;
-  const Real t1066 = t1059 * c_r_p_1_;
-  const Real t1067 = s_r_p_1_ * t1063;
-  const Real t1068 = t1066 - t1067;
+  // rear_wheel: wrench
+  const Real t1060 = par.I_Rxx * t1059;
 
-  // front_wheel: acceleration
-  const Real t1069 = t1046 + t157;
-  const Real t1070 = par.k2 * t1056;
-  const Real t1071 = par.k1 * t1053;
-  const Real t1072 = t1070 + t1071;
-  const Real t1073 = t1072 * s_r_p_2_;
-  const Real t1074 = t1053 * par.k2;
-  const Real t1075 = par.k1 * t1056;
-  const Real t1076 = t1074 - t1075;
-  const Real t1077 = t1076 * c_r_p_2_;
-  const Real t1078 = t1073 + t1077;
-  const Real t1079 = c_r_p_2_ * t1072;
-  const Real t1080 = t1076 * s_r_p_2_;
-  const Real t1081 = t1079 - t1080;
-  const Real t1082 = t1046 * par.k12;
-  const Real t1083 = t1051 + t1082;
-  const Real t1084 = t1083 * par.k2;
-  const Real t1085 = t1046 * par.k11;
-  const Real t1086 = t1085 + t1065;
-  const Real t1087 = par.k1 * t1086;
-  const Real t1088 = t1084 - t1087;
-  const Real t1089 = t1088 * c_r_p_2_;
-  const Real t1090 = t1083 * par.k1;
-  const Real t1091 = t1086 * par.k2;
+  // rear_wheel: joint force
+  const Real t1061 = t1060 * c_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1062 = t146 * c_r_p_0_;
+  const Real t1063 = s_r_p_0_ - t1062;
+
+  // rear_wheel: wrench
+  const Real t1064 = par.I_Rxx * t1063;
+
+  // rear_wheel: joint force
+  const Real t1065 = t1064 * s_r_p_0_;
+  const Real t1066 = t1061 + t1065;
+  const Real t1067 = t1057 + t1066;
+  const Real t1068 = t1056 + t1067;
+
+  // reduced mass matrix
+  const Real t1069 = t715 * t1068;
+  const Real t1070 = t1069 + t990;
+
+  // fork: joint force
+  const Real t1071 = t1002 * c_r_p_1_;
+  const Real t1072 = s_r_p_1_ * t1035;
+  const Real t1073 = t1072 + t1071;
+  const Real t1074 = t980 * par.k13;
+  const Real t1075 = t1073 - t1074;
+
+  // frame: wrench
+  const Real t1076 = t286 * par.k16;
+  const Real t1077 = t298 * par.k15;
+  const Real t1078 = t1076 + t1077;
+  const Real t1079 = par.k4 * t143;
+  const Real t1080 = t1078 - t1079;
+
+  // fork: joint force
+  const Real t1081 = t1075 + t1080;
+
+  // rear_wheel: joint force
+  const Real t1082 = t962 * par.r_R;
+
+  // rear_wheel: wrench
+  const Real t1083 = par.I_Ryy * t143;
+
+  // rear_wheel: joint force
+  const Real t1084 = t1082 + t1083;
+  const Real t1085 = t1081 - t1084;
+
+  // reduced mass matrix
+  const Real t1086 = t822 * t1085;
+  const Real t1087 = t1070 + t1086;
+
+  // fork: joint force
+  const Real t1088 = t1037 * par.k1;
+  const Real t1089 = t1049 * par.k2;
+  const Real t1090 = t1089 - t1088;
+  const Real t1091 = t967 * par.k13;
   const Real t1092 = t1090 + t1091;
-  const Real t1093 = s_r_p_2_ * t1092;
-  const Real t1094 = t1089 + t1093;
-  const Real t1095 = t1053 * par.k12;
-  const Real t1096 = par.k11 * t1057;
-  const Real t1097 = t1095 - t1096;
-  const Real t1098 = t1097 + t1068;
-  const Real t1099 = c_r_p_2_ * t1092;
-  const Real t1100 = t1088 * s_r_p_2_;
-  const Real t1101 = t1099 - t1100;
 
   // frame: wrench
-  const Real t1102 = t205 * par.k15;
-  const Real t1103 = t161 * par.k16;
-  const Real t1104 = t1102 + t1103;
-  const Real t1105 = par.k4 * t160;
+  const Real t1093 = t270 * par.k16;
+  const Real t1094 = par.k14 * t146;
+  const Real t1095 = par.k41 + t1094;
+  const Real t1096 = t1093 - t1095;
+
+  // fork: joint force
+  const Real t1097 = t1096 + t1092;
+
+  // rear_wheel: joint force
+  const Real t1098 = t1064 * c_r_p_0_;
+  const Real t1099 = t1060 * s_r_p_0_;
+  const Real t1100 = t1098 - t1099;
+  const Real t1101 = t1100 + t1097;
+
+  // reduced mass matrix
+  const Real t1102 = t843 * t1101;
+  const Real t1103 = t1087 + t1102;
+  const Real t1104 = t1103 - t1083;
+  const Real t1105 = t1049 * t713;
   const Real t1106 = t1104 - t1105;
-  const Real t1107 = t205 * par.m_B;
-  const Real t1108 = t160 * par.k15;
-  const Real t1109 = t1107 - t1108;
-  const Real t1110 = t218 * par.m_B;
-  const Real t1111 = t189 * par.k16;
-  const Real t1112 = t1110 - t1111;
-  const Real t1113 = t160 * par.k16;
-  const Real t1114 = t161 * par.m_B;
-  const Real t1115 = t1113 - t1114;
-  const Real t1116 = t218 * par.k16;
-  const Real t1117 = t189 * par.k14;
+  const Real t1107 = t995 * t850;
+  const Real t1108 = t1106 - t1107;
+
+  // reduced mass matrix
+  const Real t1109 = t963 * t298;
+  const Real t1110 = t270 * t975;
+  const Real t1111 = t1110 + t1109;
+  const Real t1112 = t286 * t988;
+  const Real t1113 = t1111 - t1112;
+  const Real t1114 = t1113 + t1068;
+  const Real t1115 = t143 * t1085;
+  const Real t1116 = t1114 - t1115;
+  const Real t1117 = t146 * t1101;
   const Real t1118 = t1116 - t1117;
-
-  // rear_wheel: wrench
-  const Real t1119 = par.I_Ryy * t160;
-  const Real t1120 = par.m_R * t1042;
-  const Real t1121 = t1034 * par.I_Rxx;
-  const Real t1122 = par.m_R * t1039;
-  const Real t1123 = t1033 * par.I_Rxx;
-  const Real t1124 = t218 * par.m_R;
-
-  // fork: wrench
-  const Real t1125 = par.k8 * t1065;
-  const Real t1126 = t1051 * par.k10;
-  const Real t1127 = t1125 - t1126;
-  const Real t1128 = t1046 * par.k7;
-  const Real t1129 = t1127 - t1128;
-  const Real t1130 = par.m_H * t1068;
-  const Real t1131 = t1053 * par.k10;
-  const Real t1132 = par.k8 * t1057;
-  const Real t1133 = t1131 + t1132;
-  const Real t1134 = t1130 + t1133;
-  const Real t1135 = t1053 * par.k6;
-  const Real t1136 = par.k5 * t1057;
-  const Real t1137 = t1135 - t1136;
-  const Real t1138 = par.k10 * t1068;
-  const Real t1139 = t1137 + t1138;
-  const Real t1140 = t1046 * par.k10;
-  const Real t1141 = t1051 * par.m_H;
-  const Real t1142 = t1140 + t1141;
-  const Real t1143 = t1056 * par.k17;
-  const Real t1144 = par.k5 * t1053;
-  const Real t1145 = t1143 + t1144;
-  const Real t1146 = par.k8 * t1068;
-  const Real t1147 = t1145 - t1146;
-  const Real t1148 = par.m_H * t1065;
-  const Real t1149 = t1046 * par.k8;
-  const Real t1150 = t1148 - t1149;
-
-  // front_wheel: wrench
-  const Real t1151 = par.I_Fxx * t1078;
-  const Real t1152 = par.m_F * t1094;
-  const Real t1153 = par.I_Fxx * t1081;
-  const Real t1154 = par.m_F * t1098;
-  const Real t1155 = par.m_F * t1101;
-  const Real t1156 = t1069 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t1157 = t1154 * par.k12;
-  const Real t1158 = t1151 * c_r_p_2_;
-  const Real t1159 = t1153 * s_r_p_2_;
-  const Real t1160 = t1158 - t1159;
-  const Real t1161 = t1160 * par.k2;
-  const Real t1162 = t1153 * c_r_p_2_;
-  const Real t1163 = t1151 * s_r_p_2_;
-  const Real t1164 = t1162 + t1163;
-  const Real t1165 = par.k1 * t1164;
-  const Real t1166 = t1161 + t1165;
-  const Real t1167 = t1157 + t1166;
-  const Real t1168 = t1167 + t1139;
-  const Real t1169 = t1134 + t1154;
-  const Real t1170 = c_r_p_2_ * t1155;
-  const Real t1171 = t1152 * s_r_p_2_;
-  const Real t1172 = t1170 + t1171;
-  const Real t1173 = t1172 * par.k2;
-  const Real t1174 = t1152 * c_r_p_2_;
-  const Real t1175 = t1155 * s_r_p_2_;
-  const Real t1176 = t1174 - t1175;
-  const Real t1177 = par.k1 * t1176;
-  const Real t1178 = t1173 - t1177;
-  const Real t1179 = t1178 * par.k11;
-  const Real t1180 = par.k2 * t1176;
-  const Real t1181 = t1172 * par.k1;
-  const Real t1182 = t1180 + t1181;
-  const Real t1183 = t1182 * par.k12;
-  const Real t1184 = t1179 + t1183;
-  const Real t1185 = t1184 + t1156;
-  const Real t1186 = t1129 - t1185;
-  const Real t1187 = t1154 * par.k11;
-  const Real t1188 = t1164 * par.k2;
-  const Real t1189 = par.k1 * t1160;
-  const Real t1190 = t1188 - t1189;
-  const Real t1191 = t1187 + t1190;
-  const Real t1192 = t1191 + t1147;
-  const Real t1193 = t1178 + t1150;
-  const Real t1194 = t1142 + t1182;
-
-  // fork: joint force
-  const Real t1195 = t1169 * c_r_p_1_;
-  const Real t1196 = s_r_p_1_ * t1193;
-  const Real t1197 = t1195 + t1196;
-  const Real t1198 = t1197 * par.k13;
-  const Real t1199 = t1168 * par.k2;
-  const Real t1200 = t1192 * c_r_p_1_;
-  const Real t1201 = s_r_p_1_ * t1186;
-  const Real t1202 = t1200 - t1201;
-  const Real t1203 = par.k1 * t1202;
-  const Real t1204 = t1199 - t1203;
-  const Real t1205 = t1198 + t1204;
-  const Real t1206 = t1118 + t1205;
-  const Real t1207 = t1112 + t1197;
-  const Real t1208 = par.k2 * t1194;
-  const Real t1209 = c_r_p_1_ * t1193;
-  const Real t1210 = s_r_p_1_ * t1169;
-  const Real t1211 = t1209 - t1210;
-  const Real t1212 = par.k1 * t1211;
-  const Real t1213 = t1208 - t1212;
-  const Real t1214 = t1213 + t1115;
-  const Real t1215 = s_r_p_1_ * t1192;
-  const Real t1216 = t1186 * c_r_p_1_;
-  const Real t1217 = t1215 + t1216;
-  const Real t1218 = t1213 * par.k13;
-  const Real t1219 = t1217 - t1218;
-  const Real t1220 = t1219 + t1106;
-  const Real t1221 = par.k2 * t1211;
-  const Real t1222 = par.k1 * t1194;
-  const Real t1223 = t1221 + t1222;
-  const Real t1224 = t1223 + t1109;
-
-  // rear_wheel: joint force
-  const Real t1225 = t1207 + t1124;
-  const Real t1226 = t1122 * c_r_p_0_;
-  const Real t1227 = t1120 * s_r_p_0_;
-  const Real t1228 = t1226 - t1227;
-  const Real t1229 = t1228 + t1214;
-  const Real t1230 = t1121 * c_r_p_0_;
-  const Real t1231 = t1123 * s_r_p_0_;
-  const Real t1232 = t1230 + t1231;
-  const Real t1233 = t1206 - t1232;
-  const Real t1234 = t1122 * s_r_p_0_;
-  const Real t1235 = t1120 * c_r_p_0_;
-  const Real t1236 = t1234 + t1235;
-  const Real t1237 = t1236 * par.r_R;
-  const Real t1238 = t1237 + t1119;
-  const Real t1239 = t1220 - t1238;
-  const Real t1240 = t1236 + t1224;
-
-  // reduced mass matrix
-  const Real t1241 = t157 * t1156;
-  const Real t1242 = t205 * t1240;
-  const Real t1243 = t1225 * t218;
-  const Real t1244 = t1242 + t1243;
-  const Real t1245 = t1229 * t161;
-  const Real t1246 = t1244 - t1245;
-  const Real t1247 = t1239 * t160;
-  const Real t1248 = t1246 - t1247;
-  const Real t1249 = t189 * t1233;
-  const Real t1250 = t1248 - t1249;
-  const Real t1251 = t1250 + t1168;
-  const Real t1252 = t1241 + t1251;
-  const Real t1253 = t146 * t1156;
-  const Real t1254 = t1229 * t151;
-  const Real t1255 = t1225 * t216;
-  const Real t1256 = t203 * t1240;
-  const Real t1257 = t1255 + t1256;
-  const Real t1258 = t1254 + t1257;
-  const Real t1259 = t149 * t1239;
-  const Real t1260 = t1258 - t1259;
-  const Real t1261 = t194 * t1233;
-  const Real t1262 = t1260 - t1261;
-  const Real t1263 = t1262 - t1119;
-  const Real t1264 = t1253 + t1263;
-
-  // rear_wheel: acceleration
-  const Real t1265 = t194 * s_r_p_0_;
-  const Real t1266 = t149 * par.r_R;
-  const Real t1267 = t1266 + t203;
-  const Real t1268 = t1267 * s_r_p_0_;
-  const Real t1269 = t151 * c_r_p_0_;
-  const Real t1270 = t1268 + t1269;
-  const Real t1271 = t1267 * c_r_p_0_;
-  const Real t1272 = t151 * s_r_p_0_;
-  const Real t1273 = t1271 - t1272;
-  const Real t1274 = t194 * c_r_p_0_;
-  const Real t1275 = constant<Real>(1.0L) - t149;
-
-  // fork: acceleration
-  const Real t1276 = t149 * s_r_p_1_;
-  const Real t1277 = t194 * par.k1;
-  const Real t1278 = t1277 * c_r_p_1_;
-  const Real t1279 = t1276 - t1278;
-  const Real t1280 = par.k1 * t203;
-  const Real t1281 = t149 * par.k13;
-  const Real t1282 = t1281 + t151;
-  const Real t1283 = t1282 * par.k2;
-  const Real t1284 = t1280 + t1283;
-  const Real t1285 = t1278 - t1276;
-  const Real t1286 = t149 * c_r_p_1_;
-  const Real t1287 = t1277 * s_r_p_1_;
-  const Real t1288 = t1286 + t1287;
-  const Real t1289 = t194 * par.k13;
-  const Real t1290 = t216 - t1289;
-  const Real t1291 = s_r_p_1_ * t1290;
-  const Real t1292 = t203 * par.k2;
-  const Real t1293 = par.k1 * t1282;
-  const Real t1294 = t1292 - t1293;
-  const Real t1295 = c_r_p_1_ * t1294;
-  const Real t1296 = t1291 + t1295;
-  const Real t1297 = t194 * par.k2;
-  const Real t1298 = t1290 * c_r_p_1_;
-  const Real t1299 = s_r_p_1_ * t1294;
-  const Real t1300 = t1298 - t1299;
-
-  // front_wheel: acceleration
-  const Real t1301 = par.k12 * t1288;
-  const Real t1302 = t1284 + t1301;
-  const Real t1303 = par.k2 * t1302;
-  const Real t1304 = par.k11 * t1288;
-  const Real t1305 = t1304 + t1296;
-  const Real t1306 = par.k1 * t1305;
-  const Real t1307 = t1303 - t1306;
-  const Real t1308 = c_r_p_2_ * t1307;
-  const Real t1309 = par.k2 * t1305;
-  const Real t1310 = par.k1 * t1302;
-  const Real t1311 = t1309 + t1310;
-  const Real t1312 = t1311 * s_r_p_2_;
-  const Real t1313 = t1308 + t1312;
-  const Real t1314 = t1311 * c_r_p_2_;
-  const Real t1315 = t1307 * s_r_p_2_;
-  const Real t1316 = t1314 - t1315;
-  const Real t1317 = par.k2 * t1297;
-  const Real t1318 = par.k1 * t1285;
-  const Real t1319 = t1317 + t1318;
-  const Real t1320 = t1319 * s_r_p_2_;
-  const Real t1321 = par.k2 * t1285;
-  const Real t1322 = par.k1 * t1297;
-  const Real t1323 = t1321 - t1322;
-  const Real t1324 = c_r_p_2_ * t1323;
-  const Real t1325 = t1320 + t1324;
-  const Real t1326 = t146 + t1288;
-  const Real t1327 = t1279 * par.k11;
-  const Real t1328 = par.k12 * t1297;
-  const Real t1329 = t1327 + t1328;
-  const Real t1330 = t1300 - t1329;
-  const Real t1331 = t1323 * s_r_p_2_;
-  const Real t1332 = c_r_p_2_ * t1319;
-  const Real t1333 = t1331 - t1332;
-
-  // frame: wrench
-  const Real t1334 = t216 * par.k16;
-  const Real t1335 = t194 * par.k14;
-  const Real t1336 = t1334 - t1335;
-  const Real t1337 = t216 * par.m_B;
-  const Real t1338 = t194 * par.k16;
-  const Real t1339 = t1337 - t1338;
-  const Real t1340 = t149 * par.k16;
-  const Real t1341 = t151 * par.m_B;
-  const Real t1342 = t1340 + t1341;
-  const Real t1343 = t203 * par.m_B;
-  const Real t1344 = t149 * par.k15;
-  const Real t1345 = t1343 - t1344;
-  const Real t1346 = t203 * par.k15;
-  const Real t1347 = par.k16 * t151;
-  const Real t1348 = t1346 - t1347;
-  const Real t1349 = t149 * par.k4;
-  const Real t1350 = t1348 - t1349;
-
-  // rear_wheel: wrench
-  const Real t1351 = t1265 * par.I_Rxx;
-  const Real t1352 = t216 * par.m_R;
-  const Real t1353 = par.I_Ryy * t1275;
-  const Real t1354 = par.I_Rxx * t1274;
-  const Real t1355 = t1270 * par.m_R;
-  const Real t1356 = t1273 * par.m_R;
-
-  // fork: wrench
-  const Real t1357 = par.m_H * t1296;
-  const Real t1358 = par.k8 * t1288;
-  const Real t1359 = t1357 - t1358;
-  const Real t1360 = t1279 * par.k8;
-  const Real t1361 = par.k10 * t1297;
-  const Real t1362 = t1360 - t1361;
-  const Real t1363 = par.m_H * t1300;
-  const Real t1364 = t1362 + t1363;
-  const Real t1365 = t1284 * par.m_H;
-  const Real t1366 = par.k10 * t1288;
-  const Real t1367 = t1365 + t1366;
-  const Real t1368 = t1285 * par.k17;
-  const Real t1369 = par.k5 * t1297;
-  const Real t1370 = t1368 - t1369;
-  const Real t1371 = par.k8 * t1300;
-  const Real t1372 = t1370 - t1371;
-  const Real t1373 = par.k10 * t1300;
-  const Real t1374 = par.k6 * t1297;
-  const Real t1375 = t1279 * par.k5;
-  const Real t1376 = t1374 + t1375;
-  const Real t1377 = t1373 - t1376;
-  const Real t1378 = par.k8 * t1296;
-  const Real t1379 = t1284 * par.k10;
-  const Real t1380 = t1378 - t1379;
-  const Real t1381 = par.k7 * t1288;
-  const Real t1382 = t1380 - t1381;
-
-  // front_wheel: wrench
-  const Real t1383 = par.m_F * t1330;
-  const Real t1384 = t1313 * par.m_F;
-  const Real t1385 = par.I_Fxx * t1325;
-  const Real t1386 = par.I_Fyy * t1326;
-  const Real t1387 = par.I_Fxx * t1333;
-  const Real t1388 = t1316 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1389 = c_r_p_2_ * t1388;
-  const Real t1390 = t1384 * s_r_p_2_;
-  const Real t1391 = t1389 + t1390;
-  const Real t1392 = t1391 * par.k2;
-  const Real t1393 = t1384 * c_r_p_2_;
-  const Real t1394 = t1388 * s_r_p_2_;
-  const Real t1395 = t1393 - t1394;
-  const Real t1396 = par.k1 * t1395;
-  const Real t1397 = t1392 - t1396;
-  const Real t1398 = par.k11 * t1397;
-  const Real t1399 = t1391 * par.k1;
-  const Real t1400 = t1395 * par.k2;
-  const Real t1401 = t1399 + t1400;
-  const Real t1402 = t1401 * par.k12;
-  const Real t1403 = t1398 + t1402;
-  const Real t1404 = t1386 + t1403;
-  const Real t1405 = t1382 - t1404;
-  const Real t1406 = t1387 * s_r_p_2_;
-  const Real t1407 = c_r_p_2_ * t1385;
-  const Real t1408 = t1406 + t1407;
-  const Real t1409 = t1408 * par.k2;
-  const Real t1410 = c_r_p_2_ * t1387;
-  const Real t1411 = t1385 * s_r_p_2_;
-  const Real t1412 = t1410 - t1411;
-  const Real t1413 = t1412 * par.k1;
-  const Real t1414 = t1409 - t1413;
-  const Real t1415 = t1383 * par.k11;
-  const Real t1416 = t1414 + t1415;
-  const Real t1417 = t1372 + t1416;
-  const Real t1418 = par.k1 * t1408;
-  const Real t1419 = t1412 * par.k2;
-  const Real t1420 = t1418 + t1419;
-  const Real t1421 = t1383 * par.k12;
-  const Real t1422 = t1420 + t1421;
-  const Real t1423 = t1422 + t1377;
-  const Real t1424 = t1383 + t1364;
-  const Real t1425 = t1401 + t1367;
-  const Real t1426 = t1359 + t1397;
-
-  // fork: joint force
-  const Real t1427 = par.k2 * t1425;
-  const Real t1428 = c_r_p_1_ * t1426;
-  const Real t1429 = s_r_p_1_ * t1424;
-  const Real t1430 = t1428 - t1429;
-  const Real t1431 = par.k1 * t1430;
-  const Real t1432 = t1427 - t1431;
-  const Real t1433 = t1342 + t1432;
-  const Real t1434 = s_r_p_1_ * t1426;
-  const Real t1435 = c_r_p_1_ * t1424;
-  const Real t1436 = t1434 + t1435;
-  const Real t1437 = t1436 + t1339;
-  const Real t1438 = t1436 * par.k13;
-  const Real t1439 = t1423 * par.k2;
-  const Real t1440 = t1417 * c_r_p_1_;
-  const Real t1441 = t1405 * s_r_p_1_;
-  const Real t1442 = t1440 - t1441;
-  const Real t1443 = t1442 * par.k1;
-  const Real t1444 = t1439 - t1443;
-  const Real t1445 = t1438 + t1444;
-  const Real t1446 = t1336 + t1445;
-  const Real t1447 = par.k1 * t1425;
-  const Real t1448 = par.k2 * t1430;
-  const Real t1449 = t1447 + t1448;
-  const Real t1450 = t1449 + t1345;
-  const Real t1451 = t1405 * c_r_p_1_;
-  const Real t1452 = s_r_p_1_ * t1417;
-  const Real t1453 = t1451 + t1452;
-  const Real t1454 = t1432 * par.k13;
-  const Real t1455 = t1453 - t1454;
-  const Real t1456 = t1455 + t1350;
-
-  // rear_wheel: joint force
-  const Real t1457 = t1351 * s_r_p_0_;
-  const Real t1458 = t1354 * c_r_p_0_;
-  const Real t1459 = t1457 + t1458;
-  const Real t1460 = t1446 - t1459;
-  const Real t1461 = t1355 * c_r_p_0_;
-  const Real t1462 = t1356 * s_r_p_0_;
-  const Real t1463 = t1461 - t1462;
-  const Real t1464 = t1463 + t1433;
-  const Real t1465 = t1437 + t1352;
-  const Real t1466 = t1355 * s_r_p_0_;
-  const Real t1467 = t1356 * c_r_p_0_;
-  const Real t1468 = t1466 + t1467;
-  const Real t1469 = t1468 * par.r_R;
-  const Real t1470 = t1353 - t1469;
-  const Real t1471 = t1470 + t1456;
-  const Real t1472 = t1468 + t1450;
-
-  // reduced mass matrix
-  const Real t1473 = t203 * t1472;
-  const Real t1474 = t216 * t1465;
-  const Real t1475 = t1473 + t1474;
-  const Real t1476 = t1464 * t151;
-  const Real t1477 = t1475 + t1476;
-  const Real t1478 = t149 * t1471;
-  const Real t1479 = t1477 - t1478;
-  const Real t1480 = t1460 * t194;
-  const Real t1481 = t1479 - t1480;
-  const Real t1482 = t1481 + t1353;
-  const Real t1483 = t146 * t1386;
-  const Real t1484 = t1482 + t1483;
+  const Real t1119 = t140 * t995;
+  const Real t1120 = t1118 + t1119;
 
   // reduced accelerations
-  const Real t1485 = constant<Real>(1.0L) / t1008;
-  const Real t1486 = t1485 * t744;
-  const Real t1487 = t1485 * t1032;
-  const Real t1488 = t1487 * t1032;
-  const Real t1489 = t1252 - t1488;
-  const Real t1490 = constant<Real>(1.0L) / t1489;
-  const Real t1491 = t1487 * t744;
-  const Real t1492 = t756 - t1491;
-  const Real t1493 = t1490 * t1492;
-  const Real t1494 = t1485 * t1020;
-  const Real t1495 = t1494 * t744;
-  const Real t1496 = t768 - t1495;
-  const Real t1497 = t1020 * t1487;
-  const Real t1498 = t1264 - t1497;
-  const Real t1499 = t1490 * t1498;
-  const Real t1500 = t1492 * t1499;
-  const Real t1501 = t1496 - t1500;
-  const Real t1502 = t1020 * t1494;
-  const Real t1503 = t1484 - t1502;
-  const Real t1504 = t1498 * t1499;
-  const Real t1505 = t1503 - t1504;
-  const Real t1506 = constant<Real>(1.0L) / t1505;
-  const Real t1507 = t1501 * t1506;
-  const Real t1508 = t1507 * t1499;
-  const Real t1509 = t1493 - t1508;
-  const Real t1510 = t1509 * t1487;
-  const Real t1511 = t1486 - t1510;
-  const Real t1512 = t1507 * t1494;
-  const Real t1513 = t1511 - t1512;
+  const Real t1121 = constant<Real>(1.0L) / t1120;
 
-  // passive accelerations
-  const Real t1514 = t1513 * t185;
-  const Real t1515 = t189 * t1509;
+  // reduced accelerations
+  const Real t1122 = t1108 * t1121;
+  const Real t1123 = t864 * t1122;
+  const Real t1124 = t852 - t1123;
+
+  // reduced forces
+  const Real t1125 = t648 * t623;
+  const Real t1126 = t765 * t650;
+  const Real t1127 = t778 * t653;
+  const Real t1128 = t1127 + t1126;
+  const Real t1129 = t795 * t657;
+  const Real t1130 = t1129 + t1128;
+  const Real t1131 = t1125 - t1130;
+  const Real t1132 = t820 * t663;
+  const Real t1133 = t1131 - t1132;
+  const Real t1134 = t667 * t841;
+  const Real t1135 = t1133 - t1134;
+  const Real t1136 = t1135 - t585;
+  const Real t1137 = t489 * t672;
+  const Real t1138 = t1136 - t1137;
+
+  // reduced mass matrix
+  const Real t1139 = t648 * t1068;
+  const Real t1140 = t963 * t650;
+  const Real t1141 = t653 * t975;
+  const Real t1142 = t1140 + t1141;
+  const Real t1143 = t988 * t657;
+  const Real t1144 = t1142 + t1143;
+  const Real t1145 = t1144 - t1139;
+  const Real t1146 = t663 * t1085;
+  const Real t1147 = t1145 + t1146;
+  const Real t1148 = t667 * t1101;
+  const Real t1149 = t1148 + t1147;
+  const Real t1150 = t1049 + t1149;
+  const Real t1151 = t995 * t672;
+  const Real t1152 = t1150 - t1151;
+
+  // reduced accelerations
+  const Real t1153 = t1121 * t1152;
+  const Real t1154 = t864 * t1153;
+  const Real t1155 = t1138 - t1154;
+
+  // frame: acceleration
+  const Real t1156 = t159 - t662;
+
+  // fork: acceleration
+  const Real t1157 = t1156 * par.k13;
+  const Real t1158 = t1157 + t657;
+  const Real t1159 = par.k1 * t1158;
+  const Real t1160 = t650 * par.k2;
+  const Real t1161 = t1160 - t1159;
+  const Real t1162 = c_r_p_1_ * t1161;
+  const Real t1163 = t667 * par.k13;
+  const Real t1164 = t1163 + t653;
+  const Real t1165 = s_r_p_1_ * t1164;
+  const Real t1166 = t1162 + t1165;
+  const Real t1167 = t667 * par.k1;
+  const Real t1168 = t648 * par.k2;
+  const Real t1169 = t1168 + t1167;
+  const Real t1170 = s_r_p_1_ * t1169;
+  const Real t1171 = c_r_p_1_ * t663;
+  const Real t1172 = t1170 + t1171;
+
+  // front_wheel: acceleration
+  const Real t1173 = t1172 * par.k11;
+  const Real t1174 = t1166 - t1173;
+  const Real t1175 = par.k2 * t1174;
+  const Real t1176 = t1172 * par.k12;
+
+  // fork: acceleration
+  const Real t1177 = par.k2 * t1158;
+  const Real t1178 = par.k1 * t650;
+  const Real t1179 = t1177 + t1178;
+
+  // front_wheel: acceleration
+  const Real t1180 = t1179 - t1176;
+  const Real t1181 = t1180 * par.k1;
+  const Real t1182 = t1181 + t1175;
+  const Real t1183 = c_r_p_2_ * t1182;
+  const Real t1184 = par.k1 * t1174;
+  const Real t1185 = t1180 * par.k2;
+  const Real t1186 = t1185 - t1184;
+  const Real t1187 = t1186 * s_r_p_2_;
+  const Real t1188 = t1183 - t1187;
+
+  // front_wheel: wrench
+  const Real t1189 = t1188 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1190 = t1189 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1191 = t1186 * c_r_p_2_;
+  const Real t1192 = t1182 * s_r_p_2_;
+  const Real t1193 = t1191 + t1192;
+
+  // front_wheel: wrench
+  const Real t1194 = par.m_F * t1193;
+
+  // front_wheel: joint force
+  const Real t1195 = t1194 * s_r_p_2_;
+  const Real t1196 = t1190 + t1195;
+  const Real t1197 = par.k1 * t1196;
+  const Real t1198 = t1194 * c_r_p_2_;
+  const Real t1199 = t1189 * s_r_p_2_;
+  const Real t1200 = t1198 - t1199;
+  const Real t1201 = t1200 * par.k2;
+  const Real t1202 = t1197 + t1201;
+  const Real t1203 = t1202 * par.k12;
+  const Real t1204 = t1196 * par.k2;
+  const Real t1205 = par.k1 * t1200;
+  const Real t1206 = t1204 - t1205;
+  const Real t1207 = par.k11 * t1206;
+  const Real t1208 = t1203 + t1207;
+
+  // front_wheel: acceleration
+  const Real t1209 = t1172 + t672;
+
+  // front_wheel: wrench
+  const Real t1210 = par.I_Fyy * t1209;
+
+  // front_wheel: joint force
+  const Real t1211 = t1210 - t1208;
+
+  // fork: wrench
+  const Real t1212 = par.k8 * t1166;
+  const Real t1213 = par.k10 * t1179;
+  const Real t1214 = t1212 - t1213;
+  const Real t1215 = t1172 * par.k7;
+  const Real t1216 = t1215 + t1214;
+
+  // front_wheel: joint force
+  const Real t1217 = t1216 + t1211;
+
+  // fork: joint force
+  const Real t1218 = s_r_p_1_ * t1217;
+
+  // fork: acceleration
+  const Real t1219 = c_r_p_1_ * t1169;
+  const Real t1220 = s_r_p_1_ * t663;
+  const Real t1221 = t1220 - t1219;
+
+  // front_wheel: acceleration
+  const Real t1222 = t1221 * par.k2;
+
+  // fork: acceleration
+  const Real t1223 = t667 * par.k2;
+  const Real t1224 = t648 * par.k1;
+  const Real t1225 = t1223 - t1224;
+  const Real t1226 = t1225 + constant<Real>(1.0L);
+
+  // front_wheel: acceleration
+  const Real t1227 = par.k1 * t1226;
+  const Real t1228 = t1222 + t1227;
+  const Real t1229 = c_r_p_2_ * t1228;
+  const Real t1230 = t1221 * par.k1;
+  const Real t1231 = par.k2 * t1226;
+  const Real t1232 = t1231 - t1230;
+  const Real t1233 = t1232 * s_r_p_2_;
+  const Real t1234 = t1229 - t1233;
+
+  // front_wheel: wrench
+  const Real t1235 = par.I_Fxx * t1234;
+
+  // front_wheel: joint force
+  const Real t1236 = t1235 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1237 = c_r_p_2_ * t1232;
+  const Real t1238 = t1228 * s_r_p_2_;
+  const Real t1239 = t1237 + t1238;
+
+  // front_wheel: wrench
+  const Real t1240 = par.I_Fxx * t1239;
+
+  // front_wheel: joint force
+  const Real t1241 = t1240 * s_r_p_2_;
+  const Real t1242 = t1236 + t1241;
+  const Real t1243 = par.k2 * t1242;
+  const Real t1244 = c_r_p_2_ * t1240;
+  const Real t1245 = t1235 * s_r_p_2_;
+  const Real t1246 = t1244 - t1245;
+  const Real t1247 = par.k1 * t1246;
+  const Real t1248 = t1243 - t1247;
+
+  // fork: acceleration
+  const Real t1249 = s_r_p_1_ * t1161;
+  const Real t1250 = c_r_p_1_ * t1164;
+  const Real t1251 = t1250 - t1249;
+  const Real t1252 = t1219 - t1220;
+
+  // front_wheel: acceleration
+  const Real t1253 = t1252 * par.k11;
+  const Real t1254 = par.k12 * t1226;
+  const Real t1255 = t1254 - t1253;
+  const Real t1256 = t1251 + t1255;
+
+  // front_wheel: wrench
+  const Real t1257 = par.m_F * t1256;
+
+  // front_wheel: joint force
+  const Real t1258 = t1257 * par.k11;
+  const Real t1259 = t1258 + t1248;
+
+  // fork: wrench
+  const Real t1260 = par.k8 * t1251;
+  const Real t1261 = t1221 * par.k17;
+  const Real t1262 = par.k5 * t1226;
+  const Real t1263 = t1261 + t1262;
+  const Real t1264 = t1263 - t1260;
+
+  // front_wheel: joint force
+  const Real t1265 = t1259 + t1264;
+
+  // fork: joint force
+  const Real t1266 = c_r_p_1_ * t1265;
+  const Real t1267 = t1266 - t1218;
+  const Real t1268 = t1267 * par.k2;
+
+  // front_wheel: joint force
+  const Real t1269 = par.k2 * t1246;
+  const Real t1270 = par.k1 * t1242;
+  const Real t1271 = t1269 + t1270;
+  const Real t1272 = t1257 * par.k12;
+  const Real t1273 = t1271 + t1272;
+
+  // fork: wrench
+  const Real t1274 = par.k10 * t1251;
+  const Real t1275 = t1252 * par.k5;
+  const Real t1276 = par.k6 * t1226;
+  const Real t1277 = t1276 - t1275;
+  const Real t1278 = t1274 + t1277;
+
+  // front_wheel: joint force
+  const Real t1279 = t1278 + t1273;
+
+  // fork: joint force
+  const Real t1280 = t1279 * par.k1;
+  const Real t1281 = t1280 + t1268;
+
+  // frame: wrench
+  const Real t1282 = t667 * par.k3;
+  const Real t1283 = t648 * par.k9;
+  const Real t1284 = t1282 - t1283;
+  const Real t1285 = t653 * par.k15;
+  const Real t1286 = t1284 - t1285;
+
+  // fork: joint force
+  const Real t1287 = t1286 + t1281;
+
+  // rear_wheel: acceleration
+  const Real t1288 = t667 * c_r_p_0_;
+  const Real t1289 = t648 * s_r_p_0_;
+  const Real t1290 = t1288 - t1289;
+
+  // rear_wheel: wrench
+  const Real t1291 = par.I_Rxx * t1290;
+
+  // rear_wheel: joint force
+  const Real t1292 = t1291 * s_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1293 = t667 * s_r_p_0_;
+  const Real t1294 = t648 * c_r_p_0_;
+  const Real t1295 = t1293 + t1294;
+
+  // rear_wheel: wrench
+  const Real t1296 = par.I_Rxx * t1295;
+
+  // rear_wheel: joint force
+  const Real t1297 = t1296 * c_r_p_0_;
+  const Real t1298 = t1292 - t1297;
+
+  // rear_wheel: acceleration
+  const Real t1299 = t648 * par.r_R;
+  const Real t1300 = t653 - t1299;
+
+  // rear_wheel: wrench
+  const Real t1301 = t1300 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t1302 = t1301 * par.r_R;
+  const Real t1303 = t1302 + t1298;
+  const Real t1304 = t1303 + t1287;
+
+  // reduced mass matrix
+  const Real t1305 = t648 * t1304;
+
+  // fork: wrench
+  const Real t1306 = par.m_H * t1166;
+  const Real t1307 = t1172 * par.k8;
+  const Real t1308 = t1307 + t1306;
+
+  // front_wheel: joint force
+  const Real t1309 = t1206 + t1308;
+
+  // fork: joint force
+  const Real t1310 = c_r_p_1_ * t1309;
+
+  // fork: wrench
+  const Real t1311 = par.m_H * t1251;
+  const Real t1312 = t1252 * par.k8;
+  const Real t1313 = par.k10 * t1226;
+  const Real t1314 = t1312 + t1313;
+  const Real t1315 = t1314 + t1311;
+
+  // front_wheel: joint force
+  const Real t1316 = t1257 + t1315;
+
+  // fork: joint force
+  const Real t1317 = s_r_p_1_ * t1316;
+  const Real t1318 = t1310 - t1317;
+  const Real t1319 = t1318 * par.k2;
+
+  // fork: wrench
+  const Real t1320 = par.m_H * t1179;
+  const Real t1321 = t1172 * par.k10;
+  const Real t1322 = t1320 - t1321;
+
+  // front_wheel: joint force
+  const Real t1323 = t1322 + t1202;
+
+  // fork: joint force
+  const Real t1324 = par.k1 * t1323;
+  const Real t1325 = t1324 + t1319;
+
+  // frame: wrench
+  const Real t1326 = t650 * par.m_B;
+  const Real t1327 = par.k15 * t663;
+  const Real t1328 = t1326 + t1327;
+
+  // fork: joint force
+  const Real t1329 = t1325 + t1328;
+
+  // rear_wheel: acceleration
+  const Real t1330 = par.r_R * t663;
+  const Real t1331 = t650 - t1330;
+  const Real t1332 = t1331 * s_r_p_0_;
+  const Real t1333 = c_r_p_0_ * t657;
+  const Real t1334 = t1333 + t1332;
+
+  // rear_wheel: wrench
+  const Real t1335 = par.m_R * t1334;
+
+  // rear_wheel: joint force
+  const Real t1336 = t1335 * s_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1337 = t1331 * c_r_p_0_;
+  const Real t1338 = s_r_p_0_ * t657;
+  const Real t1339 = t1337 - t1338;
+
+  // rear_wheel: wrench
+  const Real t1340 = t1339 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t1341 = t1340 * c_r_p_0_;
+  const Real t1342 = t1336 + t1341;
+  const Real t1343 = t1329 + t1342;
+
+  // reduced mass matrix
+  const Real t1344 = t1343 * t650;
+
+  // fork: joint force
+  const Real t1345 = s_r_p_1_ * t1309;
+  const Real t1346 = t1316 * c_r_p_1_;
+  const Real t1347 = t1345 + t1346;
+
+  // frame: wrench
+  const Real t1348 = t667 * par.k16;
+  const Real t1349 = t648 * par.k15;
+  const Real t1350 = t1349 + t1348;
+  const Real t1351 = t653 * par.m_B;
+  const Real t1352 = t1350 + t1351;
+
+  // fork: joint force
+  const Real t1353 = t1352 + t1347;
+
+  // rear_wheel: joint force
+  const Real t1354 = t1301 + t1353;
+
+  // reduced mass matrix
+  const Real t1355 = t653 * t1354;
+  const Real t1356 = t1344 + t1355;
+
+  // fork: joint force
+  const Real t1357 = t1318 * par.k1;
+  const Real t1358 = par.k2 * t1323;
+  const Real t1359 = t1358 - t1357;
+
+  // frame: wrench
+  const Real t1360 = t1156 * par.k16;
+  const Real t1361 = par.m_B * t657;
+  const Real t1362 = t1360 + t1361;
+
+  // fork: joint force
+  const Real t1363 = t1359 + t1362;
+
+  // rear_wheel: joint force
+  const Real t1364 = t1335 * c_r_p_0_;
+  const Real t1365 = t1340 * s_r_p_0_;
+  const Real t1366 = t1364 - t1365;
+  const Real t1367 = t1366 + t1363;
+
+  // reduced mass matrix
+  const Real t1368 = t1367 * t657;
+  const Real t1369 = t1368 + t1356;
+  const Real t1370 = t1369 - t1305;
+
+  // fork: joint force
+  const Real t1371 = t1217 * c_r_p_1_;
+  const Real t1372 = s_r_p_1_ * t1265;
+  const Real t1373 = t1371 + t1372;
+  const Real t1374 = t1359 * par.k13;
+  const Real t1375 = t1373 - t1374;
+
+  // frame: wrench
+  const Real t1376 = t650 * par.k15;
+  const Real t1377 = par.k16 * t657;
+  const Real t1378 = t1376 - t1377;
+  const Real t1379 = par.k4 * t663;
+  const Real t1380 = t1379 + t1378;
+
+  // fork: joint force
+  const Real t1381 = t1375 + t1380;
+
+  // rear_wheel: joint force
+  const Real t1382 = t1342 * par.r_R;
+
+  // rear_wheel: wrench
+  const Real t1383 = par.I_Ryy * t663;
+
+  // rear_wheel: joint force
+  const Real t1384 = t1383 - t1382;
+  const Real t1385 = t1381 + t1384;
+
+  // reduced mass matrix
+  const Real t1386 = t1385 * t663;
+  const Real t1387 = t1386 + t1370;
+
+  // fork: joint force
+  const Real t1388 = par.k1 * t1267;
+  const Real t1389 = t1279 * par.k2;
+  const Real t1390 = t1389 - t1388;
+  const Real t1391 = par.k13 * t1347;
+  const Real t1392 = t1391 + t1390;
+
+  // frame: wrench
+  const Real t1393 = t667 * par.k14;
+  const Real t1394 = t648 * par.k3;
+  const Real t1395 = t1393 - t1394;
+  const Real t1396 = t653 * par.k16;
+  const Real t1397 = t1396 + t1395;
+
+  // fork: joint force
+  const Real t1398 = t1397 + t1392;
+
+  // rear_wheel: joint force
+  const Real t1399 = t1296 * s_r_p_0_;
+  const Real t1400 = t1291 * c_r_p_0_;
+  const Real t1401 = t1399 + t1400;
+  const Real t1402 = t1398 + t1401;
+
+  // reduced mass matrix
+  const Real t1403 = t667 * t1402;
+  const Real t1404 = t1403 + t1387;
+  const Real t1405 = t1279 + t1404;
+  const Real t1406 = t1210 * t672;
+  const Real t1407 = t1405 + t1406;
+
+  // reduced accelerations
+  const Real t1408 = t1153 * t1152;
+  const Real t1409 = t1407 - t1408;
+  const Real t1410 = constant<Real>(1.0L) / t1409;
+
+  // reduced mass matrix
+  const Real t1411 = t715 * t1304;
+  const Real t1412 = t1343 * t767;
+  const Real t1413 = t1354 * t780;
+  const Real t1414 = t1412 + t1413;
+  const Real t1415 = t1367 * t797;
+  const Real t1416 = t1414 + t1415;
+  const Real t1417 = t1411 + t1416;
+  const Real t1418 = t822 * t1385;
+  const Real t1419 = t1418 + t1417;
+  const Real t1420 = t843 * t1402;
+  const Real t1421 = t1419 + t1420;
+  const Real t1422 = t1383 + t1421;
+  const Real t1423 = t1279 * t713;
+  const Real t1424 = t1422 - t1423;
+  const Real t1425 = t1210 * t850;
+  const Real t1426 = t1425 + t1424;
+
+  // reduced accelerations
+  const Real t1427 = t1108 * t1153;
+  const Real t1428 = t1426 - t1427;
+  const Real t1429 = t1410 * t1428;
+  const Real t1430 = t1429 * t1155;
+  const Real t1431 = t1124 - t1430;
+
+  // frame: acceleration
+  const Real t1432 = t821 - t702;
+
+  // fork: acceleration
+  const Real t1433 = par.k13 * t1432;
+  const Real t1434 = t1433 + t797;
+  const Real t1435 = par.k1 * t1434;
+  const Real t1436 = par.k2 * t767;
+  const Real t1437 = t1436 - t1435;
+  const Real t1438 = t1437 * c_r_p_1_;
+  const Real t1439 = t843 * par.k13;
+  const Real t1440 = t780 + t1439;
+  const Real t1441 = s_r_p_1_ * t1440;
+  const Real t1442 = t1441 + t1438;
+  const Real t1443 = t715 * par.k2;
+  const Real t1444 = t843 * par.k1;
+  const Real t1445 = t1443 - t1444;
+  const Real t1446 = s_r_p_1_ * t1445;
+  const Real t1447 = t822 * c_r_p_1_;
+  const Real t1448 = t1447 - t1446;
+
+  // front_wheel: acceleration
+  const Real t1449 = t1448 * par.k11;
+  const Real t1450 = t1442 - t1449;
+  const Real t1451 = t1450 * par.k2;
+
+  // fork: acceleration
+  const Real t1452 = t1446 - t1447;
+
+  // front_wheel: acceleration
+  const Real t1453 = t1452 * par.k12;
+
+  // fork: acceleration
+  const Real t1454 = t1434 * par.k2;
+  const Real t1455 = par.k1 * t767;
+  const Real t1456 = t1455 + t1454;
+
+  // front_wheel: acceleration
+  const Real t1457 = t1456 + t1453;
+  const Real t1458 = par.k1 * t1457;
+  const Real t1459 = t1458 + t1451;
+  const Real t1460 = t1459 * s_r_p_2_;
+  const Real t1461 = t1450 * par.k1;
+  const Real t1462 = par.k2 * t1457;
+  const Real t1463 = t1462 - t1461;
+  const Real t1464 = t1463 * c_r_p_2_;
+  const Real t1465 = t1460 + t1464;
+
+  // front_wheel: wrench
+  const Real t1466 = t1465 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1467 = t1466 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1468 = t1459 * c_r_p_2_;
+  const Real t1469 = t1463 * s_r_p_2_;
+  const Real t1470 = t1468 - t1469;
+
+  // front_wheel: wrench
+  const Real t1471 = t1470 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1472 = c_r_p_2_ * t1471;
+  const Real t1473 = t1467 + t1472;
+  const Real t1474 = par.k2 * t1473;
+  const Real t1475 = c_r_p_2_ * t1466;
+  const Real t1476 = t1471 * s_r_p_2_;
+  const Real t1477 = t1475 - t1476;
+  const Real t1478 = par.k1 * t1477;
+  const Real t1479 = t1474 - t1478;
+  const Real t1480 = t1479 * par.k11;
+  const Real t1481 = par.k1 * t1473;
+  const Real t1482 = t1477 * par.k2;
+  const Real t1483 = t1481 + t1482;
+  const Real t1484 = t1483 * par.k12;
+  const Real t1485 = t1480 + t1484;
+
+  // front_wheel: acceleration
+  const Real t1486 = t1448 + t850;
+
+  // front_wheel: wrench
+  const Real t1487 = par.I_Fyy * t1486;
+
+  // front_wheel: joint force
+  const Real t1488 = t1487 - t1485;
+
+  // fork: wrench
+  const Real t1489 = par.k8 * t1442;
+  const Real t1490 = par.k10 * t1456;
+  const Real t1491 = t1489 - t1490;
+  const Real t1492 = t1448 * par.k7;
+  const Real t1493 = t1491 + t1492;
+
+  // front_wheel: joint force
+  const Real t1494 = t1488 + t1493;
+
+  // fork: joint force
+  const Real t1495 = s_r_p_1_ * t1494;
+
+  // fork: acceleration
+  const Real t1496 = c_r_p_1_ * t1445;
+  const Real t1497 = t822 * s_r_p_1_;
+  const Real t1498 = t1496 + t1497;
+
+  // front_wheel: acceleration
+  const Real t1499 = par.k2 * t1498;
+
+  // fork: acceleration
+  const Real t1500 = t843 * par.k2;
+  const Real t1501 = t715 * par.k1;
+  const Real t1502 = t1500 + t1501;
+  const Real t1503 = t1502 - t713;
+
+  // front_wheel: acceleration
+  const Real t1504 = par.k1 * t1503;
+  const Real t1505 = t1504 + t1499;
+  const Real t1506 = t1505 * c_r_p_2_;
+  const Real t1507 = par.k1 * t1498;
+  const Real t1508 = t1503 * par.k2;
+  const Real t1509 = t1508 - t1507;
+  const Real t1510 = t1509 * s_r_p_2_;
+  const Real t1511 = t1506 - t1510;
+
+  // front_wheel: wrench
+  const Real t1512 = t1511 * par.I_Fxx;
+
+  // front_wheel: joint force
+  const Real t1513 = t1512 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1514 = t1509 * c_r_p_2_;
+  const Real t1515 = t1505 * s_r_p_2_;
   const Real t1516 = t1514 + t1515;
-  const Real t1517 = t194 * t1507;
-  const Real t1518 = t1516 + t1517;
-  const Real t1519 = t393 - t1518;
-  const Real t1520 = t1507 * t151;
-  const Real t1521 = t179 * t1513;
-  const Real t1522 = t1509 * t161;
-  const Real t1523 = t1521 + t1522;
-  const Real t1524 = t1520 - t1523;
-  const Real t1525 = t397 + t1524;
-  const Real t1526 = t1513 * t207;
-  const Real t1527 = t1509 * t205;
-  const Real t1528 = t1526 + t1527;
-  const Real t1529 = t1507 * t203;
-  const Real t1530 = t1528 + t1529;
-  const Real t1531 = t1530 + t399;
-  const Real t1532 = t1513 * t221;
-  const Real t1533 = t218 * t1509;
-  const Real t1534 = t1532 + t1533;
-  const Real t1535 = t216 * t1507;
-  const Real t1536 = t1534 + t1535;
-  const Real t1537 = t395 + t1536;
-  const Real t1538 = t149 * t1507;
-  const Real t1539 = t1509 * t160;
-  const Real t1540 = t1513 * t178;
-  const Real t1541 = t1539 + t1540;
-  const Real t1542 = t1538 + t1541;
-  const Real t1543 = t390 - t1542;
-  const Real t1544 = t1507 * t146;
-  const Real t1545 = t1513 * t175;
-  const Real t1546 = t157 * t1509;
-  const Real t1547 = t1545 + t1546;
-  const Real t1548 = t1544 + t1547;
-  const Real t1549 = t1548 + t387;
-  const Real t1550 = -t1549;
 
-  nu_dot_out[0] = t1513;
-  nu_dot_out[1] = t1509;
-  nu_dot_out[2] = t1507;
-  eta_dot[0] = t1531;
-  eta_dot[1] = t1537;
-  eta_dot[2] = t1525;
-  eta_dot[3] = t1513;
-  eta_dot[4] = t1543;
-  eta_dot[5] = t1519;
-  r_p_ddot[0] = t1507;
-  r_p_ddot[1] = t1509;
-  r_p_ddot[2] = t1550;
+  // front_wheel: wrench
+  const Real t1517 = par.I_Fxx * t1516;
+
+  // front_wheel: joint force
+  const Real t1518 = t1517 * s_r_p_2_;
+  const Real t1519 = t1513 + t1518;
+  const Real t1520 = t1519 * par.k2;
+  const Real t1521 = t1517 * c_r_p_2_;
+  const Real t1522 = t1512 * s_r_p_2_;
+  const Real t1523 = t1521 - t1522;
+  const Real t1524 = par.k1 * t1523;
+  const Real t1525 = t1520 - t1524;
+
+  // front_wheel: acceleration
+  const Real t1526 = par.k11 * t1498;
+  const Real t1527 = t1503 * par.k12;
+  const Real t1528 = t1527 + t1526;
+
+  // fork: acceleration
+  const Real t1529 = t1437 * s_r_p_1_;
+  const Real t1530 = t1440 * c_r_p_1_;
+  const Real t1531 = t1530 - t1529;
+
+  // front_wheel: acceleration
+  const Real t1532 = t1528 + t1531;
+
+  // front_wheel: wrench
+  const Real t1533 = par.m_F * t1532;
+
+  // front_wheel: joint force
+  const Real t1534 = par.k11 * t1533;
+  const Real t1535 = t1525 + t1534;
+
+  // fork: wrench
+  const Real t1536 = par.k8 * t1531;
+  const Real t1537 = par.k17 * t1498;
+  const Real t1538 = par.k5 * t1503;
+  const Real t1539 = t1538 + t1537;
+  const Real t1540 = t1539 - t1536;
+
+  // front_wheel: joint force
+  const Real t1541 = t1540 + t1535;
+
+  // fork: joint force
+  const Real t1542 = t1541 * c_r_p_1_;
+  const Real t1543 = t1542 - t1495;
+  const Real t1544 = t1543 * par.k2;
+
+  // front_wheel: joint force
+  const Real t1545 = t1519 * par.k1;
+  const Real t1546 = par.k2 * t1523;
+  const Real t1547 = t1545 + t1546;
+  const Real t1548 = par.k12 * t1533;
+  const Real t1549 = t1548 + t1547;
+
+  // fork: wrench
+  const Real t1550 = par.k10 * t1531;
+  const Real t1551 = par.k5 * t1498;
+  const Real t1552 = par.k6 * t1503;
+  const Real t1553 = t1552 + t1551;
+  const Real t1554 = t1553 + t1550;
+
+  // front_wheel: joint force
+  const Real t1555 = t1554 + t1549;
+
+  // fork: joint force
+  const Real t1556 = par.k1 * t1555;
+  const Real t1557 = t1556 + t1544;
+
+  // frame: wrench
+  const Real t1558 = t715 * par.k9;
+  const Real t1559 = t843 * par.k3;
+  const Real t1560 = t1558 + t1559;
+  const Real t1561 = par.k15 * t780;
+  const Real t1562 = t1560 - t1561;
+
+  // fork: joint force
+  const Real t1563 = t1557 + t1562;
+
+  // rear_wheel: acceleration
+  const Real t1564 = t715 * s_r_p_0_;
+  const Real t1565 = t843 * c_r_p_0_;
+  const Real t1566 = t1564 + t1565;
+
+  // rear_wheel: wrench
+  const Real t1567 = par.I_Rxx * t1566;
+
+  // rear_wheel: joint force
+  const Real t1568 = t1567 * s_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1569 = t715 * c_r_p_0_;
+  const Real t1570 = t843 * s_r_p_0_;
+  const Real t1571 = t1569 - t1570;
+
+  // rear_wheel: wrench
+  const Real t1572 = t1571 * par.I_Rxx;
+
+  // rear_wheel: joint force
+  const Real t1573 = t1572 * c_r_p_0_;
+  const Real t1574 = t1568 + t1573;
+
+  // frame: acceleration
+  const Real t1575 = t687 - t714;
+
+  // rear_wheel: acceleration
+  const Real t1576 = par.r_R * t1575;
+  const Real t1577 = t780 - t1576;
+
+  // rear_wheel: wrench
+  const Real t1578 = t1577 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t1579 = t1578 * par.r_R;
+  const Real t1580 = t1579 + t1574;
+  const Real t1581 = t1563 + t1580;
+
+  // reduced mass matrix
+  const Real t1582 = t715 * t1581;
+
+  // fork: wrench
+  const Real t1583 = par.m_H * t1442;
+  const Real t1584 = t1448 * par.k8;
+  const Real t1585 = t1584 + t1583;
+
+  // front_wheel: joint force
+  const Real t1586 = t1585 + t1479;
+
+  // fork: joint force
+  const Real t1587 = t1586 * c_r_p_1_;
+
+  // fork: wrench
+  const Real t1588 = par.m_H * t1531;
+  const Real t1589 = par.k8 * t1498;
+  const Real t1590 = t1503 * par.k10;
+  const Real t1591 = t1590 - t1589;
+  const Real t1592 = t1591 + t1588;
+
+  // front_wheel: joint force
+  const Real t1593 = t1592 + t1533;
+
+  // fork: joint force
+  const Real t1594 = s_r_p_1_ * t1593;
+  const Real t1595 = t1587 - t1594;
+  const Real t1596 = t1595 * par.k2;
+
+  // fork: wrench
+  const Real t1597 = t1452 * par.k10;
+  const Real t1598 = par.m_H * t1456;
+  const Real t1599 = t1597 + t1598;
+
+  // front_wheel: joint force
+  const Real t1600 = t1483 + t1599;
+
+  // fork: joint force
+  const Real t1601 = par.k1 * t1600;
+  const Real t1602 = t1601 + t1596;
+
+  // frame: wrench
+  const Real t1603 = par.m_B * t767;
+  const Real t1604 = t822 * par.k15;
+  const Real t1605 = t1603 + t1604;
+
+  // fork: joint force
+  const Real t1606 = t1602 + t1605;
+
+  // rear_wheel: acceleration
+  const Real t1607 = t822 * par.r_R;
+  const Real t1608 = t767 - t1607;
+  const Real t1609 = t1608 * c_r_p_0_;
+  const Real t1610 = t797 * s_r_p_0_;
+  const Real t1611 = t1609 - t1610;
+
+  // rear_wheel: wrench
+  const Real t1612 = t1611 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t1613 = t1612 * c_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1614 = t1608 * s_r_p_0_;
+  const Real t1615 = t797 * c_r_p_0_;
+  const Real t1616 = t1615 + t1614;
+
+  // rear_wheel: wrench
+  const Real t1617 = t1616 * par.m_R;
+
+  // rear_wheel: joint force
+  const Real t1618 = t1617 * s_r_p_0_;
+  const Real t1619 = t1613 + t1618;
+  const Real t1620 = t1606 + t1619;
+
+  // reduced mass matrix
+  const Real t1621 = t1620 * t767;
+
+  // fork: joint force
+  const Real t1622 = s_r_p_1_ * t1586;
+  const Real t1623 = c_r_p_1_ * t1593;
+  const Real t1624 = t1622 + t1623;
+
+  // frame: wrench
+  const Real t1625 = t843 * par.k16;
+  const Real t1626 = par.k15 * t1575;
+  const Real t1627 = t1625 + t1626;
+  const Real t1628 = t780 * par.m_B;
+  const Real t1629 = t1627 + t1628;
+
+  // fork: joint force
+  const Real t1630 = t1629 + t1624;
+
+  // rear_wheel: joint force
+  const Real t1631 = t1578 + t1630;
+
+  // reduced mass matrix
+  const Real t1632 = t1631 * t780;
+  const Real t1633 = t1621 + t1632;
+
+  // fork: joint force
+  const Real t1634 = par.k1 * t1595;
+  const Real t1635 = t1600 * par.k2;
+  const Real t1636 = t1635 - t1634;
+
+  // frame: wrench
+  const Real t1637 = t797 * par.m_B;
+  const Real t1638 = t1432 * par.k16;
+  const Real t1639 = t1637 + t1638;
+
+  // fork: joint force
+  const Real t1640 = t1639 + t1636;
+
+  // rear_wheel: joint force
+  const Real t1641 = t1617 * c_r_p_0_;
+  const Real t1642 = t1612 * s_r_p_0_;
+  const Real t1643 = t1641 - t1642;
+  const Real t1644 = t1640 + t1643;
+
+  // reduced mass matrix
+  const Real t1645 = t1644 * t797;
+  const Real t1646 = t1645 + t1633;
+  const Real t1647 = t1582 + t1646;
+
+  // fork: joint force
+  const Real t1648 = c_r_p_1_ * t1494;
+  const Real t1649 = s_r_p_1_ * t1541;
+  const Real t1650 = t1649 + t1648;
+  const Real t1651 = par.k13 * t1636;
+  const Real t1652 = t1650 - t1651;
+
+  // frame: wrench
+  const Real t1653 = par.k15 * t767;
+  const Real t1654 = t797 * par.k16;
+  const Real t1655 = t1653 - t1654;
+  const Real t1656 = par.k4 * t822;
+  const Real t1657 = t1656 + t1655;
+
+  // fork: joint force
+  const Real t1658 = t1657 + t1652;
+
+  // rear_wheel: joint force
+  const Real t1659 = t1619 * par.r_R;
+
+  // rear_wheel: acceleration
+  const Real t1660 = t822 + constant<Real>(1.0L);
+
+  // rear_wheel: wrench
+  const Real t1661 = par.I_Ryy * t1660;
+
+  // rear_wheel: joint force
+  const Real t1662 = t1661 - t1659;
+  const Real t1663 = t1658 + t1662;
+
+  // reduced mass matrix
+  const Real t1664 = t822 * t1663;
+  const Real t1665 = t1647 + t1664;
+
+  // fork: joint force
+  const Real t1666 = par.k1 * t1543;
+  const Real t1667 = par.k2 * t1555;
+  const Real t1668 = t1667 - t1666;
+  const Real t1669 = t1624 * par.k13;
+  const Real t1670 = t1669 + t1668;
+
+  // frame: wrench
+  const Real t1671 = t843 * par.k14;
+  const Real t1672 = par.k3 * t1575;
+  const Real t1673 = t1671 - t1672;
+  const Real t1674 = par.k16 * t780;
+  const Real t1675 = t1674 + t1673;
+
+  // fork: joint force
+  const Real t1676 = t1675 + t1670;
+
+  // rear_wheel: joint force
+  const Real t1677 = t1567 * c_r_p_0_;
+  const Real t1678 = t1572 * s_r_p_0_;
+  const Real t1679 = t1677 - t1678;
+  const Real t1680 = t1679 + t1676;
+
+  // reduced mass matrix
+  const Real t1681 = t843 * t1680;
+  const Real t1682 = t1681 + t1665;
+  const Real t1683 = t1682 + t1661;
+  const Real t1684 = t713 * t1555;
+  const Real t1685 = t1683 - t1684;
+  const Real t1686 = t1487 * t850;
+  const Real t1687 = t1685 + t1686;
+
+  // reduced accelerations
+  const Real t1688 = t1108 * t1122;
+  const Real t1689 = t1687 - t1688;
+  const Real t1690 = t1429 * t1428;
+  const Real t1691 = t1689 - t1690;
+  const Real t1692 = constant<Real>(1.0L) / t1691;
+  const Real t1693 = t1692 * t1431;
+  const Real t1694 = t1429 * t1693;
+  const Real t1695 = t1410 * t1155;
+  const Real t1696 = t1695 - t1694;
+  const Real t1697 = t1696 * t1153;
+
+  // reduced accelerations
+  const Real t1698 = t1121 * t864;
+
+  // reduced accelerations
+  const Real t1699 = t1698 - t1697;
+  const Real t1700 = t1693 * t1122;
+  const Real t1701 = t1699 - t1700;
+
+  // accelerations
+  const Real t1702 = t140 * t1701;
+  const Real t1703 = t1696 * t672;
+  const Real t1704 = t1703 - t1702;
+  const Real t1705 = t1693 * t850;
+  const Real t1706 = t1704 + t1705;
+  const Real t1707 = t1706 - t384;
+
+  // reduced accelerations
+  const Real t1708 = t1693 * t713;
+  const Real t1709 = t1696 - t1708;
+
+  // accelerations
+  const Real t1710 = t1701 * t146;
+  const Real t1711 = t667 * t1696;
+  const Real t1712 = t1711 - t1710;
+  const Real t1713 = t843 * t1693;
+  const Real t1714 = t1713 + t1712;
+  const Real t1715 = t390 + t1714;
+  const Real t1716 = t143 * t1701;
+  const Real t1717 = t1696 * t663;
+  const Real t1718 = t1717 - t1716;
+  const Real t1719 = t822 * t1693;
+  const Real t1720 = t1719 + t1718;
+  const Real t1721 = t387 + t1720;
+  const Real t1722 = t648 * t1696;
+  const Real t1723 = t1701 - t1722;
+  const Real t1724 = t715 * t1693;
+  const Real t1725 = t1724 + t1723;
+  const Real t1726 = t286 * t1701;
+  const Real t1727 = t1696 * t657;
+  const Real t1728 = t1727 - t1726;
+  const Real t1729 = t1693 * t797;
+  const Real t1730 = t1728 + t1729;
+  const Real t1731 = t1730 + t420;
+  const Real t1732 = t270 * t1701;
+  const Real t1733 = t1696 * t653;
+  const Real t1734 = t1732 + t1733;
+  const Real t1735 = t1693 * t780;
+  const Real t1736 = t1734 + t1735;
+  const Real t1737 = t436 + t1736;
+  const Real t1738 = t298 * t1701;
+  const Real t1739 = t650 * t1696;
+  const Real t1740 = t1738 + t1739;
+  const Real t1741 = t1693 * t767;
+  const Real t1742 = t1740 + t1741;
+  const Real t1743 = t406 + t1742;
+
+  // reduced accelerations
+  const Real t1744 = t648 * t1709;
+  const Real t1745 = t1701 - t1744;
+  const Real t1746 = t1693 * t687;
+  const Real t1747 = t1745 - t1746;
+
+  nu_dot_out[0] = t1747;
+  nu_dot_out[1] = t1709;
+  nu_dot_out[2] = t1693;
+  eta_dot[0] = t1743;
+  eta_dot[1] = t1737;
+  eta_dot[2] = t1731;
+  eta_dot[3] = t1725;
+  eta_dot[4] = t1721;
+  eta_dot[5] = t1715;
+  r_p_ddot[0] = t1693;
+  r_p_ddot[1] = t1709;
+  r_p_ddot[2] = t1707;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.

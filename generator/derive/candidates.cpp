@@ -24,8 +24,13 @@ OutputBlock Deriver::block(std::string name, std::string unit, std::string meani
 }
 
 void Deriver::emit(const std::string& name, const std::string& meaning, std::vector<Route> routes,
-                   const std::string& remark, bool simplified) {
-  for (Route& r : routes) std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+                   const std::string& remark, bool simplified,
+                   const std::function<std::vector<Route>()>& accurate) {
+  const auto without_empty_blocks = [](Route r) {
+    std::erase_if(r.outputs, [](const OutputBlock& b) { return b.nodes.empty(); });
+    return r;
+  };
+  for (Route& r : routes) r = without_empty_blocks(std::move(r));
   std::erase_if(routes, [](const Route& r) { return r.outputs.empty(); });
   if (routes.empty()) return;
   std::vector<Candidate> candidates;
@@ -43,9 +48,13 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
   const std::size_t best = choose(
       tape_, candidates, request_.optimise, [this] { return measured_states_of(atlas_, chart_); },
       [&] {
+        if (accurate) {
+          for (const Route& r : accurate()) add(r.name, without_empty_blocks(r).outputs);
+        }
         add_stable_forms(candidates);
         if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
-      });
+      },
+      accurate ? measured_states : 8);
   const std::string full_name = prefix_ + name;
   const std::size_t first_report = result_->candidates.size();
   for (std::size_t i = 0; i < candidates.size(); ++i) {

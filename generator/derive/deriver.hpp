@@ -108,8 +108,10 @@ class Deriver {
   OutputBlock block(std::string name, std::string unit, std::string meaning, const std::vector<Expr>& v);
   /// Keeps the cheapest route; the closed form of the cheapest one is a further candidate.
   /// @param simplified  let the closed form compete: it expands products, and with them loses digits again
+  /// @param accurate  further routes, which are derived only where those lose digits
   void emit(const std::string& name, const std::string& meaning, std::vector<Route> routes,
-            const std::string& remark = "", bool simplified = true);
+            const std::string& remark = "", bool simplified = true,
+            const std::function<std::vector<Route>()>& accurate = {});
   void add_stable_forms(std::vector<Candidate>& candidates);
   void add_after_passes(std::vector<Candidate>& candidates);
   /// Random states; where there are several charts, those at which this one is the best.
@@ -133,15 +135,22 @@ class Deriver {
 
   // dynamic_functions.cpp
   void derive_free_dynamics();
+  /// @param H  basis of the kernel that M_r and f_r are projected on
   /// @param input_force  (passive) given forces on passive velocities, e.g. torques
   /// @param project  run the recursion on admissible motions; else form (66)-(68) from all blocks
-  ReducedDynamics reduced_dynamics(const Reduced& of, const std::vector<Expr>& nu,
+  ReducedDynamics reduced_dynamics(const Reduced& of, const Matrix<Expr>& H, const std::vector<Expr>& nu,
                                    const std::vector<Expr>& r_a_dot, const std::vector<Expr>& r_a_ddot,
                                    const std::vector<Expr>& input_force, bool project);
+  /// nu_dot, then all accelerations (n + s), from M_r and f_r on the kernel's own basis.
+  std::pair<std::vector<Expr>, std::vector<Expr>> solved(const Reduced& of, const ReducedDynamics& d);
+  /// The same on an orthogonal basis: the route that keeps digits where the kernel's own is almost singular.
+  std::pair<std::vector<Expr>, std::vector<Expr>> solved_on_orthogonal_basis(
+      const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+      const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project);
   /// Torques on the coordinates of a partition that are torque-driven, as forces on its passive velocities.
   std::vector<Expr> driving_force(const Partition& p);
-  std::vector<Expr> accelerations(const Reduced& of, const ReducedDynamics& d,
-                                  const std::vector<Expr>& nu_dot) const;
+  static std::vector<Expr> accelerations(const Reduced& of, const Matrix<Expr>& H, const ReducedDynamics& d,
+                                         const std::vector<Expr>& nu_dot);
   void derive_reduced_dynamics();
   /// Where every route through the mass matrix loses most of its digits at the default parameters, and
   /// articulated bodies do not, they are the only route left.

@@ -30,7 +30,8 @@ void Deriver::derive_free_dynamics() {
           block("Q_a", "N m or N", "s_a", picked(f, p.active))}}});
 }
 
-Deriver::ReducedDynamics Deriver::reduced_dynamics(const Reduced& of, const std::vector<Expr>& nu,
+Deriver::ReducedDynamics Deriver::reduced_dynamics(const Reduced& of, const Matrix<Expr>& H,
+                                                   const std::vector<Expr>& nu,
                                                    const std::vector<Expr>& r_a_dot,
                                                    const std::vector<Expr>& r_a_ddot,
                                                    const std::vector<Expr>& input_force, bool project) {
@@ -48,7 +49,6 @@ Deriver::ReducedDynamics Deriver::reduced_dynamics(const Reduced& of, const std:
   const std::vector<Expr> imposed = k.kernel().J * r_a_ddot;
   for (std::size_t i = 0; i < gamma.size(); ++i) gamma[i] += imposed[i];
   d.bias_acceleration = merged(p, gamma, r_a_ddot);
-  const Matrix<Expr>& H = k.kernel().H;
   const Matrix<Expr> Ht = H.transposed();
   d.M_r = Matrix<Expr>(H.cols(), H.cols());
   if (project) {
@@ -101,12 +101,34 @@ std::vector<Expr> Deriver::driving_force(const Partition& p) {
   return force;
 }
 
-std::vector<Expr> Deriver::accelerations(const Reduced& of, const ReducedDynamics& d,
-                                         const std::vector<Expr>& nu_dot) const {
+std::vector<Expr> Deriver::accelerations(const Reduced& of, const Matrix<Expr>& H, const ReducedDynamics& d,
+                                         const std::vector<Expr>& nu_dot) {
   std::vector<Expr> v = d.bias_acceleration;
-  const std::vector<Expr> h = of.reduction->kernel().H * nu_dot;
+  const std::vector<Expr> h = H * nu_dot;
   for (std::size_t i = 0; i < h.size(); ++i) v[static_cast<std::size_t>(of.partition.passive[i])] += h[i];
   return v;
+}
+
+std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved(const Reduced& of, const ReducedDynamics& d) {
+  tape_.section("reduced accelerations");
+  std::vector<Expr> nu_dot;
+  if (of.k() > 0) nu_dot = solve_symmetric(d.M_r, {d.f_r}).front();
+  tape_.section(&of == &motion_ ? "passive accelerations" : "accelerations");
+  std::vector<Expr> v_dot = accelerations(of, of.reduction->kernel().H, d, nu_dot);
+  return {std::move(nu_dot), std::move(v_dot)};
+}
+
+std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved_on_orthogonal_basis(
+    const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+    const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project) {
+  tape_.section("orthogonal basis");
+  const OrthogonalBasis basis = orthogonal_basis(of.reduction->kernel().H);
+  const ReducedDynamics d = reduced_dynamics(of, basis.Q, nu, r_a_dot, r_a_ddot, input_force, project);
+  tape_.section("reduced accelerations");
+  const std::vector<Expr> along = solve_symmetric(d.M_r, {d.f_r}).front();
+  std::vector<Expr> nu_dot = basis.solve(along);
+  tape_.section("accelerations");
+  return {std::move(nu_dot), accelerations(of, basis.Q, d, along)};
 }
 
 void Deriver::derive_reduced_dynamics() {
@@ -115,24 +137,22 @@ void Deriver::derive_reduced_dynamics() {
   if (!reduced && !forward && !split) return;
   std::vector<Route> reduced_routes, forward_routes, split_routes;
   const std::vector<Expr> force = driving_force(motion_partition_);
+  const auto outputs_of = [&](const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
+    const auto& [nu_dot, v_dot] = solution;
+    std::vector<OutputBlock> outputs = {block("nu_dot", "mixed", "derivative of nu", nu_dot)};
+    for (OutputBlock& b : split_passive(motion_partition_, picked(v_dot, motion_partition_.passive), "dot"))
+      outputs.push_back(std::move(b));
+    return outputs;
+  };
   for (const bool project : {true, false}) {
     const std::string name = project ? "projected recursion" : "all blocks, (66)-(68)";
-    const ReducedDynamics d = reduced_dynamics(motion_, nu_, r_a_dot_, r_a_ddot_, force, project);
+    const ReducedDynamics d =
+        reduced_dynamics(motion_, motion_.reduction->kernel().H, nu_, r_a_dot_, r_a_ddot_, force, project);
     reduced_routes.push_back(
         {name,
          {block("M_r", "mixed", "reduced mass matrix, symmetric positive definite", d.M_r),
           block("f_r", "mixed", "reduced forces", d.f_r)}});
-    if (forward) {
-      tape_.section("reduced accelerations");
-      std::vector<Expr> nu_dot;
-      if (motion_.k() > 0) nu_dot = solve_symmetric(d.M_r, {d.f_r}).front();
-      tape_.section("passive accelerations");
-      const std::vector<Expr> v_dot = accelerations(motion_, d, nu_dot);
-      std::vector<OutputBlock> outputs = {block("nu_dot", "mixed", "derivative of nu", nu_dot)};
-      for (OutputBlock& b : split_passive(motion_partition_, picked(v_dot, motion_partition_.passive), "dot"))
-        outputs.push_back(std::move(b));
-      forward_routes.push_back({name, std::move(outputs)});
-    }
+    if (forward) forward_routes.push_back({name, outputs_of(solved(motion_, d))});
     if (split) split_routes.push_back({name, split_blocks(d)});
   }
   if (reduced)
@@ -143,9 +163,19 @@ void Deriver::derive_reduced_dynamics() {
          split_routes);
   if (!forward) return;
   const bool replaced = replace_by_articulated_bodies(force, forward_routes);
+  const auto on_orthogonal_basis = [&] {
+    std::vector<Route> routes;
+    if (replaced || motion_.k() < 2) return routes;
+    for (const bool project : {true, false}) {
+      routes.push_back(
+          {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
+           outputs_of(solved_on_orthogonal_basis(motion_, nu_, r_a_dot_, r_a_ddot_, force, project))});
+    }
+    return routes;
+  };
   emit("forward_dynamics", "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).",
-       forward_routes, replaced ? "the mass matrix would lose the digits of its small bodies" : "",
-       !replaced);
+       forward_routes, replaced ? "the mass matrix would lose the digits of its small bodies" : "", !replaced,
+       on_orthogonal_basis);
 }
 
 bool Deriver::replace_by_articulated_bodies(const std::vector<Expr>& force, std::vector<Route>& routes) {

@@ -15,9 +15,11 @@ void Deriver::prepare_state_jacobian() {
 Matrix<Expr> Deriver::differentiated_accelerations(bool project) {
   const auto a = symbols_.block("nu_dot", motion_.k(), "mixed", "derivative of nu");
   const std::vector<Expr> force = driving_force(motion_partition_);
-  const ReducedDynamics d = reduced_dynamics(motion_, nu_, r_a_dot_, r_a_ddot_, force, project);
+  const ReducedDynamics d =
+      reduced_dynamics(motion_, motion_.reduction->kernel().H, nu_, r_a_dot_, r_a_ddot_, force, project);
   std::vector<Expr> unbalanced =
-      picked(dynamics_.inverse_dynamics(symbols_.moving(d.velocity), accelerations(motion_, d, a)),
+      picked(dynamics_.inverse_dynamics(symbols_.moving(d.velocity),
+                                        accelerations(motion_, motion_.reduction->kernel().H, d, a)),
              motion_partition_.passive);
   for (std::size_t i = 0; i < unbalanced.size(); ++i) unbalanced[i] = force[i] - unbalanced[i];
   std::vector<NodeId> residual;

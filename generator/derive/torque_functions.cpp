@@ -92,28 +92,39 @@ void Deriver::derive_torque_driven(const Reduced& all, const std::vector<Expr>& 
   }
   const std::vector<Expr> force = driving_force(all.partition);
   if (wanted(family[0]) && all.k() > 0) {
+    const auto outputs_of = [&](const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
+      const auto& [w_dot, v_dot] = solution;
+      std::vector<OutputBlock> outputs = {block("w_dot", "mixed", "derivative of w", w_dot)};
+      for (OutputBlock& b : split_passive(all.partition, picked(v_dot, all.partition.passive), "dot"))
+        outputs.push_back(std::move(b));
+      return outputs;
+    };
     std::vector<Route> routes;
     for (const bool project : {true, false}) {
-      const ReducedDynamics d = reduced_dynamics(all, w, {}, {}, force, project);
-      tape_.section("reduced accelerations");
-      const std::vector<Expr> w_dot = solve_symmetric(d.M_r, {d.f_r}).front();
-      tape_.section("accelerations");
-      std::vector<OutputBlock> outputs = {block("w_dot", "mixed", "derivative of w", w_dot)};
-      for (OutputBlock& b :
-           split_passive(all.partition, picked(accelerations(all, d, w_dot), all.partition.passive), "dot"))
-        outputs.push_back(std::move(b));
-      routes.push_back({project ? "projected recursion" : "all blocks, (66)-(68)", std::move(outputs)});
+      const ReducedDynamics d = reduced_dynamics(all, k.kernel().H, w, {}, {}, force, project);
+      routes.push_back(
+          {project ? "projected recursion" : "all blocks, (66)-(68)", outputs_of(solved(all, d))});
     }
+    const auto on_orthogonal_basis = [&] {
+      std::vector<Route> accurate;
+      if (all.k() < 2) return accurate;
+      for (const bool project : {true, false}) {
+        accurate.push_back(
+            {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
+             outputs_of(solved_on_orthogonal_basis(all, w, {}, {}, force, project))});
+      }
+      return accurate;
+    };
     emit(family[0],
          "Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.",
-         routes);
+         routes, "", true, on_orthogonal_basis);
   }
   if (wanted(family[3]) && !mechanism_.rows.empty()) {
     const auto w_dot = symbols_.block("w_dot", all.k(), "mixed", "derivative of w");
-    const ReducedDynamics d = reduced_dynamics(all, w, {}, {}, force, true);
-    std::vector<Expr> residual =
-        picked(dynamics_.inverse_dynamics(symbols_.moving(d.velocity), accelerations(all, d, w_dot)),
-               all.partition.passive);
+    const ReducedDynamics d = reduced_dynamics(all, k.kernel().H, w, {}, {}, force, true);
+    std::vector<Expr> residual = picked(
+        dynamics_.inverse_dynamics(symbols_.moving(d.velocity), accelerations(all, k.kernel().H, d, w_dot)),
+        all.partition.passive);
     for (std::size_t i = 0; i < residual.size(); ++i) residual[i] -= force[i];
     tape_.section("multipliers");
     emit(family[3], "Constraint forces with the torques given, least norm.",

@@ -164,4 +164,30 @@ std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K,
   return solutions;
 }
 
+OrthogonalBasis orthogonal_basis(const Matrix<Expr>& H) {
+  OrthogonalBasis basis{H, Matrix<Expr>(H.cols(), H.cols())};
+  Matrix<Expr>& Q = basis.Q;
+  for (int j = 0; j < H.cols(); ++j) {
+    basis.R(j, j) = Expr(1);
+    Expr square(0);
+    for (int i = 0; i < H.rows(); ++i) square += Q(i, j) * Q(i, j);
+    const Expr inverse = Expr(1) / square;
+    for (int k = j + 1; k < H.cols(); ++k) {
+      Expr product(0);
+      for (int i = 0; i < H.rows(); ++i) product += Q(i, j) * Q(i, k);
+      basis.R(j, k) = product * inverse;
+      for (int i = 0; i < H.rows(); ++i) Q(i, k) -= Q(i, j) * basis.R(j, k);
+    }
+  }
+  return basis;
+}
+
+std::vector<Expr> OrthogonalBasis::solve(std::vector<Expr> b) const {
+  for (int i = R.rows(); i-- > 0;) {
+    for (int k = i + 1; k < R.cols(); ++k)
+      b[static_cast<std::size_t>(i)] -= R(i, k) * b[static_cast<std::size_t>(k)];
+  }
+  return b;
+}
+
 }  // namespace anholon

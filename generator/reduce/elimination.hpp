@@ -60,4 +60,14 @@ class Elimination {
 std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K,
                                                const std::vector<std::vector<Expr>>& right_hand_sides);
 
+/// H = Q R with orthogonal columns of Q, not normalised, and ones on the diagonal of the upper triangle R:
+/// modified Gram-Schmidt. Where a kernel basis is almost singular its columns are large and almost parallel;
+/// a mass matrix on Q loses none of the digits that one on H loses there.
+struct OrthogonalBasis {
+  Matrix<Expr> Q, R;
+  /// x with R x = b
+  [[nodiscard]] std::vector<Expr> solve(std::vector<Expr> b) const;
+};
+OrthogonalBasis orthogonal_basis(const Matrix<Expr>& H);
+
 }  // namespace anholon

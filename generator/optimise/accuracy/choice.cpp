@@ -15,10 +15,6 @@ constexpr std::array names = {std::pair{OptimiseFor::accuracy, std::string_view(
                               std::pair{OptimiseFor::speed, std::string_view("speed")},
                               std::pair{OptimiseFor::nothing, std::string_view("nothing")}};
 
-/// States of the first look at the shortest candidate, which is all that most functions get: the worst of all
-/// of them is seldom more than twice the worst of so many.
-constexpr std::size_t first_look = 8;
-
 /// Errors that the choice of the states may have turned round: within half an ulp or a quarter of the error.
 bool is_as_small(double error, double least) { return error <= std::max(least + 0.5, 1.25 * least); }
 
@@ -58,7 +54,7 @@ void measure(const Tape& tape, std::vector<Candidate>& candidates, const Measure
 }
 
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
-                   const MeasuredStates& states, const std::function<void()>& more) {
+                   const MeasuredStates& states, const std::function<void()>& more, std::size_t first_look) {
   const auto shortest = [&](const auto& acceptable) {
     std::size_t best = candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
