@@ -13,6 +13,7 @@
 #include "check/error_measure.hpp"
 #include "check/evaluate_program.hpp"
 #include "check/evaluate_recursion.hpp"
+#include "check/output_record.hpp"
 #include "check/relative_condition.hpp"
 #include "describe/mechanise.hpp"
 #include "reduce/samples.hpp"
@@ -23,11 +24,6 @@ namespace {
 constexpr int formula_samples = 40;  // the exact recursion with its factorisations is slow
 
 /// Blocks of one kind of quantity: a pose has no scale of its own parts, a twist has two.
-struct Record {
-  std::vector<double> error, scale, recursion_error;
-  std::vector<int> sample;
-};
-
 class Verifier {
  public:
   Verifier(const Model& model, const Derivation& derivation)
@@ -138,7 +134,7 @@ class Verifier {
       const NamedValues<S> expected = judge(f.name, for_judge);
       const NamedValues<double> got = compiled_(f.name, rounded);
       for (const OutputBlock& b : f.outputs) {
-        Record& record = records_[{f.name, b.name}];
+        OutputRecord& record = records_[{f.name, b.name}];
         record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
         const double scale = size_of(expected.at(b.name));
         record.scale.push_back(f.name.ends_with("compatibility") ? std::max(scale, residual_scale_[b.name])
@@ -374,10 +370,18 @@ class Verifier {
     if (scale > 0) energy_balance_ = std::max(energy_balance_, std::abs(rate - power) / scale);
   }
 
-  double condition(const std::string& function, const std::string& output, int sample, double scale) {
+  /// Of an output with respect to the inputs of its function; where these alone don't explain the error, the
+  /// parameters, which are inputs of generated code as well, are moved too.
+  double condition(const std::string& function, const std::string& output, int sample, double scale,
+                   double error) {
     const NamedValues<Exact>& in = inputs_of_sample_.at(sample);
-    return relative_condition([&](const NamedValues<Exact>& at) { return exact_(function, at).at(output); },
-                              in, scale);
+    const double kappa = relative_condition(
+        [&](const NamedValues<Exact>& at) { return exact_(function, at).at(output); }, in, scale);
+    if (error <= allowed(kappa)) return kappa;
+    const auto with_parameters = [&](const NamedValues<Exact>& at) {
+      return interpreting_caller<Exact>(program_, at.at("parameters"))(function, in).at(output);
+    };
+    return kappa + relative_condition(with_parameters, {{"parameters", parameters_}}, scale);
   }
 
   Verification summarise(int samples) {
@@ -390,30 +394,12 @@ class Verifier {
     for (const Function& f : program_.functions) {
       for (const OutputBlock& b : f.outputs) {
         if (!records_.contains({f.name, b.name})) continue;  // of a chart that was never the best
-        const Record& record = records_.at({f.name, b.name});
-        std::vector<double> sizes = record.scale;
-        std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-        const double typical = sizes[sizes.size() / 2];
-        OutputError e;
+        OutputError e =
+            judged(records_.at({f.name, b.name}), bound_, [&](int sample, double scale, double error) {
+              return condition(f.name, b.name, sample, scale, error);
+            });
         e.function = f.name;
         e.output = b.name;
-        std::vector<double> relative;
-        for (std::size_t i = 0; i < record.error.size(); ++i) {
-          const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
-          relative.push_back(record.error[i] / scale);
-          if (!(relative.back() <= e.worst))
-            e.worst = relative.back(), e.worst_at = fmt::format("sample {}", record.sample[i]);
-          if (relative.back() > bound_) {
-            const double kappa = condition(f.name, b.name, record.sample[i], scale);
-            e.condition = std::max(e.condition, kappa);
-            if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
-          }
-        }
-        std::ranges::sort(relative);
-        e.median = relative[relative.size() / 2];
-        e.p99 = relative[std::min(relative.size() - 1, relative.size() * 99 / 100)];
-        if (!record.recursion_error.empty())
-          e.recursion_worst = *std::ranges::max_element(record.recursion_error);
         v.passed = v.passed && e.passed;
         v.outputs.push_back(std::move(e));
       }
@@ -439,7 +425,7 @@ class Verifier {
   double bound_ = 0;
   std::map<std::string, double>
       residual_scale_;  // natural scale of the compatibility residuals, which vanish
-  std::map<std::pair<std::string, std::string>, Record> records_;
+  std::map<std::pair<std::string, std::string>, OutputRecord> records_;
   std::map<int, NamedValues<Exact>> inputs_of_sample_;
   double formula_worst_ = 0, energy_balance_ = 0;
   int formula_count_ = 0;

@@ -12,6 +12,7 @@
 #include "anholon/free_dynamics.hpp"
 #include "check/compiled_caller.hpp"
 #include "check/error_measure.hpp"
+#include "check/output_record.hpp"
 #include "check/relative_condition.hpp"
 #include "check/tree_reference.hpp"
 #include "derive/tree_functions.hpp"
@@ -83,9 +84,9 @@ class TreeVerifier {
       const TreePoint<Exact> x = random_point(source);
       const NamedValues<Exact> in = tree_inputs(mechanism_, x);
       if (s < exactly_judged) {
-        compare(s, x, exact_, in);
+        compare(s + 1, x, exact_, in);
       } else {
-        compare(s, x, extended_, in_long_double(in));
+        compare(s + 1, x, extended_, in_long_double(in));
       }
       if (s < formula_samples_of(size)) check_formulas(x);
     }
@@ -93,10 +94,6 @@ class TreeVerifier {
   }
 
  private:
-  struct Record {
-    std::vector<double> error, scale, recursion_error;  // one an evaluated state
-  };
-
   /// Position in the working range; velocities, accelerations and forces in +-1. Every value is a double.
   TreePoint<Exact> random_point(SampleSource& source) const {
     const auto unit = [&] { return source.uniform(Exact(-1), Exact(1)); };
@@ -119,9 +116,10 @@ class TreeVerifier {
       const NamedValues<S> expected = judge(f.name, for_judge);
       const NamedValues<double> got = compiled_(f.name, in_double);
       for (const OutputBlock& b : f.outputs) {
-        Record& record = records_[{f.name, b.name}];
+        OutputRecord& record = records_[{f.name, b.name}];
         record.error.push_back(distance(got.at(b.name), expected.at(b.name)));
         record.scale.push_back(size_of(expected.at(b.name)));
+        record.sample.push_back(sample);
         if (!(record.error.back() <= bound_ * record.scale.back()))  // may be asked for its condition
           points_.insert_or_assign(sample, x);
       }
@@ -197,29 +195,11 @@ class TreeVerifier {
     v.energy_balance = energy_balance_;
     for (const Function& f : checked_) {
       for (const OutputBlock& b : f.outputs) {
-        const Record& record = records_.at({f.name, b.name});
-        std::vector<double> sizes = record.scale;
-        std::ranges::sort(sizes);
-        const double typical = sizes[sizes.size() / 2];
-        OutputError e;
+        OutputError e = judged(records_.at({f.name, b.name}), bound_, [&](int sample, double scale, double) {
+          return condition(f.name, b.name, sample, scale);
+        });
         e.function = f.name;
         e.output = b.name;
-        std::vector<double> relative;
-        for (std::size_t i = 0; i < record.error.size(); ++i) {
-          const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
-          relative.push_back(record.error[i] / scale);
-          if (!(relative.back() <= e.worst))
-            e.worst = relative.back(), e.worst_at = fmt::format("sample {}", i + 1);
-          if (relative.back() <= bound_) continue;
-          const double kappa = condition(f.name, b.name, static_cast<int>(i), scale);
-          e.condition = std::max(e.condition, kappa);
-          if (!(relative.back() <= 10 * eps * kappa)) e.passed = false;
-        }
-        std::ranges::sort(relative);
-        e.median = relative[relative.size() / 2];
-        e.p99 = relative[std::min(relative.size() - 1, relative.size() * 99 / 100)];
-        if (!record.recursion_error.empty())
-          e.recursion_worst = *std::ranges::max_element(record.recursion_error);
         v.passed = v.passed && e.passed;
         v.outputs.push_back(std::move(e));
       }
@@ -239,7 +219,7 @@ class TreeVerifier {
   ProgramCaller<long double> extended_;
   ProgramCaller<double> compiled_;
   std::map<int, TreePoint<Exact>> points_;  // those whose condition may be asked for
-  std::map<std::pair<std::string, std::string>, Record> records_;
+  std::map<std::pair<std::string, std::string>, OutputRecord> records_;
   double bound_ = 0, formula_worst_ = 0, energy_balance_ = 0;
   int formula_count_ = 0;
   std::string formula_at_;

@@ -30,6 +30,7 @@ std::string json_text(const Model& model, const Verification& v, double bound) {
                                     {"p99", e.p99},           {"worst", e.worst},   {"worst_at", e.worst_at},
                                     {"passed", e.passed}};
     if (e.condition > 0) entry["condition"] = e.condition;
+    if (!e.passed) entry["failed_at"] = e.failed_at;
     if (e.recursion_worst >= 0) entry["recursion_worst"] = e.recursion_worst;
     j["outputs"].push_back(std::move(entry));
   }
@@ -84,7 +85,8 @@ int verify(const VerifyOptions& options) {
                e.median / ulp, e.p99 / ulp, e.worst / ulp, e.worst,
                e.recursion_worst < 0 ? "" : fmt::format("{:.1e}", e.recursion_worst),
                e.worst > 0 ? e.worst_at : "",
-               e.condition > 0 ? fmt::format(", kappa {:.1e}", e.condition) : "", e.passed ? "" : "  FAILED");
+               e.condition > 0 ? fmt::format(", kappa {:.1e}", e.condition) : "",
+               e.passed ? "" : "  FAILED at " + e.failed_at);
   }
   fmt::print(
       "\nformulas: the program and the numeric recursion, both exact, differ by {:.1e} at most ({} "
