@@ -7,7 +7,7 @@
 #include "algebra/prove.hpp"
 #include "algebra/tape_samples.hpp"
 
-namespace anholon {
+namespace anholon::closed_form_test {
 namespace {
 
 using test::input;
@@ -137,4 +137,4 @@ TEST(ProvablyEqual, SeesThroughAnglesAndQuotients) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::closed_form_test

@@ -6,7 +6,7 @@
 #include "algebra/ginac_scalar.hpp"
 #include "algebra/tape_samples.hpp"
 
-namespace anholon {
+namespace anholon::convert_test {
 namespace {
 
 using test::input;
@@ -101,4 +101,4 @@ TEST(GinacConverter, RefusesSymbolsOfOthers) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::convert_test

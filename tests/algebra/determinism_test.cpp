@@ -16,7 +16,7 @@
 #include "algebra/latex.hpp"
 #include "algebra/tape_samples.hpp"
 
-namespace anholon {
+namespace anholon::determinism_test {
 namespace {
 
 using test::input;
@@ -94,4 +94,4 @@ TEST(Determinism, TwentyProcessesWriteTheSameText) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::determinism_test

@@ -5,7 +5,7 @@
 
 #include <random>
 
-namespace anholon {
+namespace anholon::factors_test {
 namespace {
 
 Polynomial random_polynomial(std::mt19937& rng, std::size_t variables, int terms, int degree) {
@@ -67,4 +67,4 @@ TEST(Factors, OfADifferenceOfSquares) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::factors_test

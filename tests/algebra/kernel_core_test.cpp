@@ -9,7 +9,7 @@
 #include "algebra/prove.hpp"
 #include "algebra/tape_samples.hpp"
 
-namespace anholon {
+namespace anholon::kernel_core_test {
 namespace {
 
 using test::entries;
@@ -245,4 +245,4 @@ TEST(KernelCore, GivesUpOnLargeDenseBlocksOnly) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::kernel_core_test

@@ -5,7 +5,7 @@
 
 #include "algebra/tape_samples.hpp"
 
-namespace anholon {
+namespace anholon::latex_test {
 namespace {
 
 using test::input;
@@ -77,4 +77,4 @@ TEST(Latex, NamesThePartsOfLongFormulas) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::latex_test

@@ -9,11 +9,11 @@ function(add_consumer_test name)
   add_test(NAME consumer.${name} COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}"
     "-DWORK=${CMAKE_CURRENT_BINARY_DIR}/consumer/${name}" "-DGENERATOR=${CMAKE_GENERATOR}" "-DCXX=${CMAKE_CXX_COMPILER}"
     "-DCXX_FLAGS=${CMAKE_CXX_FLAGS}" "-DLAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}" ${ARGN} -P "${driver}")
-  set_tests_properties(consumer.${name} PROPERTIES LABELS install RUN_SERIAL ON TIMEOUT 600)
+  set_tests_properties(consumer.${name} PROPERTIES LABELS install TIMEOUT 600)
 endfunction()
 
 add_test(NAME consumer.install COMMAND "${CMAKE_COMMAND}" --install "${PROJECT_BINARY_DIR}" --prefix "${prefix}")
-set_tests_properties(consumer.install PROPERTIES LABELS install RUN_SERIAL ON FIXTURES_SETUP installed)
+set_tests_properties(consumer.install PROPERTIES LABELS install FIXTURES_SETUP installed)
 
 # What is exported knows nothing of this build: neither its folders nor its options.
 add_test(NAME consumer.exports_are_clean COMMAND "${CMAKE_COMMAND}" "-DPREFIX=${prefix}" "-DSOURCE=${PROJECT_SOURCE_DIR}"

@@ -15,7 +15,7 @@
 #include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
-namespace anholon::test {
+namespace anholon::test::geometry_test {
 namespace {
 
 using Values = std::vector<Exact>;
@@ -260,4 +260,4 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, LowestPoint,
                          [](const auto& info) { return info.param.model; });
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::geometry_test

@@ -7,7 +7,7 @@
 
 #include "contact/program_values.hpp"
 
-namespace anholon::test {
+namespace anholon::test::rolling_test {
 namespace {
 
 const std::vector<std::string> wanted = {"kinematics", "reduced_velocities", "forward_dynamics"};
@@ -112,4 +112,4 @@ TEST(RollingDisc, TurnsSteadilyAtTheRateOfTheClosedForm) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::rolling_test

@@ -18,7 +18,7 @@
 #include "reduce/decompositions.hpp"
 #include "reduce/samples.hpp"
 
-namespace anholon::test {
+namespace anholon::test::stance_test {
 namespace {
 
 using Values = std::vector<Exact>;
@@ -252,4 +252,4 @@ TEST(QuadrupedStance, ForcesOfTwoThreeAndFourFeetCarryTheWeightAndTheChangeOfMom
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::stance_test

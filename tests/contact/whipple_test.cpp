@@ -10,7 +10,7 @@
 
 #include "contact/program_values.hpp"
 
-namespace anholon::test {
+namespace anholon::test::whipple_test {
 namespace {
 
 using Two = Eigen::Matrix<long double, 2, 2>;
@@ -124,4 +124,4 @@ TEST_F(Whipple, IsStableBetweenWeaveAndCapsizeSpeed) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::whipple_test

@@ -9,7 +9,7 @@
 
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::bad_files_test {
 namespace {
 
 const std::filesystem::path folder = ANHOLON_SOURCE_DIR "/tests/describe/bad";
@@ -54,4 +54,4 @@ INSTANTIATE_TEST_SUITE_P(Files, BadFile, ::testing::ValuesIn(bad_files()),
 TEST(BadFiles, AreAtLeastForty) { EXPECT_GE(bad_files().size(), 40U); }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bad_files_test

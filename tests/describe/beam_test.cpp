@@ -11,7 +11,7 @@
 #include "describe/read_model.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::beam_test {
 namespace {
 
 const BeamSection uniform;
@@ -176,4 +176,4 @@ beam = { length = 2, mass_per_length = 3, bending_stiffness = 50, modes = 2, pla
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::beam_test

@@ -6,7 +6,7 @@
 
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::chain_test {
 namespace {
 
 const std::string arm = R"(anholon = 1
@@ -106,4 +106,4 @@ TEST(Chain, ChecksTheUnitsOfItsParameters) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::chain_test

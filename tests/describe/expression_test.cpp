@@ -9,7 +9,7 @@
 
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::expression_test {
 namespace {
 
 class Expression : public ::testing::Test {
@@ -196,4 +196,4 @@ TEST_F(Expression, EndsSoonWhateverTheText) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::expression_test

@@ -11,7 +11,7 @@
 #include "describe/read_model.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::modal_table_test {
 namespace {
 
 const std::string beam_description = R"toml(
@@ -162,4 +162,4 @@ TEST_F(TableOfModes, IsRefusedWhereItCannotBe) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::modal_table_test

@@ -11,7 +11,7 @@
 #include "describe/read_model.hpp"
 #include "describe/specialise.hpp"
 
-namespace anholon {
+namespace anholon::mutation_test {
 namespace {
 
 std::string text_of(const std::filesystem::path& file) {
@@ -141,4 +141,4 @@ TEST(Mutation, DeepAndLongFilesAreRefusedSoon) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::mutation_test

@@ -13,7 +13,7 @@
 #include "describe/outline.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::read_model_test {
 namespace {
 
 using Json = nlohmann::json;
@@ -393,4 +393,4 @@ TEST(ReadModel, RefusesFilesThatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::read_model_test

@@ -4,7 +4,7 @@
 
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::repetition_test {
 namespace {
 
 const std::string chain = R"(anholon = 1
@@ -67,4 +67,4 @@ TEST(Repetition, RefusesWhatItCannotCount) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::repetition_test

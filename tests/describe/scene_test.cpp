@@ -12,7 +12,7 @@
 #include "describe/specialise.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::scene_test {
 namespace {
 
 const std::filesystem::path models = ANHOLON_SOURCE_DIR "/models";
@@ -330,4 +330,4 @@ force = "k/l^2"
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::scene_test

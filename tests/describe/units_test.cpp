@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-namespace anholon {
+namespace anholon::units_test {
 namespace {
 
 std::string error(std::string_view text) {
@@ -64,4 +64,4 @@ TEST(Units, SayWhereTheyAreWrong) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::units_test

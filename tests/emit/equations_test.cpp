@@ -14,7 +14,7 @@
 #include "emit/latex_reader.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::equations_test {
 namespace {
 
 struct Page {
@@ -168,4 +168,4 @@ TEST(Equations, DoNotDependOnTheRun) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::equations_test

@@ -16,7 +16,7 @@
 #include "emit/random_program.hpp"
 #include "emit/toolbox.hpp"
 
-namespace anholon {
+namespace anholon::header_test {
 namespace {
 
 constexpr const char* strict_flags =
@@ -343,4 +343,4 @@ TEST(EmittedHeader, LetsAnOutputOfASplitFunctionLieOverAnInput) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::header_test

@@ -11,7 +11,7 @@
 
 #include "number/exact.hpp"
 
-namespace anholon {
+namespace anholon::sines_cosines_test {
 namespace {
 
 namespace detail {
@@ -131,4 +131,4 @@ TEST(SinesCosines, AreThoseOfTheLibraryForOtherScalars) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sines_cosines_test

@@ -14,7 +14,7 @@
 #include "emit/toolbox.hpp"
 #include "emit/write_file.hpp"
 
-namespace anholon {
+namespace anholon::text_test {
 namespace {
 
 TEST(Identifier, KeepsWhatIsSafeAndMendsTheRest) {
@@ -107,4 +107,4 @@ TEST(DescribeJson, ListsParametersFunctionsAndBlocks) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::text_test

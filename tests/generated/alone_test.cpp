@@ -15,7 +15,7 @@
 
 #include "emit/toolbox.hpp"
 
-namespace anholon {
+namespace anholon::alone_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -110,4 +110,4 @@ INSTANTIATE_TEST_SUITE_P(Headers, EveryHeader,
                                             ::testing::Values("g++", "clang++")));
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::alone_test

@@ -18,7 +18,7 @@
 #include "emit/equations.hpp"
 #include "emit/header.hpp"
 
-namespace anholon {
+namespace anholon::reproduction_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -126,4 +126,4 @@ INSTANTIATE_TEST_SUITE_P(Models, EveryModel, ::testing::ValuesIn(model_names()))
 INSTANTIATE_TEST_SUITE_P(Models, EveryModelFile, ::testing::ValuesIn(names_of_model_files()));
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reproduction_test

@@ -18,7 +18,7 @@
 #include "simulate/runner.hpp"
 #include "simulate/scene_program.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::gait_test {
 namespace {
 
 constexpr double T = 2.5;   // s, of a period
@@ -103,4 +103,4 @@ TEST(HardGaits, DriftOverAThousandPeriods) { drift(1000); }
 TEST(LongHard, DriftOverAHundredThousandPeriods) { drift(100'000); }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::gait_test

@@ -15,7 +15,7 @@
 #include "hard/table.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::pendulums_test {
 namespace {
 
 const std::string section = "Motions that amplify errors";
@@ -154,4 +154,4 @@ TEST(HardPendulums, MotionThatLosesItsDigitsSaysSo) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::pendulums_test

@@ -17,7 +17,7 @@
 #include "hard/table.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::rotations_test {
 namespace {
 
 const std::string of_turns = "Bodies that turn";
@@ -201,4 +201,4 @@ TEST(HardRotations, DzhanibekovFlipsKeepHalfTheDigits) { flip(1e-4); }
 TEST(HardRotations, DzhanibekovFlipsNextToTheSeparatrix) { flip(1e-8); }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::rotations_test

@@ -18,7 +18,7 @@
 #include "hard/robot.hpp"
 #include "hard/table.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::states_test {
 namespace {
 
 constexpr int states = 40;
@@ -288,4 +288,4 @@ TEST(HardStates, VerifyNamesWhatLosesItsDigits) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::states_test

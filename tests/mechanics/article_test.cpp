@@ -10,7 +10,7 @@
 #include "emit/latex_reader.hpp"
 #include "mechanics/symbolic_model.hpp"
 
-namespace anholon {
+namespace anholon::article_test {
 namespace {
 
 using GiNaC::cos;
@@ -266,4 +266,4 @@ TEST(ArticleBicycle, IsExplainedInCompactForm) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::article_test

@@ -7,7 +7,7 @@
 #include "mechanics/beam_shapes.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::beam_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -111,4 +111,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::beam_test

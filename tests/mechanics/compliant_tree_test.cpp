@@ -19,7 +19,7 @@
 #include "mechanics/energy_witness.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::compliant_tree_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -352,4 +352,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::compliant_tree_test

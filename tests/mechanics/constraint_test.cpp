@@ -7,7 +7,7 @@
 #include "derive/derive.hpp"
 #include "mechanics/robots.hpp"
 
-namespace anholon {
+namespace anholon::constraint_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -208,4 +208,4 @@ TEST(HybridDrive, FreesAnOverConstrainedRobot) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::constraint_test

@@ -16,7 +16,7 @@
 #include "mechanics/beam_shapes.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::elastic_output_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -26,6 +26,8 @@ using V3 = Eigen::Matrix<Real, 3, 1>;
 using M3 = Eigen::Matrix<Real, 3, 3>;
 using V6 = Eigen::Matrix<Real, 6, 1>;  // (V, Omega)
 using M6 = Eigen::Matrix<Real, 6, 6>;
+
+Dense solve(const Dense& m, const Dense& b) { return m.ldlt().solve(b); }
 
 M3 hat(const V3& w) {
   M3 m;
@@ -175,11 +177,10 @@ class Tree {
       if (link.modes() == 0) {
         wrench[k] += body.M * acceleration[k] - body.F;
       } else {  // terminal: (64), (65)
-        const Eigen::LDLT<Dense> m(body.m);
         mode -= link.modes();
-        out.r_e_ddot.segment(mode, link.modes()) = m.solve(body.Q - body.M_e * acceleration[k]);
-        wrench[k] += (body.M - body.M_e.transpose() * m.solve(body.M_e)) * acceleration[k] -
-                     (body.F - body.M_e.transpose() * m.solve(body.Q));
+        out.r_e_ddot.segment(mode, link.modes()) = solve(body.m, body.Q - body.M_e * acceleration[k]);
+        wrench[k] += (body.M - body.M_e.transpose() * solve(body.m, body.M_e)) * acceleration[k] -
+                     (body.F - body.M_e.transpose() * solve(body.m, body.Q));
       }
       if (link.hinged) out.tau(--hinge) = A[k].dot(wrench[k]);
       if (k > 0) wrench[static_cast<std::size_t>(link.parent)] += Ad[k].transpose() * wrench[k];
@@ -214,11 +215,11 @@ class Tree {
     }
     const Dense M_e = -m_ee * elastic;  // modes x (eta, r_j)
     const Column Q_e = m_ee * moving.r_e_ddot;
-    const Dense back = M_e.transpose() * m_ee.ldlt().solve(M_e);
+    const Dense back = M_e.transpose() * solve(m_ee, M_e);
     const Dense outer = M_tilde + back;  // over (eta, r_j)
     Column f_tilde(inputs);
     f_tilde << -moving.f_reac, -moving.tau;
-    const Column f = f_tilde + M_e.transpose() * m_ee.ldlt().solve(Q_e);  // (35), (36)
+    const Column f = f_tilde + M_e.transpose() * solve(m_ee, Q_e);  // (35), (36)
     const Eigen::Index size = 6 + modes_ + hinges_;
     Dense M = Dense::Zero(size, size);
     Column force(size);
@@ -317,4 +318,4 @@ TEST(ElasticAccelerationsAsOutputs, GiveTheFreeDynamicsOfTerminalBeams) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::elastic_output_test

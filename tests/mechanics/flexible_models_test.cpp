@@ -14,7 +14,7 @@
 #include "describe/read_model.hpp"
 #include "mechanics/flexible_robots.hpp"
 
-namespace anholon {
+namespace anholon::flexible_models_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -131,4 +131,4 @@ TEST(Chain, HasTheFrequenciesOfTheBeamWithOrderTwo) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::flexible_models_test

@@ -16,7 +16,7 @@
 #include "mechanics/energy_witness.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::fluid_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -603,4 +603,4 @@ TEST(Ellipsoid, KeepsItsEnergyAndItsImpulses) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::fluid_test

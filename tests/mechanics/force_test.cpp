@@ -5,7 +5,7 @@
 
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::force_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -218,4 +218,4 @@ TEST(Gravity, PullsAlongTheWorldsAxesWhateverTheBaseDoes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::force_test

@@ -14,7 +14,7 @@
 #include "describe/read_model.hpp"
 #include "reduce/samples.hpp"
 
-namespace anholon {
+namespace anholon::hybrid_drive_test {
 namespace {
 
 using Values = std::vector<double>;
@@ -166,4 +166,4 @@ INSTANTIATE_TEST_SUITE_P(Models, HybridDrive,
                          [](const auto& info) { return info.param; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::hybrid_drive_test

@@ -7,7 +7,7 @@
 #include "describe/mechanise.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::joint_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -291,4 +291,4 @@ TEST(Coupling, ToAConstantLocksTheJoint) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::joint_test

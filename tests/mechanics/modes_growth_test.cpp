@@ -11,7 +11,7 @@
 #include "derive/derive.hpp"
 #include "mechanics/flexible_robots.hpp"
 
-namespace anholon {
+namespace anholon::modes_growth_test {
 namespace {
 
 /// Operations of reduced_dynamics of the soft snake-board with n modes in each beam.
@@ -43,4 +43,4 @@ TEST(ModesOfTheSnakeBoard, CostOperationsByAPolynomialLaw) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::modes_growth_test

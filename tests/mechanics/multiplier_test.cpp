@@ -8,7 +8,7 @@
 #include "check/evaluate_program.hpp"
 #include "mechanics/robots.hpp"
 
-namespace anholon {
+namespace anholon::multiplier_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -77,4 +77,4 @@ TEST(DoublePendulum, FollowsItsTextbookEquations) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::multiplier_test

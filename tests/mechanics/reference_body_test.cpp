@@ -14,7 +14,7 @@
 #include "describe/read_model.hpp"
 #include "mechanics/witness.hpp"
 
-namespace anholon {
+namespace anholon::reference_body_test {
 namespace {
 
 using namespace test;  // NOLINT: the vocabulary of these tests
@@ -323,4 +323,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reference_body_test

@@ -17,7 +17,7 @@
 #include "number/exact_eigen.hpp"
 #include "reduce/decompositions.hpp"
 
-namespace anholon {
+namespace anholon::reference_test {
 namespace {
 
 using test::Json;
@@ -437,4 +437,4 @@ TEST_F(PendulumTorques, MoveFromWheelToWheelWithTheStaticLoading) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::reference_test

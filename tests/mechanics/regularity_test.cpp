@@ -9,7 +9,7 @@
 
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::regularity_test {
 namespace {
 
 Regularity searched(const Model& model) {
@@ -94,4 +94,4 @@ TEST(Regularity, IsGrantedToTheOtherModels) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::regularity_test

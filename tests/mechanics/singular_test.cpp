@@ -12,7 +12,7 @@
 #include "describe/mechanise.hpp"
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::singular_test {
 namespace {
 
 class SnakeboardAtRightAngle : public testing::TestWithParam<std::string> {};
@@ -94,4 +94,4 @@ INSTANTIATE_TEST_SUITE_P(Snakeboards, SnakeboardAtRightAngle,
                          testing::Values("rigid_snakeboard", "soft_snakeboard"));
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::singular_test

@@ -7,7 +7,7 @@
 #include "anholon/free_dynamics.hpp"
 #include "mechanics/symbolic_model.hpp"
 
-namespace anholon {
+namespace anholon::symbolic_test {
 namespace {
 
 using test::ex;
@@ -173,4 +173,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::symbolic_test

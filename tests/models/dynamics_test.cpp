@@ -9,7 +9,7 @@
 #include "describe/mechanise.hpp"
 #include "reduce/samples.hpp"
 
-namespace anholon::test {
+namespace anholon::test::dynamics_test {
 namespace {
 
 Exact number(const char* text) { return Exact::from_decimal(text); }
@@ -122,4 +122,4 @@ TEST(AckermannCar, ContactForcesObeyNewtonsLawForTheWholeCar) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::dynamics_test

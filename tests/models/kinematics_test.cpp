@@ -6,7 +6,7 @@
 
 #include "contact/program_values.hpp"
 
-namespace anholon::test {
+namespace anholon::test::kinematics_test {
 namespace {
 
 constexpr double formula = 1e-30;  // 60 digits are carried; what is left is the rounding of the formulas
@@ -103,4 +103,4 @@ TEST(FiveBar, RodsFollowTheIntersectionOfTwoCircles) {
 }
 
 }  // namespace
-}  // namespace anholon::test
+}  // namespace anholon::test::kinematics_test

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 # Every shipped model passes `anholon verify`: one process a model, few states.
+set(few_states ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache ${ANHOLON_TEST_ENVIRONMENT})
 file(GLOB ANHOLON_MODEL_FOLDERS CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/models ${PROJECT_SOURCE_DIR}/models/*)
 foreach(model IN LISTS ANHOLON_MODEL_FOLDERS)
   file(GLOB descriptions CONFIGURE_DEPENDS
@@ -12,8 +13,7 @@ foreach(model IN LISTS ANHOLON_MODEL_FOLDERS)
       list(APPEND options --floating)
     endif()
     add_test(NAME Verify.${name} COMMAND anholon verify ${description} ${options})
-    set_tests_properties(Verify.${name} PROPERTIES LABELS slow TIMEOUT 900
-      ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+    set_tests_properties(Verify.${name} PROPERTIES LABELS slow TIMEOUT 900 ENVIRONMENT "${few_states}")
     # At many states and with a tighter bound: the rounding of generated code, model by model.
     list(TRANSFORM options REPLACE "^12$" "100000")
     add_test(NAME Ulps.${name} COMMAND anholon verify ${description} ${options} --bound 50)
@@ -26,8 +26,7 @@ endforeach()
 foreach(function IN ITEMS inverse_torques energies multipliers)
   add_test(NAME Verify.${function}_alone COMMAND anholon verify
     ${PROJECT_SOURCE_DIR}/models/trailer/trailer.toml --functions ${function} --samples 5)
-  set_tests_properties(Verify.${function}_alone PROPERTIES LABELS slow TIMEOUT 900
-    ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+  set_tests_properties(Verify.${function}_alone PROPERTIES LABELS slow TIMEOUT 900 ENVIRONMENT "${few_states}")
 endforeach()
 
 # The derivatives of the rates of the state, against differences in exact arithmetic: in the plane and in space, with motions and
@@ -37,6 +36,5 @@ foreach(model IN ITEMS soft_snakeboard/soft_snakeboard.toml whipple_bicycle/whip
   get_filename_component(name ${model} NAME_WE)
   add_test(NAME Verify.state_jacobian_of_${name} COMMAND anholon verify
     ${PROJECT_SOURCE_DIR}/models/${model} --functions state_jacobian --samples 5)
-  set_tests_properties(Verify.state_jacobian_of_${name} PROPERTIES LABELS slow TIMEOUT 900
-    ENVIRONMENT ANHOLON_CACHE=${PROJECT_BINARY_DIR}/verify_cache)
+  set_tests_properties(Verify.state_jacobian_of_${name} PROPERTIES LABELS slow TIMEOUT 900 ENVIRONMENT "${few_states}")
 endforeach()

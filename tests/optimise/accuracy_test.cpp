@@ -15,7 +15,7 @@
 #include "optimise/tape/stable_forms.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::accuracy_test {
 namespace {
 
 OutputBlock output(const std::vector<NodeId>& nodes) {
@@ -268,4 +268,4 @@ TEST(OptimiseFor, SpeedTakesNoMoreOperationsThanBalancedAndAccuracyLosesNoMoreDi
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::accuracy_test

@@ -14,7 +14,7 @@
 #include "describe/scene.hpp"
 #include "describe/specialise.hpp"
 
-namespace anholon {
+namespace anholon::locked_joint_test {
 namespace {
 
 const std::string folder = std::string(ANHOLON_SOURCE_DIR) + "/models/";
@@ -97,4 +97,4 @@ TEST(FrozenParameter, IsGoneFromTheProgram) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::locked_joint_test

@@ -15,7 +15,7 @@
 #include "optimise/tape/order.hpp"
 #include "tape/expr.hpp"
 
-namespace anholon {
+namespace anholon::tape_passes_test {
 namespace {
 
 std::vector<NodeId> roots_of(const Program& program) {
@@ -225,4 +225,4 @@ TEST(Hoist, LeavesNothingThatDependsOnParametersAlone) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::tape_passes_test

@@ -10,7 +10,7 @@
 #include "emit/pendulum_program.hpp"
 #include "report/timing.hpp"
 
-namespace anholon {
+namespace anholon::page_test {
 namespace {
 
 using nlohmann::ordered_json;
@@ -127,4 +127,4 @@ TEST(ReportTiming, TimesEachFunctionForDoubleAndFloat) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::page_test

@@ -15,7 +15,7 @@
 #include "robot_files/same_robot.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::armature_test {
 namespace {
 
 /// Two joints, the first of which stands on the base.
@@ -215,4 +215,4 @@ TEST(Armature, MustNotBeNegative) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::armature_test

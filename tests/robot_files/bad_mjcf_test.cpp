@@ -3,7 +3,7 @@
 
 #include "describe/read_robot.hpp"
 
-namespace anholon {
+namespace anholon::bad_mjcf_test {
 namespace {
 
 /// What the reader says of a text; empty where it reads it.
@@ -184,4 +184,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const ::testing::TestParamInfo<Bad>& info) { return info.param.what; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bad_mjcf_test

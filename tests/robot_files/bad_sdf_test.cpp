@@ -3,7 +3,7 @@
 
 #include "describe/read_robot.hpp"
 
-namespace anholon {
+namespace anholon::bad_sdf_test {
 namespace {
 
 /// What the reader says of a text; empty where it reads it.
@@ -166,4 +166,4 @@ TEST(BadSdf, FloatingContradictsAJointToTheWorld) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bad_sdf_test

@@ -19,7 +19,7 @@
 #include "describe/mechanise.hpp"
 #include "robot_files/same_robot.hpp"
 
-namespace anholon {
+namespace anholon::mujoco_test {
 namespace {
 
 struct Delete {
@@ -265,6 +265,6 @@ TEST(Mujoco, FixedEulerAxes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::mujoco_test
 
 #endif

@@ -10,7 +10,7 @@
 #include "describe/document.hpp"
 #include "describe/read_robot.hpp"
 
-namespace anholon {
+namespace anholon::mutation_test {
 namespace {
 
 /// One or two changes: bytes, pieces of the formats, parts of the text moved or left out.
@@ -96,4 +96,4 @@ INSTANTIATE_TEST_SUITE_P(All, RobotFileMutants,
                          });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::mutation_test

@@ -9,7 +9,7 @@
 #include "describe/read_robot.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::read_mjcf_test {
 namespace {
 
 bool notes_contain(const Model& model, const std::string& text) {
@@ -164,4 +164,4 @@ TEST(ReadMjcf, WhatDynamicsDoesNotNeedIsListed) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::read_mjcf_test

@@ -9,7 +9,7 @@
 #include "describe/read_robot.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::read_sdf_test {
 namespace {
 
 bool notes_contain(const Model& model, const std::string& text) {
@@ -147,4 +147,4 @@ TEST(ReadSdf, RoundedQuaternionsOfQuarterTurnsAreExact) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::read_sdf_test

@@ -8,7 +8,7 @@
 
 #include "urdf/oracle_state.hpp"
 
-namespace anholon {
+namespace anholon::same_robot_test {
 namespace {
 
 using testing::robot;
@@ -88,4 +88,4 @@ INSTANTIATE_TEST_SUITE_P(All, SameRobot, ::testing::Values("arm.sdf", "arm.xml",
                          });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::same_robot_test

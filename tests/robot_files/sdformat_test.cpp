@@ -17,7 +17,7 @@
 #include "robot_files/same_robot.hpp"
 #include "robot_files/zero_pose.hpp"
 
-namespace anholon {
+namespace anholon::sdformat_test {
 namespace {
 
 using ignition::math::Pose3d;
@@ -122,6 +122,6 @@ TEST(Sdformat, FramesEverywhere) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sdformat_test
 
 #endif

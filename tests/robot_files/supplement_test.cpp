@@ -9,7 +9,7 @@
 
 #include "describe/read_model.hpp"
 
-namespace anholon {
+namespace anholon::supplement_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -73,4 +73,4 @@ TEST_F(RobotSupplement, HasExactMessages) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::supplement_test

@@ -14,7 +14,7 @@
 #include "describe/read_robot.hpp"
 #include "robot_files/zero_pose.hpp"
 
-namespace anholon {
+namespace anholon::urdfdom_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -103,6 +103,6 @@ TEST(Urdfdom, RobotsThatAreGiven) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::urdfdom_test
 
 #endif

@@ -13,7 +13,7 @@
 #include "run/lie_samples.hpp"
 #include "run/manufactured_motion.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::adaptive_test {
 namespace {
 
 using Eigen::Vector3d;
@@ -311,4 +311,4 @@ TEST(DormandPrince, WorksInFloatAndLongDouble) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::adaptive_test

@@ -51,7 +51,7 @@ extern "C" void* malloc(std::size_t size) noexcept {
 [[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
 [[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
-namespace anholon::testing {
+namespace anholon::testing::allocation_test {
 namespace {
 
 using integrate::AdaptiveOptions;
@@ -178,4 +178,4 @@ TEST(Allocation, NoneHappensInTheImposedMotion) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::allocation_test

@@ -11,7 +11,7 @@
 
 #include "run/lie_samples.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::angle_functions_test {
 namespace {
 
 /// c = sum_k |B_2k|/(2k)! theta^(2k - 2) = 2 sum_k zeta(2k)/(2 pi)^2k theta^(2k - 2), and (1/theta)
@@ -111,4 +111,4 @@ TYPED_TEST(AngleFunctions, OneMinusCosHoldsToAFewUlpWithoutASwitch) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::angle_functions_test

@@ -12,7 +12,7 @@
 #include "run/lie_samples.hpp"
 #include "run/manufactured_motion.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::dop853_test {
 namespace {
 
 using Eigen::VectorXd;
@@ -100,4 +100,4 @@ TEST(Dop853, WorksInFloatAndLongDouble) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::dop853_test

@@ -16,7 +16,7 @@
 #include "run/lie_samples.hpp"
 #include "run/manufactured_motion.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::integrate_order_test {
 namespace {
 
 using integrate::AdaptiveOptions;
@@ -189,4 +189,4 @@ TYPED_TEST(IntegrationOn, GoingBackReturnsToTheStart) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::integrate_order_test

@@ -10,7 +10,7 @@
 
 #include "run/lie_samples.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::lie_laws_test {
 namespace {
 
 using lie::SE2;
@@ -289,4 +289,4 @@ TEST(SpecialOrthogonal3, OppositeQuaternionsHaveTheSameLog) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::lie_laws_test

@@ -13,7 +13,7 @@
 
 #include "anholon/monitors.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::motion_test {
 namespace {
 
 using Eigen::MatrixXd;
@@ -183,4 +183,4 @@ TEST(ConstraintResidual, IsTheWorstRow) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::motion_test

@@ -11,7 +11,7 @@
 #include "anholon/integrate/dop853_tableau.hpp"
 #include "anholon/integrate/tableau.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::order_conditions_test {
 namespace {
 
 __extension__ using Quad = __float128;  // 113 bits, 34 digits
@@ -171,4 +171,4 @@ TEST(Decimal, IsRoundedToTheScalarAtHand) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::order_conditions_test

@@ -14,7 +14,7 @@
 #include "run/lie_samples.hpp"
 #include "run/stiff_motion.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::rosenbrock_test {
 namespace {
 
 using integrate::AdaptiveOptions;
@@ -246,4 +246,4 @@ TEST(Rosenbrock, NamesAFieldThatEnds) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::rosenbrock_test

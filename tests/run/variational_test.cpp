@@ -11,7 +11,7 @@
 #include "anholon/integrate/cooper_verner.hpp"
 #include "run/lie_samples.hpp"
 
-namespace anholon::testing {
+namespace anholon::testing::variational_test {
 namespace {
 
 using integrate::Rkmk8;
@@ -167,4 +167,4 @@ TEST(Variational, NamesAStepThatHasNoSolution) {
 }
 
 }  // namespace
-}  // namespace anholon::testing
+}  // namespace anholon::testing::variational_test

@@ -10,7 +10,7 @@
 
 #include "simulate/columns.hpp"
 
-namespace anholon {
+namespace anholon::climber_test {
 namespace {
 
 using testing::column_index;
@@ -109,4 +109,4 @@ TEST(Climber, ClimbsTenCentimetresAtEachStep) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::climber_test

@@ -10,7 +10,7 @@
 
 #include "simulate/simulation.hpp"
 
-namespace anholon {
+namespace anholon::contact_switch_test {
 namespace {
 
 /// A model and a scene of it, written to a folder of the test.
@@ -197,4 +197,4 @@ initial = { pose = { translation = [0, 0, 1.2] }, velocities = { V_Z = -1 } }
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::contact_switch_test

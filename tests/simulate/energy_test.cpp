@@ -11,7 +11,7 @@
 
 #include "simulate/columns.hpp"
 
-namespace anholon {
+namespace anholon::energy_test {
 namespace {
 
 using testing::scene_of;
@@ -178,4 +178,4 @@ TEST(Tolerance, HoldsForEnergiesOfThousandthsOfAJoule) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::energy_test

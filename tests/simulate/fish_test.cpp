@@ -9,7 +9,7 @@
 
 #include "simulate/columns.hpp"
 
-namespace anholon {
+namespace anholon::fish_test {
 namespace {
 
 using testing::column;
@@ -152,4 +152,4 @@ TEST(Fish, TendsToTheOneWithARigidFinAsItsFinStiffens) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::fish_test

@@ -12,7 +12,7 @@
 #include "describe/read_model.hpp"
 #include "simulate/columns.hpp"
 
-namespace anholon {
+namespace anholon::flapping_wing_test {
 namespace {
 
 TEST(FlappingWing, BalancesItsEnergyAndLiftsItself) {
@@ -90,4 +90,4 @@ TEST(FlappingWing, TwistsLikeAnOscillatorForSmallAmplitudes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::flapping_wing_test

@@ -14,7 +14,7 @@
 #include "simulate/columns.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon {
+namespace anholon::hard_cases_test {
 namespace {
 
 using testing::column_index;
@@ -150,4 +150,4 @@ INSTANTIATE_TEST_SUITE_P(
     });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::hard_cases_test

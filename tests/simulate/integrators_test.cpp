@@ -7,7 +7,7 @@
 #include "simulate/columns.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon {
+namespace anholon::integrators_test {
 namespace {
 
 using testing::scene_of;
@@ -61,4 +61,4 @@ TEST(Integrators, OutputTimesOfDopri8LieOnTheContinuousSolution) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::integrators_test

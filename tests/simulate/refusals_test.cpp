@@ -4,7 +4,7 @@
 #include "simulate/columns.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon {
+namespace anholon::refusals_test {
 namespace {
 
 /// What simulating a scene of the soft snake-board says, without the folder.
@@ -59,4 +59,4 @@ TEST(Simulation, RefusesADescription) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::refusals_test

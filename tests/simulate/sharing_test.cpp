@@ -11,7 +11,7 @@
 #include "simulate/simulation.hpp"
 #include "simulate/stiffness_ladder.hpp"
 
-namespace anholon {
+namespace anholon::sharing_test {
 namespace {
 
 const std::string root = ANHOLON_SOURCE_DIR;
@@ -116,4 +116,4 @@ INSTANTIATE_TEST_SUITE_P(Models, StiffeningLadder,
                          [](const auto& info) { return info.param.substr(0, info.param.find('/')); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::sharing_test

@@ -13,7 +13,7 @@
 #include "simulate/stiffness_cost.hpp"
 #include "simulate/work_precision.hpp"
 
-namespace anholon {
+namespace anholon::stiff_test {
 namespace {
 
 using testing::column;
@@ -145,4 +145,4 @@ TEST(StiffMotion, TendsToThatOfRigidBeams) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::stiff_test

@@ -7,7 +7,7 @@
 
 #include "simulate/columns.hpp"
 
-namespace anholon {
+namespace anholon::trajectory_test {
 namespace {
 
 struct Case {
@@ -53,4 +53,4 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& info) { return info.param.reference.substr(0, 1) + std::to_string(info.index); });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::trajectory_test

@@ -20,7 +20,7 @@
 #include "singular/exact_inputs.hpp"
 #include "singular/wheeled_snake.hpp"
 
-namespace anholon {
+namespace anholon::atlas_test {
 namespace {
 
 using test::BothInputs;
@@ -226,4 +226,4 @@ TEST(ChartChoice, DoesNotDependOnUnits) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::atlas_test

@@ -13,7 +13,7 @@
 #include "simulate/simulation.hpp"
 #include "singular/wheeled_snake.hpp"
 
-namespace anholon {
+namespace anholon::compatibility_test {
 namespace {
 
 /// Five links: five axles on three velocities, so that two of the four joints are bound by the others.
@@ -178,4 +178,4 @@ row = "V_X + (sin(r1) - 0.3)*V_Y"
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::compatibility_test

@@ -13,7 +13,7 @@
 #include "singular/exact_inputs.hpp"
 #include "singular/wheeled_snake.hpp"
 
-namespace anholon {
+namespace anholon::level_test {
 namespace {
 
 using test::BothInputs;
@@ -121,4 +121,4 @@ joint   = { kind = "revolute", axis = [0, 0, 1], coordinate = "r1", drive = "act
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::level_test

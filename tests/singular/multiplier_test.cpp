@@ -23,7 +23,7 @@
 #include "simulate/scene_program.hpp"
 #include "simulate/simulation.hpp"
 
-namespace anholon {
+namespace anholon::multiplier_test {
 namespace {
 
 using testing::column_index;
@@ -252,4 +252,4 @@ TEST(MultiplierEquations, GiveTheMotionOfTheBodyWithoutSpin) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::multiplier_test

@@ -14,7 +14,7 @@
 #include "singular/exact_inputs.hpp"
 #include "singular/wheeled_snake.hpp"
 
-namespace anholon {
+namespace anholon::snake_shapes_test {
 namespace {
 
 using test::BothInputs;
@@ -129,4 +129,4 @@ TEST(Snakeboard, IsNotTakenForOneThatCannotPass) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::snake_shapes_test

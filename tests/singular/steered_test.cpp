@@ -12,7 +12,7 @@
 #include "singular/exact_inputs.hpp"
 #include "singular/wheeled_snake.hpp"
 
-namespace anholon {
+namespace anholon::steered_test {
 namespace {
 
 TEST(SteeredBicycle, KeepsTheDigitsThatItsConditionLeaves) {
@@ -66,4 +66,4 @@ TEST(SteeredBicycle, KeepsTheDigitsThatItsConditionLeaves) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::steered_test

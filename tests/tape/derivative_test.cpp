@@ -9,7 +9,7 @@
 #include "emit/random_program.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::derivative_test {
 namespace {
 
 Exact value(const Tape& tape, NodeId root, const std::vector<Exact>& at) {
@@ -100,4 +100,4 @@ TEST(Derivative, MakesNoNodesForZeroTangents) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::derivative_test

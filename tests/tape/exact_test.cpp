@@ -11,7 +11,7 @@
 
 #include "emit/random_program.hpp"
 
-namespace anholon {
+namespace anholon::exact_test {
 namespace {
 
 TEST(Exact, ReadsDecimalsExactly) {
@@ -155,4 +155,4 @@ TEST(WorkingDigits, AreNeverSoFewThatSinesAreRoundedToRationals) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::exact_test

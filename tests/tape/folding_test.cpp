@@ -9,7 +9,7 @@
 #include "tape/expr.hpp"
 #include "tape/interpret.hpp"
 
-namespace anholon {
+namespace anholon::folding_test {
 namespace {
 
 struct Written {
@@ -174,4 +174,4 @@ TEST(StructuralKeys, AgreeExactlyForEqualNodes) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::folding_test

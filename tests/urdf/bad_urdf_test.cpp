@@ -3,7 +3,7 @@
 
 #include "describe/read_robot.hpp"
 
-namespace anholon {
+namespace anholon::bad_urdf_test {
 namespace {
 
 /// What the reader says of a text; empty where it reads it.
@@ -146,4 +146,4 @@ TEST(BadUrdf, AllFaultsOfElementsAreReportedAtOnce) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::bad_urdf_test

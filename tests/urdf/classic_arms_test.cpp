@@ -12,7 +12,7 @@
 #include "describe/read_model.hpp"
 #include "urdf/random_state.hpp"
 
-namespace anholon {
+namespace anholon::classic_arms_test {
 namespace {
 
 struct Arm {
@@ -71,4 +71,4 @@ INSTANTIATE_TEST_SUITE_P(All, ClassicArms,
                          [](const auto& info) { return info.param.name; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::classic_arms_test

@@ -11,7 +11,7 @@
 #include "urdf/oracle_state.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::dart_test {
 namespace {
 
 /// Largest relative differences over random states, by function.
@@ -80,6 +80,6 @@ TEST(Dart, Quadruped) { expect_agreement(testing::shipped_robot("quadruped")); }
 TEST(Dart, Humanoid) { expect_agreement(testing::shipped_robot("humanoid")); }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::dart_test
 
 #endif

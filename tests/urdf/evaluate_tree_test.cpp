@@ -12,7 +12,7 @@
 #include "urdf/oracle_state.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::evaluate_tree_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -105,4 +105,4 @@ TEST(EvaluateTree, ArmWithDampersAndMimic) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::evaluate_tree_test

@@ -12,7 +12,7 @@
 #include "describe/read_robot.hpp"
 #include "urdf/chain.hpp"
 
-namespace anholon {
+namespace anholon::growth_test {
 namespace {
 
 /// Slope of log(operations) over log(links) from 10 to 80 links.
@@ -45,4 +45,4 @@ INSTANTIATE_TEST_SUITE_P(All, Growth,
                          [](const auto& info) { return info.param.first; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::growth_test

@@ -17,7 +17,7 @@
 #include "urdf/oracle_state.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::kdl_test {
 namespace {
 
 void compare(const Model& model) {
@@ -88,6 +88,6 @@ TEST(Kdl, Iiwa) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::kdl_test
 
 #endif

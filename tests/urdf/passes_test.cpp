@@ -24,7 +24,7 @@
 #include "tape/interpret.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::passes_test {
 namespace {
 
 Mechanism<Exact> floating_arm() {
@@ -214,4 +214,4 @@ TEST(TapePasses, GatheredParametersCostNothingPerCall) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::passes_test

@@ -8,7 +8,7 @@
 #include "describe/read_robot.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::read_urdf_test {
 namespace {
 
 using testing::joint;
@@ -149,4 +149,4 @@ TEST(ReadUrdf, VisualsAreLeftOutWithANote) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::read_urdf_test

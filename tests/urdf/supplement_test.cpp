@@ -14,7 +14,7 @@
 #include "describe/read_model.hpp"
 #include "reduce/samples.hpp"
 
-namespace anholon {
+namespace anholon::supplement_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -216,4 +216,4 @@ TEST_F(Supplement, HasExactMessages) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::supplement_test

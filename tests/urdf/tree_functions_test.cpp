@@ -18,7 +18,7 @@
 #include "urdf/random_state.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::tree_functions_test {
 namespace {
 
 using testing::random_state;
@@ -362,4 +362,4 @@ INSTANTIATE_TEST_SUITE_P(All, Robots,
                          [](const auto& info) { return info.param; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::tree_functions_test

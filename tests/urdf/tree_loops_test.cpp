@@ -14,7 +14,7 @@
 #include "urdf/chain.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::tree_loops_test {
 namespace {
 
 const std::vector<std::string> looped = {"mass_factor", "inverse_mass_matrix", "regressor"};
@@ -93,4 +93,4 @@ TEST(TreeLoops, BringTheFunctionThatTheyStartFrom) {
 }
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::tree_loops_test

@@ -13,7 +13,7 @@
 #include "urdf/oracle_state.hpp"
 #include "urdf/small_robots.hpp"
 
-namespace anholon {
+namespace anholon::verify_tree_test {
 namespace {
 
 void expect_passed(const Model& model, const std::vector<std::string>& functions, int samples) {
@@ -90,4 +90,4 @@ INSTANTIATE_TEST_SUITE_P(All, RealRobots,
                          [](const auto& info) { return info.param; });
 
 }  // namespace
-}  // namespace anholon
+}  // namespace anholon::verify_tree_test

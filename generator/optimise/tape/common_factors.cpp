@@ -11,7 +11,7 @@
 namespace anholon {
 namespace {
 
-struct Term {
+struct Summand {
   NodeId node;
   bool negative;
 };
@@ -38,25 +38,25 @@ class FactorPass {
 
   NodeId operator()(NodeId old, const std::vector<NodeId>& image) {
     if (!is_sum(old) || inner_[old] != 0) return copied(tape_, old, image);
-    std::vector<Term> terms;
+    std::vector<Summand> terms;
     flatten(old, false, terms);
-    std::vector<std::vector<Term>> groups;  // each with the factor in front
+    std::vector<std::vector<Summand>> groups;  // each with the factor in front
     std::vector<NodeId> factors;
     while (true) {
       const auto [factor, members] = best_factor(terms);
       if (members.size() < 2) break;
       factors.push_back(factor);
       groups.push_back(members);
-      std::erase_if(terms, [&members = members](const Term& t) {
-        return std::ranges::any_of(members, [&](const Term& m) { return m.node == t.node; });
+      std::erase_if(terms, [&members = members](const Summand& t) {
+        return std::ranges::any_of(members, [&](const Summand& m) { return m.node == t.node; });
       });
     }
     if (groups.empty()) return copied(tape_, old, image);
-    std::vector<Term> sum;
-    for (const Term& t : terms) sum.push_back({image[t.node], t.negative});
+    std::vector<Summand> sum;
+    for (const Summand& t : terms) sum.push_back({image[t.node], t.negative});
     for (std::size_t g = 0; g < groups.size(); ++g) {
-      std::vector<Term> cofactors;
-      for (const Term& t : groups[g]) {
+      std::vector<Summand> cofactors;
+      for (const Summand& t : groups[g]) {
         const Node n = tape_.node(t.node);
         cofactors.push_back({image[n.a == factors[g] ? n.b : n.a], t.negative});
       }
@@ -70,7 +70,7 @@ class FactorPass {
     return tape_.node(id).op == Op::add || tape_.node(id).op == Op::sub;
   }
 
-  void flatten(NodeId id, bool negative, std::vector<Term>& terms) const {
+  void flatten(NodeId id, bool negative, std::vector<Summand>& terms) const {
     const Node n = tape_.node(id);
     const auto descend = [&](NodeId x, bool sign) {
       if (inner_[x] != 0) {
@@ -85,9 +85,9 @@ class FactorPass {
 
   /// The factor that most products share; of equals, the first by structure. Only products without another
   /// use count.
-  [[nodiscard]] std::pair<NodeId, std::vector<Term>> best_factor(const std::vector<Term>& terms) const {
-    std::map<StructuralKey, std::pair<NodeId, std::vector<Term>>> by_factor;
-    for (const Term& t : terms) {
+  [[nodiscard]] std::pair<NodeId, std::vector<Summand>> best_factor(const std::vector<Summand>& terms) const {
+    std::map<StructuralKey, std::pair<NodeId, std::vector<Summand>>> by_factor;
+    for (const Summand& t : terms) {
       const Node& n = tape_.node(t.node);
       if (n.op != Op::mul || uses_[t.node] != 1) continue;
       for (const NodeId f : {n.a, n.b}) {
@@ -96,7 +96,7 @@ class FactorPass {
         if (members.empty() || members.back().node != t.node) members.push_back(t);
       }
     }
-    std::pair<NodeId, std::vector<Term>> best{0, {}};
+    std::pair<NodeId, std::vector<Summand>> best{0, {}};
     for (const auto& [key, entry] : by_factor) {
       if (entry.second.size() > best.second.size()) best = entry;
     }
@@ -104,13 +104,13 @@ class FactorPass {
   }
 
   /// Sum of terms, positive ones first, as a balanced tree.
-  NodeId added(std::vector<Term> terms) {
-    std::ranges::stable_sort(terms, {}, [](const Term& t) { return t.negative; });
+  NodeId added(std::vector<Summand> terms) {
+    std::ranges::stable_sort(terms, {}, [](const Summand& t) { return t.negative; });
     while (terms.size() > 1) {
-      std::vector<Term> next;
+      std::vector<Summand> next;
       for (std::size_t i = 0; i + 1 < terms.size(); i += 2) {
-        const Term& x = terms[i];
-        const Term& y = terms[i + 1];
+        const Summand& x = terms[i];
+        const Summand& y = terms[i + 1];
         next.push_back(
             {tape_.apply(x.negative == y.negative ? Op::add : Op::sub, x.node, y.node), x.negative});
       }
