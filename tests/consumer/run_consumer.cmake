@@ -5,7 +5,7 @@
 #
 #   cmake -DUSES=package|subdirectory|fetch_content -DSOURCE=<anholon> -DWORK=<folder> -DGENERATOR=<cmake generator>
 #         [-DPREFIX=<installed anholon>] [-DPROGRAM=<anholon>] [-DCOMPONENTS=<find_package arguments>]
-#         [-DBUILD_TYPE=<type>] [-DCXX=<compiler>] [-DCXX_FLAGS=<flags>] [-DLAUNCHER=<launcher>] -P run_consumer.cmake
+#         [-DBUILD_TYPE=<type>] [-DCXX=<compiler>] [-DCXX_FLAGS=<flags>] [-DLAUNCHER=<launcher>] [-DBUILT_ONCE=ON] -P run_consumer.cmake
 cmake_minimum_required(VERSION 3.22)
 
 file(REMOVE_RECURSE "${WORK}")
@@ -79,6 +79,9 @@ foreach(model IN ITEMS bicycle/include bicycle_compiled/generated)  # SINCOS rea
     message(FATAL_ERROR "SINCOS has not its effect on ${model}/bicycle.hpp")
   endif()
 endforeach()
+if(BUILT_ONCE)  # how a change reaches the program doesn't depend on where anholon comes from
+  return()
+endif()
 file(READ "${project}/model/bicycle.toml" text)
 string(REPLACE "m_0   = { value = 8," "m_0   = { value = 9," text "${text}")
 file(WRITE "${project}/model/bicycle.toml" "${text}")

@@ -23,7 +23,8 @@ set_tests_properties(consumer.exports_are_clean PROPERTIES LABELS install FIXTUR
 add_consumer_test(package -DUSES=package "-DPREFIX=${prefix}" -DBUILD_TYPE=Release)
 set_tests_properties(consumer.package PROPERTIES FIXTURES_REQUIRED installed)
 add_consumer_test(subdirectory -DUSES=subdirectory "-DPROGRAM=$<TARGET_FILE:anholon>" -DBUILD_TYPE=Release)
-add_consumer_test(fetch_content -DUSES=fetch_content "-DPROGRAM=$<TARGET_FILE:anholon>" -DBUILD_TYPE=Debug)
+add_consumer_test(fetch_content -DUSES=fetch_content "-DPROGRAM=$<TARGET_FILE:anholon>" -DBUILD_TYPE=Debug
+  -DBUILT_ONCE=ON)
 
 add_consumer_test(subdirectory_from_source -DUSES=subdirectory -DBUILD_TYPE=Release)
 set_tests_properties(consumer.subdirectory_from_source PROPERTIES LABELS long TIMEOUT 3600)

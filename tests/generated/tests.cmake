@@ -12,9 +12,9 @@ foreach(model IN LISTS folders)
   list(APPEND models ${model})
   add_test(NAME generated.same_bytes.${model} COMMAND "${CMAKE_COMMAND}" "-DSOURCE=${PROJECT_SOURCE_DIR}"
     "-DPROGRAM=$<TARGET_FILE:anholon>" "-DMODELS=${model}" "-DWORK=${work}/${model}" -P "${script}")
-  # The program runs six times for each model, and more for its scenes: a few stand for all of them where time counts.
+  # The program runs six times for each model, and more for its scenes: two stand for all of them where time counts.
   set(label long)
-  if(model MATCHES "^(mobile_pendulum|rigid_snakeboard|wheeled_snake5|free_chain)$")
+  if(model MATCHES "^(mobile_pendulum|rigid_snakeboard)$")
     set(label slow)
   endif()
   set_tests_properties(generated.same_bytes.${model} PROPERTIES LABELS ${label} TIMEOUT 900 SKIP_REGULAR_EXPRESSION "^skipped: ")
