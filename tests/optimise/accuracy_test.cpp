@@ -250,8 +250,9 @@ TEST(OptimiseFor, SpeedTakesNoMoreOperationsThanBalancedAndAccuracyLosesNoMoreDi
     request.functions = {"forward_dynamics", "multipliers", "energies"};
     request.optimise = mode;
     request.trace = true;
+    const auto derivation = derive(model, request);  // outlives the loop
     std::vector<CandidateReport> chosen;
-    for (const CandidateReport& c : derive(model, request)->candidates) {
+    for (const CandidateReport& c : derivation->candidates) {
       if (c.chosen) chosen.push_back(c);
     }
     return chosen;
