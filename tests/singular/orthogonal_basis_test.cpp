@@ -27,8 +27,12 @@ TEST(OrthogonalBasis, TimesItsTriangleIsTheBasis) {
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(value(basis.R(i, i)), Exact(1));
     for (int j = 0; j < 3; ++j) {
-      if (j < i) EXPECT_EQ(value(basis.R(i, j)), Exact(0));
-      if (j != i) EXPECT_EQ(value(gram(i, j)), Exact(0));  // fractions: no rounding
+      if (j < i) {
+        EXPECT_EQ(value(basis.R(i, j)), Exact(0));
+      }
+      if (j != i) {
+        EXPECT_EQ(value(gram(i, j)), Exact(0));  // fractions: no rounding
+      }
     }
     for (int row = 0; row < 4; ++row) EXPECT_EQ(value(product(row, i)), value(H(row, i)));
   }
