@@ -147,6 +147,15 @@ class Deriver {
   std::pair<std::vector<Expr>, std::vector<Expr>> solved_on_orthogonal_basis(
       const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
       const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project);
+  /// What `solved` found, as blocks: the derivative of nu, then eta_dot, r_p_ddot and so on.
+  std::vector<OutputBlock> acceleration_blocks(
+      const Reduced& of, const std::string& nu,
+      const std::pair<std::vector<Expr>, std::vector<Expr>>& solution);
+  /// The routes over an orthogonal basis, where that can differ from the kernel's own.
+  std::vector<Route> orthogonal_routes(const Reduced& of, const std::string& name,
+                                       const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+                                       const std::vector<Expr>& r_a_ddot,
+                                       const std::vector<Expr>& input_force);
   /// Torques on the coordinates of a partition that are torque-driven, as forces on its passive velocities.
   std::vector<Expr> driving_force(const Partition& p);
   static std::vector<Expr> accelerations(const Reduced& of, const Matrix<Expr>& H, const ReducedDynamics& d,

@@ -131,19 +131,37 @@ std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved_on_orthogonal_ba
   return {std::move(nu_dot), accelerations(of, basis.Q, d, along)};
 }
 
+std::vector<OutputBlock> Deriver::acceleration_blocks(
+    const Reduced& of, const std::string& nu,
+    const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
+  const auto& [nu_dot, v_dot] = solution;
+  std::vector<OutputBlock> outputs = {block(nu + "_dot", "mixed", "derivative of " + nu, nu_dot)};
+  for (OutputBlock& b : split_passive(of.partition, picked(v_dot, of.partition.passive), "dot"))
+    outputs.push_back(std::move(b));
+  return outputs;
+}
+
+std::vector<Route> Deriver::orthogonal_routes(const Reduced& of, const std::string& name,
+                                              const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+                                              const std::vector<Expr>& r_a_ddot,
+                                              const std::vector<Expr>& input_force) {
+  std::vector<Route> routes;
+  if (of.k() < 2) return routes;  // one column is orthogonal
+  for (const bool project : {true, false}) {
+    routes.push_back(
+        {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
+         acceleration_blocks(of, name,
+                             solved_on_orthogonal_basis(of, nu, r_a_dot, r_a_ddot, input_force, project))});
+  }
+  return routes;
+}
+
 void Deriver::derive_reduced_dynamics() {
   const bool reduced = wanted("reduced_dynamics"), forward = wanted("forward_dynamics"),
              split = wanted("split_dynamics");
   if (!reduced && !forward && !split) return;
   std::vector<Route> reduced_routes, forward_routes, split_routes;
   const std::vector<Expr> force = driving_force(motion_partition_);
-  const auto outputs_of = [&](const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
-    const auto& [nu_dot, v_dot] = solution;
-    std::vector<OutputBlock> outputs = {block("nu_dot", "mixed", "derivative of nu", nu_dot)};
-    for (OutputBlock& b : split_passive(motion_partition_, picked(v_dot, motion_partition_.passive), "dot"))
-      outputs.push_back(std::move(b));
-    return outputs;
-  };
   for (const bool project : {true, false}) {
     const std::string name = project ? "projected recursion" : "all blocks, (66)-(68)";
     const ReducedDynamics d =
@@ -152,7 +170,7 @@ void Deriver::derive_reduced_dynamics() {
         {name,
          {block("M_r", "mixed", "reduced mass matrix, symmetric positive definite", d.M_r),
           block("f_r", "mixed", "reduced forces", d.f_r)}});
-    if (forward) forward_routes.push_back({name, outputs_of(solved(motion_, d))});
+    if (forward) forward_routes.push_back({name, acceleration_blocks(motion_, "nu", solved(motion_, d))});
     if (split) split_routes.push_back({name, split_blocks(d)});
   }
   if (reduced)
@@ -164,14 +182,8 @@ void Deriver::derive_reduced_dynamics() {
   if (!forward) return;
   const bool replaced = replace_by_articulated_bodies(force, forward_routes);
   const auto on_orthogonal_basis = [&] {
-    std::vector<Route> routes;
-    if (replaced || motion_.k() < 2) return routes;
-    for (const bool project : {true, false}) {
-      routes.push_back(
-          {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
-           outputs_of(solved_on_orthogonal_basis(motion_, nu_, r_a_dot_, r_a_ddot_, force, project))});
-    }
-    return routes;
+    return replaced ? std::vector<Route>()
+                    : orthogonal_routes(motion_, "nu", nu_, r_a_dot_, r_a_ddot_, force);
   };
   emit("forward_dynamics", "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).",
        forward_routes, replaced ? "the mass matrix would lose the digits of its small bodies" : "", !replaced,

@@ -92,32 +92,15 @@ void Deriver::derive_torque_driven(const Reduced& all, const std::vector<Expr>& 
   }
   const std::vector<Expr> force = driving_force(all.partition);
   if (wanted(family[0]) && all.k() > 0) {
-    const auto outputs_of = [&](const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
-      const auto& [w_dot, v_dot] = solution;
-      std::vector<OutputBlock> outputs = {block("w_dot", "mixed", "derivative of w", w_dot)};
-      for (OutputBlock& b : split_passive(all.partition, picked(v_dot, all.partition.passive), "dot"))
-        outputs.push_back(std::move(b));
-      return outputs;
-    };
     std::vector<Route> routes;
     for (const bool project : {true, false}) {
       const ReducedDynamics d = reduced_dynamics(all, k.kernel().H, w, {}, {}, force, project);
-      routes.push_back(
-          {project ? "projected recursion" : "all blocks, (66)-(68)", outputs_of(solved(all, d))});
+      routes.push_back({project ? "projected recursion" : "all blocks, (66)-(68)",
+                        acceleration_blocks(all, "w", solved(all, d))});
     }
-    const auto on_orthogonal_basis = [&] {
-      std::vector<Route> accurate;
-      if (all.k() < 2) return accurate;
-      for (const bool project : {true, false}) {
-        accurate.push_back(
-            {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
-             outputs_of(solved_on_orthogonal_basis(all, w, {}, {}, force, project))});
-      }
-      return accurate;
-    };
     emit(family[0],
          "Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.",
-         routes, "", true, on_orthogonal_basis);
+         routes, "", true, [&] { return orthogonal_routes(all, "w", w, {}, {}, force); });
   }
   if (wanted(family[3]) && !mechanism_.rows.empty()) {
     const auto w_dot = symbols_.block("w_dot", all.k(), "mixed", "derivative of w");
