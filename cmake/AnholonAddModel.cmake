@@ -16,8 +16,8 @@
 #   SINCOS         cmath (default): std::sin and std::cos; batch: those of double by one loop that compilers vectorise
 #   OPTIMISE       accuracy, speed, or balanced (default): docs/accuracy.md
 #   STATIC         a static library with the functions of double compiled in; without it an INTERFACE library, a header
-#   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math,
-#                  with g++ also -frename-registers
+#   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math
+#                  -ffp-contract=off, with g++ also -frename-registers
 #
 # Everything is written below the current build folder. The code is generated again when the model, the robot file
 # that it stands on, the scene or the program changes. Generated code needs C++17 and a standard library, nothing else.
@@ -127,7 +127,9 @@ function(anholon_add_model target)
     set_target_properties(${target} PROPERTIES POSITION_INDEPENDENT_CODE ON)
     if(NOT arg_COMPILE_OPTIONS)
       # Safe: generated code reads neither errno nor floating-point traps. Fast also where the build type is empty.
-      set(arg_COMPILE_OPTIONS "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O2;-fno-math-errno;-fno-trapping-math>"
+      # Compensated operations need each operation rounded by itself.
+      set(arg_COMPILE_OPTIONS
+        "$<$<CXX_COMPILER_ID:GNU,Clang,AppleClang>:-O2;-fno-math-errno;-fno-trapping-math;-ffp-contract=off>"
         "$<$<CXX_COMPILER_ID:GNU>:-frename-registers>")
     endif()
     target_compile_options(${target} PRIVATE ${arg_COMPILE_OPTIONS})

@@ -9,13 +9,13 @@ project=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$project"
 
 # What the program needs, what its reports need besides, what the tests need, what the
-# benchmarks need, and what only the long checks need.
+# benchmarks need (with DART, a hundred packages, tests beside it are built as well), and what only the long checks need.
 packages_build=(g++ cmake ninja-build pkg-config
   libginac-dev libcln-dev libeigen3-dev libfmt-dev libtomlplusplus-dev libcli11-dev nlohmann-json3-dev libtinyxml2-dev
   libkainjow-mustache-dev libmd-dev)
 packages_report=(gnuplot-nox)
-packages_test=(gnuplot-nox clang libgtest-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev libdart-dev
-  liburdfdom-dev libsdformat-dev)
+packages_test=(gnuplot-nox clang libgtest-dev librapidcheck-dev libmujoco-dev liborocos-kdl-dev liburdfdom-dev
+  libsdformat-dev)
 packages_bench=(libmujoco-dev liborocos-kdl-dev libdart-dev libsimbody-dev)
 packages_check=(clang-format clang-tidy libclang-rt-dev chromium)
 

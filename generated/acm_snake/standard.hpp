@@ -15,7 +15,7 @@
 //   forward_dynamics           138 add, 188 mul, 3 div, 1 neg, 3 sin, 3 cos
 //   inverse_torques            209 add, 277 mul, 3 div, 3 sin, 3 cos
 //   multipliers                216 add, 286 mul, 3 div, 3 sin, 3 cos
-//   compatibility              138 add, 194 mul, 3 div, 3 sin, 3 cos
+//   compatibility              444 add, 348 mul, 7 div, 5 neg, 3 sin, 3 cos
 //   torque_driven_kinematics   12 add, 19 mul, 4 neg, 3 sin, 3 cos
 //   torque_driven_velocities   26 add, 34 mul, 2 div, 3 sin, 3 cos
 //   torque_driven_dynamics     158 add, 218 mul, 2 div, 3 sin, 3 cos
@@ -43,6 +43,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace acm_snake::standard {
 
@@ -109,6 +110,48 @@ constexpr Real broadcast(long double value, ...) {
 template <class Real>
 constexpr Real constant(long double value) {
   return broadcast<Real>(value, nullptr, 0);
+}
+
+// What rounding leaves of an operation, exact value minus rounded one, by error-free transformations. They ask for
+// operations that are rounded one by one: no -ffast-math, and -ffp-contract=off where a processor has fused ones.
+
+template <class Real>
+constexpr int significant_bits(typename Real::value_type*) {
+  return std::numeric_limits<typename Real::value_type>::digits;
+}
+template <class Real>
+constexpr int significant_bits(...) {
+  return std::numeric_limits<Real>::is_specialized ? std::numeric_limits<Real>::digits
+                                                   : std::numeric_limits<double>::digits;
+}
+
+/// a + b = fl(a + b) + this (Knuth 1969).
+template <class Real>
+inline Real sum_error(const Real& a, const Real& b) noexcept {
+  const Real sum = a + b;
+  const Real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
+/// a b = fl(a b) + this, from halves of the operands' digits (Dekker 1971).
+template <class Real>
+inline Real product_error(const Real& a, const Real& b) noexcept {
+  constexpr int half = (significant_bits<Real>(nullptr) + 1) / 2;
+  const Real splitter = constant<Real>(static_cast<long double>((1ULL << half) + 1));
+  const Real a_scaled = splitter * a;
+  const Real b_scaled = splitter * b;
+  const Real a_high = a_scaled - (a_scaled - a);
+  const Real b_high = b_scaled - (b_scaled - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return (((a_high * b_high - a * b) + a_high * b_low) + a_low * b_high) + a_low * b_low;
+}
+
+/// a / b = fl(a / b) + this, up to the rounding of this.
+template <class Real>
+inline Real quotient_error(const Real& a, const Real& b) noexcept {
+  const Real quotient = a / b;
+  return ((a - quotient * b) - product_error(quotient, b)) / b;
 }
 
 }  // namespace detail
@@ -2733,8 +2776,8 @@ inline void multipliers(const Prepared<Real>& par,
 }
 
 /// Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must vanish.
-/// route: kernel
-/// operations: 138 add, 194 mul, 3 div, 3 sin, 3 cos
+/// route: kernel, compensated beyond 12 ulps
+/// operations: 444 add, 348 mul, 7 div, 5 neg, 3 sin, 3 cos
 /// @param[in]  par                    made by prepare()
 /// @param[in]  r_a                    (3) rad or m: r1, r2, r3
 /// @param[in]  r_a_dot                (3) rad/s or m/s: rates of r_a
@@ -2751,6 +2794,9 @@ inline void compatibility(const Prepared<Real>& par,
   using std::cos;
   using std::sin;
   using detail::constant;
+  using detail::product_error;
+  using detail::quotient_error;
+  using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
@@ -2813,324 +2859,442 @@ inline void compatibility(const Prepared<Real>& par,
   const Real t38 = par.a + t37;
 
   // kernel
-  const Real t39 = t9 * t38;
-  const Real t40 = par.a * t3;
-  const Real t41 = t39 + t40;
-  const Real t42 = s_r_a_0_ * s_r_a_0_;
-  const Real t43 = t3 * t3;
+  const Real t39 = par.a * t9;
+  const Real t40 = s_r_a_0_ * s_r_a_0_;
+  const Real t41 = t3 * t3;
+  const Real t42 = t40 + t41;
+  const Real t43 = t9 * t9;
   const Real t44 = t42 + t43;
-  const Real t45 = t9 * t9;
-  const Real t46 = t44 + t45;
-  const Real t47 = constant<Real>(1.0L) / t46;
-  const Real t48 = t41 * t47;
-  const Real t49 = s_r_a_0_ * t48;
-  const Real t50 = t9 * t12;
-  const Real t51 = c_r_a_0_ * s_r_a_0_;
-  const Real t52 = t3 * t6;
-  const Real t53 = t51 + t52;
-  const Real t54 = t50 + t53;
-  const Real t55 = t54 * t47;
-  const Real t56 = s_r_a_0_ * t55;
-  const Real t57 = c_r_a_0_ - t56;
-  const Real t58 = t9 * t55;
-  const Real t59 = t12 - t58;
-  const Real t60 = t59 * t59;
-  const Real t61 = t3 * t55;
-  const Real t62 = t6 - t61;
-  const Real t63 = t62 * t62;
-  const Real t64 = t57 * t57;
-  const Real t65 = constant<Real>(1.0L) + t64;
-  const Real t66 = t63 + t65;
-  const Real t67 = t60 + t66;
-  const Real t68 = constant<Real>(1.0L) / t67;
-  const Real t69 = t9 * t48;
-  const Real t70 = t69 - t38;
-  const Real t71 = t70 * t59;
-  const Real t72 = t3 * t48;
-  const Real t73 = t72 - par.a;
-  const Real t74 = t62 * t73;
-  const Real t75 = t57 * t49;
-  const Real t76 = t74 + t75;
-  const Real t77 = t71 + t76;
-  const Real t78 = t68 * t77;
-  const Real t79 = t57 * t78;
-  const Real t80 = t49 - t79;
-  const Real t81 = t22 * s_r_a_0_;
-  const Real t82 = t3 * t28;
-  const Real t83 = t81 - t82;
-  const Real t84 = t9 * t27;
-  const Real t85 = t83 - t84;
-  const Real t86 = t85 * t47;
-  const Real t87 = s_r_a_0_ * t86;
-  const Real t88 = t87 - t22;
-  const Real t89 = t57 * t88;
-  const Real t90 = t86 * t3;
-  const Real t91 = t90 + t28;
-  const Real t92 = t91 * t62;
-  const Real t93 = t89 + t92;
-  const Real t94 = t9 * t86;
-  const Real t95 = t27 + t94;
-  const Real t96 = t95 * t59;
-  const Real t97 = t93 + t96;
-  const Real t98 = t68 * t97;
-  const Real t99 = t57 * t98;
-  const Real t100 = t88 - t99;
-  const Real t101 = t80 * t100;
-  const Real t102 = t78 * t98;
-  const Real t103 = t101 + t102;
-  const Real t104 = t78 * t62;
-  const Real t105 = t73 - t104;
-  const Real t106 = t98 * t62;
-  const Real t107 = t91 - t106;
-  const Real t108 = t105 * t107;
-  const Real t109 = t103 + t108;
-  const Real t110 = t78 * t59;
-  const Real t111 = t70 - t110;
-  const Real t112 = t59 * t98;
-  const Real t113 = t95 - t112;
-  const Real t114 = t111 * t113;
-  const Real t115 = t109 + t114;
-  const Real t116 = t113 * t113;
-  const Real t117 = t107 * t107;
-  const Real t118 = t100 * t100;
-  const Real t119 = t98 * t98;
-  const Real t120 = t118 + t119;
-  const Real t121 = t117 + t120;
-  const Real t122 = t116 + t121;
-  const Real t123 = constant<Real>(1.0L) / t122;
-  const Real t124 = t115 * t123;
-  const Real t125 = t124 * r_a_dot[1];
-  const Real t126 = t3 * t36;
-  const Real t127 = t126 + t14;
-  const Real t128 = t9 * t35;
-  const Real t129 = t127 - t128;
-  const Real t130 = t47 * t129;
-  const Real t131 = t9 * t130;
-  const Real t132 = t35 + t131;
-  const Real t133 = t130 * t3;
-  const Real t134 = t133 - t36;
-  const Real t135 = t134 * t62;
-  const Real t136 = t130 * s_r_a_0_;
-  const Real t137 = t136 - par.a;
-  const Real t138 = t137 * t57;
-  const Real t139 = t135 + t138;
-  const Real t140 = t59 * t132;
-  const Real t141 = t139 + t140;
-  const Real t142 = t68 * t141;
-  const Real t143 = t59 * t142;
-  const Real t144 = t132 - t143;
-  const Real t145 = t113 * t144;
-  const Real t146 = t62 * t142;
-  const Real t147 = t134 - t146;
-  const Real t148 = t107 * t147;
-  const Real t149 = t57 * t142;
-  const Real t150 = t137 - t149;
-  const Real t151 = t150 * t100;
-  const Real t152 = t98 * t142;
-  const Real t153 = t151 + t152;
-  const Real t154 = t148 + t153;
-  const Real t155 = t145 + t154;
-  const Real t156 = t155 * t123;
-  const Real t157 = t156 * r_a_dot[0];
-  const Real t158 = t125 + t157;
-  const Real t159 = par.a * t9;
-  const Real t160 = t159 * t47;
-  const Real t161 = t160 * t3;
-  const Real t162 = t160 * s_r_a_0_;
-  const Real t163 = t162 * t57;
-  const Real t164 = t161 * t62;
-  const Real t165 = t163 + t164;
-  const Real t166 = t160 * t9;
-  const Real t167 = t166 - par.a;
-  const Real t168 = t59 * t167;
-  const Real t169 = t165 + t168;
-  const Real t170 = t68 * t169;
-  const Real t171 = t170 * t62;
-  const Real t172 = t161 - t171;
-  const Real t173 = t107 * t172;
-  const Real t174 = t57 * t170;
-  const Real t175 = t162 - t174;
-  const Real t176 = t100 * t175;
-  const Real t177 = t98 * t170;
-  const Real t178 = t176 + t177;
-  const Real t179 = t173 + t178;
-  const Real t180 = t59 * t170;
-  const Real t181 = t167 - t180;
-  const Real t182 = t181 * t113;
-  const Real t183 = t179 + t182;
-  const Real t184 = t183 * t123;
-  const Real t185 = r_a_dot[2] * t184;
-  const Real t186 = t158 + t185;
-  const Real t187 = t86 * t184;
-  const Real t188 = t98 * t184;
-  const Real t189 = t170 - t188;
-  const Real t190 = t189 * t55;
-  const Real t191 = t160 + t190;
-  const Real t192 = t187 - t191;
-  const Real t193 = r_a_dot[2] * t192;
-  const Real t194 = t86 * t156;
-  const Real t195 = t98 * t156;
-  const Real t196 = t142 - t195;
-  const Real t197 = t196 * t55;
-  const Real t198 = t197 + t130;
-  const Real t199 = t194 - t198;
-  const Real t200 = t199 * r_a_dot[0];
-  const Real t201 = t124 * t86;
-  const Real t202 = t124 * t98;
-  const Real t203 = t78 - t202;
-  const Real t204 = t203 * t55;
-  const Real t205 = t204 + t48;
-  const Real t206 = t201 - t205;
-  const Real t207 = r_a_dot[1] * t206;
-  const Real t208 = t200 + t207;
-  const Real t209 = t193 + t208;
-  const Real t210 = t202 - t78;
-  const Real t211 = t210 * r_a_dot[1];
-  const Real t212 = t195 - t142;
-  const Real t213 = t212 * r_a_dot[0];
-  const Real t214 = t211 + t213;
-  const Real t215 = t188 - t170;
-  const Real t216 = t215 * r_a_dot[2];
-  const Real t217 = t214 + t216;
-  const Real t218 = t9 * t47;
-  const Real t219 = t9 * t218;
-  const Real t220 = constant<Real>(1.0L) - t219;
-  const Real t221 = t220 * t59;
-  const Real t222 = s_r_a_0_ * t218;
-  const Real t223 = t57 * t222;
-  const Real t224 = t3 * t218;
-  const Real t225 = t62 * t224;
-  const Real t226 = t223 + t225;
-  const Real t227 = t221 - t226;
-  const Real t228 = t68 * t227;
-  const Real t229 = t62 * t228;
-  const Real t230 = t229 + t224;
-  const Real t231 = t59 * t228;
-  const Real t232 = t220 - t231;
-  const Real t233 = t232 * t113;
-  const Real t234 = t98 * t228;
-  const Real t235 = t57 * t228;
-  const Real t236 = t222 + t235;
-  const Real t237 = t236 * t100;
-  const Real t238 = t234 - t237;
-  const Real t239 = t230 * t107;
-  const Real t240 = t238 - t239;
-  const Real t241 = t233 + t240;
-  const Real t242 = t123 * t241;
-  const Real t243 = t242 * t107;
-  const Real t244 = t230 + t243;
-  const Real t245 = t242 * t100;
-  const Real t246 = t245 + t236;
-  const Real t247 = t242 * t113;
-  const Real t248 = t232 - t247;
-
-  // link_2: twist
-  const Real t249 = r_a_dot[0] - t186;
-  const Real t250 = t186 * par.a;
-  const Real t251 = t217 + t250;
-  const Real t252 = c_r_a_0_ * t251;
-  const Real t253 = t209 * s_r_a_0_;
-  const Real t254 = t252 - t253;
-  const Real t255 = s_r_a_0_ * t251;
-  const Real t256 = c_r_a_0_ * t209;
-  const Real t257 = t255 + t256;
-
-  // link_3: twist
-  const Real t258 = t249 + r_a_dot[1];
-  const Real t259 = c_r_a_1_ * t257;
-  const Real t260 = par.k1 * t249;
-  const Real t261 = t254 - t260;
-  const Real t262 = t261 * s_r_a_1_;
-  const Real t263 = t259 + t262;
-  const Real t264 = t261 * c_r_a_1_;
-  const Real t265 = s_r_a_1_ * t257;
-  const Real t266 = t264 - t265;
-
-  // link_4: twist
-  const Real t267 = c_r_a_2_ * t263;
-  const Real t268 = par.k1 * t258;
-  const Real t269 = t266 - t268;
-  const Real t270 = s_r_a_2_ * t269;
-  const Real t271 = t267 + t270;
-  const Real t272 = t258 + r_a_dot[2];
-
-  // link_1: acceleration
-  const Real t273 = t186 * t209;
-  const Real t274 = t186 * t186;
-  const Real t275 = t186 * t217;
-
-  // link_2: acceleration
-  const Real t276 = par.a * t274;
-  const Real t277 = t275 + t276;
-  const Real t278 = t277 * c_r_a_0_;
-  const Real t279 = t273 * s_r_a_0_;
-  const Real t280 = t278 - t279;
-  const Real t281 = t273 * c_r_a_0_;
-  const Real t282 = t277 * s_r_a_0_;
-  const Real t283 = t281 + t282;
-  const Real t284 = t249 * t249;
-
-  // link_3: acceleration
-  const Real t285 = par.k1 * t284;
-  const Real t286 = t280 + t285;
-  const Real t287 = c_r_a_1_ * t286;
-  const Real t288 = t283 * s_r_a_1_;
-  const Real t289 = t287 - t288;
-  const Real t290 = s_r_a_1_ * t286;
-  const Real t291 = t283 * c_r_a_1_;
-  const Real t292 = t290 + t291;
-  const Real t293 = t258 * t258;
-
-  // link_4: acceleration
-  const Real t294 = t249 * t257;
-  const Real t295 = t283 + t294;
-  const Real t296 = c_r_a_2_ * t292;
-  const Real t297 = par.k1 * t293;
-  const Real t298 = t289 + t297;
-  const Real t299 = s_r_a_2_ * t298;
-  const Real t300 = t296 + t299;
-  const Real t301 = t271 * t272;
-  const Real t302 = t300 + t301;
-  const Real t303 = t258 * t263;
-  const Real t304 = t292 + t303;
+  const Real t45 = constant<Real>(1.0L) / t44;
+  const Real t46 = t39 * t45;
+  const Real t47 = t9 * t27;
+  const Real t48 = -t47;
+  const Real t49 = t9 * t45;
+  const Real t50 = t9 * t49;
+  const Real t51 = constant<Real>(1.0L) - t50;
+  const Real t52 = t22 * s_r_a_0_;
+  const Real t53 = t3 * t28;
+  const Real t54 = t52 - t53;
+  const Real t55 = t54 - t47;
+  const Real t56 = t55 * t45;
+  const Real t57 = t9 * t56;
+  const Real t58 = t27 + t57;
+  const Real t59 = t3 * t36;
+  const Real t60 = t59 + t14;
+  const Real t61 = t9 * t35;
+  const Real t62 = t60 - t61;
+  const Real t63 = t45 * t62;
+  const Real t64 = t56 * t3;
+  const Real t65 = t64 + t28;
+  const Real t66 = s_r_a_0_ * t56;
+  const Real t67 = t66 - t22;
+  const Real t68 = s_r_a_0_ * t49;
+  const Real t69 = t9 * t12;
+  const Real t70 = c_r_a_0_ * s_r_a_0_;
+  const Real t71 = t3 * t6;
+  const Real t72 = t70 + t71;
+  const Real t73 = t69 + t72;
+  const Real t74 = t73 * t45;
+  const Real t75 = t3 * t49;
+  const Real t76 = -t53;
+  const Real t77 = t9 * t38;
+  const Real t78 = par.a * t3;
+  const Real t79 = t77 + t78;
+  const Real t80 = t79 * t45;
 
   // compatibility
-  const Real t305 = r_a_ddot[0] * t35;
-  const Real t306 = t38 * r_a_ddot[1];
-  const Real t307 = t305 - t306;
-  const Real t308 = par.a * r_a_ddot[2];
-  const Real t309 = t307 - t308;
-  const Real t310 = par.a * r_a_dot[0];
-  const Real t311 = t310 * t246;
-  const Real t312 = par.a * r_a_dot[1];
-  const Real t313 = r_a_dot[0] * t36;
-  const Real t314 = t312 + t313;
-  const Real t315 = t244 * t314;
-  const Real t316 = t311 + t315;
-  const Real t317 = t35 * r_a_dot[0];
-  const Real t318 = t38 * r_a_dot[1];
-  const Real t319 = t317 - t318;
-  const Real t320 = par.a * r_a_dot[2];
-  const Real t321 = t319 - t320;
-  const Real t322 = t248 * t321;
-  const Real t323 = t316 + t322;
-  const Real t324 = par.a * r_a_ddot[1];
-  const Real t325 = r_a_ddot[0] * t36;
-  const Real t326 = t324 + t325;
-  const Real t327 = par.a * r_a_ddot[0];
+  const Real t81 = r_a_ddot[0] * t35;
+  const Real t82 = t38 * r_a_ddot[1];
+  const Real t83 = t81 - t82;
+  const Real t84 = par.a * r_a_ddot[2];
+  const Real t85 = t83 - t84;
+  const Real t86 = par.a * r_a_ddot[1];
+  const Real t87 = r_a_ddot[0] * t36;
+  const Real t88 = t86 + t87;
+  const Real t89 = par.a * r_a_dot[0];
+  const Real t90 = par.a * r_a_dot[1];
+  const Real t91 = r_a_dot[0] * t36;
+  const Real t92 = t90 + t91;
+  const Real t93 = par.a * r_a_ddot[0];
+  const Real t94 = t35 * r_a_dot[0];
+  const Real t95 = t38 * r_a_dot[1];
+  const Real t96 = t94 - t95;
+  const Real t97 = par.a * r_a_dot[2];
+  const Real t98 = t96 - t97;
 
   // link_4: acceleration
-  const Real t328 = t309 - t302;
-  const Real t329 = t328 * t248;
-  const Real t330 = t295 + t327;
-  const Real t331 = t330 * t246;
-  const Real t332 = t326 + t304;
-  const Real t333 = t244 * t332;
-  const Real t334 = t331 + t333;
-  const Real t335 = t329 + t334;
+  const Real t99 = quotient_error(constant<Real>(1.0L), t44);
+  const Real t100 = product_error(t9, t9);
+  const Real t101 = sum_error(t40, t41);
+  const Real t102 = product_error(s_r_a_0_, s_r_a_0_);
+  const Real t103 = product_error(t3, t3);
+  const Real t104 = t102 + t103;
+  const Real t105 = t101 + t104;
+  const Real t106 = t100 + t105;
+  const Real t107 = sum_error(t42, t43);
+  const Real t108 = t106 + t107;
+  const Real t109 = t108 * t45;
+  const Real t110 = t109 / t44;
+  const Real t111 = t99 - t110;
+  const Real t112 = t73 * t111;
+  const Real t113 = t112 + t74;
+  const Real t114 = t9 * t113;
+  const Real t115 = t12 - t114;
+  const Real t116 = t51 * t115;
+  const Real t117 = -t50;
+  const Real t118 = sum_error(constant<Real>(1.0L), t117);
+  const Real t119 = t9 * t111;
+  const Real t120 = product_error(t9, t45);
+  const Real t121 = t119 + t120;
+  const Real t122 = t9 * t121;
+  const Real t123 = product_error(t9, t49);
+  const Real t124 = t122 + t123;
+  const Real t125 = t118 - t124;
+  const Real t126 = t115 * t125;
+  const Real t127 = t116 + t126;
+  const Real t128 = s_r_a_0_ * t113;
+  const Real t129 = c_r_a_0_ - t128;
+  const Real t130 = s_r_a_0_ * t121;
+  const Real t131 = t130 + t68;
+  const Real t132 = t129 * t131;
+  const Real t133 = product_error(t3, t49);
+  const Real t134 = t3 * t121;
+  const Real t135 = t133 + t134;
+  const Real t136 = t113 * t3;
+  const Real t137 = t6 - t136;
+  const Real t138 = t135 * t137;
+  const Real t139 = t137 * t75;
+  const Real t140 = t138 + t139;
+  const Real t141 = t132 + t140;
+  const Real t142 = t127 - t141;
+  const Real t143 = t129 * t129;
+  const Real t144 = constant<Real>(1.0L) + t143;
+  const Real t145 = t137 * t137;
+  const Real t146 = t144 + t145;
+  const Real t147 = t115 * t115;
+  const Real t148 = t146 + t147;
+  const Real t149 = constant<Real>(1.0L) / t148;
+  const Real t150 = t142 * t149;
+  const Real t151 = t115 * t150;
+  const Real t152 = -t151;
+  const Real t153 = sum_error(t51, t152);
+  const Real t154 = t153 + t125;
+  const Real t155 = t55 * t111;
+  const Real t156 = sum_error(t54, t48);
+  const Real t157 = product_error(t22, s_r_a_0_);
+  const Real t158 = product_error(t3, t28);
+  const Real t159 = t157 - t158;
+  const Real t160 = sum_error(t52, t76);
+  const Real t161 = t159 + t160;
+  const Real t162 = product_error(t9, t27);
+  const Real t163 = t161 - t162;
+  const Real t164 = t156 + t163;
+  const Real t165 = t164 * t45;
+  const Real t166 = t155 + t165;
+  const Real t167 = product_error(t55, t45);
+  const Real t168 = t166 + t167;
+  const Real t169 = t168 * t3;
+  const Real t170 = product_error(t56, t3);
+  const Real t171 = t169 + t170;
+  const Real t172 = t65 + t171;
+  const Real t173 = t172 * t137;
+  const Real t174 = s_r_a_0_ * t168;
+  const Real t175 = product_error(s_r_a_0_, t56);
+  const Real t176 = t174 + t175;
+  const Real t177 = t176 + t67;
+  const Real t178 = t129 * t177;
+  const Real t179 = t173 + t178;
+  const Real t180 = t58 * t115;
+  const Real t181 = t9 * t168;
+  const Real t182 = product_error(t9, t56);
+  const Real t183 = t181 + t182;
+  const Real t184 = sum_error(t27, t57);
+  const Real t185 = t183 + t184;
+  const Real t186 = t115 * t185;
+  const Real t187 = t180 + t186;
+  const Real t188 = t179 + t187;
+  const Real t189 = t149 * t188;
+  const Real t190 = t115 * t189;
+  const Real t191 = -t190;
+  const Real t192 = sum_error(t58, t191);
+  const Real t193 = t192 + t185;
+  const Real t194 = t189 * t150;
+  const Real t195 = t129 * t189;
+  const Real t196 = t177 - t195;
+  const Real t197 = t129 * t150;
+  const Real t198 = t131 + t197;
+  const Real t199 = t196 * t198;
+  const Real t200 = t194 - t199;
+  const Real t201 = t137 * t150;
+  const Real t202 = sum_error(t201, t75);
+  const Real t203 = t135 + t202;
+  const Real t204 = t189 * t137;
+  const Real t205 = t172 - t204;
+  const Real t206 = t203 * t205;
+  const Real t207 = t201 + t75;
+  const Real t208 = t207 * t205;
+  const Real t209 = t206 + t208;
+  const Real t210 = t200 - t209;
+  const Real t211 = t58 - t190;
+  const Real t212 = t51 - t151;
+  const Real t213 = t211 * t212;
+  const Real t214 = t210 + t213;
+  const Real t215 = t211 * t211;
+  const Real t216 = t205 * t205;
+  const Real t217 = t189 * t189;
+  const Real t218 = t196 * t196;
+  const Real t219 = t217 + t218;
+  const Real t220 = t216 + t219;
+  const Real t221 = t215 + t220;
+  const Real t222 = constant<Real>(1.0L) / t221;
+  const Real t223 = t214 * t222;
+  const Real t224 = t193 * t223;
+  const Real t225 = product_error(t212, t211);
+  const Real t226 = t211 * t154;
+  const Real t227 = t193 * t212;
+  const Real t228 = t226 + t227;
+  const Real t229 = t225 + t228;
+  const Real t230 = sum_error(t213, t210);
+  const Real t231 = t229 + t230;
+  const Real t232 = t231 * t222;
+  const Real t233 = quotient_error(constant<Real>(1.0L), t221);
+  const Real t234 = product_error(t211, t211);
+  const Real t235 = t193 * t211;
+  const Real t236 = constant<Real>(2.0L) * t235;
+  const Real t237 = t234 + t236;
+  const Real t238 = sum_error(t215, t220);
+  const Real t239 = t237 + t238;
+  const Real t240 = t239 * t222;
+  const Real t241 = t240 / t221;
+  const Real t242 = t233 - t241;
+  const Real t243 = t242 * t214;
+  const Real t244 = t232 + t243;
+  const Real t245 = product_error(t222, t214);
+  const Real t246 = t244 + t245;
+  const Real t247 = t211 * t246;
+  const Real t248 = t224 + t247;
+  const Real t249 = product_error(t223, t211);
+  const Real t250 = t248 + t249;
+  const Real t251 = t154 - t250;
+  const Real t252 = t223 * t211;
+  const Real t253 = t212 - t252;
+  const Real t254 = t251 + t253;
+  const Real t255 = t254 * t98;
+  const Real t256 = t196 * t246;
+  const Real t257 = t196 * t223;
+  const Real t258 = t256 + t257;
+  const Real t259 = t258 + t198;
+  const Real t260 = t259 * t89;
+  const Real t261 = t205 * t246;
+  const Real t262 = t205 * t223;
+  const Real t263 = t261 + t262;
+  const Real t264 = t207 + t263;
+  const Real t265 = t203 + t264;
+  const Real t266 = t92 * t265;
+  const Real t267 = t260 + t266;
+  const Real t268 = t255 + t267;
+  const Real t269 = t111 * t62;
+  const Real t270 = t63 + t269;
+  const Real t271 = t9 * t270;
+  const Real t272 = t35 + t271;
+  const Real t273 = t115 * t272;
+  const Real t274 = t3 * t270;
+  const Real t275 = t274 - t36;
+  const Real t276 = t137 * t275;
+  const Real t277 = s_r_a_0_ * t270;
+  const Real t278 = t277 - par.a;
+  const Real t279 = t129 * t278;
+  const Real t280 = t276 + t279;
+  const Real t281 = t273 + t280;
+  const Real t282 = t149 * t281;
+  const Real t283 = t115 * t282;
+  const Real t284 = t272 - t283;
+  const Real t285 = t284 * t211;
+  const Real t286 = t284 * t193;
+  const Real t287 = t285 + t286;
+  const Real t288 = t137 * t282;
+  const Real t289 = t275 - t288;
+  const Real t290 = t289 * t205;
+  const Real t291 = t189 * t282;
+  const Real t292 = t129 * t282;
+  const Real t293 = t278 - t292;
+  const Real t294 = t196 * t293;
+  const Real t295 = t291 + t294;
+  const Real t296 = t290 + t295;
+  const Real t297 = t287 + t296;
+  const Real t298 = t297 * t222;
+  const Real t299 = t297 * t242;
+  const Real t300 = t298 + t299;
+  const Real t301 = t56 * t300;
+  const Real t302 = t168 * t300;
+  const Real t303 = t301 + t302;
+  const Real t304 = t189 * t300;
+  const Real t305 = t282 - t304;
+  const Real t306 = t305 * t113;
+  const Real t307 = t306 + t270;
+  const Real t308 = t303 - t307;
+  const Real t309 = t308 * r_a_dot[0];
+  const Real t310 = t79 * t111;
+  const Real t311 = t310 + t80;
+  const Real t312 = t311 * t3;
+  const Real t313 = t312 - par.a;
+  const Real t314 = t311 * s_r_a_0_;
+  const Real t315 = t314 * t129;
+  const Real t316 = t313 * t137;
+  const Real t317 = t315 + t316;
+  const Real t318 = t9 * t311;
+  const Real t319 = t318 - t38;
+  const Real t320 = t319 * t115;
+  const Real t321 = t317 + t320;
+  const Real t322 = t321 * t149;
+  const Real t323 = t137 * t322;
+  const Real t324 = t313 - t323;
+  const Real t325 = t205 * t324;
+  const Real t326 = t189 * t322;
+  const Real t327 = t129 * t322;
+  const Real t328 = t314 - t327;
+  const Real t329 = t196 * t328;
+  const Real t330 = t326 + t329;
+  const Real t331 = t325 + t330;
+  const Real t332 = t115 * t322;
+  const Real t333 = t319 - t332;
+  const Real t334 = t193 * t333;
+  const Real t335 = t333 * t211;
+  const Real t336 = t334 + t335;
+  const Real t337 = t331 + t336;
+  const Real t338 = t337 * t242;
+  const Real t339 = t337 * t222;
+  const Real t340 = t338 + t339;
+  const Real t341 = t340 * t168;
+  const Real t342 = t56 * t340;
+  const Real t343 = t341 + t342;
+  const Real t344 = t189 * t340;
+  const Real t345 = t322 - t344;
+  const Real t346 = t345 * t113;
+  const Real t347 = t311 + t346;
+  const Real t348 = t343 - t347;
+  const Real t349 = t348 * r_a_dot[1];
+  const Real t350 = t309 + t349;
+  const Real t351 = t39 * t111;
+  const Real t352 = t46 + t351;
+  const Real t353 = t9 * t352;
+  const Real t354 = t353 - par.a;
+  const Real t355 = t354 * t115;
+  const Real t356 = s_r_a_0_ * t352;
+  const Real t357 = t129 * t356;
+  const Real t358 = t3 * t352;
+  const Real t359 = t137 * t358;
+  const Real t360 = t357 + t359;
+  const Real t361 = t355 + t360;
+  const Real t362 = t149 * t361;
+  const Real t363 = t115 * t362;
+  const Real t364 = t354 - t363;
+  const Real t365 = t364 * t211;
+  const Real t366 = t364 * t193;
+  const Real t367 = t365 + t366;
+  const Real t368 = t189 * t362;
+  const Real t369 = t129 * t362;
+  const Real t370 = t356 - t369;
+  const Real t371 = t196 * t370;
+  const Real t372 = t368 + t371;
+  const Real t373 = t137 * t362;
+  const Real t374 = t358 - t373;
+  const Real t375 = t205 * t374;
+  const Real t376 = t372 + t375;
+  const Real t377 = t367 + t376;
+  const Real t378 = t377 * t242;
+  const Real t379 = t377 * t222;
+  const Real t380 = t378 + t379;
+  const Real t381 = t168 * t380;
+  const Real t382 = t56 * t380;
+  const Real t383 = t381 + t382;
+  const Real t384 = t189 * t380;
+  const Real t385 = t362 - t384;
+  const Real t386 = t113 * t385;
+  const Real t387 = t386 + t352;
+  const Real t388 = t383 - t387;
+  const Real t389 = t388 * r_a_dot[2];
+  const Real t390 = t350 + t389;
+  const Real t391 = c_r_a_0_ * t390;
+  const Real t392 = t384 - t362;
+  const Real t393 = t392 * r_a_dot[2];
+  const Real t394 = t344 - t322;
+  const Real t395 = t394 * r_a_dot[1];
+  const Real t396 = t304 - t282;
+  const Real t397 = r_a_dot[0] * t396;
+  const Real t398 = t395 + t397;
+  const Real t399 = t393 + t398;
+  const Real t400 = r_a_dot[2] * t380;
+  const Real t401 = t300 * r_a_dot[0];
+  const Real t402 = t340 * r_a_dot[1];
+  const Real t403 = t401 + t402;
+  const Real t404 = t400 + t403;
+  const Real t405 = par.a * t404;
+  const Real t406 = t399 + t405;
+  const Real t407 = s_r_a_0_ * t406;
+  const Real t408 = t391 + t407;
+  const Real t409 = r_a_dot[0] - t404;
+  const Real t410 = t408 * t409;
+  const Real t411 = t390 * t404;
+  const Real t412 = c_r_a_0_ * t411;
+  const Real t413 = t399 * t404;
+  const Real t414 = t404 * t404;
+  const Real t415 = par.a * t414;
+  const Real t416 = t413 + t415;
+  const Real t417 = s_r_a_0_ * t416;
+  const Real t418 = t412 + t417;
+  const Real t419 = t410 + t418;
+  const Real t420 = t419 + t93;
+  const Real t421 = t420 * t259;
+  const Real t422 = t409 * t409;
+  const Real t423 = par.k1 * t422;
+  const Real t424 = c_r_a_0_ * t416;
+  const Real t425 = s_r_a_0_ * t411;
+  const Real t426 = t424 - t425;
+  const Real t427 = t423 + t426;
+  const Real t428 = s_r_a_1_ * t427;
+  const Real t429 = c_r_a_1_ * t418;
+  const Real t430 = t428 + t429;
+  const Real t431 = t409 + r_a_dot[1];
+  const Real t432 = c_r_a_0_ * t406;
+  const Real t433 = s_r_a_0_ * t390;
+  const Real t434 = t432 - t433;
+  const Real t435 = par.k1 * t409;
+  const Real t436 = t434 - t435;
+  const Real t437 = s_r_a_1_ * t436;
+  const Real t438 = t408 * c_r_a_1_;
+  const Real t439 = t437 + t438;
+  const Real t440 = t431 * t439;
+  const Real t441 = t430 + t440;
+  const Real t442 = t88 + t441;
+  const Real t443 = t442 * t265;
+  const Real t444 = t421 + t443;
+  const Real t445 = t427 * c_r_a_1_;
+  const Real t446 = s_r_a_1_ * t418;
+  const Real t447 = t445 - t446;
+  const Real t448 = t431 * t431;
+  const Real t449 = par.k1 * t448;
+  const Real t450 = t447 + t449;
+  const Real t451 = s_r_a_2_ * t450;
+  const Real t452 = c_r_a_2_ * t430;
+  const Real t453 = t451 + t452;
+  const Real t454 = t431 + r_a_dot[2];
+  const Real t455 = t439 * c_r_a_2_;
+  const Real t456 = c_r_a_1_ * t436;
+  const Real t457 = t408 * s_r_a_1_;
+  const Real t458 = t456 - t457;
+  const Real t459 = t431 * par.k1;
+  const Real t460 = t458 - t459;
+  const Real t461 = t460 * s_r_a_2_;
+  const Real t462 = t455 + t461;
+  const Real t463 = t454 * t462;
+  const Real t464 = t453 + t463;
+  const Real t465 = t85 - t464;
+  const Real t466 = t465 * t254;
+  const Real t467 = t444 + t466;
 
-  velocity_residual[0] = t323;
-  acceleration_residual[0] = t335;
+  velocity_residual[0] = t268;
+  acceleration_residual[0] = t467;
 }
 
 /// All velocities from the reduced ones, active joints free.

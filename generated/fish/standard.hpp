@@ -14,14 +14,14 @@
 //   free_dynamics             459 add, 575 mul, 7 neg, 6 sin, 6 cos, 16 other
 //   reduced_dynamics          374 add, 494 mul, 4 neg, 6 sin, 6 cos, 16 other
 //   split_dynamics            399 add, 529 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
-//   forward_dynamics          396 add, 526 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
+//   forward_dynamics          417 add, 571 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
 //   inverse_torques           179 add, 264 mul, 6 sin, 6 cos, 12 other
 //   torque_driven_kinematics  none
 //   torque_driven_velocities  none
-//   torque_driven_dynamics    558 add, 698 mul, 7 div, 1 neg, 6 sin, 6 cos, 16 other
+//   torque_driven_dynamics    2218 add, 1407 mul, 7 div, 51 neg, 6 sin, 6 cos, 16 other
 //   energies                  114 add, 240 mul, 6 sin, 6 cos, 16 other
 //   body_poses                39 add, 56 mul, 4 neg, 7 sin, 7 cos
-//   prepare                   20 add, 134 mul, 7 div, once per set of parameters
+//   prepare                   20 add, 134 mul, 7 div, 1 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -42,6 +42,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace fish::standard {
 
@@ -128,6 +129,48 @@ constexpr Real constant(long double value) {
   return broadcast<Real>(value, nullptr, 0);
 }
 
+// What rounding leaves of an operation, exact value minus rounded one, by error-free transformations. They ask for
+// operations that are rounded one by one: no -ffast-math, and -ffp-contract=off where a processor has fused ones.
+
+template <class Real>
+constexpr int significant_bits(typename Real::value_type*) {
+  return std::numeric_limits<typename Real::value_type>::digits;
+}
+template <class Real>
+constexpr int significant_bits(...) {
+  return std::numeric_limits<Real>::is_specialized ? std::numeric_limits<Real>::digits
+                                                   : std::numeric_limits<double>::digits;
+}
+
+/// a + b = fl(a + b) + this (Knuth 1969).
+template <class Real>
+inline Real sum_error(const Real& a, const Real& b) noexcept {
+  const Real sum = a + b;
+  const Real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
+/// a b = fl(a b) + this, from halves of the operands' digits (Dekker 1971).
+template <class Real>
+inline Real product_error(const Real& a, const Real& b) noexcept {
+  constexpr int half = (significant_bits<Real>(nullptr) + 1) / 2;
+  const Real splitter = constant<Real>(static_cast<long double>((1ULL << half) + 1));
+  const Real a_scaled = splitter * a;
+  const Real b_scaled = splitter * b;
+  const Real a_high = a_scaled - (a_scaled - a);
+  const Real b_high = b_scaled - (b_scaled - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return (((a_high * b_high - a * b) + a_high * b_low) + a_low * b_high) + a_low * b_low;
+}
+
+/// a / b = fl(a / b) + this, up to the rounding of this.
+template <class Real>
+inline Real quotient_error(const Real& a, const Real& b) noexcept {
+  const Real quotient = a / b;
+  return ((a - quotient * b) - product_error(quotient, b)) / b;
+}
+
 }  // namespace detail
 
 /// What may differ from one robot of this kind to the next, with the values of the description.
@@ -195,51 +238,52 @@ struct Prepared {
   Real k29;  // k26 * 0.25 * rho * 3.14159 * h3 * h3 * k27 + k28 * 0.25 * rho * 3.14159 * h3 * h3 * k27
   Real k30;  // k22 * l2 * 0.5
   Real k31;  // 2 * 0.25 * rho * 3.14159 * h3 * h3 * k27
-  Real k32;  // l2 * 0.211325
-  Real k33;  // l2 * 0.5
-  Real k34;  // l2 * 0.788675
-  Real k35;
-  Real k36;  // k18 * 0.5 * l3
-  Real k37;  // 0.788675 * l1
-  Real k38;  // 0.211325 * l1
-  Real k39;
-  Real k40;  // 0.391496 * k6
-  Real k41;  // k1 * 0.5 * l1 * 0.5 * l1 + (l1 * l1 * 0.0833333 + w * w * 0.0625) * k1
-  Real k42;  // k34 * k33 * 0.25 * rho * 3.14159 * h2 * h2 + k33 * 0.25 * rho * 3.14159 * h2 * h2 * k32
-  Real k43;  // 0.25 * k6
-  Real k44;
-  Real k45;  // 0.211325 * lf
-  Real k46;  // 0.284413 * k6 * lf
-  Real k47;  // 1.16194 / lf
-  Real k48;  // 0.25 * rho * 3.14159 * h1 * h1 * k11 * k37 + k38 * 0.25 * rho * 3.14159 * h1 * h1 * k11
-  Real k49;  // 0.25 * h0 * rho * 3.14159 * w * l0
-  Real k50;  // k49 * (l0 * l0 * 0.0833333 + w * w * 0.0625)
-  Real k51;  // 0.764187 / lf
-  Real k52;  // k33 * 0.25 * rho * 3.14159 * h2 * h2 * 2
-  Real k53;  // k49 + m_x
-  Real k54;  // k15 + k49
-  Real k55;  // k21 + k50
-  Real k56;  // k39 + k41
-  Real k57;  // k23 + k35
-  Real k58;  // k19 + k44
-  Real k59;  // k40 * l3 + k46
-  Real k60;  // k6 * l3
-  Real k61;  // hf * rho * C_n * 0.5
-  Real k62;  // h3 * rho * C_t * 0.5
-  Real k63;  // 0.5 * rho * C_t * h0
-  Real k64;  // 0.5 * h2 * rho * C_n
-  Real k65;  // 0.5 * h3 * rho * C_n
-  Real k66;  // 0.5 * rho * C_t * h2
-  Real k67;  // 0.5 * hf * rho * C_t
-  Real k68;  // 0.5 * h1 * rho * C_n
-  Real k69;  // 0.5 * rho * C_t * h1
-  Real k70;  // 0.5 * h0 * rho * C_n
-  Real k71;  // (EI / (lf * lf * lf)) * 1.5453
-  Real k72;  // eta * k71
+  Real k32;  // -l2
+  Real k33;  // l2 * 0.211325
+  Real k34;  // l2 * 0.5
+  Real k35;  // l2 * 0.788675
+  Real k36;
+  Real k37;  // k18 * 0.5 * l3
+  Real k38;  // 0.788675 * l1
+  Real k39;  // 0.211325 * l1
+  Real k40;
+  Real k41;  // 0.391496 * k6
+  Real k42;  // k1 * 0.5 * l1 * 0.5 * l1 + (l1 * l1 * 0.0833333 + w * w * 0.0625) * k1
+  Real k43;  // k35 * k34 * 0.25 * rho * 3.14159 * h2 * h2 + k34 * 0.25 * rho * 3.14159 * h2 * h2 * k33
+  Real k44;  // 0.25 * k6
+  Real k45;
+  Real k46;  // 0.211325 * lf
+  Real k47;  // 0.284413 * k6 * lf
+  Real k48;  // 1.16194 / lf
+  Real k49;  // 0.25 * rho * 3.14159 * h1 * h1 * k11 * k38 + k39 * 0.25 * rho * 3.14159 * h1 * h1 * k11
+  Real k50;  // 0.25 * h0 * rho * 3.14159 * w * l0
+  Real k51;  // k50 * (l0 * l0 * 0.0833333 + w * w * 0.0625)
+  Real k52;  // 0.764187 / lf
+  Real k53;  // k34 * 0.25 * rho * 3.14159 * h2 * h2 * 2
+  Real k54;  // k50 + m_x
+  Real k55;  // k15 + k50
+  Real k56;  // k21 + k51
+  Real k57;  // k40 + k42
+  Real k58;  // k23 + k36
+  Real k59;  // k19 + k45
+  Real k60;  // k41 * l3 + k47
+  Real k61;  // k6 * l3
+  Real k62;  // hf * rho * C_n * 0.5
+  Real k63;  // h3 * rho * C_t * 0.5
+  Real k64;  // 0.5 * rho * C_t * h0
+  Real k65;  // 0.5 * h2 * rho * C_n
+  Real k66;  // 0.5 * h3 * rho * C_n
+  Real k67;  // 0.5 * rho * C_t * h2
+  Real k68;  // 0.5 * hf * rho * C_t
+  Real k69;  // 0.5 * h1 * rho * C_n
+  Real k70;  // 0.5 * rho * C_t * h1
+  Real k71;  // 0.5 * h0 * rho * C_n
+  Real k72;  // (EI / (lf * lf * lf)) * 1.5453
+  Real k73;  // eta * k72
 };
 
 /// To be called once per set of parameter values.
-/// operations: 20 add, 134 mul, 7 div
+/// operations: 20 add, 134 mul, 7 div, 1 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -322,107 +366,108 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t76 = t73 + t75;
   const Real t77 = t55 * t60;
   const Real t78 = constant<Real>(2.0L) * t72;
-  const Real t79 = par.l2 * constant<Real>(0.211324865405187117745L);
-  const Real t80 = par.l2 * constant<Real>(0.5L);
-  const Real t81 = par.h2 * par.h2;
-  const Real t82 = t1 * t81;
-  const Real t83 = constant<Real>(0.25L) * t82;
-  const Real t84 = t80 * t83;
-  const Real t85 = t84 * t79;
-  const Real t86 = t79 * t85;
-  const Real t87 = par.l2 * constant<Real>(0.788675134594812882255L);
-  const Real t88 = t87 * t84;
-  const Real t89 = t87 * t88;
-  const Real t90 = t86 + t89;
-  const Real t91 = t38 * t45;
-  const Real t92 = constant<Real>(0.788675134594812882255L) * par.l1;
-  const Real t93 = t23 * t92;
-  const Real t94 = t93 * t92;
-  const Real t95 = constant<Real>(0.211324865405187117745L) * par.l1;
-  const Real t96 = t95 * t23;
-  const Real t97 = t95 * t96;
-  const Real t98 = t94 + t97;
-  const Real t99 = constant<Real>(0.391495878019812868251L) * t14;
-  const Real t100 = t6 * t6;
-  const Real t101 = t5 * t100;
-  const Real t102 = par.l1 * par.l1;
-  const Real t103 = t102 * constant<Real>(0.0833333333333333333333L);
-  const Real t104 = t103 + t42;
-  const Real t105 = t104 * t5;
-  const Real t106 = t101 + t105;
-  const Real t107 = t88 + t85;
-  const Real t108 = constant<Real>(0.25L) * t14;
-  const Real t109 = t73 * t67;
-  const Real t110 = t74 * t75;
-  const Real t111 = t109 + t110;
-  const Real t112 = constant<Real>(0.211324865405187117745L) * par.lf;
-  const Real t113 = constant<Real>(0.284412871854955370905L) * t14;
-  const Real t114 = t113 * par.lf;
-  const Real t115 = constant<Real>(1.16194457966965985813L) / par.lf;
-  const Real t116 = t93 + t96;
-  const Real t117 = par.h0 * t2;
-  const Real t118 = t117 * par.l0;
-  const Real t119 = constant<Real>(0.25L) * t118;
-  const Real t120 = par.l0 * par.l0;
-  const Real t121 = t120 * constant<Real>(0.0833333333333333333333L);
-  const Real t122 = t121 + t42;
-  const Real t123 = t119 * t122;
-  const Real t124 = constant<Real>(0.764186758340327256893L) / par.lf;
-  const Real t125 = t84 * constant<Real>(2.0L);
+  const Real t79 = -par.l2;
+  const Real t80 = par.l2 * constant<Real>(0.211324865405187117745L);
+  const Real t81 = par.l2 * constant<Real>(0.5L);
+  const Real t82 = par.h2 * par.h2;
+  const Real t83 = t1 * t82;
+  const Real t84 = constant<Real>(0.25L) * t83;
+  const Real t85 = t81 * t84;
+  const Real t86 = t85 * t80;
+  const Real t87 = t80 * t86;
+  const Real t88 = par.l2 * constant<Real>(0.788675134594812882255L);
+  const Real t89 = t88 * t85;
+  const Real t90 = t88 * t89;
+  const Real t91 = t87 + t90;
+  const Real t92 = t38 * t45;
+  const Real t93 = constant<Real>(0.788675134594812882255L) * par.l1;
+  const Real t94 = t23 * t93;
+  const Real t95 = t94 * t93;
+  const Real t96 = constant<Real>(0.211324865405187117745L) * par.l1;
+  const Real t97 = t96 * t23;
+  const Real t98 = t96 * t97;
+  const Real t99 = t95 + t98;
+  const Real t100 = constant<Real>(0.391495878019812868251L) * t14;
+  const Real t101 = t6 * t6;
+  const Real t102 = t5 * t101;
+  const Real t103 = par.l1 * par.l1;
+  const Real t104 = t103 * constant<Real>(0.0833333333333333333333L);
+  const Real t105 = t104 + t42;
+  const Real t106 = t105 * t5;
+  const Real t107 = t102 + t106;
+  const Real t108 = t89 + t86;
+  const Real t109 = constant<Real>(0.25L) * t14;
+  const Real t110 = t73 * t67;
+  const Real t111 = t74 * t75;
+  const Real t112 = t110 + t111;
+  const Real t113 = constant<Real>(0.211324865405187117745L) * par.lf;
+  const Real t114 = constant<Real>(0.284412871854955370905L) * t14;
+  const Real t115 = t114 * par.lf;
+  const Real t116 = constant<Real>(1.16194457966965985813L) / par.lf;
+  const Real t117 = t94 + t97;
+  const Real t118 = par.h0 * t2;
+  const Real t119 = t118 * par.l0;
+  const Real t120 = constant<Real>(0.25L) * t119;
+  const Real t121 = par.l0 * par.l0;
+  const Real t122 = t121 * constant<Real>(0.0833333333333333333333L);
+  const Real t123 = t122 + t42;
+  const Real t124 = t120 * t123;
+  const Real t125 = constant<Real>(0.764186758340327256893L) / par.lf;
+  const Real t126 = t85 * constant<Real>(2.0L);
 
   // head: wrench of the fluid
-  const Real t126 = t119 + par.m_x;
+  const Real t127 = t120 + par.m_x;
 
   // head: wrench of the fluid
-  const Real t127 = t31 + t119;
+  const Real t128 = t31 + t120;
 
   // head: wrench of the fluid
-  const Real t128 = t52 + t123;
+  const Real t129 = t52 + t124;
 
   // trunk: wrench of the fluid
-  const Real t129 = t98 + t106;
+  const Real t130 = t99 + t107;
 
   // rear: wrench of the fluid
-  const Real t130 = t63 + t90;
+  const Real t131 = t63 + t91;
 
   // peduncle: wrench of the fluid
-  const Real t131 = t48 + t111;
+  const Real t132 = t48 + t112;
 
   // fin: wrench
-  const Real t132 = t99 * par.l3;
-  const Real t133 = t132 + t114;
-  const Real t134 = t14 * par.l3;
+  const Real t133 = t100 * par.l3;
+  const Real t134 = t133 + t115;
+  const Real t135 = t14 * par.l3;
 
   // applied wrenches
-  const Real t135 = par.rho * par.C_n;
-  const Real t136 = par.hf * t135;
-  const Real t137 = t136 * constant<Real>(0.5L);
-  const Real t138 = par.rho * par.C_t;
-  const Real t139 = par.h3 * t138;
-  const Real t140 = t139 * constant<Real>(0.5L);
-  const Real t141 = t138 * par.h0;
-  const Real t142 = constant<Real>(0.5L) * t141;
-  const Real t143 = par.h2 * t135;
-  const Real t144 = constant<Real>(0.5L) * t143;
-  const Real t145 = par.h3 * t135;
-  const Real t146 = constant<Real>(0.5L) * t145;
-  const Real t147 = t138 * par.h2;
-  const Real t148 = constant<Real>(0.5L) * t147;
-  const Real t149 = par.hf * t138;
-  const Real t150 = constant<Real>(0.5L) * t149;
-  const Real t151 = par.h1 * t135;
-  const Real t152 = constant<Real>(0.5L) * t151;
-  const Real t153 = t138 * par.h1;
-  const Real t154 = constant<Real>(0.5L) * t153;
-  const Real t155 = par.h0 * t135;
-  const Real t156 = constant<Real>(0.5L) * t155;
+  const Real t136 = par.rho * par.C_n;
+  const Real t137 = par.hf * t136;
+  const Real t138 = t137 * constant<Real>(0.5L);
+  const Real t139 = par.rho * par.C_t;
+  const Real t140 = par.h3 * t139;
+  const Real t141 = t140 * constant<Real>(0.5L);
+  const Real t142 = t139 * par.h0;
+  const Real t143 = constant<Real>(0.5L) * t142;
+  const Real t144 = par.h2 * t136;
+  const Real t145 = constant<Real>(0.5L) * t144;
+  const Real t146 = par.h3 * t136;
+  const Real t147 = constant<Real>(0.5L) * t146;
+  const Real t148 = t139 * par.h2;
+  const Real t149 = constant<Real>(0.5L) * t148;
+  const Real t150 = par.hf * t139;
+  const Real t151 = constant<Real>(0.5L) * t150;
+  const Real t152 = par.h1 * t136;
+  const Real t153 = constant<Real>(0.5L) * t152;
+  const Real t154 = t139 * par.h1;
+  const Real t155 = constant<Real>(0.5L) * t154;
+  const Real t156 = par.h0 * t136;
+  const Real t157 = constant<Real>(0.5L) * t156;
 
   // springs, dampers and generalised forces
-  const Real t157 = par.lf * par.lf;
-  const Real t158 = par.lf * t157;
-  const Real t159 = par.EI / t158;
-  const Real t160 = t159 * constant<Real>(1.54529542104077377734L);
-  const Real t161 = par.eta * t160;
+  const Real t158 = par.lf * par.lf;
+  const Real t159 = par.lf * t158;
+  const Real t160 = par.EI / t159;
+  const Real t161 = t160 * constant<Real>(1.54529542104077377734L);
+  const Real t162 = par.eta * t161;
 
   result.l1 = par.l1;
   result.l2 = par.l2;
@@ -463,23 +508,23 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k31 = t78;
   result.k32 = t79;
   result.k33 = t80;
-  result.k34 = t87;
-  result.k35 = t90;
+  result.k34 = t81;
+  result.k35 = t88;
   result.k36 = t91;
   result.k37 = t92;
-  result.k38 = t95;
-  result.k39 = t98;
+  result.k38 = t93;
+  result.k39 = t96;
   result.k40 = t99;
-  result.k41 = t106;
+  result.k41 = t100;
   result.k42 = t107;
   result.k43 = t108;
-  result.k44 = t111;
+  result.k44 = t109;
   result.k45 = t112;
-  result.k46 = t114;
+  result.k46 = t113;
   result.k47 = t115;
   result.k48 = t116;
-  result.k49 = t119;
-  result.k50 = t123;
+  result.k49 = t117;
+  result.k50 = t120;
   result.k51 = t124;
   result.k52 = t125;
   result.k53 = t126;
@@ -488,20 +533,21 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k56 = t129;
   result.k57 = t130;
   result.k58 = t131;
-  result.k59 = t133;
+  result.k59 = t132;
   result.k60 = t134;
-  result.k61 = t137;
-  result.k62 = t140;
-  result.k63 = t142;
-  result.k64 = t144;
-  result.k65 = t146;
-  result.k66 = t148;
-  result.k67 = t150;
-  result.k68 = t152;
-  result.k69 = t154;
-  result.k70 = t156;
-  result.k71 = t160;
+  result.k61 = t135;
+  result.k62 = t138;
+  result.k63 = t141;
+  result.k64 = t143;
+  result.k65 = t145;
+  result.k66 = t147;
+  result.k67 = t149;
+  result.k68 = t151;
+  result.k69 = t153;
+  result.k70 = t155;
+  result.k71 = t157;
   result.k72 = t161;
+  result.k73 = t162;
   return result;
 }
 
@@ -630,8 +676,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -642,7 +688,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -651,11 +697,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -700,7 +746,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k48;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
@@ -711,13 +757,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k52;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k42 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k36;
+  const Real t71 = t40 * par.k37;
   const Real t72 = par.k18 * t43;
   const Real t73 = par.k18 * t40;
 
@@ -731,7 +777,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k40;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -813,13 +859,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k53;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k48;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
@@ -828,13 +874,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k42;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k52;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k36;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t159 = par.k31 * t43;
@@ -843,7 +889,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k40 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -921,7 +967,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k54 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -968,16 +1014,16 @@ inline void free_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k41;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k48;
-  const Real t262 = t261 + par.k39;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k48;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
@@ -988,18 +1034,18 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k52;
-  const Real t273 = t272 - par.k42;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k42;
-  const Real t276 = par.k35 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k36;
+  const Real t278 = t240 * par.k37;
   const Real t279 = par.k19 - t278;
   const Real t280 = par.k18 * t240;
-  const Real t281 = t280 - par.k36;
+  const Real t281 = t280 - par.k37;
   const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
@@ -1007,7 +1053,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
   const Real t286 = par.k29 * t240;
-  const Real t287 = par.k44 - t286;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -1017,10 +1063,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k40;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k46 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -1097,7 +1143,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k55;
+  const Real t359 = t358 + par.k56;
 
   // rear: acceleration
   const Real t360 = c_r_a_1_ * par.l1;
@@ -1137,23 +1183,23 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t384 = par.k30 + t383;
 
   // rear: wrench of the fluid
-  const Real t385 = t360 * par.k52;
-  const Real t386 = t385 + par.k42;
+  const Real t385 = t360 * par.k53;
+  const Real t386 = t385 + par.k43;
   const Real t387 = t386 + t384;
-  const Real t388 = t360 * par.k42;
-  const Real t389 = par.k35 + t388;
+  const Real t388 = t360 * par.k43;
+  const Real t389 = par.k36 + t388;
   const Real t390 = t389 + t382;
 
   // peduncle: wrench
-  const Real t391 = par.k36 * t365;
+  const Real t391 = par.k37 * t365;
   const Real t392 = par.k19 - t391;
   const Real t393 = par.k18 * t365;
-  const Real t394 = t393 - par.k36;
+  const Real t394 = t393 - par.k37;
   const Real t395 = par.k18 * t368;
 
   // peduncle: wrench of the fluid
   const Real t396 = par.k29 * t365;
-  const Real t397 = par.k44 - t396;
+  const Real t397 = par.k45 - t396;
   const Real t398 = t392 + t397;
   const Real t399 = par.k31 * t365;
   const Real t400 = t399 - par.k29;
@@ -1164,10 +1210,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t403 = t402 + t19;
   const Real t404 = par.k6 * t368;
   const Real t405 = t404 - t10;
-  const Real t406 = par.k40 * t369;
+  const Real t406 = par.k41 * t369;
   const Real t407 = t16 * t368;
   const Real t408 = t406 - t407;
-  const Real t409 = t408 + par.k46;
+  const Real t409 = t408 + par.k47;
   const Real t410 = t19 * t369;
   const Real t411 = t10 * t368;
   const Real t412 = t410 - t411;
@@ -1233,7 +1279,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t458 = t456 + t457;
   const Real t459 = t458 * par.l1;
   const Real t460 = t450 - t459;
-  const Real t461 = t460 + par.k56;
+  const Real t461 = t460 + par.k57;
 
   // peduncle: acceleration
   const Real t462 = par.l2 * c_r_a_2_;
@@ -1258,8 +1304,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // peduncle: wrench
   const Real t475 = par.k18 * t462;
-  const Real t476 = t475 + par.k36;
-  const Real t477 = t462 * par.k36;
+  const Real t476 = t475 + par.k37;
+  const Real t477 = t462 * par.k37;
   const Real t478 = par.k19 + t477;
   const Real t479 = par.k18 * t463;
 
@@ -1268,14 +1314,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t481 = par.k29 + t480;
   const Real t482 = t476 + t481;
   const Real t483 = t462 * par.k29;
-  const Real t484 = t483 + par.k44;
+  const Real t484 = t483 + par.k45;
   const Real t485 = t478 + t484;
 
   // fin: wrench
-  const Real t486 = t464 * par.k40;
+  const Real t486 = t464 * par.k41;
   const Real t487 = t16 * t463;
   const Real t488 = t486 - t487;
-  const Real t489 = t488 + par.k46;
+  const Real t489 = t488 + par.k47;
   const Real t490 = t464 * t19;
   const Real t491 = t10 * t463;
   const Real t492 = t490 - t491;
@@ -1332,7 +1378,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t531 = t529 - t530;
   const Real t532 = par.l2 * t531;
   const Real t533 = t525 - t532;
-  const Real t534 = t533 + par.k57;
+  const Real t534 = t533 + par.k58;
 
   // fin_section_1: acceleration
   const Real t535 = t8 * t24;
@@ -1349,7 +1395,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   // fin: wrench
   const Real t543 = t19 * par.l3;
   const Real t544 = t543 + t15;
-  const Real t545 = t19 + par.k60;
+  const Real t545 = t19 + par.k61;
 
   // fin_section_1: wrench of the fluid
   const Real t546 = t538 * par.k4;
@@ -1368,7 +1414,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t555 = constant<Real>(0.710077701790478711739L) * t548;
   const Real t556 = t29 * t550;
   const Real t557 = t555 + t556;
-  const Real t558 = par.k59 + t557;
+  const Real t558 = par.k60 + t557;
 
   // fin_section_1: joint force
   const Real t559 = t546 * t8;
@@ -1386,7 +1432,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   // fin: joint force
   const Real t570 = t565 * par.l3;
   const Real t571 = t570 + t569;
-  const Real t572 = t571 + par.k58;
+  const Real t572 = t571 + par.k59;
 
   // fin_section_1: acceleration
   const Real t573 = t25 * t8;
@@ -1410,7 +1456,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t583 = t580 * t2;
   const Real t584 = t29 * t583;
   const Real t585 = t582 + t584;
-  const Real t586 = par.k43 + t585;
+  const Real t586 = par.k44 + t585;
 
   // fin_section_1: joint force
   const Real t587 = t9 * t579;
@@ -1583,14 +1629,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t724 = t31 * t696;
   const Real t725 = t699 + t724;
   const Real t726 = t723 + t725;
-  const Real t727 = t700 * par.k51;
+  const Real t727 = t700 * par.k52;
   const Real t728 = t726 + t727;
   const Real t729 = t728 * t2;
   const Real t730 = t721 + t729;
 
   // head: wrench
-  const Real t731 = par.k49 * t669;
-  const Real t732 = par.k49 * t668;
+  const Real t731 = par.k50 * t669;
+  const Real t732 = par.k50 * t668;
 
   // head: wrench of the fluid
   const Real t733 = par.k15 * eta[1];
@@ -1616,12 +1662,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t749 = t748 * par.k12;
   const Real t750 = t742 + t749;
   const Real t751 = par.k12 * t600;
-  const Real t752 = t601 * par.k48;
+  const Real t752 = t601 * par.k49;
   const Real t753 = t751 - t752;
   const Real t754 = t753 * t601;
   const Real t755 = t745 - t754;
   const Real t756 = t597 * t753;
-  const Real t757 = t748 * par.k48;
+  const Real t757 = t748 * par.k49;
   const Real t758 = t756 - t757;
   const Real t759 = t758 - t746;
 
@@ -1633,26 +1679,26 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t764 = par.k22 * t683;
 
   // rear: wrench of the fluid
-  const Real t765 = t606 * par.k52;
-  const Real t766 = par.k42 * t607;
+  const Real t765 = t606 * par.k53;
+  const Real t766 = par.k43 * t607;
   const Real t767 = t765 - t766;
   const Real t768 = t767 * t607;
   const Real t769 = t762 - t768;
   const Real t770 = t607 * t610;
   const Real t771 = t683 - t770;
-  const Real t772 = t771 * par.k52;
+  const Real t772 = t771 * par.k53;
   const Real t773 = t764 + t772;
   const Real t774 = t767 * t610;
-  const Real t775 = par.k42 * t771;
+  const Real t775 = par.k43 * t771;
   const Real t776 = t774 - t775;
   const Real t777 = t776 - t763;
 
   // peduncle: wrench
   const Real t778 = t692 * par.k18;
   const Real t779 = par.k18 * t695;
-  const Real t780 = par.k36 * t696;
+  const Real t780 = par.k37 * t696;
   const Real t781 = t779 + t780;
-  const Real t782 = t692 * par.k36;
+  const Real t782 = t692 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t783 = par.k31 * t619;
@@ -1677,7 +1723,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t800 = t799 * t611;
   const Real t801 = t800 * constant<Real>(2.0L);
   const Real t802 = t798 - t801;
-  const Real t803 = r_p_dot[0] * par.k40;
+  const Real t803 = r_p_dot[0] * par.k41;
   const Real t804 = t803 * t611;
   const Real t805 = t804 * constant<Real>(2.0L);
   const Real t806 = par.k24 * t700;
@@ -1686,7 +1732,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t809 = t699 * par.k6;
   const Real t810 = t808 + t809;
   const Real t811 = t807 + t810;
-  const Real t812 = t697 * par.k40;
+  const Real t812 = t697 * par.k41;
   const Real t813 = t16 * t699;
   const Real t814 = t812 + t813;
   const Real t815 = t12 * t696;
@@ -1723,13 +1769,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t840 = t631 * t634;
   const Real t841 = par.m_w * t840;
   const Real t842 = abs(t610);
-  const Real t843 = par.k66 * t842;
-  const Real t844 = t843 * par.k33;
+  const Real t843 = par.k67 * t842;
+  const Real t844 = t843 * par.k34;
   const Real t845 = t844 * t610;
   const Real t846 = t769 + t845;
   const Real t847 = t845 + t846;
   const Real t848 = abs(eta[0]);
-  const Real t849 = par.k63 * t848;
+  const Real t849 = par.k64 * t848;
   const Real t850 = par.k14 * t849;
   const Real t851 = eta[0] * t850;
   const Real t852 = t851 - t735;
@@ -1740,7 +1786,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t857 = par.k28 * t611;
   const Real t858 = t619 - t857;
   const Real t859 = abs(t858);
-  const Real t860 = par.k65 * t859;
+  const Real t860 = par.k66 * t859;
   const Real t861 = t860 * par.k27;
   const Real t862 = t861 * t858;
   const Real t863 = par.k28 * t862;
@@ -1748,50 +1794,50 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t865 = par.k26 * t611;
   const Real t866 = t619 - t865;
   const Real t867 = abs(t866);
-  const Real t868 = par.k65 * t867;
+  const Real t868 = par.k66 * t867;
   const Real t869 = t868 * par.k27;
   const Real t870 = t869 * t866;
   const Real t871 = par.k26 * t870;
   const Real t872 = t864 - t871;
-  const Real t873 = par.k34 * t607;
+  const Real t873 = par.k35 * t607;
   const Real t874 = t606 - t873;
   const Real t875 = abs(t874);
-  const Real t876 = par.k64 * t875;
-  const Real t877 = par.k33 * t876;
+  const Real t876 = par.k65 * t875;
+  const Real t877 = par.k34 * t876;
   const Real t878 = t877 * t874;
-  const Real t879 = t878 * par.k34;
+  const Real t879 = t878 * par.k35;
   const Real t880 = t777 - t879;
-  const Real t881 = par.k32 * t607;
+  const Real t881 = par.k33 * t607;
   const Real t882 = t606 - t881;
   const Real t883 = abs(t882);
-  const Real t884 = par.k64 * t883;
-  const Real t885 = t884 * par.k33;
+  const Real t884 = par.k65 * t883;
+  const Real t885 = t884 * par.k34;
   const Real t886 = t882 * t885;
-  const Real t887 = t886 * par.k32;
+  const Real t887 = t886 * par.k33;
   const Real t888 = t880 - t887;
   const Real t889 = abs(t661);
-  const Real t890 = par.k61 * t889;
+  const Real t890 = par.k62 * t889;
   const Real t891 = t890 * par.k3;
   const Real t892 = t661 * t891;
   const Real t893 = t838 + t892;
-  const Real t894 = par.k37 * t601;
+  const Real t894 = par.k38 * t601;
   const Real t895 = t600 - t894;
   const Real t896 = abs(t895);
-  const Real t897 = t896 * par.k68;
+  const Real t897 = t896 * par.k69;
   const Real t898 = par.k11 * t897;
   const Real t899 = t898 * t895;
-  const Real t900 = t899 * par.k37;
+  const Real t900 = t899 * par.k38;
   const Real t901 = t759 - t900;
-  const Real t902 = par.k38 * t601;
+  const Real t902 = par.k39 * t601;
   const Real t903 = t600 - t902;
   const Real t904 = abs(t903);
-  const Real t905 = t904 * par.k68;
+  const Real t905 = t904 * par.k69;
   const Real t906 = par.k11 * t905;
   const Real t907 = t906 * t903;
-  const Real t908 = t907 * par.k38;
+  const Real t908 = t907 * par.k39;
   const Real t909 = t901 - t908;
   const Real t910 = abs(t645);
-  const Real t911 = par.k67 * t910;
+  const Real t911 = par.k68 * t910;
   const Real t912 = par.k3 * t911;
   const Real t913 = t645 * t912;
   const Real t914 = t913 - t832;
@@ -1800,30 +1846,30 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t917 = par.k20 * eta[2];
   const Real t918 = eta[1] - t917;
   const Real t919 = abs(t918);
-  const Real t920 = t919 * par.k70;
+  const Real t920 = t919 * par.k71;
   const Real t921 = par.k14 * t920;
   const Real t922 = t918 * t921;
   const Real t923 = t922 + t741;
   const Real t924 = eta[1] + t917;
   const Real t925 = abs(t924);
-  const Real t926 = t925 * par.k70;
+  const Real t926 = t925 * par.k71;
   const Real t927 = par.k14 * t926;
   const Real t928 = t927 * t924;
   const Real t929 = t923 + t928;
   const Real t930 = t899 + t750;
   const Real t931 = t907 + t930;
   const Real t932 = abs(t650);
-  const Real t933 = par.k61 * t932;
+  const Real t933 = par.k62 * t932;
   const Real t934 = t933 * par.k3;
   const Real t935 = t934 * t650;
   const Real t936 = t830 + t935;
   const Real t937 = abs(t664);
-  const Real t938 = par.k67 * t937;
+  const Real t938 = par.k68 * t937;
   const Real t939 = par.k3 * t938;
   const Real t940 = t939 * t664;
   const Real t941 = t940 - t839;
   const Real t942 = abs(t597);
-  const Real t943 = par.k69 * t942;
+  const Real t943 = par.k70 * t942;
   const Real t944 = par.k11 * t943;
   const Real t945 = t597 * t944;
   const Real t946 = t755 + t945;
@@ -1831,7 +1877,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t948 = t862 + t795;
   const Real t949 = t948 + t870;
   const Real t950 = abs(t616);
-  const Real t951 = par.k62 * t950;
+  const Real t951 = par.k63 * t950;
   const Real t952 = t951 * par.k27;
   const Real t953 = t952 * t616;
   const Real t954 = t953 + t787;
@@ -1954,9 +2000,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t1055 = -t1050;
   const Real t1056 = -t1046;
   const Real t1057 = r_p[0] * constant<Real>(2.0L);
-  const Real t1058 = t1057 * par.k71;
+  const Real t1058 = t1057 * par.k72;
   const Real t1059 = r_p_dot[0] * constant<Real>(2.0L);
-  const Real t1060 = par.k72 * t1059;
+  const Real t1060 = par.k73 * t1059;
   const Real t1061 = t1058 + t1060;
   const Real t1062 = t1008 + t1061;
   const Real t1063 = -t1062;
@@ -2046,8 +2092,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -2058,7 +2104,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -2067,11 +2113,11 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -2116,7 +2162,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k48;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
@@ -2127,13 +2173,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k52;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k42 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k36;
+  const Real t71 = t40 * par.k37;
   const Real t72 = par.k18 * t43;
   const Real t73 = par.k18 * t40;
 
@@ -2147,7 +2193,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k40;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -2229,13 +2275,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k53;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k48;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
@@ -2244,13 +2290,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k42;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k52;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k36;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t159 = par.k31 * t43;
@@ -2259,7 +2305,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k40 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -2337,7 +2383,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k54 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -2384,16 +2430,16 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k41;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k48;
-  const Real t262 = t261 + par.k39;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k48;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
@@ -2404,18 +2450,18 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k52;
-  const Real t273 = t272 - par.k42;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k42;
-  const Real t276 = par.k35 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k36;
+  const Real t278 = t240 * par.k37;
   const Real t279 = par.k19 - t278;
   const Real t280 = par.k18 * t240;
-  const Real t281 = t280 - par.k36;
+  const Real t281 = t280 - par.k37;
   const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
@@ -2423,7 +2469,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
   const Real t286 = par.k29 * t240;
-  const Real t287 = par.k44 - t286;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -2433,10 +2479,10 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k40;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k46 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -2513,7 +2559,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k55;
+  const Real t359 = t358 + par.k56;
 
   // fin_section_1: acceleration
   const Real t360 = t25 * t8;
@@ -2537,7 +2583,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t370 = t367 * t2;
   const Real t371 = t29 * t370;
   const Real t372 = t369 + t371;
-  const Real t373 = par.k43 + t372;
+  const Real t373 = par.k44 + t372;
 
   // fin_section_1: joint force
   const Real t374 = t9 * t366;
@@ -2549,7 +2595,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t380 = r_p[0] * constant<Real>(2.0L);
-  const Real t381 = t380 * par.k71;
+  const Real t381 = t380 * par.k72;
 
   // trunk: twist
   const Real t382 = r_a_dot[0] + nu[2];
@@ -2722,7 +2768,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t521 = t520 * constant<Real>(2.0L);
   const Real t522 = t519 - t521;
   const Real t523 = t522 * t3;
-  const Real t524 = t496 * par.k51;
+  const Real t524 = t496 * par.k52;
   const Real t525 = t440 * t405;
   const Real t526 = t525 * constant<Real>(2.0L);
   const Real t527 = t31 * t481;
@@ -2735,8 +2781,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t534 = t523 + t533;
 
   // head: wrench
-  const Real t535 = par.k49 * t457;
-  const Real t536 = par.k49 * t458;
+  const Real t535 = par.k50 * t457;
+  const Real t536 = par.k50 * t458;
 
   // head: wrench of the fluid
   const Real t537 = par.k15 * nu[1];
@@ -2756,7 +2802,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t549 = t466 * par.k1;
   const Real t550 = par.k2 * t467;
   const Real t551 = t549 + t550;
-  const Real t552 = par.k41 * r_a_ddot[0];
+  const Real t552 = par.k42 * r_a_ddot[0];
   const Real t553 = par.k2 * t463;
   const Real t554 = t552 - t553;
 
@@ -2764,15 +2810,15 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t555 = t382 * t390;
   const Real t556 = t463 - t555;
   const Real t557 = par.k12 * t556;
-  const Real t558 = par.k48 * r_a_ddot[0];
+  const Real t558 = par.k49 * r_a_ddot[0];
   const Real t559 = t557 - t558;
   const Real t560 = t548 + t559;
   const Real t561 = par.k12 * t387;
-  const Real t562 = t382 * par.k48;
+  const Real t562 = t382 * par.k49;
   const Real t563 = t561 - t562;
   const Real t564 = t563 * t390;
-  const Real t565 = par.k39 * r_a_ddot[0];
-  const Real t566 = t556 * par.k48;
+  const Real t565 = par.k40 * r_a_ddot[0];
+  const Real t566 = t556 * par.k49;
   const Real t567 = t565 - t566;
   const Real t568 = t564 + t567;
   const Real t569 = t568 + t554;
@@ -2791,19 +2837,19 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t580 = t578 - t579;
 
   // rear: wrench of the fluid
-  const Real t581 = t395 * par.k52;
-  const Real t582 = t396 * par.k42;
+  const Real t581 = t395 * par.k53;
+  const Real t582 = t396 * par.k43;
   const Real t583 = t581 - t582;
   const Real t584 = t399 * t583;
-  const Real t585 = par.k35 * t478;
+  const Real t585 = par.k36 * t478;
   const Real t586 = t396 * t399;
   const Real t587 = t474 - t586;
-  const Real t588 = par.k42 * t587;
+  const Real t588 = par.k43 * t587;
   const Real t589 = t585 - t588;
   const Real t590 = t584 + t589;
   const Real t591 = t590 + t580;
-  const Real t592 = t587 * par.k52;
-  const Real t593 = par.k42 * t478;
+  const Real t592 = t587 * par.k53;
+  const Real t593 = par.k43 * t478;
   const Real t594 = t592 - t593;
   const Real t595 = t574 + t594;
   const Real t596 = t396 * t583;
@@ -2811,17 +2857,17 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // peduncle: wrench
   const Real t598 = par.k18 * t491;
-  const Real t599 = t480 * par.k36;
+  const Real t599 = t480 * par.k37;
   const Real t600 = t598 - t599;
   const Real t601 = par.k19 * t480;
-  const Real t602 = par.k36 * t491;
+  const Real t602 = par.k37 * t491;
   const Real t603 = t601 - t602;
-  const Real t604 = t481 * par.k36;
+  const Real t604 = t481 * par.k37;
   const Real t605 = par.k18 * t488;
   const Real t606 = t604 + t605;
 
   // peduncle: wrench of the fluid
-  const Real t607 = t480 * par.k44;
+  const Real t607 = t480 * par.k45;
   const Real t608 = t404 * t405;
   const Real t609 = t491 - t608;
   const Real t610 = par.k29 * t609;
@@ -2849,7 +2895,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t630 = t629 * t405;
   const Real t631 = t630 * constant<Real>(2.0L);
   const Real t632 = t628 - t631;
-  const Real t633 = nu[3] * par.k40;
+  const Real t633 = nu[3] * par.k41;
   const Real t634 = t633 * t405;
   const Real t635 = t634 * constant<Real>(2.0L);
   const Real t636 = par.k24 * t496;
@@ -2861,11 +2907,11 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t642 = t638 + t641;
   const Real t643 = t637 + t642;
   const Real t644 = t16 * t493;
-  const Real t645 = par.k40 * t495;
+  const Real t645 = par.k41 * t495;
   const Real t646 = t644 + t645;
   const Real t647 = t12 * t481;
   const Real t648 = t646 + t647;
-  const Real t649 = t480 * par.k46;
+  const Real t649 = t480 * par.k47;
   const Real t650 = t648 + t649;
   const Real t651 = t481 * t11;
   const Real t652 = t650 - t651;
@@ -2899,25 +2945,25 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t676 = abs(t450);
-  const Real t677 = par.k61 * t676;
+  const Real t677 = par.k62 * t676;
   const Real t678 = par.k3 * t677;
   const Real t679 = t678 * t450;
   const Real t680 = t679 + t675;
   const Real t681 = par.k20 * nu[2];
   const Real t682 = t681 + nu[1];
   const Real t683 = abs(t682);
-  const Real t684 = t683 * par.k70;
+  const Real t684 = t683 * par.k71;
   const Real t685 = par.k14 * t684;
   const Real t686 = t682 * t685;
   const Real t687 = nu[1] - t681;
   const Real t688 = abs(t687);
-  const Real t689 = t688 * par.k70;
+  const Real t689 = t688 * par.k71;
   const Real t690 = par.k14 * t689;
   const Real t691 = t687 * t690;
   const Real t692 = t691 + t542;
   const Real t693 = t686 + t692;
   const Real t694 = abs(t434);
-  const Real t695 = t694 * par.k67;
+  const Real t695 = t694 * par.k68;
   const Real t696 = par.k3 * t695;
   const Real t697 = t434 * t696;
   const Real t698 = t697 - t669;
@@ -2925,52 +2971,52 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t700 = par.m_w * t699;
   const Real t701 = constant<Real>(0.5L) * t700;
   const Real t702 = abs(t404);
-  const Real t703 = par.k62 * t702;
+  const Real t703 = par.k63 * t702;
   const Real t704 = par.k27 * t703;
   const Real t705 = t404 * t704;
   const Real t706 = t705 + t623;
   const Real t707 = t706 + t705;
-  const Real t708 = par.k34 * t396;
+  const Real t708 = par.k35 * t396;
   const Real t709 = t395 - t708;
   const Real t710 = abs(t709);
-  const Real t711 = par.k64 * t710;
-  const Real t712 = par.k33 * t711;
+  const Real t711 = par.k65 * t710;
+  const Real t712 = par.k34 * t711;
   const Real t713 = t712 * t709;
-  const Real t714 = par.k34 * t713;
+  const Real t714 = par.k35 * t713;
   const Real t715 = t591 - t714;
-  const Real t716 = t396 * par.k32;
+  const Real t716 = t396 * par.k33;
   const Real t717 = t395 - t716;
   const Real t718 = abs(t717);
-  const Real t719 = t718 * par.k64;
-  const Real t720 = t719 * par.k33;
+  const Real t719 = t718 * par.k65;
+  const Real t720 = t719 * par.k34;
   const Real t721 = t717 * t720;
-  const Real t722 = par.k32 * t721;
+  const Real t722 = par.k33 * t721;
   const Real t723 = t715 - t722;
   const Real t724 = par.k28 * t405;
   const Real t725 = t408 - t724;
   const Real t726 = abs(t725);
-  const Real t727 = t726 * par.k65;
+  const Real t727 = t726 * par.k66;
   const Real t728 = par.k27 * t727;
   const Real t729 = t725 * t728;
   const Real t730 = t729 + t621;
   const Real t731 = par.k26 * t405;
   const Real t732 = t408 - t731;
   const Real t733 = abs(t732);
-  const Real t734 = par.k65 * t733;
+  const Real t734 = par.k66 * t733;
   const Real t735 = t734 * par.k27;
   const Real t736 = t735 * t732;
   const Real t737 = t730 + t736;
-  const Real t738 = t382 * par.k37;
+  const Real t738 = t382 * par.k38;
   const Real t739 = t387 - t738;
   const Real t740 = abs(t739);
-  const Real t741 = t740 * par.k68;
+  const Real t741 = t740 * par.k69;
   const Real t742 = par.k11 * t741;
   const Real t743 = t742 * t739;
   const Real t744 = t743 + t560;
-  const Real t745 = t382 * par.k38;
+  const Real t745 = t382 * par.k39;
   const Real t746 = t387 - t745;
   const Real t747 = abs(t746);
-  const Real t748 = t747 * par.k68;
+  const Real t748 = t747 * par.k69;
   const Real t749 = par.k11 * t748;
   const Real t750 = t746 * t749;
   const Real t751 = t744 + t750;
@@ -2981,13 +3027,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t756 = t713 + t595;
   const Real t757 = t756 + t721;
   const Real t758 = abs(t399);
-  const Real t759 = par.k66 * t758;
-  const Real t760 = t759 * par.k33;
+  const Real t759 = par.k67 * t758;
+  const Real t760 = t759 * par.k34;
   const Real t761 = t760 * t399;
   const Real t762 = t761 + t597;
   const Real t763 = t761 + t762;
   const Real t764 = abs(t453);
-  const Real t765 = par.k67 * t764;
+  const Real t765 = par.k68 * t764;
   const Real t766 = par.k3 * t765;
   const Real t767 = t453 * t766;
   const Real t768 = t767 - t672;
@@ -2996,27 +3042,27 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t771 = par.k26 * t736;
   const Real t772 = t770 - t771;
   const Real t773 = abs(t390);
-  const Real t774 = par.k69 * t773;
+  const Real t774 = par.k70 * t773;
   const Real t775 = par.k11 * t774;
   const Real t776 = t775 * t390;
   const Real t777 = t776 + t571;
   const Real t778 = t776 + t777;
   const Real t779 = abs(t439);
-  const Real t780 = par.k61 * t779;
+  const Real t780 = par.k62 * t779;
   const Real t781 = par.k3 * t780;
   const Real t782 = t439 * t781;
   const Real t783 = t668 + t782;
   const Real t784 = t420 * t423;
   const Real t785 = t784 * par.m_w;
   const Real t786 = abs(nu[0]);
-  const Real t787 = par.k63 * t786;
+  const Real t787 = par.k64 * t786;
   const Real t788 = par.k14 * t787;
   const Real t789 = t788 * nu[0];
   const Real t790 = t789 - t539;
   const Real t791 = t790 + t789;
-  const Real t792 = t743 * par.k37;
+  const Real t792 = t743 * par.k38;
   const Real t793 = t569 - t792;
-  const Real t794 = t750 * par.k38;
+  const Real t794 = t750 * par.k39;
   const Real t795 = t793 - t794;
 
   // fin_section_2: joint force
@@ -3126,7 +3172,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t887 = nu[3] * constant<Real>(2.0L);
-  const Real t888 = par.k72 * t887;
+  const Real t888 = par.k73 * t887;
   const Real t889 = t381 + t888;
   const Real t890 = t846 + t889;
 
@@ -3204,8 +3250,8 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -3216,7 +3262,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -3225,11 +3271,11 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -3274,7 +3320,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k48;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
@@ -3285,13 +3331,13 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k52;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k42 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k36;
+  const Real t71 = t40 * par.k37;
   const Real t72 = par.k18 * t43;
   const Real t73 = par.k18 * t40;
 
@@ -3305,7 +3351,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k40;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -3387,13 +3433,13 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k53;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k48;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
@@ -3402,13 +3448,13 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k42;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k52;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k36;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t159 = par.k31 * t43;
@@ -3417,7 +3463,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k40 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -3495,7 +3541,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k54 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -3542,16 +3588,16 @@ inline void split_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k41;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k48;
-  const Real t262 = t261 + par.k39;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k48;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
@@ -3562,18 +3608,18 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k52;
-  const Real t273 = t272 - par.k42;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k42;
-  const Real t276 = par.k35 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k36;
+  const Real t278 = t240 * par.k37;
   const Real t279 = par.k19 - t278;
   const Real t280 = par.k18 * t240;
-  const Real t281 = t280 - par.k36;
+  const Real t281 = t280 - par.k37;
   const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
@@ -3581,7 +3627,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
   const Real t286 = par.k29 * t240;
-  const Real t287 = par.k44 - t286;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -3591,10 +3637,10 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k40;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k46 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -3671,7 +3717,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k55;
+  const Real t359 = t358 + par.k56;
 
   // fin_section_1: acceleration
   const Real t360 = t25 * t8;
@@ -3695,7 +3741,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t370 = t367 * t2;
   const Real t371 = t29 * t370;
   const Real t372 = t369 + t371;
-  const Real t373 = par.k43 + t372;
+  const Real t373 = par.k44 + t372;
 
   // fin_section_1: joint force
   const Real t374 = t9 * t366;
@@ -3707,7 +3753,7 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t380 = r_p[0] * constant<Real>(2.0L);
-  const Real t381 = t380 * par.k71;
+  const Real t381 = t380 * par.k72;
 
   // trunk: twist
   const Real t382 = r_a_dot[0] + nu[2];
@@ -3880,7 +3926,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t521 = t520 * constant<Real>(2.0L);
   const Real t522 = t519 - t521;
   const Real t523 = t522 * t3;
-  const Real t524 = t496 * par.k51;
+  const Real t524 = t496 * par.k52;
   const Real t525 = t440 * t405;
   const Real t526 = t525 * constant<Real>(2.0L);
   const Real t527 = t31 * t481;
@@ -3893,8 +3939,8 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t534 = t523 + t533;
 
   // head: wrench
-  const Real t535 = par.k49 * t457;
-  const Real t536 = par.k49 * t458;
+  const Real t535 = par.k50 * t457;
+  const Real t536 = par.k50 * t458;
 
   // head: wrench of the fluid
   const Real t537 = par.k15 * nu[1];
@@ -3914,7 +3960,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t549 = t466 * par.k1;
   const Real t550 = par.k2 * t467;
   const Real t551 = t549 + t550;
-  const Real t552 = par.k41 * r_a_ddot[0];
+  const Real t552 = par.k42 * r_a_ddot[0];
   const Real t553 = par.k2 * t463;
   const Real t554 = t552 - t553;
 
@@ -3922,15 +3968,15 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t555 = t382 * t390;
   const Real t556 = t463 - t555;
   const Real t557 = par.k12 * t556;
-  const Real t558 = par.k48 * r_a_ddot[0];
+  const Real t558 = par.k49 * r_a_ddot[0];
   const Real t559 = t557 - t558;
   const Real t560 = t548 + t559;
   const Real t561 = par.k12 * t387;
-  const Real t562 = t382 * par.k48;
+  const Real t562 = t382 * par.k49;
   const Real t563 = t561 - t562;
   const Real t564 = t563 * t390;
-  const Real t565 = par.k39 * r_a_ddot[0];
-  const Real t566 = t556 * par.k48;
+  const Real t565 = par.k40 * r_a_ddot[0];
+  const Real t566 = t556 * par.k49;
   const Real t567 = t565 - t566;
   const Real t568 = t564 + t567;
   const Real t569 = t568 + t554;
@@ -3949,19 +3995,19 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t580 = t578 - t579;
 
   // rear: wrench of the fluid
-  const Real t581 = t395 * par.k52;
-  const Real t582 = t396 * par.k42;
+  const Real t581 = t395 * par.k53;
+  const Real t582 = t396 * par.k43;
   const Real t583 = t581 - t582;
   const Real t584 = t399 * t583;
-  const Real t585 = par.k35 * t478;
+  const Real t585 = par.k36 * t478;
   const Real t586 = t396 * t399;
   const Real t587 = t474 - t586;
-  const Real t588 = par.k42 * t587;
+  const Real t588 = par.k43 * t587;
   const Real t589 = t585 - t588;
   const Real t590 = t584 + t589;
   const Real t591 = t590 + t580;
-  const Real t592 = t587 * par.k52;
-  const Real t593 = par.k42 * t478;
+  const Real t592 = t587 * par.k53;
+  const Real t593 = par.k43 * t478;
   const Real t594 = t592 - t593;
   const Real t595 = t574 + t594;
   const Real t596 = t396 * t583;
@@ -3969,17 +4015,17 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // peduncle: wrench
   const Real t598 = par.k18 * t491;
-  const Real t599 = t480 * par.k36;
+  const Real t599 = t480 * par.k37;
   const Real t600 = t598 - t599;
   const Real t601 = par.k19 * t480;
-  const Real t602 = par.k36 * t491;
+  const Real t602 = par.k37 * t491;
   const Real t603 = t601 - t602;
-  const Real t604 = t481 * par.k36;
+  const Real t604 = t481 * par.k37;
   const Real t605 = par.k18 * t488;
   const Real t606 = t604 + t605;
 
   // peduncle: wrench of the fluid
-  const Real t607 = t480 * par.k44;
+  const Real t607 = t480 * par.k45;
   const Real t608 = t404 * t405;
   const Real t609 = t491 - t608;
   const Real t610 = par.k29 * t609;
@@ -4007,7 +4053,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t630 = t629 * t405;
   const Real t631 = t630 * constant<Real>(2.0L);
   const Real t632 = t628 - t631;
-  const Real t633 = nu[3] * par.k40;
+  const Real t633 = nu[3] * par.k41;
   const Real t634 = t633 * t405;
   const Real t635 = t634 * constant<Real>(2.0L);
   const Real t636 = par.k24 * t496;
@@ -4019,11 +4065,11 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t642 = t638 + t641;
   const Real t643 = t637 + t642;
   const Real t644 = t16 * t493;
-  const Real t645 = par.k40 * t495;
+  const Real t645 = par.k41 * t495;
   const Real t646 = t644 + t645;
   const Real t647 = t12 * t481;
   const Real t648 = t646 + t647;
-  const Real t649 = t480 * par.k46;
+  const Real t649 = t480 * par.k47;
   const Real t650 = t648 + t649;
   const Real t651 = t481 * t11;
   const Real t652 = t650 - t651;
@@ -4057,25 +4103,25 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t676 = abs(t450);
-  const Real t677 = par.k61 * t676;
+  const Real t677 = par.k62 * t676;
   const Real t678 = par.k3 * t677;
   const Real t679 = t678 * t450;
   const Real t680 = t679 + t675;
   const Real t681 = par.k20 * nu[2];
   const Real t682 = t681 + nu[1];
   const Real t683 = abs(t682);
-  const Real t684 = t683 * par.k70;
+  const Real t684 = t683 * par.k71;
   const Real t685 = par.k14 * t684;
   const Real t686 = t682 * t685;
   const Real t687 = nu[1] - t681;
   const Real t688 = abs(t687);
-  const Real t689 = t688 * par.k70;
+  const Real t689 = t688 * par.k71;
   const Real t690 = par.k14 * t689;
   const Real t691 = t687 * t690;
   const Real t692 = t691 + t542;
   const Real t693 = t686 + t692;
   const Real t694 = abs(t434);
-  const Real t695 = t694 * par.k67;
+  const Real t695 = t694 * par.k68;
   const Real t696 = par.k3 * t695;
   const Real t697 = t434 * t696;
   const Real t698 = t697 - t669;
@@ -4083,52 +4129,52 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t700 = par.m_w * t699;
   const Real t701 = constant<Real>(0.5L) * t700;
   const Real t702 = abs(t404);
-  const Real t703 = par.k62 * t702;
+  const Real t703 = par.k63 * t702;
   const Real t704 = par.k27 * t703;
   const Real t705 = t404 * t704;
   const Real t706 = t705 + t623;
   const Real t707 = t706 + t705;
-  const Real t708 = par.k34 * t396;
+  const Real t708 = par.k35 * t396;
   const Real t709 = t395 - t708;
   const Real t710 = abs(t709);
-  const Real t711 = par.k64 * t710;
-  const Real t712 = par.k33 * t711;
+  const Real t711 = par.k65 * t710;
+  const Real t712 = par.k34 * t711;
   const Real t713 = t712 * t709;
-  const Real t714 = par.k34 * t713;
+  const Real t714 = par.k35 * t713;
   const Real t715 = t591 - t714;
-  const Real t716 = t396 * par.k32;
+  const Real t716 = t396 * par.k33;
   const Real t717 = t395 - t716;
   const Real t718 = abs(t717);
-  const Real t719 = t718 * par.k64;
-  const Real t720 = t719 * par.k33;
+  const Real t719 = t718 * par.k65;
+  const Real t720 = t719 * par.k34;
   const Real t721 = t717 * t720;
-  const Real t722 = par.k32 * t721;
+  const Real t722 = par.k33 * t721;
   const Real t723 = t715 - t722;
   const Real t724 = par.k28 * t405;
   const Real t725 = t408 - t724;
   const Real t726 = abs(t725);
-  const Real t727 = t726 * par.k65;
+  const Real t727 = t726 * par.k66;
   const Real t728 = par.k27 * t727;
   const Real t729 = t725 * t728;
   const Real t730 = t729 + t621;
   const Real t731 = par.k26 * t405;
   const Real t732 = t408 - t731;
   const Real t733 = abs(t732);
-  const Real t734 = par.k65 * t733;
+  const Real t734 = par.k66 * t733;
   const Real t735 = t734 * par.k27;
   const Real t736 = t735 * t732;
   const Real t737 = t730 + t736;
-  const Real t738 = t382 * par.k37;
+  const Real t738 = t382 * par.k38;
   const Real t739 = t387 - t738;
   const Real t740 = abs(t739);
-  const Real t741 = t740 * par.k68;
+  const Real t741 = t740 * par.k69;
   const Real t742 = par.k11 * t741;
   const Real t743 = t742 * t739;
   const Real t744 = t743 + t560;
-  const Real t745 = t382 * par.k38;
+  const Real t745 = t382 * par.k39;
   const Real t746 = t387 - t745;
   const Real t747 = abs(t746);
-  const Real t748 = t747 * par.k68;
+  const Real t748 = t747 * par.k69;
   const Real t749 = par.k11 * t748;
   const Real t750 = t746 * t749;
   const Real t751 = t744 + t750;
@@ -4139,13 +4185,13 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t756 = t713 + t595;
   const Real t757 = t756 + t721;
   const Real t758 = abs(t399);
-  const Real t759 = par.k66 * t758;
-  const Real t760 = t759 * par.k33;
+  const Real t759 = par.k67 * t758;
+  const Real t760 = t759 * par.k34;
   const Real t761 = t760 * t399;
   const Real t762 = t761 + t597;
   const Real t763 = t761 + t762;
   const Real t764 = abs(t453);
-  const Real t765 = par.k67 * t764;
+  const Real t765 = par.k68 * t764;
   const Real t766 = par.k3 * t765;
   const Real t767 = t453 * t766;
   const Real t768 = t767 - t672;
@@ -4154,27 +4200,27 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t771 = par.k26 * t736;
   const Real t772 = t770 - t771;
   const Real t773 = abs(t390);
-  const Real t774 = par.k69 * t773;
+  const Real t774 = par.k70 * t773;
   const Real t775 = par.k11 * t774;
   const Real t776 = t775 * t390;
   const Real t777 = t776 + t571;
   const Real t778 = t776 + t777;
   const Real t779 = abs(t439);
-  const Real t780 = par.k61 * t779;
+  const Real t780 = par.k62 * t779;
   const Real t781 = par.k3 * t780;
   const Real t782 = t439 * t781;
   const Real t783 = t668 + t782;
   const Real t784 = t420 * t423;
   const Real t785 = t784 * par.m_w;
   const Real t786 = abs(nu[0]);
-  const Real t787 = par.k63 * t786;
+  const Real t787 = par.k64 * t786;
   const Real t788 = par.k14 * t787;
   const Real t789 = t788 * nu[0];
   const Real t790 = t789 - t539;
   const Real t791 = t790 + t789;
-  const Real t792 = t743 * par.k37;
+  const Real t792 = t743 * par.k38;
   const Real t793 = t569 - t792;
-  const Real t794 = t750 * par.k38;
+  const Real t794 = t750 * par.k39;
   const Real t795 = t793 - t794;
 
   // fin_section_2: joint force
@@ -4284,7 +4330,7 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t887 = nu[3] * constant<Real>(2.0L);
-  const Real t888 = par.k72 * t887;
+  const Real t888 = par.k73 * t887;
   const Real t889 = t381 + t888;
   const Real t890 = t846 + t889;
 
@@ -4372,8 +4418,8 @@ inline void split_dynamics(const Prepared<Real>& par,
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: projected recursion
-/// operations: 396 add, 526 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
+/// route: modes first
+/// operations: 417 add, 571 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
 /// @param[in]  par         made by prepare()
 /// @param[in]  r_p         (1) rad or m: e1
 /// @param[in]  r_a         (3) rad or m: r1, r2, r3
@@ -4415,8 +4461,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -4427,7 +4473,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -4436,11 +4482,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -4485,7 +4531,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k48;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
@@ -4496,13 +4542,13 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k52;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k42 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k36;
+  const Real t71 = t40 * par.k37;
   const Real t72 = par.k18 * t43;
   const Real t73 = par.k18 * t40;
 
@@ -4516,7 +4562,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k40;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -4530,1044 +4576,1152 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fin_section_2: joint force
   const Real t88 = t87 * t2;
-  const Real t89 = t85 - t88;
-  const Real t90 = t29 * t88;
-  const Real t91 = t87 * t3;
-  const Real t92 = constant<Real>(0.710077701790478711739L) * t91;
-  const Real t93 = t90 + t92;
-  const Real t94 = t83 + t93;
-  const Real t95 = t91 + t84;
-  const Real t96 = t28 * t88;
-  const Real t97 = t31 * t91;
-  const Real t98 = t96 + t97;
-  const Real t99 = t80 + t98;
+  const Real t89 = t29 * t88;
+  const Real t90 = t87 * t3;
+  const Real t91 = constant<Real>(0.710077701790478711739L) * t90;
+  const Real t92 = t89 + t91;
+  const Real t93 = t83 + t92;
 
   // fin_section_1: joint force
-  const Real t100 = t86 * t8;
-  const Real t101 = t100 * t24;
-  const Real t102 = t9 * t86;
-  const Real t103 = t102 * t27;
-  const Real t104 = t101 + t103;
-  const Real t105 = t104 + t99;
-  const Real t106 = constant<Real>(0.0709020735931204697442L) * t102;
-  const Real t107 = t100 * t25;
-  const Real t108 = t106 + t107;
-  const Real t109 = t94 + t108;
-  const Real t110 = t102 + t95;
-
-  // fin: joint force
-  const Real t111 = t75 + t110;
-  const Real t112 = t110 * par.l3;
-  const Real t113 = t105 + t112;
-  const Real t114 = t77 + t113;
-  const Real t115 = t100 - t89;
-  const Real t116 = t72 + t115;
-
-  // peduncle: joint force
-  const Real t117 = t111 * s_r_a_2_;
-  const Real t118 = t116 * c_r_a_2_;
-  const Real t119 = t117 + t118;
-  const Real t120 = t119 + t66;
-  const Real t121 = t116 * s_r_a_2_;
-  const Real t122 = t111 * c_r_a_2_;
-  const Real t123 = t121 - t122;
-  const Real t124 = t123 - t68;
-  const Real t125 = par.l2 * t123;
-  const Real t126 = t114 - t125;
-  const Real t127 = t126 + t70;
-
-  // rear: joint force
-  const Real t128 = c_r_a_1_ * t120;
-  const Real t129 = t124 * s_r_a_1_;
-  const Real t130 = t128 - t129;
-  const Real t131 = t130 + t58;
-  const Real t132 = c_r_a_1_ * t124;
-  const Real t133 = t120 * s_r_a_1_;
-  const Real t134 = t132 + t133;
-  const Real t135 = t134 - t63;
-  const Real t136 = t134 * par.l1;
-  const Real t137 = t127 - t136;
-  const Real t138 = t61 + t137;
-
-  // trunk: joint force
-  const Real t139 = t135 * c_r_a_0_;
-  const Real t140 = t131 * s_r_a_0_;
-  const Real t141 = t139 + t140;
-  const Real t142 = par.k8 * t141;
-  const Real t143 = t138 - t142;
-  const Real t144 = t131 * c_r_a_0_;
-  const Real t145 = s_r_a_0_ * t135;
-  const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k53;
+  const Real t94 = t9 * t86;
+  const Real t95 = constant<Real>(0.0709020735931204697442L) * t94;
+  const Real t96 = t86 * t8;
+  const Real t97 = t96 * t25;
+  const Real t98 = t95 + t97;
+  const Real t99 = t93 + t98;
 
   // trunk: wrench
-  const Real t148 = par.k2 * c_r_a_0_;
+  const Real t100 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k48;
-  const Real t150 = t149 + t148;
-  const Real t151 = par.k12 * c_r_a_0_;
-  const Real t152 = t58 + t151;
+  const Real t101 = c_r_a_0_ * par.k49;
+  const Real t102 = t101 + t100;
+  const Real t103 = par.k12 * c_r_a_0_;
+  const Real t104 = t58 + t103;
 
   // rear: wrench
-  const Real t153 = par.k30 * t34;
+  const Real t105 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k42;
-  const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k52;
-  const Real t157 = t156 + t66;
+  const Real t106 = t34 * par.k43;
+  const Real t107 = t105 + t106;
+  const Real t108 = t34 * par.k53;
+  const Real t109 = t108 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k36;
+  const Real t110 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t159 = par.k31 * t43;
-  const Real t160 = t159 + t72;
-  const Real t161 = par.k29 * t43;
-  const Real t162 = t158 + t161;
+  const Real t111 = par.k31 * t43;
+  const Real t112 = t111 + t72;
+  const Real t113 = par.k29 * t43;
+  const Real t114 = t110 + t113;
 
   // fin: wrench
-  const Real t163 = par.k40 * t44;
-  const Real t164 = t16 * t40;
-  const Real t165 = t163 + t164;
-  const Real t166 = t10 * t40;
-  const Real t167 = t19 * t44;
-  const Real t168 = t166 + t167;
+  const Real t115 = par.k41 * t44;
+  const Real t116 = t16 * t40;
+  const Real t117 = t115 + t116;
+  const Real t118 = t10 * t40;
+  const Real t119 = t19 * t44;
+  const Real t120 = t118 + t119;
 
   // fin_section_1: wrench of the fluid
-  const Real t169 = par.k4 * t47;
+  const Real t121 = par.k4 * t47;
 
   // fin_section_2: wrench of the fluid
-  const Real t170 = par.k4 * t56;
+  const Real t122 = par.k4 * t56;
 
   // fin_section_2: joint force
-  const Real t171 = t170 * t3;
-  const Real t172 = t171 + t85;
-  const Real t173 = t170 * t2;
-  const Real t174 = t173 * t28;
-  const Real t175 = t31 * t171;
-  const Real t176 = t174 + t175;
-  const Real t177 = t176 + t168;
-  const Real t178 = constant<Real>(0.710077701790478711739L) * t171;
-  const Real t179 = t173 * t29;
-  const Real t180 = t178 + t179;
-  const Real t181 = t165 + t180;
-  const Real t182 = t173 + t84;
+  const Real t123 = t122 * t3;
+  const Real t124 = constant<Real>(0.710077701790478711739L) * t123;
+  const Real t125 = t122 * t2;
+  const Real t126 = t125 * t29;
+  const Real t127 = t124 + t126;
+  const Real t128 = t117 + t127;
 
   // fin_section_1: joint force
-  const Real t183 = t169 * t9;
-  const Real t184 = t172 + t183;
-  const Real t185 = t169 * t8;
-  const Real t186 = t24 * t185;
-  const Real t187 = t183 * t27;
-  const Real t188 = t186 + t187;
-  const Real t189 = t188 + t177;
-  const Real t190 = constant<Real>(0.0709020735931204697442L) * t183;
-  const Real t191 = t25 * t185;
-  const Real t192 = t190 + t191;
-  const Real t193 = t192 + t181;
-  const Real t194 = t185 + t182;
-
-  // fin: joint force
-  const Real t195 = t73 + t194;
-  const Real t196 = t184 * par.l3;
-  const Real t197 = t189 + t196;
-  const Real t198 = t197 - t162;
-  const Real t199 = t160 - t184;
-
-  // peduncle: joint force
-  const Real t200 = t195 * c_r_a_2_;
-  const Real t201 = t199 * s_r_a_2_;
-  const Real t202 = t200 - t201;
-  const Real t203 = t64 + t202;
-  const Real t204 = t199 * c_r_a_2_;
-  const Real t205 = t195 * s_r_a_2_;
-  const Real t206 = t204 + t205;
-  const Real t207 = t206 + t157;
-  const Real t208 = par.l2 * t206;
-  const Real t209 = t198 - t208;
-  const Real t210 = t209 - t155;
-
-  // rear: joint force
-  const Real t211 = c_r_a_1_ * t207;
-  const Real t212 = t203 * s_r_a_1_;
-  const Real t213 = t211 + t212;
-  const Real t214 = par.l1 * t213;
-  const Real t215 = t210 - t214;
-  const Real t216 = t215 - t150;
-  const Real t217 = t213 + t152;
-  const Real t218 = t203 * c_r_a_1_;
-  const Real t219 = t207 * s_r_a_1_;
-  const Real t220 = t218 - t219;
-  const Real t221 = t57 + t220;
-
-  // trunk: joint force
-  const Real t222 = t217 * c_r_a_0_;
-  const Real t223 = s_r_a_0_ * t221;
-  const Real t224 = t222 + t223;
-  const Real t225 = par.k54 + t224;
-  const Real t226 = par.k8 * t224;
-  const Real t227 = t216 - t226;
+  const Real t129 = t121 * t9;
+  const Real t130 = constant<Real>(0.0709020735931204697442L) * t129;
+  const Real t131 = t121 * t8;
+  const Real t132 = t25 * t131;
+  const Real t133 = t130 + t132;
+  const Real t134 = t133 + t128;
 
   // trunk: acceleration
-  const Real t228 = par.k8 * c_r_a_0_;
-  const Real t229 = par.k8 * s_r_a_0_;
+  const Real t135 = par.k8 * c_r_a_0_;
+  const Real t136 = par.k8 * s_r_a_0_;
 
   // rear: acceleration
-  const Real t230 = t229 * s_r_a_1_;
-  const Real t231 = t228 + par.l1;
-  const Real t232 = c_r_a_1_ * t231;
-  const Real t233 = t230 - t232;
-  const Real t234 = c_r_a_1_ * t229;
-  const Real t235 = t231 * s_r_a_1_;
-  const Real t236 = t234 + t235;
+  const Real t137 = t136 * s_r_a_1_;
+  const Real t138 = t135 + par.l1;
+  const Real t139 = c_r_a_1_ * t138;
+  const Real t140 = t137 - t139;
+  const Real t141 = c_r_a_1_ * t136;
+  const Real t142 = t138 * s_r_a_1_;
+  const Real t143 = t141 + t142;
 
   // peduncle: acceleration
-  const Real t237 = t233 - par.l2;
-  const Real t238 = t237 * c_r_a_2_;
-  const Real t239 = t236 * s_r_a_2_;
-  const Real t240 = t238 + t239;
-  const Real t241 = t237 * s_r_a_2_;
-  const Real t242 = t236 * c_r_a_2_;
-  const Real t243 = t241 - t242;
+  const Real t144 = t140 - par.l2;
+  const Real t145 = t144 * c_r_a_2_;
+  const Real t146 = t143 * s_r_a_2_;
+  const Real t147 = t145 + t146;
+  const Real t148 = t144 * s_r_a_2_;
+  const Real t149 = t143 * c_r_a_2_;
+  const Real t150 = t148 - t149;
 
   // fin: acceleration
-  const Real t244 = par.l3 - t240;
-  const Real t245 = t242 - t241;
+  const Real t151 = par.l3 - t147;
+  const Real t152 = t149 - t148;
 
   // fin_section_1: acceleration
-  const Real t246 = t244 + t27;
-  const Real t247 = t246 * t9;
-  const Real t248 = t245 - t24;
-  const Real t249 = t248 * t8;
-  const Real t250 = t247 - t249;
+  const Real t153 = t151 + t27;
+  const Real t154 = t153 * t9;
+  const Real t155 = t152 - t24;
+  const Real t156 = t155 * t8;
+  const Real t157 = t154 - t156;
 
   // fin_section_2: acceleration
-  const Real t251 = t244 + t31;
-  const Real t252 = t251 * t3;
-  const Real t253 = t245 - t28;
-  const Real t254 = t253 * t2;
-  const Real t255 = t252 - t254;
+  const Real t158 = t151 + t31;
+  const Real t159 = t158 * t3;
+  const Real t160 = t152 - t28;
+  const Real t161 = t160 * t2;
+  const Real t162 = t159 - t161;
 
   // trunk: wrench
-  const Real t256 = t229 * par.k1;
-  const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k41;
-  const Real t259 = t228 * par.k1;
-  const Real t260 = par.k2 + t259;
+  const Real t163 = t136 * par.k1;
+  const Real t164 = par.k2 * t135;
+  const Real t165 = t164 + par.k42;
+  const Real t166 = t135 * par.k1;
+  const Real t167 = par.k2 + t166;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k48;
-  const Real t262 = t261 + par.k39;
-  const Real t263 = t258 + t262;
-  const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k48;
-  const Real t266 = t265 + t260;
+  const Real t168 = t135 * par.k49;
+  const Real t169 = t168 + par.k40;
+  const Real t170 = t165 + t169;
+  const Real t171 = t135 * par.k12;
+  const Real t172 = t171 + par.k49;
+  const Real t173 = t172 + t167;
 
   // rear: wrench
-  const Real t267 = t233 * par.k22;
-  const Real t268 = t267 - par.k30;
-  const Real t269 = t233 * par.k30;
-  const Real t270 = par.k23 - t269;
-  const Real t271 = par.k22 * t236;
+  const Real t174 = t140 * par.k22;
+  const Real t175 = t174 - par.k30;
+  const Real t176 = t140 * par.k30;
+  const Real t177 = par.k23 - t176;
+  const Real t178 = par.k22 * t143;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k52;
-  const Real t273 = t272 - par.k42;
-  const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k42;
-  const Real t276 = par.k35 - t275;
-  const Real t277 = t270 + t276;
+  const Real t179 = t140 * par.k53;
+  const Real t180 = t179 - par.k43;
+  const Real t181 = t175 + t180;
+  const Real t182 = t140 * par.k43;
+  const Real t183 = par.k36 - t182;
+  const Real t184 = t177 + t183;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k36;
-  const Real t279 = par.k19 - t278;
-  const Real t280 = par.k18 * t240;
-  const Real t281 = t280 - par.k36;
-  const Real t282 = par.k18 * t243;
+  const Real t185 = t147 * par.k37;
+  const Real t186 = par.k19 - t185;
+  const Real t187 = par.k18 * t147;
+  const Real t188 = t187 - par.k37;
+  const Real t189 = par.k18 * t150;
 
   // peduncle: wrench of the fluid
-  const Real t283 = par.k31 * t240;
-  const Real t284 = t283 - par.k29;
-  const Real t285 = t284 + t281;
-  const Real t286 = par.k29 * t240;
-  const Real t287 = par.k44 - t286;
-  const Real t288 = t279 + t287;
+  const Real t190 = par.k31 * t147;
+  const Real t191 = t190 - par.k29;
+  const Real t192 = t191 + t188;
+  const Real t193 = par.k29 * t147;
+  const Real t194 = par.k45 - t193;
+  const Real t195 = t186 + t194;
 
   // fin: wrench
-  const Real t289 = t244 * t19;
-  const Real t290 = t10 * t245;
-  const Real t291 = t289 - t290;
-  const Real t292 = t15 + t291;
-  const Real t293 = par.k6 * t245;
-  const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k40;
-  const Real t296 = t16 * t245;
-  const Real t297 = t295 - t296;
-  const Real t298 = par.k46 + t297;
-  const Real t299 = t244 * par.k6;
-  const Real t300 = t299 + t19;
+  const Real t196 = t151 * t19;
+  const Real t197 = t10 * t152;
+  const Real t198 = t196 - t197;
+  const Real t199 = t15 + t198;
+  const Real t200 = par.k6 * t152;
+  const Real t201 = t200 - t10;
+  const Real t202 = t151 * par.k41;
+  const Real t203 = t16 * t152;
+  const Real t204 = t202 - t203;
+  const Real t205 = par.k47 + t204;
+  const Real t206 = t151 * par.k6;
+  const Real t207 = t206 + t19;
 
   // fin_section_1: wrench of the fluid
-  const Real t301 = par.k4 * t250;
+  const Real t208 = par.k4 * t157;
 
   // fin_section_2: wrench of the fluid
-  const Real t302 = par.k4 * t255;
+  const Real t209 = par.k4 * t162;
 
   // fin_section_2: joint force
-  const Real t303 = t302 * t3;
-  const Real t304 = t303 + t300;
-  const Real t305 = constant<Real>(0.710077701790478711739L) * t303;
-  const Real t306 = t302 * t2;
-  const Real t307 = t29 * t306;
-  const Real t308 = t305 + t307;
-  const Real t309 = t308 + t298;
-  const Real t310 = t303 * t31;
-  const Real t311 = t28 * t306;
-  const Real t312 = t310 + t311;
-  const Real t313 = t292 + t312;
-  const Real t314 = t294 - t306;
+  const Real t210 = t209 * t3;
+  const Real t211 = constant<Real>(0.710077701790478711739L) * t210;
+  const Real t212 = t209 * t2;
+  const Real t213 = t29 * t212;
+  const Real t214 = t211 + t213;
+  const Real t215 = t214 + t205;
 
   // fin_section_1: joint force
-  const Real t315 = t301 * t9;
-  const Real t316 = t304 + t315;
-  const Real t317 = constant<Real>(0.0709020735931204697442L) * t315;
-  const Real t318 = t301 * t8;
-  const Real t319 = t318 * t25;
-  const Real t320 = t317 + t319;
-  const Real t321 = t309 + t320;
-  const Real t322 = t318 * t24;
-  const Real t323 = t27 * t315;
-  const Real t324 = t322 + t323;
-  const Real t325 = t324 + t313;
-
-  // fin: joint force
-  const Real t326 = t285 - t316;
-  const Real t327 = t316 * par.l3;
-  const Real t328 = t327 + t325;
-  const Real t329 = t328 + t288;
-  const Real t330 = t318 - t314;
-  const Real t331 = t330 + t282;
-
-  // peduncle: joint force
-  const Real t332 = t331 * c_r_a_2_;
-  const Real t333 = t326 * s_r_a_2_;
-  const Real t334 = t332 - t333;
-  const Real t335 = t334 - t271;
-  const Real t336 = t326 * c_r_a_2_;
-  const Real t337 = t331 * s_r_a_2_;
-  const Real t338 = t336 + t337;
-  const Real t339 = par.l2 * t338;
-  const Real t340 = t329 - t339;
-  const Real t341 = t340 + t277;
-  const Real t342 = t274 + t338;
-
-  // rear: joint force
-  const Real t343 = c_r_a_1_ * t335;
-  const Real t344 = s_r_a_1_ * t342;
-  const Real t345 = t343 - t344;
-  const Real t346 = t345 - t256;
-  const Real t347 = t335 * s_r_a_1_;
-  const Real t348 = c_r_a_1_ * t342;
-  const Real t349 = t347 + t348;
-  const Real t350 = t349 - t266;
-  const Real t351 = par.l1 * t349;
-  const Real t352 = t341 - t351;
-  const Real t353 = t263 + t352;
-
-  // trunk: joint force
-  const Real t354 = t346 * s_r_a_0_;
-  const Real t355 = t350 * c_r_a_0_;
-  const Real t356 = t354 + t355;
-  const Real t357 = par.k8 * t356;
-  const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k55;
+  const Real t216 = t208 * t9;
+  const Real t217 = constant<Real>(0.0709020735931204697442L) * t216;
+  const Real t218 = t208 * t8;
+  const Real t219 = t218 * t25;
+  const Real t220 = t217 + t219;
+  const Real t221 = t215 + t220;
 
   // fin_section_1: acceleration
-  const Real t360 = t25 * t8;
-  const Real t361 = constant<Real>(0.0709020735931204697442L) * t9;
-  const Real t362 = t360 + t361;
+  const Real t222 = t25 * t8;
+  const Real t223 = constant<Real>(0.0709020735931204697442L) * t9;
+  const Real t224 = t222 + t223;
 
   // fin_section_2: acceleration
-  const Real t363 = t29 * t2;
-  const Real t364 = constant<Real>(0.710077701790478711739L) * t3;
-  const Real t365 = t363 + t364;
+  const Real t225 = t29 * t2;
+  const Real t226 = constant<Real>(0.710077701790478711739L) * t3;
+  const Real t227 = t225 + t226;
 
   // fin_section_1: wrench of the fluid
-  const Real t366 = par.k4 * t362;
+  const Real t228 = par.k4 * t224;
 
   // fin_section_2: wrench of the fluid
-  const Real t367 = par.k4 * t365;
+  const Real t229 = par.k4 * t227;
 
   // fin_section_2: joint force
-  const Real t368 = t367 * t3;
-  const Real t369 = constant<Real>(0.710077701790478711739L) * t368;
-  const Real t370 = t367 * t2;
-  const Real t371 = t29 * t370;
-  const Real t372 = t369 + t371;
-  const Real t373 = par.k43 + t372;
+  const Real t230 = t229 * t3;
+  const Real t231 = constant<Real>(0.710077701790478711739L) * t230;
+  const Real t232 = t229 * t2;
+  const Real t233 = t29 * t232;
+  const Real t234 = t231 + t233;
+  const Real t235 = par.k44 + t234;
 
   // fin_section_1: joint force
-  const Real t374 = t9 * t366;
-  const Real t375 = constant<Real>(0.0709020735931204697442L) * t374;
-  const Real t376 = t366 * t8;
-  const Real t377 = t376 * t25;
-  const Real t378 = t375 + t377;
-  const Real t379 = t378 + t373;
+  const Real t236 = t9 * t228;
+  const Real t237 = constant<Real>(0.0709020735931204697442L) * t236;
+  const Real t238 = t228 * t8;
+  const Real t239 = t238 * t25;
+  const Real t240 = t237 + t239;
+  const Real t241 = t240 + t235;
 
   // springs, dampers and generalised forces
-  const Real t380 = r_p[0] * constant<Real>(2.0L);
-  const Real t381 = t380 * par.k71;
+  const Real t242 = r_p[0] * constant<Real>(2.0L);
+  const Real t243 = t242 * par.k72;
 
   // trunk: twist
-  const Real t382 = r_a_dot[0] + nu[2];
-  const Real t383 = par.k8 * nu[2];
-  const Real t384 = nu[1] - t383;
-  const Real t385 = c_r_a_0_ * t384;
-  const Real t386 = s_r_a_0_ * nu[0];
-  const Real t387 = t385 - t386;
-  const Real t388 = s_r_a_0_ * t384;
-  const Real t389 = c_r_a_0_ * nu[0];
-  const Real t390 = t388 + t389;
+  const Real t244 = r_a_dot[0] + nu[2];
+  const Real t245 = par.k8 * nu[2];
+  const Real t246 = nu[1] - t245;
+  const Real t247 = c_r_a_0_ * t246;
+  const Real t248 = s_r_a_0_ * nu[0];
+  const Real t249 = t247 - t248;
+  const Real t250 = s_r_a_0_ * t246;
+  const Real t251 = c_r_a_0_ * nu[0];
+  const Real t252 = t250 + t251;
 
   // rear: twist
-  const Real t391 = t382 * par.l1;
-  const Real t392 = t387 - t391;
-  const Real t393 = c_r_a_1_ * t392;
-  const Real t394 = s_r_a_1_ * t390;
-  const Real t395 = t393 - t394;
-  const Real t396 = t382 + r_a_dot[1];
-  const Real t397 = t392 * s_r_a_1_;
-  const Real t398 = c_r_a_1_ * t390;
-  const Real t399 = t397 + t398;
+  const Real t253 = t244 * par.l1;
+  const Real t254 = t249 - t253;
+  const Real t255 = c_r_a_1_ * t254;
+  const Real t256 = s_r_a_1_ * t252;
+  const Real t257 = t255 - t256;
+  const Real t258 = t244 + r_a_dot[1];
+  const Real t259 = t254 * s_r_a_1_;
+  const Real t260 = c_r_a_1_ * t252;
+  const Real t261 = t259 + t260;
 
   // peduncle: twist
-  const Real t400 = c_r_a_2_ * t399;
-  const Real t401 = par.l2 * t396;
-  const Real t402 = t395 - t401;
-  const Real t403 = t402 * s_r_a_2_;
-  const Real t404 = t400 + t403;
-  const Real t405 = t396 + r_a_dot[2];
-  const Real t406 = t402 * c_r_a_2_;
-  const Real t407 = t399 * s_r_a_2_;
-  const Real t408 = t406 - t407;
+  const Real t262 = c_r_a_2_ * t261;
+  const Real t263 = par.l2 * t258;
+  const Real t264 = t257 - t263;
+  const Real t265 = t264 * s_r_a_2_;
+  const Real t266 = t262 + t265;
+  const Real t267 = t258 + r_a_dot[2];
+  const Real t268 = t264 * c_r_a_2_;
+  const Real t269 = t261 * s_r_a_2_;
+  const Real t270 = t268 - t269;
 
   // fin: twist
-  const Real t409 = t405 * par.l3;
-  const Real t410 = t409 - t408;
+  const Real t271 = t267 * par.l3;
+  const Real t272 = t271 - t270;
 
   // fin_tip: twist
-  const Real t411 = t23 * t405;
-  const Real t412 = t411 + t410;
-  const Real t413 = nu[3] + t412;
-  const Real t414 = t413 * t5;
-  const Real t415 = r_p[0] * t405;
-  const Real t416 = t404 + t415;
-  const Real t417 = t20 * nu[3];
-  const Real t418 = t416 + t417;
-  const Real t419 = t418 * t6;
-  const Real t420 = t414 - t419;
-  const Real t421 = t418 * t5;
-  const Real t422 = t6 * t413;
-  const Real t423 = t421 + t422;
+  const Real t273 = t23 * t267;
+  const Real t274 = t273 + t272;
+  const Real t275 = nu[3] + t274;
+  const Real t276 = t275 * t5;
+  const Real t277 = r_p[0] * t267;
+  const Real t278 = t266 + t277;
+  const Real t279 = t20 * nu[3];
+  const Real t280 = t278 + t279;
+  const Real t281 = t280 * t6;
+  const Real t282 = t276 - t281;
+  const Real t283 = t280 * t5;
+  const Real t284 = t6 * t275;
+  const Real t285 = t283 + t284;
 
   // fin_section_1: twist
-  const Real t424 = constant<Real>(0.0709020735931204697442L) * nu[3];
-  const Real t425 = t405 * t27;
-  const Real t426 = t425 + t410;
-  const Real t427 = t424 + t426;
-  const Real t428 = t427 * t8;
-  const Real t429 = t405 * t24;
-  const Real t430 = t404 + t429;
-  const Real t431 = t25 * nu[3];
-  const Real t432 = t430 + t431;
-  const Real t433 = t9 * t432;
-  const Real t434 = t428 - t433;
-  const Real t435 = par.k5 * nu[3];
-  const Real t436 = t435 + t405;
-  const Real t437 = t8 * t432;
-  const Real t438 = t427 * t9;
-  const Real t439 = t437 + t438;
+  const Real t286 = constant<Real>(0.0709020735931204697442L) * nu[3];
+  const Real t287 = t267 * t27;
+  const Real t288 = t287 + t272;
+  const Real t289 = t286 + t288;
+  const Real t290 = t289 * t8;
+  const Real t291 = t267 * t24;
+  const Real t292 = t266 + t291;
+  const Real t293 = t25 * nu[3];
+  const Real t294 = t292 + t293;
+  const Real t295 = t9 * t294;
+  const Real t296 = t290 - t295;
+  const Real t297 = par.k5 * nu[3];
+  const Real t298 = t297 + t267;
+  const Real t299 = t8 * t294;
+  const Real t300 = t289 * t9;
+  const Real t301 = t299 + t300;
 
   // fin_section_2: twist
-  const Real t440 = constant<Real>(0.710077701790478711739L) * nu[3];
-  const Real t441 = t31 * t405;
-  const Real t442 = t441 + t410;
-  const Real t443 = t440 + t442;
-  const Real t444 = t443 * t3;
-  const Real t445 = t28 * t405;
-  const Real t446 = t445 + t404;
-  const Real t447 = t29 * nu[3];
-  const Real t448 = t446 + t447;
-  const Real t449 = t448 * t2;
-  const Real t450 = t444 + t449;
-  const Real t451 = t443 * t2;
-  const Real t452 = t448 * t3;
-  const Real t453 = t451 - t452;
-  const Real t454 = par.k16 * nu[3];
-  const Real t455 = t454 + t405;
+  const Real t302 = constant<Real>(0.710077701790478711739L) * nu[3];
+  const Real t303 = t31 * t267;
+  const Real t304 = t303 + t272;
+  const Real t305 = t302 + t304;
+  const Real t306 = t305 * t3;
+  const Real t307 = t28 * t267;
+  const Real t308 = t307 + t266;
+  const Real t309 = t29 * nu[3];
+  const Real t310 = t308 + t309;
+  const Real t311 = t310 * t2;
+  const Real t312 = t306 + t311;
+  const Real t313 = t305 * t2;
+  const Real t314 = t310 * t3;
+  const Real t315 = t313 - t314;
+  const Real t316 = par.k16 * nu[3];
+  const Real t317 = t316 + t267;
 
   // head: acceleration
-  const Real t456 = nu[2] * nu[2];
-  const Real t457 = nu[1] * nu[2];
-  const Real t458 = nu[0] * nu[2];
+  const Real t318 = nu[2] * nu[2];
+  const Real t319 = nu[1] * nu[2];
+  const Real t320 = nu[0] * nu[2];
 
   // trunk: acceleration
-  const Real t459 = t458 * c_r_a_0_;
-  const Real t460 = par.k8 * t456;
-  const Real t461 = t460 - t457;
-  const Real t462 = s_r_a_0_ * t461;
-  const Real t463 = t459 - t462;
-  const Real t464 = s_r_a_0_ * t458;
-  const Real t465 = t461 * c_r_a_0_;
-  const Real t466 = t464 + t465;
-  const Real t467 = t382 * t382;
+  const Real t321 = t320 * c_r_a_0_;
+  const Real t322 = par.k8 * t318;
+  const Real t323 = t322 - t319;
+  const Real t324 = s_r_a_0_ * t323;
+  const Real t325 = t321 - t324;
+  const Real t326 = s_r_a_0_ * t320;
+  const Real t327 = t323 * c_r_a_0_;
+  const Real t328 = t326 + t327;
+  const Real t329 = t244 * t244;
 
   // rear: acceleration
-  const Real t468 = par.l1 * r_a_ddot[0];
-  const Real t469 = t463 - t468;
-  const Real t470 = c_r_a_1_ * t469;
-  const Real t471 = par.l1 * t467;
-  const Real t472 = t466 + t471;
-  const Real t473 = t472 * s_r_a_1_;
-  const Real t474 = t470 - t473;
-  const Real t475 = c_r_a_1_ * t472;
-  const Real t476 = s_r_a_1_ * t469;
-  const Real t477 = t475 + t476;
-  const Real t478 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t479 = t396 * t396;
+  const Real t330 = par.l1 * r_a_ddot[0];
+  const Real t331 = t325 - t330;
+  const Real t332 = c_r_a_1_ * t331;
+  const Real t333 = par.l1 * t329;
+  const Real t334 = t328 + t333;
+  const Real t335 = t334 * s_r_a_1_;
+  const Real t336 = t332 - t335;
+  const Real t337 = c_r_a_1_ * t334;
+  const Real t338 = s_r_a_1_ * t331;
+  const Real t339 = t337 + t338;
+  const Real t340 = r_a_ddot[1] + r_a_ddot[0];
+  const Real t341 = t258 * t258;
 
   // peduncle: acceleration
-  const Real t480 = r_a_ddot[2] + t478;
-  const Real t481 = t405 * t405;
-  const Real t482 = par.l2 * t479;
-  const Real t483 = t482 + t477;
-  const Real t484 = t483 * c_r_a_2_;
-  const Real t485 = par.l2 * t478;
-  const Real t486 = t474 - t485;
-  const Real t487 = t486 * s_r_a_2_;
-  const Real t488 = t484 + t487;
-  const Real t489 = t486 * c_r_a_2_;
-  const Real t490 = t483 * s_r_a_2_;
-  const Real t491 = t489 - t490;
+  const Real t342 = r_a_ddot[2] + t340;
+  const Real t343 = t267 * t267;
+  const Real t344 = par.l2 * t341;
+  const Real t345 = t344 + t339;
+  const Real t346 = t345 * c_r_a_2_;
+  const Real t347 = par.l2 * t340;
+  const Real t348 = t336 - t347;
+  const Real t349 = t348 * s_r_a_2_;
+  const Real t350 = t346 + t349;
+  const Real t351 = t348 * c_r_a_2_;
+  const Real t352 = t345 * s_r_a_2_;
+  const Real t353 = t351 - t352;
 
   // fin: acceleration
-  const Real t492 = t481 * par.l3;
-  const Real t493 = t492 + t488;
-  const Real t494 = t480 * par.l3;
-  const Real t495 = t494 - t491;
+  const Real t354 = t343 * par.l3;
+  const Real t355 = t354 + t350;
+  const Real t356 = t342 * par.l3;
+  const Real t357 = t356 - t353;
 
   // fin_tip: acceleration
-  const Real t496 = nu[3] * nu[3];
+  const Real t358 = nu[3] * nu[3];
 
   // fin_section_1: acceleration
-  const Real t497 = par.k9 * t496;
-  const Real t498 = t480 * t24;
-  const Real t499 = t481 * t27;
-  const Real t500 = t498 + t499;
-  const Real t501 = t500 + t493;
-  const Real t502 = t405 * t424;
-  const Real t503 = constant<Real>(2.0L) * t502;
-  const Real t504 = t501 + t503;
-  const Real t505 = t497 + t504;
-  const Real t506 = t505 * t8;
-  const Real t507 = t480 * t27;
-  const Real t508 = t481 * t24;
-  const Real t509 = t507 - t508;
-  const Real t510 = t509 + t495;
-  const Real t511 = t431 * t405;
-  const Real t512 = t511 * constant<Real>(2.0L);
-  const Real t513 = t510 - t512;
-  const Real t514 = t9 * t513;
-  const Real t515 = t506 + t514;
+  const Real t359 = par.k9 * t358;
+  const Real t360 = t342 * t24;
+  const Real t361 = t343 * t27;
+  const Real t362 = t360 + t361;
+  const Real t363 = t362 + t355;
+  const Real t364 = t267 * t286;
+  const Real t365 = constant<Real>(2.0L) * t364;
+  const Real t366 = t363 + t365;
+  const Real t367 = t359 + t366;
+  const Real t368 = t367 * t8;
+  const Real t369 = t342 * t27;
+  const Real t370 = t343 * t24;
+  const Real t371 = t369 - t370;
+  const Real t372 = t371 + t357;
+  const Real t373 = t293 * t267;
+  const Real t374 = t373 * constant<Real>(2.0L);
+  const Real t375 = t372 - t374;
+  const Real t376 = t9 * t375;
+  const Real t377 = t368 + t376;
 
   // fin_section_2: acceleration
-  const Real t516 = t480 * t31;
-  const Real t517 = t28 * t481;
-  const Real t518 = t516 - t517;
-  const Real t519 = t518 + t495;
-  const Real t520 = t405 * t447;
-  const Real t521 = t520 * constant<Real>(2.0L);
-  const Real t522 = t519 - t521;
-  const Real t523 = t522 * t3;
-  const Real t524 = t496 * par.k51;
-  const Real t525 = t440 * t405;
-  const Real t526 = t525 * constant<Real>(2.0L);
-  const Real t527 = t31 * t481;
-  const Real t528 = t28 * t480;
-  const Real t529 = t527 + t528;
-  const Real t530 = t529 + t493;
-  const Real t531 = t526 + t530;
-  const Real t532 = t524 + t531;
-  const Real t533 = t532 * t2;
-  const Real t534 = t523 + t533;
+  const Real t378 = t342 * t31;
+  const Real t379 = t28 * t343;
+  const Real t380 = t378 - t379;
+  const Real t381 = t380 + t357;
+  const Real t382 = t267 * t309;
+  const Real t383 = t382 * constant<Real>(2.0L);
+  const Real t384 = t381 - t383;
+  const Real t385 = t384 * t3;
+  const Real t386 = t358 * par.k52;
+  const Real t387 = t302 * t267;
+  const Real t388 = t387 * constant<Real>(2.0L);
+  const Real t389 = t31 * t343;
+  const Real t390 = t28 * t342;
+  const Real t391 = t389 + t390;
+  const Real t392 = t391 + t355;
+  const Real t393 = t388 + t392;
+  const Real t394 = t386 + t393;
+  const Real t395 = t394 * t2;
+  const Real t396 = t385 + t395;
 
   // head: wrench
-  const Real t535 = par.k49 * t457;
-  const Real t536 = par.k49 * t458;
+  const Real t397 = par.k50 * t319;
+  const Real t398 = par.k50 * t320;
 
   // head: wrench of the fluid
-  const Real t537 = par.k15 * nu[1];
-  const Real t538 = t537 * nu[2];
-  const Real t539 = t535 + t538;
-  const Real t540 = par.m_x * nu[0];
-  const Real t541 = t540 * nu[2];
-  const Real t542 = t541 + t536;
-  const Real t543 = t537 * nu[0];
-  const Real t544 = t540 * nu[1];
-  const Real t545 = t543 - t544;
+  const Real t399 = par.k15 * nu[1];
+  const Real t400 = t399 * nu[2];
+  const Real t401 = t397 + t400;
+  const Real t402 = par.m_x * nu[0];
+  const Real t403 = t402 * nu[2];
+  const Real t404 = t403 + t398;
+  const Real t405 = t399 * nu[0];
+  const Real t406 = t402 * nu[1];
+  const Real t407 = t405 - t406;
 
   // trunk: wrench
-  const Real t546 = t463 * par.k1;
-  const Real t547 = par.k2 * r_a_ddot[0];
-  const Real t548 = t546 - t547;
-  const Real t549 = t466 * par.k1;
-  const Real t550 = par.k2 * t467;
-  const Real t551 = t549 + t550;
-  const Real t552 = par.k41 * r_a_ddot[0];
-  const Real t553 = par.k2 * t463;
-  const Real t554 = t552 - t553;
+  const Real t408 = t325 * par.k1;
+  const Real t409 = par.k2 * r_a_ddot[0];
+  const Real t410 = t408 - t409;
+  const Real t411 = t328 * par.k1;
+  const Real t412 = par.k2 * t329;
+  const Real t413 = t411 + t412;
+  const Real t414 = par.k42 * r_a_ddot[0];
+  const Real t415 = par.k2 * t325;
+  const Real t416 = t414 - t415;
 
   // trunk: wrench of the fluid
-  const Real t555 = t382 * t390;
-  const Real t556 = t463 - t555;
-  const Real t557 = par.k12 * t556;
-  const Real t558 = par.k48 * r_a_ddot[0];
-  const Real t559 = t557 - t558;
-  const Real t560 = t548 + t559;
-  const Real t561 = par.k12 * t387;
-  const Real t562 = t382 * par.k48;
-  const Real t563 = t561 - t562;
-  const Real t564 = t563 * t390;
-  const Real t565 = par.k39 * r_a_ddot[0];
-  const Real t566 = t556 * par.k48;
-  const Real t567 = t565 - t566;
-  const Real t568 = t564 + t567;
-  const Real t569 = t568 + t554;
-  const Real t570 = t563 * t382;
-  const Real t571 = t551 - t570;
+  const Real t417 = t244 * t252;
+  const Real t418 = t325 - t417;
+  const Real t419 = par.k12 * t418;
+  const Real t420 = par.k49 * r_a_ddot[0];
+  const Real t421 = t419 - t420;
+  const Real t422 = t410 + t421;
+  const Real t423 = par.k12 * t249;
+  const Real t424 = t244 * par.k49;
+  const Real t425 = t423 - t424;
+  const Real t426 = t425 * t252;
+  const Real t427 = par.k40 * r_a_ddot[0];
+  const Real t428 = t418 * par.k49;
+  const Real t429 = t427 - t428;
+  const Real t430 = t426 + t429;
+  const Real t431 = t430 + t416;
+  const Real t432 = t425 * t244;
+  const Real t433 = t413 - t432;
 
   // rear: wrench
-  const Real t572 = t474 * par.k22;
-  const Real t573 = par.k30 * t478;
-  const Real t574 = t572 - t573;
-  const Real t575 = par.k22 * t477;
-  const Real t576 = par.k30 * t479;
-  const Real t577 = t575 + t576;
-  const Real t578 = par.k23 * t478;
-  const Real t579 = t474 * par.k30;
-  const Real t580 = t578 - t579;
+  const Real t434 = t336 * par.k22;
+  const Real t435 = par.k30 * t340;
+  const Real t436 = t434 - t435;
+  const Real t437 = par.k22 * t339;
+  const Real t438 = par.k30 * t341;
+  const Real t439 = t437 + t438;
+  const Real t440 = par.k23 * t340;
+  const Real t441 = t336 * par.k30;
+  const Real t442 = t440 - t441;
 
   // rear: wrench of the fluid
-  const Real t581 = t395 * par.k52;
-  const Real t582 = t396 * par.k42;
-  const Real t583 = t581 - t582;
-  const Real t584 = t399 * t583;
-  const Real t585 = par.k35 * t478;
-  const Real t586 = t396 * t399;
-  const Real t587 = t474 - t586;
-  const Real t588 = par.k42 * t587;
-  const Real t589 = t585 - t588;
-  const Real t590 = t584 + t589;
-  const Real t591 = t590 + t580;
-  const Real t592 = t587 * par.k52;
-  const Real t593 = par.k42 * t478;
-  const Real t594 = t592 - t593;
-  const Real t595 = t574 + t594;
-  const Real t596 = t396 * t583;
-  const Real t597 = t577 - t596;
+  const Real t443 = t257 * par.k53;
+  const Real t444 = t258 * par.k43;
+  const Real t445 = t443 - t444;
+  const Real t446 = t261 * t445;
+  const Real t447 = par.k36 * t340;
+  const Real t448 = t258 * t261;
+  const Real t449 = t336 - t448;
+  const Real t450 = par.k43 * t449;
+  const Real t451 = t447 - t450;
+  const Real t452 = t446 + t451;
+  const Real t453 = t452 + t442;
+  const Real t454 = t449 * par.k53;
+  const Real t455 = par.k43 * t340;
+  const Real t456 = t454 - t455;
+  const Real t457 = t436 + t456;
+  const Real t458 = t258 * t445;
+  const Real t459 = t439 - t458;
 
   // peduncle: wrench
-  const Real t598 = par.k18 * t491;
-  const Real t599 = t480 * par.k36;
-  const Real t600 = t598 - t599;
-  const Real t601 = par.k19 * t480;
-  const Real t602 = par.k36 * t491;
-  const Real t603 = t601 - t602;
-  const Real t604 = t481 * par.k36;
-  const Real t605 = par.k18 * t488;
-  const Real t606 = t604 + t605;
+  const Real t460 = par.k18 * t353;
+  const Real t461 = t342 * par.k37;
+  const Real t462 = t460 - t461;
+  const Real t463 = par.k19 * t342;
+  const Real t464 = par.k37 * t353;
+  const Real t465 = t463 - t464;
+  const Real t466 = t343 * par.k37;
+  const Real t467 = par.k18 * t350;
+  const Real t468 = t466 + t467;
 
   // peduncle: wrench of the fluid
-  const Real t607 = t480 * par.k44;
-  const Real t608 = t404 * t405;
-  const Real t609 = t491 - t608;
-  const Real t610 = par.k29 * t609;
-  const Real t611 = t607 - t610;
-  const Real t612 = par.k31 * t408;
-  const Real t613 = par.k29 * t405;
-  const Real t614 = t612 - t613;
-  const Real t615 = t404 * t614;
-  const Real t616 = t611 + t615;
-  const Real t617 = t616 + t603;
-  const Real t618 = par.k31 * t609;
-  const Real t619 = t480 * par.k29;
-  const Real t620 = t618 - t619;
-  const Real t621 = t600 + t620;
-  const Real t622 = t614 * t405;
-  const Real t623 = t606 - t622;
+  const Real t469 = t342 * par.k45;
+  const Real t470 = t266 * t267;
+  const Real t471 = t353 - t470;
+  const Real t472 = par.k29 * t471;
+  const Real t473 = t469 - t472;
+  const Real t474 = par.k31 * t270;
+  const Real t475 = par.k29 * t267;
+  const Real t476 = t474 - t475;
+  const Real t477 = t266 * t476;
+  const Real t478 = t473 + t477;
+  const Real t479 = t478 + t465;
+  const Real t480 = par.k31 * t471;
+  const Real t481 = t342 * par.k29;
+  const Real t482 = t480 - t481;
+  const Real t483 = t462 + t482;
+  const Real t484 = t476 * t267;
+  const Real t485 = t468 - t484;
 
   // fin: wrench
-  const Real t624 = t480 * t19;
-  const Real t625 = t10 * t481;
-  const Real t626 = t624 - t625;
-  const Real t627 = par.k6 * t495;
-  const Real t628 = t626 + t627;
-  const Real t629 = t16 * nu[3];
-  const Real t630 = t629 * t405;
-  const Real t631 = t630 * constant<Real>(2.0L);
-  const Real t632 = t628 - t631;
-  const Real t633 = nu[3] * par.k40;
-  const Real t634 = t633 * t405;
-  const Real t635 = t634 * constant<Real>(2.0L);
-  const Real t636 = par.k24 * t496;
-  const Real t637 = t635 + t636;
-  const Real t638 = t493 * par.k6;
-  const Real t639 = t10 * t480;
-  const Real t640 = t481 * t19;
-  const Real t641 = t639 + t640;
-  const Real t642 = t638 + t641;
-  const Real t643 = t637 + t642;
-  const Real t644 = t16 * t493;
-  const Real t645 = par.k40 * t495;
-  const Real t646 = t644 + t645;
-  const Real t647 = t12 * t481;
-  const Real t648 = t646 + t647;
-  const Real t649 = t480 * par.k46;
-  const Real t650 = t648 + t649;
-  const Real t651 = t481 * t11;
-  const Real t652 = t650 - t651;
-  const Real t653 = nu[3] * t11;
-  const Real t654 = t12 * nu[3];
-  const Real t655 = t653 - t654;
-  const Real t656 = t405 * t655;
-  const Real t657 = constant<Real>(2.0L) * t656;
-  const Real t658 = t19 * t495;
-  const Real t659 = t10 * t493;
-  const Real t660 = t658 + t659;
-  const Real t661 = t480 * t15;
-  const Real t662 = t660 + t661;
-  const Real t663 = t657 + t662;
+  const Real t486 = t342 * t19;
+  const Real t487 = t10 * t343;
+  const Real t488 = t486 - t487;
+  const Real t489 = par.k6 * t357;
+  const Real t490 = t488 + t489;
+  const Real t491 = t16 * nu[3];
+  const Real t492 = t491 * t267;
+  const Real t493 = t492 * constant<Real>(2.0L);
+  const Real t494 = t490 - t493;
+  const Real t495 = nu[3] * par.k41;
+  const Real t496 = t495 * t267;
+  const Real t497 = t496 * constant<Real>(2.0L);
+  const Real t498 = par.k24 * t358;
+  const Real t499 = t497 + t498;
+  const Real t500 = t355 * par.k6;
+  const Real t501 = t10 * t342;
+  const Real t502 = t343 * t19;
+  const Real t503 = t501 + t502;
+  const Real t504 = t500 + t503;
+  const Real t505 = t499 + t504;
+  const Real t506 = t16 * t355;
+  const Real t507 = par.k41 * t357;
+  const Real t508 = t506 + t507;
+  const Real t509 = t12 * t343;
+  const Real t510 = t508 + t509;
+  const Real t511 = t342 * par.k47;
+  const Real t512 = t510 + t511;
+  const Real t513 = t343 * t11;
+  const Real t514 = t512 - t513;
+  const Real t515 = nu[3] * t11;
+  const Real t516 = t12 * nu[3];
+  const Real t517 = t515 - t516;
+  const Real t518 = t267 * t517;
+  const Real t519 = constant<Real>(2.0L) * t518;
+  const Real t520 = t19 * t357;
+  const Real t521 = t10 * t355;
+  const Real t522 = t520 + t521;
+  const Real t523 = t342 * t15;
+  const Real t524 = t522 + t523;
+  const Real t525 = t519 + t524;
 
   // fin_section_1: wrench of the fluid
-  const Real t664 = par.k4 * t439;
-  const Real t665 = t434 * t664;
-  const Real t666 = t434 * t436;
-  const Real t667 = t515 - t666;
-  const Real t668 = par.k4 * t667;
-  const Real t669 = t436 * t664;
+  const Real t526 = par.k4 * t301;
+  const Real t527 = t296 * t526;
+  const Real t528 = t296 * t298;
+  const Real t529 = t377 - t528;
+  const Real t530 = par.k4 * t529;
+  const Real t531 = t298 * t526;
 
   // fin_section_2: wrench of the fluid
-  const Real t670 = par.k4 * t450;
-  const Real t671 = t453 * t670;
-  const Real t672 = t670 * t455;
-  const Real t673 = t453 * t455;
-  const Real t674 = t534 - t673;
-  const Real t675 = par.k4 * t674;
+  const Real t532 = par.k4 * t312;
+  const Real t533 = t315 * t532;
+  const Real t534 = t532 * t317;
+  const Real t535 = t315 * t317;
+  const Real t536 = t396 - t535;
+  const Real t537 = par.k4 * t536;
 
   // applied wrenches
-  const Real t676 = abs(t450);
-  const Real t677 = par.k61 * t676;
-  const Real t678 = par.k3 * t677;
-  const Real t679 = t678 * t450;
-  const Real t680 = t679 + t675;
-  const Real t681 = par.k20 * nu[2];
-  const Real t682 = t681 + nu[1];
-  const Real t683 = abs(t682);
-  const Real t684 = t683 * par.k70;
-  const Real t685 = par.k14 * t684;
-  const Real t686 = t682 * t685;
-  const Real t687 = nu[1] - t681;
-  const Real t688 = abs(t687);
-  const Real t689 = t688 * par.k70;
-  const Real t690 = par.k14 * t689;
-  const Real t691 = t687 * t690;
-  const Real t692 = t691 + t542;
-  const Real t693 = t686 + t692;
-  const Real t694 = abs(t434);
-  const Real t695 = t694 * par.k67;
-  const Real t696 = par.k3 * t695;
-  const Real t697 = t434 * t696;
-  const Real t698 = t697 - t669;
-  const Real t699 = t423 * t423;
-  const Real t700 = par.m_w * t699;
-  const Real t701 = constant<Real>(0.5L) * t700;
-  const Real t702 = abs(t404);
-  const Real t703 = par.k62 * t702;
-  const Real t704 = par.k27 * t703;
-  const Real t705 = t404 * t704;
-  const Real t706 = t705 + t623;
-  const Real t707 = t706 + t705;
-  const Real t708 = par.k34 * t396;
-  const Real t709 = t395 - t708;
-  const Real t710 = abs(t709);
-  const Real t711 = par.k64 * t710;
-  const Real t712 = par.k33 * t711;
-  const Real t713 = t712 * t709;
-  const Real t714 = par.k34 * t713;
-  const Real t715 = t591 - t714;
-  const Real t716 = t396 * par.k32;
-  const Real t717 = t395 - t716;
-  const Real t718 = abs(t717);
-  const Real t719 = t718 * par.k64;
-  const Real t720 = t719 * par.k33;
-  const Real t721 = t717 * t720;
-  const Real t722 = par.k32 * t721;
-  const Real t723 = t715 - t722;
-  const Real t724 = par.k28 * t405;
-  const Real t725 = t408 - t724;
-  const Real t726 = abs(t725);
-  const Real t727 = t726 * par.k65;
-  const Real t728 = par.k27 * t727;
-  const Real t729 = t725 * t728;
-  const Real t730 = t729 + t621;
-  const Real t731 = par.k26 * t405;
-  const Real t732 = t408 - t731;
-  const Real t733 = abs(t732);
-  const Real t734 = par.k65 * t733;
-  const Real t735 = t734 * par.k27;
-  const Real t736 = t735 * t732;
-  const Real t737 = t730 + t736;
-  const Real t738 = t382 * par.k37;
-  const Real t739 = t387 - t738;
-  const Real t740 = abs(t739);
-  const Real t741 = t740 * par.k68;
-  const Real t742 = par.k11 * t741;
-  const Real t743 = t742 * t739;
-  const Real t744 = t743 + t560;
-  const Real t745 = t382 * par.k38;
-  const Real t746 = t387 - t745;
-  const Real t747 = abs(t746);
-  const Real t748 = t747 * par.k68;
-  const Real t749 = par.k11 * t748;
-  const Real t750 = t746 * t749;
-  const Real t751 = t744 + t750;
-  const Real t752 = t686 * par.k20;
-  const Real t753 = par.k20 * t691;
-  const Real t754 = t545 - t753;
-  const Real t755 = t752 + t754;
-  const Real t756 = t713 + t595;
-  const Real t757 = t756 + t721;
-  const Real t758 = abs(t399);
-  const Real t759 = par.k66 * t758;
-  const Real t760 = t759 * par.k33;
-  const Real t761 = t760 * t399;
-  const Real t762 = t761 + t597;
-  const Real t763 = t761 + t762;
-  const Real t764 = abs(t453);
-  const Real t765 = par.k67 * t764;
-  const Real t766 = par.k3 * t765;
-  const Real t767 = t453 * t766;
-  const Real t768 = t767 - t672;
-  const Real t769 = par.k28 * t729;
-  const Real t770 = t617 - t769;
-  const Real t771 = par.k26 * t736;
-  const Real t772 = t770 - t771;
-  const Real t773 = abs(t390);
-  const Real t774 = par.k69 * t773;
-  const Real t775 = par.k11 * t774;
-  const Real t776 = t775 * t390;
-  const Real t777 = t776 + t571;
-  const Real t778 = t776 + t777;
-  const Real t779 = abs(t439);
-  const Real t780 = par.k61 * t779;
-  const Real t781 = par.k3 * t780;
-  const Real t782 = t439 * t781;
-  const Real t783 = t668 + t782;
-  const Real t784 = t420 * t423;
-  const Real t785 = t784 * par.m_w;
-  const Real t786 = abs(nu[0]);
-  const Real t787 = par.k63 * t786;
-  const Real t788 = par.k14 * t787;
-  const Real t789 = t788 * nu[0];
-  const Real t790 = t789 - t539;
-  const Real t791 = t790 + t789;
-  const Real t792 = t743 * par.k37;
-  const Real t793 = t569 - t792;
-  const Real t794 = t750 * par.k38;
-  const Real t795 = t793 - t794;
+  const Real t538 = abs(t312);
+  const Real t539 = par.k62 * t538;
+  const Real t540 = par.k3 * t539;
+  const Real t541 = t540 * t312;
+  const Real t542 = t541 + t537;
+  const Real t543 = par.k20 * nu[2];
+  const Real t544 = t543 + nu[1];
+  const Real t545 = abs(t544);
+  const Real t546 = t545 * par.k71;
+  const Real t547 = par.k14 * t546;
+  const Real t548 = t544 * t547;
+  const Real t549 = nu[1] - t543;
+  const Real t550 = abs(t549);
+  const Real t551 = t550 * par.k71;
+  const Real t552 = par.k14 * t551;
+  const Real t553 = t549 * t552;
+  const Real t554 = t553 + t404;
+  const Real t555 = t548 + t554;
+  const Real t556 = abs(t296);
+  const Real t557 = t556 * par.k68;
+  const Real t558 = par.k3 * t557;
+  const Real t559 = t296 * t558;
+  const Real t560 = t559 - t531;
+  const Real t561 = t285 * t285;
+  const Real t562 = par.m_w * t561;
+  const Real t563 = constant<Real>(0.5L) * t562;
+  const Real t564 = abs(t266);
+  const Real t565 = par.k63 * t564;
+  const Real t566 = par.k27 * t565;
+  const Real t567 = t266 * t566;
+  const Real t568 = t567 + t485;
+  const Real t569 = t568 + t567;
+  const Real t570 = par.k35 * t258;
+  const Real t571 = t257 - t570;
+  const Real t572 = abs(t571);
+  const Real t573 = par.k65 * t572;
+  const Real t574 = par.k34 * t573;
+  const Real t575 = t574 * t571;
+  const Real t576 = par.k35 * t575;
+  const Real t577 = t453 - t576;
+  const Real t578 = t258 * par.k33;
+  const Real t579 = t257 - t578;
+  const Real t580 = abs(t579);
+  const Real t581 = t580 * par.k65;
+  const Real t582 = t581 * par.k34;
+  const Real t583 = t579 * t582;
+  const Real t584 = par.k33 * t583;
+  const Real t585 = t577 - t584;
+  const Real t586 = par.k28 * t267;
+  const Real t587 = t270 - t586;
+  const Real t588 = abs(t587);
+  const Real t589 = t588 * par.k66;
+  const Real t590 = par.k27 * t589;
+  const Real t591 = t587 * t590;
+  const Real t592 = t591 + t483;
+  const Real t593 = par.k26 * t267;
+  const Real t594 = t270 - t593;
+  const Real t595 = abs(t594);
+  const Real t596 = par.k66 * t595;
+  const Real t597 = t596 * par.k27;
+  const Real t598 = t597 * t594;
+  const Real t599 = t592 + t598;
+  const Real t600 = t244 * par.k38;
+  const Real t601 = t249 - t600;
+  const Real t602 = abs(t601);
+  const Real t603 = t602 * par.k69;
+  const Real t604 = par.k11 * t603;
+  const Real t605 = t604 * t601;
+  const Real t606 = t605 + t422;
+  const Real t607 = t244 * par.k39;
+  const Real t608 = t249 - t607;
+  const Real t609 = abs(t608);
+  const Real t610 = t609 * par.k69;
+  const Real t611 = par.k11 * t610;
+  const Real t612 = t608 * t611;
+  const Real t613 = t606 + t612;
+  const Real t614 = t548 * par.k20;
+  const Real t615 = par.k20 * t553;
+  const Real t616 = t407 - t615;
+  const Real t617 = t614 + t616;
+  const Real t618 = t575 + t457;
+  const Real t619 = t618 + t583;
+  const Real t620 = abs(t261);
+  const Real t621 = par.k67 * t620;
+  const Real t622 = t621 * par.k34;
+  const Real t623 = t622 * t261;
+  const Real t624 = t623 + t459;
+  const Real t625 = t623 + t624;
+  const Real t626 = abs(t315);
+  const Real t627 = par.k68 * t626;
+  const Real t628 = par.k3 * t627;
+  const Real t629 = t315 * t628;
+  const Real t630 = t629 - t534;
+  const Real t631 = par.k28 * t591;
+  const Real t632 = t479 - t631;
+  const Real t633 = par.k26 * t598;
+  const Real t634 = t632 - t633;
+  const Real t635 = abs(t252);
+  const Real t636 = par.k70 * t635;
+  const Real t637 = par.k11 * t636;
+  const Real t638 = t637 * t252;
+  const Real t639 = t638 + t433;
+  const Real t640 = t638 + t639;
+  const Real t641 = abs(t301);
+  const Real t642 = par.k62 * t641;
+  const Real t643 = par.k3 * t642;
+  const Real t644 = t301 * t643;
+  const Real t645 = t530 + t644;
+  const Real t646 = t282 * t285;
+  const Real t647 = t646 * par.m_w;
+  const Real t648 = abs(nu[0]);
+  const Real t649 = par.k64 * t648;
+  const Real t650 = par.k14 * t649;
+  const Real t651 = t650 * nu[0];
+  const Real t652 = t651 - t401;
+  const Real t653 = t652 + t651;
+  const Real t654 = t605 * par.k38;
+  const Real t655 = t431 - t654;
+  const Real t656 = t612 * par.k39;
+  const Real t657 = t655 - t656;
 
   // fin_section_2: joint force
-  const Real t796 = t680 * t3;
-  const Real t797 = t768 * t2;
-  const Real t798 = t796 + t797;
-  const Real t799 = t632 + t798;
-  const Real t800 = constant<Real>(0.710077701790478711739L) * t798;
-  const Real t801 = t768 * t3;
-  const Real t802 = t680 * t2;
-  const Real t803 = t801 - t802;
-  const Real t804 = t29 * t803;
-  const Real t805 = t800 - t804;
-  const Real t806 = par.k16 * t671;
-  const Real t807 = t805 + t806;
-  const Real t808 = t652 + t807;
-  const Real t809 = t803 - t643;
-  const Real t810 = t798 * t31;
-  const Real t811 = t28 * t803;
-  const Real t812 = t810 - t811;
-  const Real t813 = t671 + t812;
-  const Real t814 = t813 + t663;
+  const Real t658 = t542 * t3;
+  const Real t659 = t630 * t2;
+  const Real t660 = t658 + t659;
+  const Real t661 = t494 + t660;
+  const Real t662 = constant<Real>(0.710077701790478711739L) * t660;
+  const Real t663 = t630 * t3;
+  const Real t664 = t542 * t2;
+  const Real t665 = t663 - t664;
+  const Real t666 = t29 * t665;
+  const Real t667 = t662 - t666;
+  const Real t668 = par.k16 * t533;
+  const Real t669 = t667 + t668;
+  const Real t670 = t514 + t669;
+  const Real t671 = t665 - t505;
+  const Real t672 = t660 * t31;
+  const Real t673 = t28 * t665;
+  const Real t674 = t672 - t673;
+  const Real t675 = t533 + t674;
+  const Real t676 = t675 + t525;
 
   // fin_section_1: joint force
-  const Real t815 = t698 * t8;
-  const Real t816 = t9 * t783;
-  const Real t817 = t815 + t816;
-  const Real t818 = t27 * t817;
-  const Real t819 = t698 * t9;
-  const Real t820 = t8 * t783;
-  const Real t821 = t819 - t820;
-  const Real t822 = t821 * t24;
-  const Real t823 = t818 - t822;
-  const Real t824 = t823 + t665;
-  const Real t825 = t824 + t814;
-  const Real t826 = t799 + t817;
-  const Real t827 = t821 + t809;
-  const Real t828 = par.k5 * t665;
-  const Real t829 = constant<Real>(0.0709020735931204697442L) * t817;
-  const Real t830 = t25 * t821;
-  const Real t831 = t829 - t830;
-  const Real t832 = t828 + t831;
-  const Real t833 = t832 + t808;
+  const Real t677 = t560 * t8;
+  const Real t678 = t9 * t645;
+  const Real t679 = t677 + t678;
+  const Real t680 = t27 * t679;
+  const Real t681 = t560 * t9;
+  const Real t682 = t8 * t645;
+  const Real t683 = t681 - t682;
+  const Real t684 = t683 * t24;
+  const Real t685 = t680 - t684;
+  const Real t686 = t685 + t527;
+  const Real t687 = t686 + t676;
+  const Real t688 = t661 + t679;
+  const Real t689 = t683 + t671;
+  const Real t690 = par.k5 * t527;
+  const Real t691 = constant<Real>(0.0709020735931204697442L) * t679;
+  const Real t692 = t25 * t683;
+  const Real t693 = t691 - t692;
+  const Real t694 = t690 + t693;
+  const Real t695 = t694 + t670;
 
   // fin_tip: joint force
-  const Real t834 = t701 * t5;
-  const Real t835 = t6 * t785;
-  const Real t836 = t834 - t835;
-  const Real t837 = t836 * t23;
-  const Real t838 = t701 * t6;
-  const Real t839 = t5 * t785;
-  const Real t840 = t838 + t839;
-  const Real t841 = t840 * r_p[0];
-  const Real t842 = t837 - t841;
-  const Real t843 = t825 + t842;
-  const Real t844 = t20 * t840;
-  const Real t845 = t836 - t844;
-  const Real t846 = t845 + t833;
-  const Real t847 = t836 + t826;
-  const Real t848 = t827 + t840;
+  const Real t696 = t563 * t5;
+  const Real t697 = t6 * t647;
+  const Real t698 = t696 - t697;
+  const Real t699 = t698 * t23;
+  const Real t700 = t563 * t6;
+  const Real t701 = t5 * t647;
+  const Real t702 = t700 + t701;
+  const Real t703 = t702 * r_p[0];
+  const Real t704 = t699 - t703;
+  const Real t705 = t687 + t704;
+  const Real t706 = t20 * t702;
+  const Real t707 = t698 - t706;
+  const Real t708 = t707 + t695;
+  const Real t709 = t698 + t688;
+  const Real t710 = t689 + t702;
 
   // fin: joint force
-  const Real t849 = t707 - t848;
-  const Real t850 = t737 - t847;
-  const Real t851 = t847 * par.l3;
-  const Real t852 = t843 + t851;
-  const Real t853 = t852 + t772;
+  const Real t711 = t569 - t710;
+  const Real t712 = t599 - t709;
+  const Real t713 = t709 * par.l3;
+  const Real t714 = t705 + t713;
+  const Real t715 = t714 + t634;
 
   // peduncle: joint force
-  const Real t854 = t849 * c_r_a_2_;
-  const Real t855 = t850 * s_r_a_2_;
-  const Real t856 = t854 - t855;
-  const Real t857 = t856 + t763;
-  const Real t858 = t849 * s_r_a_2_;
-  const Real t859 = t850 * c_r_a_2_;
-  const Real t860 = t858 + t859;
-  const Real t861 = par.l2 * t860;
-  const Real t862 = t853 - t861;
-  const Real t863 = t723 + t862;
-  const Real t864 = t757 + t860;
+  const Real t716 = t711 * c_r_a_2_;
+  const Real t717 = t712 * s_r_a_2_;
+  const Real t718 = t716 - t717;
+  const Real t719 = t718 + t625;
+  const Real t720 = t711 * s_r_a_2_;
+  const Real t721 = t712 * c_r_a_2_;
+  const Real t722 = t720 + t721;
+  const Real t723 = par.l2 * t722;
+  const Real t724 = t715 - t723;
+  const Real t725 = t585 + t724;
+  const Real t726 = t619 + t722;
 
   // rear: joint force
-  const Real t865 = t864 * c_r_a_1_;
-  const Real t866 = t857 * s_r_a_1_;
-  const Real t867 = t865 + t866;
-  const Real t868 = t867 + t751;
-  const Real t869 = t857 * c_r_a_1_;
-  const Real t870 = t864 * s_r_a_1_;
-  const Real t871 = t869 - t870;
-  const Real t872 = t778 + t871;
-  const Real t873 = t867 * par.l1;
-  const Real t874 = t863 - t873;
-  const Real t875 = t874 + t795;
+  const Real t727 = t726 * c_r_a_1_;
+  const Real t728 = t719 * s_r_a_1_;
+  const Real t729 = t727 + t728;
+  const Real t730 = t729 + t613;
+  const Real t731 = t719 * c_r_a_1_;
+  const Real t732 = t726 * s_r_a_1_;
+  const Real t733 = t731 - t732;
+  const Real t734 = t640 + t733;
+  const Real t735 = t729 * par.l1;
+  const Real t736 = t725 - t735;
+  const Real t737 = t736 + t657;
 
   // trunk: joint force
-  const Real t876 = t868 * c_r_a_0_;
-  const Real t877 = t872 * s_r_a_0_;
-  const Real t878 = t876 + t877;
-  const Real t879 = t693 + t878;
-  const Real t880 = par.k8 * t878;
-  const Real t881 = t875 - t880;
-  const Real t882 = t755 + t881;
-  const Real t883 = t872 * c_r_a_0_;
-  const Real t884 = t868 * s_r_a_0_;
-  const Real t885 = t883 - t884;
-  const Real t886 = t885 + t791;
+  const Real t738 = t730 * c_r_a_0_;
+  const Real t739 = t734 * s_r_a_0_;
+  const Real t740 = t738 + t739;
+  const Real t741 = t555 + t740;
+  const Real t742 = par.k8 * t740;
+  const Real t743 = t737 - t742;
+  const Real t744 = t617 + t743;
+  const Real t745 = t734 * c_r_a_0_;
+  const Real t746 = t730 * s_r_a_0_;
+  const Real t747 = t745 - t746;
+  const Real t748 = t747 + t653;
 
   // springs, dampers and generalised forces
-  const Real t887 = nu[3] * constant<Real>(2.0L);
-  const Real t888 = par.k72 * t887;
-  const Real t889 = t381 + t888;
-  const Real t890 = t846 + t889;
+  const Real t749 = nu[3] * constant<Real>(2.0L);
+  const Real t750 = par.k73 * t749;
+  const Real t751 = t243 + t750;
+  const Real t752 = t708 + t751;
 
-  // reduced accelerations
-  const Real t891 = constant<Real>(1.0L) / t147;
-  const Real t892 = t109 * t891;
-  const Real t893 = t109 * t892;
-  const Real t894 = t379 - t893;
-  const Real t895 = t891 * t141;
-  const Real t896 = t895 * t141;
-  const Real t897 = t225 - t896;
-  const Real t898 = constant<Real>(1.0L) / t897;
-  const Real t899 = t109 * t895;
-  const Real t900 = t193 - t899;
-  const Real t901 = t898 * t900;
-  const Real t902 = t901 * t900;
-  const Real t903 = t894 - t902;
-  const Real t904 = t143 * t891;
-  const Real t905 = t109 * t904;
-  const Real t906 = t321 - t905;
-  const Real t907 = t143 * t895;
-  const Real t908 = t227 - t907;
-  const Real t909 = t898 * t908;
-  const Real t910 = t909 * t900;
-  const Real t911 = t906 - t910;
-  const Real t912 = t143 * t904;
-  const Real t913 = t359 - t912;
-  const Real t914 = t909 * t908;
-  const Real t915 = t913 - t914;
-  const Real t916 = constant<Real>(1.0L) / t915;
-  const Real t917 = t911 * t916;
-  const Real t918 = t917 * t911;
-  const Real t919 = t903 - t918;
-  const Real t920 = constant<Real>(1.0L) / t919;
-  const Real t921 = t886 * t892;
-  const Real t922 = t921 - t890;
-  const Real t923 = t886 * t895;
-  const Real t924 = t923 - t879;
-  const Real t925 = t901 * t924;
-  const Real t926 = t922 - t925;
-  const Real t927 = t886 * t904;
-  const Real t928 = t927 - t882;
-  const Real t929 = t909 * t924;
-  const Real t930 = t928 - t929;
-  const Real t931 = t917 * t930;
-  const Real t932 = t926 - t931;
-  const Real t933 = t920 * t932;
-  const Real t934 = t933 * t892;
-  const Real t935 = t930 * t916;
-  const Real t936 = t933 * t917;
-  const Real t937 = t935 - t936;
-  const Real t938 = t937 * t904;
-  const Real t939 = t898 * t924;
-  const Real t940 = t937 * t909;
-  const Real t941 = t939 - t940;
-  const Real t942 = t933 * t901;
-  const Real t943 = t941 - t942;
-  const Real t944 = t895 * t943;
-  const Real t945 = t891 * t886;
-  const Real t946 = t944 + t945;
-  const Real t947 = t938 + t946;
-  const Real t948 = t934 + t947;
-  const Real t949 = -t948;
+  // modified blocks
+  const Real t753 = constant<Real>(1.0L) / t241;
+  const Real t754 = t753 * t99;
+  const Real t755 = t753 * t221;
+  const Real t756 = t753 * t752;
+  const Real t757 = t753 * t134;
 
-  nu_dot_out[0] = t949;
-  nu_dot_out[1] = t943;
-  nu_dot_out[2] = t937;
-  nu_dot_out[3] = t933;
-  eta_dot[0] = t949;
-  eta_dot[1] = t943;
-  eta_dot[2] = t937;
-  r_p_ddot[0] = t933;
+  // fin_section_1: acceleration
+  const Real t758 = t754 * constant<Real>(0.0709020735931204697442L);
+  const Real t759 = t40 - t758;
+  const Real t760 = t9 * t759;
+  const Real t761 = t754 * t25;
+  const Real t762 = t761 + t44;
+  const Real t763 = t762 * t8;
+  const Real t764 = t760 - t763;
+
+  // fin_section_2: acceleration
+  const Real t765 = t754 * constant<Real>(0.710077701790478711739L);
+  const Real t766 = t40 - t765;
+  const Real t767 = t766 * t3;
+  const Real t768 = t754 * t29;
+  const Real t769 = t768 + t44;
+  const Real t770 = t769 * t2;
+  const Real t771 = t767 - t770;
+
+  // fin: wrench
+  const Real t772 = t754 * par.k41;
+  const Real t773 = t84 - t772;
+  const Real t774 = t754 * t16;
+  const Real t775 = t774 + t85;
+  const Real t776 = t754 * par.k47;
+  const Real t777 = t80 - t776;
+
+  // fin_section_1: wrench of the fluid
+  const Real t778 = par.k4 * t764;
+
+  // fin_section_2: wrench of the fluid
+  const Real t779 = par.k4 * t771;
+
+  // fin_section_2: joint force
+  const Real t780 = t779 * t3;
+  const Real t781 = t780 * t31;
+  const Real t782 = t779 * t2;
+  const Real t783 = t782 * t28;
+  const Real t784 = t781 + t783;
+  const Real t785 = t784 + t777;
+  const Real t786 = t775 - t782;
+  const Real t787 = t780 + t773;
+
+  // fin_section_1: joint force
+  const Real t788 = t778 * t8;
+  const Real t789 = t788 * t24;
+  const Real t790 = t9 * t778;
+  const Real t791 = t790 * t27;
+  const Real t792 = t789 + t791;
+  const Real t793 = t792 + t785;
+  const Real t794 = t790 + t787;
+
+  // fin: joint force
+  const Real t795 = t75 + t794;
+  const Real t796 = t788 - t786;
+  const Real t797 = t796 + t72;
+  const Real t798 = par.l3 * t794;
+  const Real t799 = t793 + t798;
+  const Real t800 = t77 + t799;
+
+  // peduncle: joint force
+  const Real t801 = t797 * s_r_a_2_;
+  const Real t802 = t795 * c_r_a_2_;
+  const Real t803 = t801 - t802;
+  const Real t804 = par.l2 * t803;
+  const Real t805 = t800 - t804;
+  const Real t806 = t805 + t70;
+  const Real t807 = t797 * c_r_a_2_;
+  const Real t808 = t795 * s_r_a_2_;
+  const Real t809 = t807 + t808;
+  const Real t810 = t809 + t66;
+  const Real t811 = t803 - t68;
+
+  // rear: joint force
+  const Real t812 = c_r_a_1_ * t811;
+  const Real t813 = t810 * s_r_a_1_;
+  const Real t814 = t812 + t813;
+  const Real t815 = t814 - t63;
+  const Real t816 = par.l1 * t814;
+  const Real t817 = t806 - t816;
+  const Real t818 = t61 + t817;
+  const Real t819 = c_r_a_1_ * t810;
+  const Real t820 = t811 * s_r_a_1_;
+  const Real t821 = t819 - t820;
+  const Real t822 = t58 + t821;
+
+  // trunk: joint force
+  const Real t823 = c_r_a_0_ * t822;
+  const Real t824 = t815 * s_r_a_0_;
+  const Real t825 = t823 - t824;
+  const Real t826 = t825 + par.k54;
+  const Real t827 = t815 * c_r_a_0_;
+  const Real t828 = s_r_a_0_ * t822;
+  const Real t829 = t827 + t828;
+  const Real t830 = par.k8 * t829;
+  const Real t831 = t818 - t830;
+  const Real t832 = t754 * t752;
+  const Real t833 = t832 - t748;
+
+  // fin_section_1: acceleration
+  const Real t834 = constant<Real>(0.0709020735931204697442L) * t757;
+  const Real t835 = t44 - t834;
+  const Real t836 = t835 * t9;
+  const Real t837 = t25 * t757;
+  const Real t838 = t837 - t40;
+  const Real t839 = t838 * t8;
+  const Real t840 = t836 - t839;
+
+  // fin_section_2: acceleration
+  const Real t841 = constant<Real>(0.710077701790478711739L) * t757;
+  const Real t842 = t44 - t841;
+  const Real t843 = t842 * t3;
+  const Real t844 = t29 * t757;
+  const Real t845 = t844 - t40;
+  const Real t846 = t845 * t2;
+  const Real t847 = t843 - t846;
+
+  // fin: wrench
+  const Real t848 = par.k47 * t757;
+  const Real t849 = t120 - t848;
+  const Real t850 = t16 * t757;
+  const Real t851 = t850 - t84;
+  const Real t852 = par.k41 * t757;
+  const Real t853 = t85 - t852;
+
+  // fin_section_1: wrench of the fluid
+  const Real t854 = par.k4 * t840;
+
+  // fin_section_2: wrench of the fluid
+  const Real t855 = par.k4 * t847;
+
+  // fin_section_2: joint force
+  const Real t856 = t855 * t3;
+  const Real t857 = t853 + t856;
+  const Real t858 = t31 * t856;
+  const Real t859 = t855 * t2;
+  const Real t860 = t28 * t859;
+  const Real t861 = t858 + t860;
+  const Real t862 = t849 + t861;
+  const Real t863 = t851 - t859;
+
+  // fin_section_1: joint force
+  const Real t864 = t854 * t8;
+  const Real t865 = t864 * t24;
+  const Real t866 = t854 * t9;
+  const Real t867 = t866 * t27;
+  const Real t868 = t865 + t867;
+  const Real t869 = t868 + t862;
+  const Real t870 = t866 + t857;
+
+  // fin: joint force
+  const Real t871 = t864 - t863;
+  const Real t872 = t871 + t73;
+  const Real t873 = t112 - t870;
+  const Real t874 = t870 * par.l3;
+  const Real t875 = t869 + t874;
+  const Real t876 = t875 - t114;
+
+  // peduncle: joint force
+  const Real t877 = t873 * c_r_a_2_;
+  const Real t878 = t872 * s_r_a_2_;
+  const Real t879 = t877 + t878;
+  const Real t880 = par.l2 * t879;
+  const Real t881 = t876 - t880;
+  const Real t882 = t881 - t107;
+  const Real t883 = t872 * c_r_a_2_;
+  const Real t884 = t873 * s_r_a_2_;
+  const Real t885 = t883 - t884;
+  const Real t886 = t64 + t885;
+  const Real t887 = t879 + t109;
+
+  // rear: joint force
+  const Real t888 = c_r_a_1_ * t886;
+  const Real t889 = t887 * s_r_a_1_;
+  const Real t890 = t888 - t889;
+  const Real t891 = t57 + t890;
+  const Real t892 = c_r_a_1_ * t887;
+  const Real t893 = t886 * s_r_a_1_;
+  const Real t894 = t892 + t893;
+  const Real t895 = t894 + t104;
+  const Real t896 = par.l1 * t894;
+  const Real t897 = t882 - t896;
+  const Real t898 = t897 - t102;
+
+  // trunk: joint force
+  const Real t899 = t891 * s_r_a_0_;
+  const Real t900 = t895 * c_r_a_0_;
+  const Real t901 = t899 + t900;
+  const Real t902 = par.k8 * t901;
+  const Real t903 = t898 - t902;
+  const Real t904 = t901 + par.k55;
+  const Real t905 = t752 * t757;
+  const Real t906 = t905 - t741;
+
+  // fin_section_1: acceleration
+  const Real t907 = t755 * constant<Real>(0.0709020735931204697442L);
+  const Real t908 = t153 - t907;
+  const Real t909 = t9 * t908;
+  const Real t910 = t755 * t25;
+  const Real t911 = t910 + t155;
+  const Real t912 = t911 * t8;
+  const Real t913 = t909 - t912;
+
+  // fin_section_2: acceleration
+  const Real t914 = constant<Real>(0.710077701790478711739L) * t755;
+  const Real t915 = t158 - t914;
+  const Real t916 = t915 * t3;
+  const Real t917 = t29 * t755;
+  const Real t918 = t160 + t917;
+  const Real t919 = t918 * t2;
+  const Real t920 = t916 - t919;
+
+  // fin: wrench
+  const Real t921 = t755 * par.k47;
+  const Real t922 = t199 - t921;
+  const Real t923 = t16 * t755;
+  const Real t924 = t201 + t923;
+  const Real t925 = t755 * par.k41;
+  const Real t926 = t207 - t925;
+
+  // fin_section_1: wrench of the fluid
+  const Real t927 = par.k4 * t913;
+
+  // fin_section_2: wrench of the fluid
+  const Real t928 = par.k4 * t920;
+
+  // fin_section_2: joint force
+  const Real t929 = t928 * t2;
+  const Real t930 = t28 * t929;
+  const Real t931 = t928 * t3;
+  const Real t932 = t931 * t31;
+  const Real t933 = t930 + t932;
+  const Real t934 = t933 + t922;
+  const Real t935 = t931 + t926;
+  const Real t936 = t924 - t929;
+
+  // fin_section_1: joint force
+  const Real t937 = t9 * t927;
+  const Real t938 = t937 * t27;
+  const Real t939 = t927 * t8;
+  const Real t940 = t939 * t24;
+  const Real t941 = t938 + t940;
+  const Real t942 = t941 + t934;
+  const Real t943 = t935 + t937;
+
+  // fin: joint force
+  const Real t944 = t192 - t943;
+  const Real t945 = par.l3 * t943;
+  const Real t946 = t942 + t945;
+  const Real t947 = t195 + t946;
+  const Real t948 = t939 - t936;
+  const Real t949 = t948 + t189;
+
+  // peduncle: joint force
+  const Real t950 = t949 * s_r_a_2_;
+  const Real t951 = t944 * c_r_a_2_;
+  const Real t952 = t950 + t951;
+  const Real t953 = t181 + t952;
+  const Real t954 = par.l2 * t952;
+  const Real t955 = t947 - t954;
+  const Real t956 = t955 + t184;
+  const Real t957 = t949 * c_r_a_2_;
+  const Real t958 = t944 * s_r_a_2_;
+  const Real t959 = t957 - t958;
+  const Real t960 = t959 - t178;
+
+  // rear: joint force
+  const Real t961 = c_r_a_1_ * t953;
+  const Real t962 = t960 * s_r_a_1_;
+  const Real t963 = t961 + t962;
+  const Real t964 = t963 * par.l1;
+  const Real t965 = t956 - t964;
+  const Real t966 = t170 + t965;
+  const Real t967 = t963 - t173;
+  const Real t968 = c_r_a_1_ * t960;
+  const Real t969 = t953 * s_r_a_1_;
+  const Real t970 = t968 - t969;
+  const Real t971 = t970 - t163;
+
+  // trunk: joint force
+  const Real t972 = t755 * t752;
+  const Real t973 = t972 - t744;
+  const Real t974 = constant<Real>(1.0L) / t826;
+  const Real t975 = t831 * t974;
+  const Real t976 = t975 * t833;
+  const Real t977 = t973 - t976;
+  const Real t978 = t829 * t974;
+  const Real t979 = t978 * t833;
+  const Real t980 = t906 - t979;
+  const Real t981 = t829 * t978;
+  const Real t982 = t904 - t981;
+  const Real t983 = constant<Real>(1.0L) / t982;
+  const Real t984 = t831 * t978;
+  const Real t985 = t903 - t984;
+  const Real t986 = t983 * t985;
+  const Real t987 = t980 * t986;
+  const Real t988 = t977 - t987;
+  const Real t989 = s_r_a_0_ * t971;
+  const Real t990 = t967 * c_r_a_0_;
+  const Real t991 = t989 + t990;
+  const Real t992 = par.k8 * t991;
+  const Real t993 = t966 - t992;
+  const Real t994 = t993 + par.k56;
+  const Real t995 = t831 * t975;
+  const Real t996 = t994 - t995;
+  const Real t997 = t986 * t985;
+  const Real t998 = t996 - t997;
+  const Real t999 = constant<Real>(1.0L) / t998;
+  const Real t1000 = t988 * t999;
+  const Real t1001 = t755 * t1000;
+  const Real t1002 = t974 * t833;
+  const Real t1003 = t980 * t983;
+  const Real t1004 = t986 * t1000;
+  const Real t1005 = t1003 - t1004;
+  const Real t1006 = t978 * t1005;
+  const Real t1007 = t1002 - t1006;
+  const Real t1008 = t1000 * t975;
+  const Real t1009 = t1007 - t1008;
+  const Real t1010 = t754 * t1009;
+  const Real t1011 = t1010 + t756;
+  const Real t1012 = t1005 * t757;
+  const Real t1013 = t1011 + t1012;
+  const Real t1014 = t1001 + t1013;
+  const Real t1015 = -t1014;
+
+  nu_dot_out[0] = t1009;
+  nu_dot_out[1] = t1005;
+  nu_dot_out[2] = t1000;
+  nu_dot_out[3] = t1015;
+  eta_dot[0] = t1009;
+  eta_dot[1] = t1005;
+  eta_dot[2] = t1000;
+  r_p_ddot[0] = t1015;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
@@ -5612,8 +5766,8 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -5624,7 +5778,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -5633,11 +5787,11 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -5768,12 +5922,12 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t127 = t55 * t97;
   const Real t128 = t127 * constant<Real>(2.0L);
   const Real t129 = t28 * t114;
-  const Real t130 = t116 * par.k51;
+  const Real t130 = t116 * par.k52;
 
   // trunk: wrench of the fluid
   const Real t131 = t32 * t40;
   const Real t132 = par.k12 * t37;
-  const Real t133 = t32 * par.k48;
+  const Real t133 = t32 * par.k49;
   const Real t134 = t132 - t133;
   const Real t135 = t134 * t40;
 
@@ -5781,15 +5935,15 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t136 = par.k30 * t112;
 
   // rear: wrench of the fluid
-  const Real t137 = t45 * par.k52;
-  const Real t138 = t46 * par.k42;
+  const Real t137 = t45 * par.k53;
+  const Real t138 = t46 * par.k43;
   const Real t139 = t137 - t138;
   const Real t140 = t49 * t139;
   const Real t141 = t46 * t139;
   const Real t142 = t46 * t49;
 
   // peduncle: wrench
-  const Real t143 = t114 * par.k36;
+  const Real t143 = t114 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t144 = t54 * t55;
@@ -5809,7 +5963,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t156 = t16 * nu[3];
   const Real t157 = t156 * t55;
   const Real t158 = t157 * constant<Real>(2.0L);
-  const Real t159 = nu[3] * par.k40;
+  const Real t159 = nu[3] * par.k41;
   const Real t160 = t159 * t55;
   const Real t161 = t160 * constant<Real>(2.0L);
   const Real t162 = t114 * t19;
@@ -5829,76 +5983,76 @@ inline void inverse_torques(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t172 = abs(t49);
-  const Real t173 = par.k66 * t172;
-  const Real t174 = t173 * par.k33;
+  const Real t173 = par.k67 * t172;
+  const Real t174 = t173 * par.k34;
   const Real t175 = t174 * t49;
   const Real t176 = par.k26 * t55;
   const Real t177 = t58 - t176;
   const Real t178 = abs(t177);
-  const Real t179 = par.k65 * t178;
+  const Real t179 = par.k66 * t178;
   const Real t180 = t179 * par.k27;
   const Real t181 = t180 * t177;
   const Real t182 = par.k26 * t181;
-  const Real t183 = t46 * par.k32;
+  const Real t183 = t46 * par.k33;
   const Real t184 = t45 - t183;
   const Real t185 = abs(t184);
-  const Real t186 = t185 * par.k64;
-  const Real t187 = t186 * par.k33;
+  const Real t186 = t185 * par.k65;
+  const Real t187 = t186 * par.k34;
   const Real t188 = t184 * t187;
-  const Real t189 = par.k32 * t188;
+  const Real t189 = par.k33 * t188;
   const Real t190 = abs(t84);
-  const Real t191 = t190 * par.k67;
+  const Real t191 = t190 * par.k68;
   const Real t192 = par.k3 * t191;
   const Real t193 = t84 * t192;
   const Real t194 = t193 - t167;
-  const Real t195 = t32 * par.k37;
+  const Real t195 = t32 * par.k38;
   const Real t196 = t37 - t195;
   const Real t197 = abs(t196);
-  const Real t198 = t197 * par.k68;
+  const Real t198 = t197 * par.k69;
   const Real t199 = par.k11 * t198;
   const Real t200 = t199 * t196;
-  const Real t201 = t200 * par.k37;
+  const Real t201 = t200 * par.k38;
   const Real t202 = t73 * t73;
   const Real t203 = par.m_w * t202;
   const Real t204 = constant<Real>(0.5L) * t203;
   const Real t205 = abs(t103);
-  const Real t206 = par.k67 * t205;
+  const Real t206 = par.k68 * t205;
   const Real t207 = par.k3 * t206;
   const Real t208 = t103 * t207;
   const Real t209 = t208 - t171;
   const Real t210 = par.k28 * t55;
   const Real t211 = t58 - t210;
   const Real t212 = abs(t211);
-  const Real t213 = t212 * par.k65;
+  const Real t213 = t212 * par.k66;
   const Real t214 = par.k27 * t213;
   const Real t215 = t211 * t214;
   const Real t216 = par.k28 * t215;
   const Real t217 = abs(t54);
-  const Real t218 = par.k62 * t217;
+  const Real t218 = par.k63 * t217;
   const Real t219 = par.k27 * t218;
   const Real t220 = t54 * t219;
-  const Real t221 = t32 * par.k38;
+  const Real t221 = t32 * par.k39;
   const Real t222 = t37 - t221;
   const Real t223 = abs(t222);
-  const Real t224 = t223 * par.k68;
+  const Real t224 = t223 * par.k69;
   const Real t225 = par.k11 * t224;
   const Real t226 = t222 * t225;
-  const Real t227 = t226 * par.k38;
+  const Real t227 = t226 * par.k39;
   const Real t228 = abs(t100);
-  const Real t229 = par.k61 * t228;
+  const Real t229 = par.k62 * t228;
   const Real t230 = par.k3 * t229;
   const Real t231 = t230 * t100;
-  const Real t232 = par.k34 * t46;
+  const Real t232 = par.k35 * t46;
   const Real t233 = t45 - t232;
   const Real t234 = abs(t233);
-  const Real t235 = par.k64 * t234;
-  const Real t236 = par.k33 * t235;
+  const Real t235 = par.k65 * t234;
+  const Real t236 = par.k34 * t235;
   const Real t237 = t236 * t233;
-  const Real t238 = par.k34 * t237;
+  const Real t238 = par.k35 * t237;
   const Real t239 = t70 * t73;
   const Real t240 = t239 * par.m_w;
   const Real t241 = abs(t89);
-  const Real t242 = par.k61 * t241;
+  const Real t242 = par.k62 * t241;
   const Real t243 = par.k3 * t242;
   const Real t244 = t89 * t243;
 
@@ -6003,14 +6157,14 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t324 = t315 + t323;
 
   // trunk: wrench
-  const Real t325 = t269 * par.k41;
+  const Real t325 = t269 * par.k42;
   const Real t326 = par.k2 * t265;
   const Real t327 = t325 - t326;
 
   // trunk: wrench of the fluid
-  const Real t328 = t269 * par.k39;
+  const Real t328 = t269 * par.k40;
   const Real t329 = t265 - t131;
-  const Real t330 = t329 * par.k48;
+  const Real t330 = t329 * par.k49;
   const Real t331 = t328 - t330;
   const Real t332 = t331 + t135;
   const Real t333 = t332 + t327;
@@ -6027,12 +6181,12 @@ inline void inverse_torques(const Prepared<Real>& par,
 
   // rear: wrench of the fluid
   const Real t342 = t279 - t142;
-  const Real t343 = t342 * par.k52;
-  const Real t344 = t270 * par.k42;
+  const Real t343 = t342 * par.k53;
+  const Real t344 = t270 * par.k43;
   const Real t345 = t343 - t344;
   const Real t346 = t345 + t339;
-  const Real t347 = t270 * par.k35;
-  const Real t348 = t342 * par.k42;
+  const Real t347 = t270 * par.k36;
+  const Real t348 = t342 * par.k43;
   const Real t349 = t347 - t348;
   const Real t350 = t140 + t349;
   const Real t351 = t336 + t350;
@@ -6040,12 +6194,12 @@ inline void inverse_torques(const Prepared<Real>& par,
 
   // peduncle: wrench
   const Real t353 = par.k19 * t289;
-  const Real t354 = t285 * par.k36;
+  const Real t354 = t285 * par.k37;
   const Real t355 = t353 - t354;
   const Real t356 = par.k18 * t288;
   const Real t357 = t143 + t356;
   const Real t358 = par.k18 * t285;
-  const Real t359 = par.k36 * t289;
+  const Real t359 = par.k37 * t289;
   const Real t360 = t358 - t359;
 
   // peduncle: wrench of the fluid
@@ -6054,7 +6208,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t363 = par.k29 * t289;
   const Real t364 = t362 - t363;
   const Real t365 = t364 + t360;
-  const Real t366 = t289 * par.k44;
+  const Real t366 = t289 * par.k45;
   const Real t367 = par.k29 * t361;
   const Real t368 = t366 - t367;
   const Real t369 = t368 + t149;
@@ -6062,7 +6216,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t371 = t357 - t148;
 
   // fin: wrench
-  const Real t372 = par.k40 * nu_dot[3];
+  const Real t372 = par.k41 * nu_dot[3];
   const Real t373 = t372 - t158;
   const Real t374 = t19 * t289;
   const Real t375 = t374 - t155;
@@ -6082,7 +6236,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t389 = t19 * t292;
   const Real t390 = t388 + t389;
   const Real t391 = t387 + t390;
-  const Real t392 = nu_dot[3] * par.k46;
+  const Real t392 = nu_dot[3] * par.k47;
   const Real t393 = t391 + t392;
   const Real t394 = t154 + t393;
 
@@ -6276,8 +6430,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: projected recursion
-/// operations: 558 add, 698 mul, 7 div, 1 neg, 6 sin, 6 cos, 16 other
+/// route: modes first, compensated beyond 4.4 ulps
+/// operations: 2218 add, 1407 mul, 7 div, 51 neg, 6 sin, 6 cos, 16 other
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (1) rad or m: e1
 /// @param[in]  r_a           (3) rad or m: r1, r2, r3
@@ -6303,6 +6457,8 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   using std::cos;
   using std::sin;
   using detail::constant;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
@@ -6319,1589 +6475,3173 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t8 = sin(t7);
   const Real t9 = cos(t7);
 
-  // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
-  const Real t12 = par.k7 * r_p[0];
-  const Real t13 = t11 - t12;
-  const Real t14 = t13 * r_p[0];
-  const Real t15 = par.k17 + t14;
-  const Real t16 = par.k24 * r_p[0];
-  const Real t17 = constant<Real>(0.5L) * t16;
-  const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k25 - t18;
+  // trunk: acceleration
+  const Real t10 = par.k8 * c_r_a_0_;
 
-  // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
-  const Real t21 = constant<Real>(0.5L) * r_p[0];
-  const Real t22 = t20 * t21;
-  const Real t23 = par.lf - t22;
+  // rear: acceleration
+  const Real t11 = t10 + par.l1;
+  const Real t12 = c_r_a_1_ * t11;
 
-  // fin_section_1: station
-  const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
-  const Real t25 = par.k9 * r_p[0];
-  const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  // trunk: acceleration
+  const Real t13 = par.k8 * s_r_a_0_;
+
+  // rear: acceleration
+  const Real t14 = t13 * s_r_a_1_;
+  const Real t15 = t14 - t12;
+
+  // peduncle: acceleration
+  const Real t16 = t15 - par.l2;
+  const Real t17 = t16 * c_r_a_2_;
+
+  // rear: acceleration
+  const Real t18 = t11 * s_r_a_1_;
+  const Real t19 = c_r_a_1_ * t13;
+  const Real t20 = t19 + t18;
+
+  // peduncle: acceleration
+  const Real t21 = t20 * s_r_a_2_;
+  const Real t22 = t17 + t21;
+
+  // accelerations
+  const Real t23 = -t22;
+  const Real t24 = sum_error(par.l3, t23);
+  const Real t25 = sum_error(t17, t21);
+  const Real t26 = product_error(t16, c_r_a_2_);
+  const Real t27 = sum_error(t15, par.k32);
+  const Real t28 = c_r_a_2_ * t27;
+  const Real t29 = t26 + t28;
+  const Real t30 = t25 + t29;
+  const Real t31 = t24 - t30;
+
+  // fin: acceleration
+  const Real t32 = par.l3 - t22;
 
   // fin_section_2: station
-  const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
-  const Real t30 = t29 * t21;
-  const Real t31 = par.k10 - t30;
+  const Real t33 = r_p[0] * par.k52;
 
-  // rear: acceleration
-  const Real t32 = c_r_a_1_ * c_r_a_0_;
-  const Real t33 = s_r_a_0_ * s_r_a_1_;
-  const Real t34 = t32 - t33;
-  const Real t35 = s_r_a_1_ * c_r_a_0_;
-  const Real t36 = c_r_a_1_ * s_r_a_0_;
-  const Real t37 = t35 + t36;
+  // fin_tip: station
+  const Real t34 = constant<Real>(0.5L) * r_p[0];
 
-  // peduncle: acceleration
-  const Real t38 = c_r_a_2_ * t37;
-  const Real t39 = t34 * s_r_a_2_;
-  const Real t40 = t38 + t39;
-  const Real t41 = t34 * c_r_a_2_;
-  const Real t42 = s_r_a_2_ * t37;
-  const Real t43 = t41 - t42;
-
-  // fin: acceleration
-  const Real t44 = t42 - t41;
-
-  // fin_section_1: acceleration
-  const Real t45 = t9 * t44;
-  const Real t46 = t40 * t8;
-  const Real t47 = t45 + t46;
-  const Real t48 = t40 * t9;
-  const Real t49 = t8 * t44;
-  const Real t50 = t48 - t49;
+  // fin_section_2: station
+  const Real t35 = t33 * t34;
+  const Real t36 = par.k10 - t35;
 
   // fin_section_2: acceleration
-  const Real t51 = t40 * t3;
-  const Real t52 = t44 * t2;
-  const Real t53 = t51 - t52;
-  const Real t54 = t40 * t2;
-  const Real t55 = t44 * t3;
-  const Real t56 = t54 + t55;
+  const Real t37 = t32 + t36;
 
-  // trunk: wrench
-  const Real t57 = s_r_a_0_ * par.k1;
-  const Real t58 = par.k1 * c_r_a_0_;
-  const Real t59 = par.k2 * s_r_a_0_;
+  // accelerations
+  const Real t38 = t37 + t31;
+  const Real t39 = t38 * t3;
+  const Real t40 = t27 * s_r_a_2_;
 
-  // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k48;
-  const Real t61 = t59 + t60;
-  const Real t62 = par.k12 * s_r_a_0_;
-  const Real t63 = t57 + t62;
+  // peduncle: acceleration
+  const Real t41 = t16 * s_r_a_2_;
 
-  // rear: wrench
-  const Real t64 = par.k22 * t37;
-  const Real t65 = par.k30 * t37;
-  const Real t66 = par.k22 * t34;
+  // accelerations
+  const Real t42 = t40 + t41;
 
-  // rear: wrench of the fluid
-  const Real t67 = t37 * par.k52;
-  const Real t68 = t64 + t67;
-  const Real t69 = par.k42 * t37;
-  const Real t70 = t65 + t69;
+  // peduncle: acceleration
+  const Real t43 = t20 * c_r_a_2_;
 
-  // peduncle: wrench
-  const Real t71 = t40 * par.k36;
-  const Real t72 = par.k18 * t43;
-  const Real t73 = par.k18 * t40;
+  // accelerations
+  const Real t44 = t43 - t42;
 
-  // peduncle: wrench of the fluid
-  const Real t74 = t40 * par.k31;
-  const Real t75 = t74 + t73;
-  const Real t76 = t40 * par.k29;
-  const Real t77 = t76 + t71;
+  // fin_section_2: station
+  const Real t45 = constant<Real>(0.710077701790478711739L) * r_p[0];
+
+  // accelerations
+  const Real t46 = t44 - t45;
+  const Real t47 = t46 * t2;
+  const Real t48 = -t47;
+  const Real t49 = sum_error(t39, t48);
+  const Real t50 = product_error(t38, t3);
+  const Real t51 = product_error(t46, t2);
+  const Real t52 = t50 - t51;
+  const Real t53 = t49 + t52;
+  const Real t54 = par.k4 * t53;
+  const Real t55 = t39 - t47;
+  const Real t56 = product_error(par.k4, t55);
+  const Real t57 = t54 + t56;
+  const Real t58 = t57 * t2;
+  const Real t59 = par.k4 * t55;
+  const Real t60 = product_error(t59, t2);
+  const Real t61 = t60 + t58;
+  const Real t62 = t33 * t61;
+  const Real t63 = t59 * t2;
+  const Real t64 = product_error(t33, t63);
+  const Real t65 = t62 + t64;
+  const Real t66 = t57 * t3;
+  const Real t67 = product_error(t59, t3);
+  const Real t68 = t67 + t66;
+  const Real t69 = constant<Real>(0.710077701790478711739L) * t68;
+  const Real t70 = t59 * t3;
+  const Real t71 = product_error(constant<Real>(0.710077701790478711739L), t70);
+  const Real t72 = t69 + t71;
+  const Real t73 = t65 + t72;
+  const Real t74 = constant<Real>(0.710077701790478711739L) * t70;
+  const Real t75 = t33 * t63;
+  const Real t76 = sum_error(t74, t75);
+  const Real t77 = t73 + t76;
+  const Real t78 = t75 + t74;
+  const Real t79 = par.k41 * t31;
 
   // fin: wrench
-  const Real t78 = t40 * t19;
-  const Real t79 = t10 * t44;
-  const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k40;
-  const Real t82 = t16 * t44;
-  const Real t83 = t81 - t82;
-  const Real t84 = t40 * par.k6;
-  const Real t85 = par.k6 * t44;
+  const Real t80 = t32 * par.k41;
 
-  // fin_section_1: wrench of the fluid
-  const Real t86 = par.k4 * t50;
+  // accelerations
+  const Real t81 = t80 + t79;
+
+  // fin: inertia in its present shape
+  const Real t82 = par.k24 * r_p[0];
+
+  // accelerations
+  const Real t83 = t82 * t44;
+  const Real t84 = t81 - t83;
+  const Real t85 = par.k47 + t84;
+  const Real t86 = sum_error(t78, t85);
+  const Real t87 = t86 + t77;
+  const Real t88 = t78 + t85;
+
+  // fin_section_1: station
+  const Real t89 = par.k9 * r_p[0];
+  const Real t90 = t89 * t34;
+  const Real t91 = par.k46 - t90;
+
+  // accelerations
+  const Real t92 = sum_error(t32, t91);
+  const Real t93 = t92 + t31;
+  const Real t94 = t9 * t93;
+
+  // fin_section_1: acceleration
+  const Real t95 = t32 + t91;
+  const Real t96 = t95 * t9;
+
+  // accelerations
+  const Real t97 = t94 + t96;
+
+  // fin_section_1: station
+  const Real t98 = constant<Real>(0.0709020735931204697442L) * r_p[0];
+
+  // accelerations
+  const Real t99 = t44 - t98;
+  const Real t100 = t99 * t8;
+  const Real t101 = t97 - t100;
+  const Real t102 = par.k4 * t101;
+  const Real t103 = t102 * t9;
+  const Real t104 = constant<Real>(0.0709020735931204697442L) * t103;
+  const Real t105 = t102 * t8;
+  const Real t106 = t89 * t105;
+  const Real t107 = t104 + t106;
+  const Real t108 = sum_error(t88, t107);
+  const Real t109 = t108 + t87;
+
+  // fin_section_2: acceleration
+  const Real t110 = t33 * t2;
+  const Real t111 = constant<Real>(0.710077701790478711739L) * t3;
+  const Real t112 = t110 + t111;
 
   // fin_section_2: wrench of the fluid
-  const Real t87 = par.k4 * t53;
+  const Real t113 = par.k4 * t112;
 
   // fin_section_2: joint force
-  const Real t88 = t87 * t2;
-  const Real t89 = t85 - t88;
-  const Real t90 = t29 * t88;
-  const Real t91 = t87 * t3;
-  const Real t92 = constant<Real>(0.710077701790478711739L) * t91;
-  const Real t93 = t90 + t92;
-  const Real t94 = t83 + t93;
-  const Real t95 = t91 + t84;
-  const Real t96 = t28 * t88;
-  const Real t97 = t31 * t91;
-  const Real t98 = t96 + t97;
-  const Real t99 = t80 + t98;
+  const Real t114 = t113 * t3;
+  const Real t115 = constant<Real>(0.710077701790478711739L) * t114;
+  const Real t116 = t113 * t2;
+  const Real t117 = t33 * t116;
+  const Real t118 = t115 + t117;
+  const Real t119 = par.k44 + t118;
+
+  // fin_section_1: acceleration
+  const Real t120 = t89 * t8;
+  const Real t121 = constant<Real>(0.0709020735931204697442L) * t9;
+  const Real t122 = t120 + t121;
+
+  // fin_section_1: wrench of the fluid
+  const Real t123 = par.k4 * t122;
 
   // fin_section_1: joint force
-  const Real t100 = t86 * t8;
-  const Real t101 = t100 * t24;
-  const Real t102 = t9 * t86;
-  const Real t103 = t102 * t27;
-  const Real t104 = t101 + t103;
-  const Real t105 = t104 + t99;
-  const Real t106 = constant<Real>(0.0709020735931204697442L) * t102;
-  const Real t107 = t100 * t25;
-  const Real t108 = t106 + t107;
-  const Real t109 = t94 + t108;
-  const Real t110 = t102 + t95;
+  const Real t124 = t9 * t123;
+  const Real t125 = constant<Real>(0.0709020735931204697442L) * t124;
+  const Real t126 = t123 * t8;
+  const Real t127 = t126 * t89;
+  const Real t128 = t125 + t127;
+  const Real t129 = t128 + t119;
 
-  // fin: joint force
-  const Real t111 = t75 + t110;
-  const Real t112 = t110 * par.l3;
-  const Real t113 = t105 + t112;
-  const Real t114 = t77 + t113;
-  const Real t115 = t100 - t89;
-  const Real t116 = t72 + t115;
+  // modified blocks
+  const Real t130 = constant<Real>(1.0L) / t129;
 
-  // peduncle: joint force
-  const Real t117 = t111 * s_r_a_2_;
-  const Real t118 = t116 * c_r_a_2_;
-  const Real t119 = t117 + t118;
-  const Real t120 = t119 + t66;
-  const Real t121 = t116 * s_r_a_2_;
-  const Real t122 = t111 * c_r_a_2_;
-  const Real t123 = t121 - t122;
-  const Real t124 = t123 - t68;
-  const Real t125 = par.l2 * t123;
-  const Real t126 = t114 - t125;
-  const Real t127 = t126 + t70;
-
-  // rear: joint force
-  const Real t128 = c_r_a_1_ * t120;
-  const Real t129 = t124 * s_r_a_1_;
-  const Real t130 = t128 - t129;
-  const Real t131 = t130 + t58;
-  const Real t132 = c_r_a_1_ * t124;
-  const Real t133 = t120 * s_r_a_1_;
-  const Real t134 = t132 + t133;
-  const Real t135 = t134 - t63;
-  const Real t136 = t134 * par.l1;
-  const Real t137 = t127 - t136;
-  const Real t138 = t61 + t137;
-
-  // trunk: joint force
-  const Real t139 = t135 * c_r_a_0_;
-  const Real t140 = t131 * s_r_a_0_;
-  const Real t141 = t139 + t140;
-  const Real t142 = par.k8 * t141;
-  const Real t143 = t138 - t142;
-  const Real t144 = t131 * c_r_a_0_;
-  const Real t145 = s_r_a_0_ * t135;
-  const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k53;
-
-  // trunk: wrench
-  const Real t148 = par.k2 * c_r_a_0_;
-
-  // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k48;
-  const Real t150 = t149 + t148;
-  const Real t151 = par.k12 * c_r_a_0_;
-  const Real t152 = t58 + t151;
-
-  // rear: wrench
-  const Real t153 = par.k30 * t34;
-
-  // rear: wrench of the fluid
-  const Real t154 = t34 * par.k42;
-  const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k52;
-  const Real t157 = t156 + t66;
-
-  // peduncle: wrench
-  const Real t158 = t43 * par.k36;
-
-  // peduncle: wrench of the fluid
-  const Real t159 = par.k31 * t43;
-  const Real t160 = t159 + t72;
-  const Real t161 = par.k29 * t43;
-  const Real t162 = t158 + t161;
-
-  // fin: wrench
-  const Real t163 = par.k40 * t44;
-  const Real t164 = t16 * t40;
+  // accelerations
+  const Real t131 = t130 * t109;
+  const Real t132 = t107 + t88;
+  const Real t133 = product_error(t130, t132);
+  const Real t134 = t131 + t133;
+  const Real t135 = constant<Real>(0.0709020735931204697442L) * t134;
+  const Real t136 = t130 * t132;
+  const Real t137 = t136 * constant<Real>(0.0709020735931204697442L);
+  const Real t138 = t135 + t137;
+  const Real t139 = -t138;
+  const Real t140 = sum_error(t95, t139);
+  const Real t141 = t140 + t93;
+  const Real t142 = t9 * t141;
+  const Real t143 = t95 - t138;
+  const Real t144 = product_error(t9, t143);
+  const Real t145 = t144 + t142;
+  const Real t146 = t89 * t134;
+  const Real t147 = t136 * t89;
+  const Real t148 = t146 + t147;
+  const Real t149 = t99 + t148;
+  const Real t150 = t149 * t8;
+  const Real t151 = -t150;
+  const Real t152 = t143 * t9;
+  const Real t153 = sum_error(t152, t151);
+  const Real t154 = t153 + t145;
+  const Real t155 = par.k4 * t154;
+  const Real t156 = t152 - t150;
+  const Real t157 = product_error(par.k4, t156);
+  const Real t158 = t157 + t155;
+  const Real t159 = t8 * t158;
+  const Real t160 = par.k4 * t156;
+  const Real t161 = t160 * t8;
+  const Real t162 = t159 + t161;
+  const Real t163 = constant<Real>(0.710077701790478711739L) * t134;
+  const Real t164 = product_error(constant<Real>(0.710077701790478711739L), t136);
   const Real t165 = t163 + t164;
-  const Real t166 = t10 * t40;
-  const Real t167 = t19 * t44;
-  const Real t168 = t166 + t167;
+  const Real t166 = constant<Real>(0.710077701790478711739L) * t136;
+  const Real t167 = t38 - t166;
+  const Real t168 = t167 - t165;
+  const Real t169 = t168 * t3;
+  const Real t170 = t33 * t134;
+  const Real t171 = product_error(t33, t136);
+  const Real t172 = t171 + t170;
+  const Real t173 = t136 * t33;
+  const Real t174 = t173 + t46;
+  const Real t175 = t172 + t174;
+  const Real t176 = t175 * t2;
+  const Real t177 = t169 - t176;
+  const Real t178 = par.k4 * t177;
+  const Real t179 = t178 * t2;
+  const Real t180 = t82 * t134;
+  const Real t181 = t136 * t82;
+  const Real t182 = t181 + t180;
+  const Real t183 = par.k6 * t44;
 
-  // fin_section_1: wrench of the fluid
-  const Real t169 = par.k4 * t47;
+  // fin: inertia in its present shape
+  const Real t184 = r_p[0] * par.k41;
 
-  // fin_section_2: wrench of the fluid
-  const Real t170 = par.k4 * t56;
+  // accelerations
+  const Real t185 = t183 - t184;
+  const Real t186 = t182 + t185;
+  const Real t187 = t186 - t179;
+  const Real t188 = t162 - t187;
+  const Real t189 = t42 - t43;
+  const Real t190 = par.k18 * t189;
+  const Real t191 = t188 + t190;
+  const Real t192 = t191 * s_r_a_2_;
+  const Real t193 = t178 * t3;
+  const Real t194 = t134 * par.k41;
+  const Real t195 = t136 * par.k41;
+  const Real t196 = t195 + t194;
+  const Real t197 = par.k6 * t31;
 
-  // fin_section_2: joint force
-  const Real t171 = t170 * t3;
-  const Real t172 = t171 + t85;
-  const Real t173 = t170 * t2;
-  const Real t174 = t173 * t28;
-  const Real t175 = t31 * t171;
-  const Real t176 = t174 + t175;
-  const Real t177 = t176 + t168;
-  const Real t178 = constant<Real>(0.710077701790478711739L) * t171;
-  const Real t179 = t173 * t29;
-  const Real t180 = t178 + t179;
-  const Real t181 = t165 + t180;
-  const Real t182 = t173 + t84;
+  // fin: wrench
+  const Real t198 = t32 * par.k6;
 
-  // fin_section_1: joint force
-  const Real t183 = t169 * t9;
-  const Real t184 = t172 + t183;
-  const Real t185 = t169 * t8;
-  const Real t186 = t24 * t185;
-  const Real t187 = t183 * t27;
-  const Real t188 = t186 + t187;
-  const Real t189 = t188 + t177;
-  const Real t190 = constant<Real>(0.0709020735931204697442L) * t183;
-  const Real t191 = t25 * t185;
-  const Real t192 = t190 + t191;
-  const Real t193 = t192 + t181;
-  const Real t194 = t185 + t182;
+  // accelerations
+  const Real t199 = t197 + t198;
 
-  // fin: joint force
-  const Real t195 = t73 + t194;
-  const Real t196 = t184 * par.l3;
-  const Real t197 = t189 + t196;
-  const Real t198 = t197 - t162;
-  const Real t199 = t160 - t184;
+  // fin: inertia in its present shape
+  const Real t200 = constant<Real>(0.5L) * t82;
+  const Real t201 = t200 * r_p[0];
+  const Real t202 = par.k25 - t201;
 
-  // peduncle: joint force
-  const Real t200 = t195 * c_r_a_2_;
-  const Real t201 = t199 * s_r_a_2_;
-  const Real t202 = t200 - t201;
-  const Real t203 = t64 + t202;
-  const Real t204 = t199 * c_r_a_2_;
-  const Real t205 = t195 * s_r_a_2_;
-  const Real t206 = t204 + t205;
-  const Real t207 = t206 + t157;
-  const Real t208 = par.l2 * t206;
-  const Real t209 = t198 - t208;
-  const Real t210 = t209 - t155;
+  // accelerations
+  const Real t203 = t199 + t202;
+  const Real t204 = t203 - t196;
+  const Real t205 = t193 + t204;
+  const Real t206 = t160 * t9;
+  const Real t207 = t205 + t206;
+  const Real t208 = t30 * par.k18;
 
-  // rear: joint force
-  const Real t211 = c_r_a_1_ * t207;
-  const Real t212 = t203 * s_r_a_1_;
-  const Real t213 = t211 + t212;
-  const Real t214 = par.l1 * t213;
-  const Real t215 = t210 - t214;
-  const Real t216 = t215 - t150;
-  const Real t217 = t213 + t152;
-  const Real t218 = t203 * c_r_a_1_;
-  const Real t219 = t207 * s_r_a_1_;
-  const Real t220 = t218 - t219;
-  const Real t221 = t57 + t220;
+  // peduncle: wrench
+  const Real t209 = par.k18 * t22;
 
-  // trunk: joint force
-  const Real t222 = t217 * c_r_a_0_;
-  const Real t223 = s_r_a_0_ * t221;
+  // accelerations
+  const Real t210 = t208 + t209;
+  const Real t211 = t210 - par.k37;
+  const Real t212 = t30 * par.k31;
+
+  // peduncle: wrench of the fluid
+  const Real t213 = par.k31 * t22;
+
+  // accelerations
+  const Real t214 = t213 + t212;
+  const Real t215 = t214 - par.k29;
+  const Real t216 = t211 + t215;
+  const Real t217 = t216 - t207;
+  const Real t218 = t217 * c_r_a_2_;
+  const Real t219 = sum_error(t192, t218);
+  const Real t220 = t9 * t158;
+  const Real t221 = product_error(t9, t160);
+  const Real t222 = t220 + t221;
+  const Real t223 = sum_error(t205, t206);
   const Real t224 = t222 + t223;
-  const Real t225 = par.k54 + t224;
-  const Real t226 = par.k8 * t224;
-  const Real t227 = t216 - t226;
+  const Real t225 = -t207;
+  const Real t226 = sum_error(t216, t225);
+  const Real t227 = t226 - t224;
+  const Real t228 = t227 * c_r_a_2_;
+  const Real t229 = product_error(t217, c_r_a_2_);
+  const Real t230 = t229 + t228;
+  const Real t231 = t219 + t230;
 
-  // trunk: acceleration
-  const Real t228 = par.k8 * c_r_a_0_;
-  const Real t229 = par.k8 * s_r_a_0_;
+  // rear: wrench
+  const Real t232 = t15 * par.k22;
+  const Real t233 = t232 - par.k30;
 
-  // rear: acceleration
-  const Real t230 = t229 * s_r_a_1_;
-  const Real t231 = t228 + par.l1;
-  const Real t232 = c_r_a_1_ * t231;
-  const Real t233 = t230 - t232;
-  const Real t234 = c_r_a_1_ * t229;
-  const Real t235 = t231 * s_r_a_1_;
-  const Real t236 = t234 + t235;
+  // rear: wrench of the fluid
+  const Real t234 = t15 * par.k53;
+  const Real t235 = t234 - par.k43;
 
-  // peduncle: acceleration
-  const Real t237 = t233 - par.l2;
-  const Real t238 = t237 * c_r_a_2_;
-  const Real t239 = t236 * s_r_a_2_;
-  const Real t240 = t238 + t239;
-  const Real t241 = t237 * s_r_a_2_;
-  const Real t242 = t236 * c_r_a_2_;
-  const Real t243 = t241 - t242;
+  // accelerations
+  const Real t236 = sum_error(t233, t235);
+  const Real t237 = t236 + t231;
+  const Real t238 = t192 + t218;
 
-  // fin: acceleration
-  const Real t244 = par.l3 - t240;
-  const Real t245 = t242 - t241;
+  // rear: wrench of the fluid
+  const Real t239 = t233 + t235;
 
-  // fin_section_1: acceleration
-  const Real t246 = t244 + t27;
-  const Real t247 = t246 * t9;
-  const Real t248 = t245 - t24;
-  const Real t249 = t248 * t8;
-  const Real t250 = t247 - t249;
+  // accelerations
+  const Real t240 = sum_error(t239, t238);
+  const Real t241 = t240 + t237;
+  const Real t242 = t241 * s_r_a_1_;
+  const Real t243 = t239 + t238;
+  const Real t244 = t243 * s_r_a_1_;
+  const Real t245 = t244 + t242;
+  const Real t246 = t227 * s_r_a_2_;
+  const Real t247 = t217 * s_r_a_2_;
+  const Real t248 = t246 + t247;
+  const Real t249 = t191 * c_r_a_2_;
+  const Real t250 = t249 - t248;
 
-  // fin_section_2: acceleration
-  const Real t251 = t244 + t31;
-  const Real t252 = t251 * t3;
-  const Real t253 = t245 - t28;
-  const Real t254 = t253 * t2;
-  const Real t255 = t252 - t254;
+  // rear: wrench
+  const Real t251 = par.k22 * t20;
+
+  // accelerations
+  const Real t252 = t250 - t251;
+  const Real t253 = c_r_a_1_ * t252;
+  const Real t254 = t253 - t245;
 
   // trunk: wrench
-  const Real t256 = t229 * par.k1;
-  const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k41;
-  const Real t259 = t228 * par.k1;
-  const Real t260 = par.k2 + t259;
+  const Real t255 = t13 * par.k1;
+
+  // accelerations
+  const Real t256 = t254 - t255;
+  const Real t257 = s_r_a_0_ * t256;
+  const Real t258 = c_r_a_1_ * t241;
+  const Real t259 = product_error(c_r_a_1_, t243);
+  const Real t260 = t258 + t259;
+  const Real t261 = s_r_a_1_ * t252;
+  const Real t262 = c_r_a_1_ * t243;
+  const Real t263 = sum_error(t262, t261);
+  const Real t264 = t263 + t260;
+  const Real t265 = t262 + t261;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k48;
-  const Real t262 = t261 + par.k39;
-  const Real t263 = t258 + t262;
-  const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k48;
-  const Real t266 = t265 + t260;
+  const Real t266 = t10 * par.k12;
+  const Real t267 = t266 + par.k49;
 
-  // rear: wrench
-  const Real t267 = t233 * par.k22;
-  const Real t268 = t267 - par.k30;
-  const Real t269 = t233 * par.k30;
-  const Real t270 = par.k23 - t269;
-  const Real t271 = par.k22 * t236;
+  // trunk: wrench
+  const Real t268 = t10 * par.k1;
+  const Real t269 = par.k2 + t268;
 
-  // rear: wrench of the fluid
-  const Real t272 = t233 * par.k52;
-  const Real t273 = t272 - par.k42;
-  const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k42;
-  const Real t276 = par.k35 - t275;
-  const Real t277 = t270 + t276;
+  // trunk: wrench of the fluid
+  const Real t270 = t267 + t269;
 
-  // peduncle: wrench
-  const Real t278 = t240 * par.k36;
-  const Real t279 = par.k19 - t278;
-  const Real t280 = par.k18 * t240;
-  const Real t281 = t280 - par.k36;
-  const Real t282 = par.k18 * t243;
-
-  // peduncle: wrench of the fluid
-  const Real t283 = par.k31 * t240;
-  const Real t284 = t283 - par.k29;
-  const Real t285 = t284 + t281;
-  const Real t286 = par.k29 * t240;
-  const Real t287 = par.k44 - t286;
-  const Real t288 = t279 + t287;
+  // accelerations
+  const Real t271 = t265 - t270;
+  const Real t272 = t271 + t264;
+  const Real t273 = t272 * c_r_a_0_;
+  const Real t274 = t257 + t273;
+  const Real t275 = par.k8 * t274;
+  const Real t276 = -t275;
+  const Real t277 = t265 * par.l1;
+  const Real t278 = t162 * t98;
+  const Real t279 = t206 * t91;
+  const Real t280 = t278 + t279;
+  const Real t281 = t193 * t36;
+  const Real t282 = t179 * t45;
+  const Real t283 = t281 + t282;
+  const Real t284 = t134 * par.k47;
+  const Real t285 = t136 * par.k47;
+  const Real t286 = t284 + t285;
+  const Real t287 = t202 * t31;
 
   // fin: wrench
-  const Real t289 = t244 * t19;
-  const Real t290 = t10 * t245;
+  const Real t288 = t32 * t202;
+
+  // accelerations
+  const Real t289 = t287 + t288;
+  const Real t290 = t184 * t44;
   const Real t291 = t289 - t290;
-  const Real t292 = t15 + t291;
-  const Real t293 = par.k6 * t245;
-  const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k40;
-  const Real t296 = t16 * t245;
-  const Real t297 = t295 - t296;
-  const Real t298 = par.k46 + t297;
-  const Real t299 = t244 * par.k6;
-  const Real t300 = t299 + t19;
 
-  // fin_section_1: wrench of the fluid
-  const Real t301 = par.k4 * t250;
+  // fin: inertia in its present shape
+  const Real t292 = r_p[0] * par.k44;
+  const Real t293 = par.k7 * r_p[0];
+  const Real t294 = t292 - t293;
+  const Real t295 = t294 * r_p[0];
+  const Real t296 = par.k17 + t295;
 
-  // fin_section_2: wrench of the fluid
-  const Real t302 = par.k4 * t255;
+  // accelerations
+  const Real t297 = t291 + t296;
+  const Real t298 = t297 - t286;
+  const Real t299 = t298 + t283;
+  const Real t300 = t299 + t280;
+  const Real t301 = sum_error(t279, t278);
+  const Real t302 = t222 * t91;
+  const Real t303 = product_error(t206, t91);
+  const Real t304 = t302 + t303;
+  const Real t305 = t301 + t304;
+  const Real t306 = t300 + t305;
+  const Real t307 = t207 * par.l3;
+  const Real t308 = t307 + t306;
+  const Real t309 = t30 * par.k29;
 
-  // fin_section_2: joint force
-  const Real t303 = t302 * t3;
-  const Real t304 = t303 + t300;
-  const Real t305 = constant<Real>(0.710077701790478711739L) * t303;
-  const Real t306 = t302 * t2;
-  const Real t307 = t29 * t306;
-  const Real t308 = t305 + t307;
-  const Real t309 = t308 + t298;
-  const Real t310 = t303 * t31;
-  const Real t311 = t28 * t306;
-  const Real t312 = t310 + t311;
-  const Real t313 = t292 + t312;
-  const Real t314 = t294 - t306;
+  // peduncle: wrench of the fluid
+  const Real t310 = par.k29 * t22;
 
-  // fin_section_1: joint force
-  const Real t315 = t301 * t9;
-  const Real t316 = t304 + t315;
-  const Real t317 = constant<Real>(0.0709020735931204697442L) * t315;
-  const Real t318 = t301 * t8;
-  const Real t319 = t318 * t25;
-  const Real t320 = t317 + t319;
-  const Real t321 = t309 + t320;
-  const Real t322 = t318 * t24;
-  const Real t323 = t27 * t315;
-  const Real t324 = t322 + t323;
-  const Real t325 = t324 + t313;
+  // accelerations
+  const Real t311 = t309 + t310;
+  const Real t312 = par.k45 - t311;
+  const Real t313 = t30 * par.k37;
 
-  // fin: joint force
-  const Real t326 = t285 - t316;
-  const Real t327 = t316 * par.l3;
-  const Real t328 = t327 + t325;
-  const Real t329 = t328 + t288;
-  const Real t330 = t318 - t314;
-  const Real t331 = t330 + t282;
+  // peduncle: wrench
+  const Real t314 = t22 * par.k37;
 
-  // peduncle: joint force
-  const Real t332 = t331 * c_r_a_2_;
-  const Real t333 = t326 * s_r_a_2_;
-  const Real t334 = t332 - t333;
-  const Real t335 = t334 - t271;
-  const Real t336 = t326 * c_r_a_2_;
-  const Real t337 = t331 * s_r_a_2_;
-  const Real t338 = t336 + t337;
-  const Real t339 = par.l2 * t338;
-  const Real t340 = t329 - t339;
-  const Real t341 = t340 + t277;
-  const Real t342 = t274 + t338;
+  // accelerations
+  const Real t315 = t313 + t314;
+  const Real t316 = par.k19 - t315;
+  const Real t317 = t312 + t316;
+  const Real t318 = t317 + t308;
+  const Real t319 = par.l2 * t238;
+  const Real t320 = t318 - t319;
 
-  // rear: joint force
-  const Real t343 = c_r_a_1_ * t335;
-  const Real t344 = s_r_a_1_ * t342;
-  const Real t345 = t343 - t344;
-  const Real t346 = t345 - t256;
-  const Real t347 = t335 * s_r_a_1_;
-  const Real t348 = c_r_a_1_ * t342;
-  const Real t349 = t347 + t348;
-  const Real t350 = t349 - t266;
-  const Real t351 = par.l1 * t349;
-  const Real t352 = t341 - t351;
-  const Real t353 = t263 + t352;
+  // rear: wrench
+  const Real t321 = t15 * par.k30;
+  const Real t322 = par.k23 - t321;
 
-  // trunk: joint force
-  const Real t354 = t346 * s_r_a_0_;
-  const Real t355 = t350 * c_r_a_0_;
-  const Real t356 = t354 + t355;
-  const Real t357 = par.k8 * t356;
-  const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k55;
+  // rear: wrench of the fluid
+  const Real t323 = t15 * par.k43;
+  const Real t324 = par.k36 - t323;
+  const Real t325 = t322 + t324;
+
+  // accelerations
+  const Real t326 = t320 + t325;
+  const Real t327 = t326 - t277;
+
+  // trunk: wrench
+  const Real t328 = par.k2 * t10;
+  const Real t329 = t328 + par.k42;
+
+  // trunk: wrench of the fluid
+  const Real t330 = t10 * par.k49;
+  const Real t331 = t330 + par.k40;
+  const Real t332 = t329 + t331;
+
+  // accelerations
+  const Real t333 = t332 + t327;
+  const Real t334 = sum_error(t333, t276);
+  const Real t335 = par.l1 * t264;
+  const Real t336 = product_error(t265, par.l1);
+  const Real t337 = t335 + t336;
+  const Real t338 = sum_error(t306, t307);
+  const Real t339 = t224 * par.l3;
+  const Real t340 = product_error(par.l3, t207);
+  const Real t341 = t339 + t340;
+  const Real t342 = t338 + t341;
+  const Real t343 = sum_error(t317, t308);
+  const Real t344 = t342 + t343;
+  const Real t345 = par.l2 * t231;
+  const Real t346 = product_error(par.l2, t238);
+  const Real t347 = t345 + t346;
+  const Real t348 = t344 - t347;
+  const Real t349 = -t319;
+  const Real t350 = sum_error(t318, t349);
+  const Real t351 = t350 + t348;
+  const Real t352 = sum_error(t322, t324);
+  const Real t353 = t351 + t352;
+  const Real t354 = sum_error(t320, t325);
+  const Real t355 = t353 + t354;
+  const Real t356 = t355 - t337;
+  const Real t357 = -t277;
+  const Real t358 = sum_error(t326, t357);
+  const Real t359 = t356 + t358;
+  const Real t360 = sum_error(t332, t327);
+  const Real t361 = t359 + t360;
+  const Real t362 = t334 + t361;
+  const Real t363 = t333 - t275;
+  const Real t364 = sum_error(t363, par.k56);
+  const Real t365 = t362 + t364;
+  const Real t366 = par.k56 + t363;
 
   // rear: acceleration
-  const Real t360 = c_r_a_1_ * par.l1;
-  const Real t361 = par.l1 * s_r_a_1_;
+  const Real t367 = s_r_a_1_ * c_r_a_0_;
+  const Real t368 = c_r_a_1_ * s_r_a_0_;
+  const Real t369 = t367 + t368;
 
   // peduncle: acceleration
-  const Real t362 = t361 * s_r_a_2_;
-  const Real t363 = par.l2 + t360;
-  const Real t364 = c_r_a_2_ * t363;
-  const Real t365 = t362 - t364;
-  const Real t366 = t363 * s_r_a_2_;
-  const Real t367 = t361 * c_r_a_2_;
-  const Real t368 = t366 + t367;
+  const Real t370 = c_r_a_2_ * t369;
 
-  // fin: acceleration
-  const Real t369 = par.l3 - t365;
+  // rear: acceleration
+  const Real t371 = c_r_a_1_ * c_r_a_0_;
+  const Real t372 = s_r_a_0_ * s_r_a_1_;
+  const Real t373 = t371 - t372;
 
-  // fin_section_1: acceleration
-  const Real t370 = t27 + t369;
-  const Real t371 = t9 * t370;
-  const Real t372 = t368 - t24;
-  const Real t373 = t372 * t8;
-  const Real t374 = t371 - t373;
+  // peduncle: acceleration
+  const Real t374 = t373 * s_r_a_2_;
+  const Real t375 = t370 + t374;
 
   // fin_section_2: acceleration
-  const Real t375 = t31 + t369;
   const Real t376 = t375 * t3;
-  const Real t377 = t368 - t28;
-  const Real t378 = t377 * t2;
-  const Real t379 = t376 - t378;
+
+  // peduncle: acceleration
+  const Real t377 = s_r_a_2_ * t369;
+  const Real t378 = t373 * c_r_a_2_;
+
+  // fin: acceleration
+  const Real t379 = t377 - t378;
+
+  // fin_section_2: acceleration
+  const Real t380 = t379 * t2;
+  const Real t381 = t376 - t380;
+
+  // fin_section_2: wrench of the fluid
+  const Real t382 = par.k4 * t381;
+
+  // fin_section_2: joint force
+  const Real t383 = t382 * t2;
+  const Real t384 = t33 * t383;
+  const Real t385 = t382 * t3;
+  const Real t386 = constant<Real>(0.710077701790478711739L) * t385;
+  const Real t387 = t384 + t386;
+
+  // fin: wrench
+  const Real t388 = t375 * par.k41;
+  const Real t389 = t82 * t379;
+  const Real t390 = t388 - t389;
+
+  // fin_section_2: joint force
+  const Real t391 = t390 + t387;
+
+  // fin_section_1: acceleration
+  const Real t392 = t375 * t9;
+  const Real t393 = t8 * t379;
+  const Real t394 = t392 - t393;
+
+  // fin_section_1: wrench of the fluid
+  const Real t395 = par.k4 * t394;
+
+  // fin_section_1: joint force
+  const Real t396 = t9 * t395;
+  const Real t397 = constant<Real>(0.0709020735931204697442L) * t396;
+  const Real t398 = t395 * t8;
+  const Real t399 = t398 * t89;
+  const Real t400 = t397 + t399;
+  const Real t401 = t391 + t400;
+
+  // modified blocks
+  const Real t402 = t130 * t401;
+
+  // fin_section_2: acceleration
+  const Real t403 = t402 * constant<Real>(0.710077701790478711739L);
+  const Real t404 = t375 - t403;
+  const Real t405 = t404 * t3;
+  const Real t406 = t402 * t33;
+  const Real t407 = t406 + t379;
+  const Real t408 = t407 * t2;
+  const Real t409 = t405 - t408;
+
+  // fin_section_2: wrench of the fluid
+  const Real t410 = par.k4 * t409;
+
+  // fin_section_2: joint force
+  const Real t411 = t410 * t2;
+
+  // fin: wrench
+  const Real t412 = t402 * t82;
+
+  // fin: wrench
+  const Real t413 = par.k6 * t379;
+
+  // fin: wrench
+  const Real t414 = t412 + t413;
+
+  // fin_section_2: joint force
+  const Real t415 = t414 - t411;
+
+  // fin_section_1: acceleration
+  const Real t416 = t402 * constant<Real>(0.0709020735931204697442L);
+  const Real t417 = t375 - t416;
+  const Real t418 = t9 * t417;
+  const Real t419 = t402 * t89;
+  const Real t420 = t419 + t379;
+  const Real t421 = t420 * t8;
+  const Real t422 = t418 - t421;
+
+  // fin_section_1: wrench of the fluid
+  const Real t423 = par.k4 * t422;
+
+  // fin_section_1: joint force
+  const Real t424 = t423 * t8;
+
+  // fin: joint force
+  const Real t425 = t424 - t415;
+
+  // peduncle: acceleration
+  const Real t426 = t378 - t377;
+
+  // peduncle: wrench
+  const Real t427 = par.k18 * t426;
+
+  // fin: joint force
+  const Real t428 = t425 + t427;
+
+  // peduncle: joint force
+  const Real t429 = t428 * s_r_a_2_;
+
+  // fin_section_2: joint force
+  const Real t430 = t410 * t3;
+
+  // fin: wrench
+  const Real t431 = t402 * par.k41;
+
+  // fin: wrench
+  const Real t432 = t375 * par.k6;
+
+  // fin: wrench
+  const Real t433 = t432 - t431;
+
+  // fin_section_2: joint force
+  const Real t434 = t430 + t433;
+
+  // fin_section_1: joint force
+  const Real t435 = t9 * t423;
+  const Real t436 = t435 + t434;
+
+  // peduncle: wrench of the fluid
+  const Real t437 = t375 * par.k31;
+
+  // peduncle: wrench
+  const Real t438 = par.k18 * t375;
+
+  // peduncle: wrench of the fluid
+  const Real t439 = t437 + t438;
+
+  // fin: joint force
+  const Real t440 = t439 + t436;
+
+  // peduncle: joint force
+  const Real t441 = t440 * c_r_a_2_;
+  const Real t442 = t429 - t441;
 
   // rear: wrench
-  const Real t380 = par.k22 * t361;
-  const Real t381 = par.k30 * t360;
-  const Real t382 = par.k23 + t381;
-  const Real t383 = par.k22 * t360;
-  const Real t384 = par.k30 + t383;
+  const Real t443 = par.k22 * t369;
 
   // rear: wrench of the fluid
-  const Real t385 = t360 * par.k52;
-  const Real t386 = t385 + par.k42;
-  const Real t387 = t386 + t384;
-  const Real t388 = t360 * par.k42;
-  const Real t389 = par.k35 + t388;
-  const Real t390 = t389 + t382;
-
-  // peduncle: wrench
-  const Real t391 = par.k36 * t365;
-  const Real t392 = par.k19 - t391;
-  const Real t393 = par.k18 * t365;
-  const Real t394 = t393 - par.k36;
-  const Real t395 = par.k18 * t368;
-
-  // peduncle: wrench of the fluid
-  const Real t396 = par.k29 * t365;
-  const Real t397 = par.k44 - t396;
-  const Real t398 = t392 + t397;
-  const Real t399 = par.k31 * t365;
-  const Real t400 = t399 - par.k29;
-  const Real t401 = t394 + t400;
-
-  // fin: wrench
-  const Real t402 = par.k6 * t369;
-  const Real t403 = t402 + t19;
-  const Real t404 = par.k6 * t368;
-  const Real t405 = t404 - t10;
-  const Real t406 = t19 * t369;
-  const Real t407 = t10 * t368;
-  const Real t408 = t406 - t407;
-  const Real t409 = t15 + t408;
-
-  // fin_section_1: wrench of the fluid
-  const Real t410 = par.k4 * t374;
-
-  // fin_section_2: wrench of the fluid
-  const Real t411 = par.k4 * t379;
-
-  // fin_section_2: joint force
-  const Real t412 = t411 * t2;
-  const Real t413 = t412 * t28;
-  const Real t414 = t411 * t3;
-  const Real t415 = t414 * t31;
-  const Real t416 = t413 + t415;
-  const Real t417 = t416 + t409;
-  const Real t418 = t405 - t412;
-  const Real t419 = t414 + t403;
-
-  // fin_section_1: joint force
-  const Real t420 = t410 * t9;
-  const Real t421 = t420 + t419;
-  const Real t422 = t410 * t8;
-  const Real t423 = t422 * t24;
-  const Real t424 = t420 * t27;
-  const Real t425 = t423 + t424;
-  const Real t426 = t417 + t425;
-
-  // fin: joint force
-  const Real t427 = t421 * par.l3;
-  const Real t428 = t426 + t427;
-  const Real t429 = t398 + t428;
-  const Real t430 = t422 - t418;
-  const Real t431 = t430 - t395;
-  const Real t432 = t401 - t421;
+  const Real t444 = t369 * par.k53;
+  const Real t445 = t443 + t444;
 
   // peduncle: joint force
-  const Real t433 = t431 * s_r_a_2_;
-  const Real t434 = c_r_a_2_ * t432;
-  const Real t435 = t433 + t434;
-  const Real t436 = par.l2 * t435;
-  const Real t437 = t429 - t436;
-  const Real t438 = t437 + t390;
-  const Real t439 = t435 - t387;
-  const Real t440 = t431 * c_r_a_2_;
-  const Real t441 = s_r_a_2_ * t432;
-  const Real t442 = t440 - t441;
-  const Real t443 = t442 - t380;
+  const Real t446 = t442 - t445;
 
   // rear: joint force
-  const Real t444 = c_r_a_1_ * t439;
-  const Real t445 = t443 * s_r_a_1_;
-  const Real t446 = t444 + t445;
-  const Real t447 = t446 * par.l1;
-  const Real t448 = t438 - t447;
-  const Real t449 = t448 + par.k56;
+  const Real t447 = c_r_a_1_ * t446;
+
+  // peduncle: joint force
+  const Real t448 = t428 * c_r_a_2_;
+  const Real t449 = t440 * s_r_a_2_;
+  const Real t450 = t448 + t449;
+
+  // rear: wrench
+  const Real t451 = par.k22 * t373;
+
+  // peduncle: joint force
+  const Real t452 = t450 + t451;
+
+  // rear: joint force
+  const Real t453 = t452 * s_r_a_1_;
+  const Real t454 = t447 + t453;
+
+  // trunk: wrench
+  const Real t455 = s_r_a_0_ * par.k1;
+
+  // trunk: wrench of the fluid
+  const Real t456 = par.k12 * s_r_a_0_;
+  const Real t457 = t455 + t456;
+
+  // rear: joint force
+  const Real t458 = t454 - t457;
+
+  // trunk: joint force
+  const Real t459 = t458 * c_r_a_0_;
+
+  // rear: joint force
+  const Real t460 = c_r_a_1_ * t452;
+  const Real t461 = t446 * s_r_a_1_;
+  const Real t462 = t460 - t461;
+
+  // trunk: wrench
+  const Real t463 = par.k1 * c_r_a_0_;
+
+  // rear: joint force
+  const Real t464 = t463 + t462;
+
+  // trunk: joint force
+  const Real t465 = s_r_a_0_ * t464;
+  const Real t466 = t459 + t465;
+  const Real t467 = par.k8 * t466;
+
+  // rear: joint force
+  const Real t468 = par.l1 * t454;
+
+  // fin_section_2: joint force
+  const Real t469 = t430 * t36;
+  const Real t470 = t411 * t45;
+  const Real t471 = t469 + t470;
+
+  // fin: wrench
+  const Real t472 = t402 * par.k47;
+
+  // fin: wrench
+  const Real t473 = t375 * t202;
+  const Real t474 = t184 * t379;
+  const Real t475 = t473 - t474;
+
+  // fin: wrench
+  const Real t476 = t475 - t472;
+
+  // fin_section_2: joint force
+  const Real t477 = t471 + t476;
+
+  // fin_section_1: joint force
+  const Real t478 = t424 * t98;
+  const Real t479 = t435 * t91;
+  const Real t480 = t478 + t479;
+  const Real t481 = t480 + t477;
+
+  // fin: joint force
+  const Real t482 = par.l3 * t436;
+  const Real t483 = t481 + t482;
+
+  // peduncle: wrench of the fluid
+  const Real t484 = t375 * par.k29;
+
+  // peduncle: wrench
+  const Real t485 = t375 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t486 = t484 + t485;
+
+  // fin: joint force
+  const Real t487 = t486 + t483;
+
+  // peduncle: joint force
+  const Real t488 = par.l2 * t442;
+  const Real t489 = t487 - t488;
+
+  // rear: wrench
+  const Real t490 = par.k30 * t369;
+
+  // rear: wrench of the fluid
+  const Real t491 = par.k43 * t369;
+  const Real t492 = t490 + t491;
+
+  // peduncle: joint force
+  const Real t493 = t489 + t492;
+
+  // rear: joint force
+  const Real t494 = t493 - t468;
+
+  // trunk: wrench
+  const Real t495 = par.k2 * s_r_a_0_;
+
+  // trunk: wrench of the fluid
+  const Real t496 = s_r_a_0_ * par.k49;
+  const Real t497 = t495 + t496;
+
+  // rear: joint force
+  const Real t498 = t497 + t494;
+
+  // trunk: joint force
+  const Real t499 = t498 - t467;
+  const Real t500 = c_r_a_0_ * t464;
+  const Real t501 = t458 * s_r_a_0_;
+  const Real t502 = t500 - t501;
+  const Real t503 = t502 + par.k54;
+
+  // trunk: joint force
+  const Real t504 = constant<Real>(1.0L) / t503;
+  const Real t505 = t499 * t504;
+  const Real t506 = t499 * t505;
+
+  // accelerations
+  const Real t507 = -t506;
+  const Real t508 = sum_error(t366, t507);
+  const Real t509 = t508 + t365;
+  const Real t510 = t366 - t506;
+
+  // trunk: joint force
+  const Real t511 = t466 * t504;
+  const Real t512 = t466 * t511;
+
+  // fin_section_2: acceleration
+  const Real t513 = t375 * t2;
+  const Real t514 = t379 * t3;
+  const Real t515 = t513 + t514;
+
+  // fin_section_2: wrench of the fluid
+  const Real t516 = par.k4 * t515;
+
+  // fin_section_2: joint force
+  const Real t517 = t516 * t3;
+  const Real t518 = constant<Real>(0.710077701790478711739L) * t517;
+  const Real t519 = t516 * t2;
+  const Real t520 = t519 * t33;
+  const Real t521 = t518 + t520;
+
+  // fin: wrench
+  const Real t522 = par.k41 * t379;
+  const Real t523 = t82 * t375;
+  const Real t524 = t522 + t523;
+
+  // fin_section_2: joint force
+  const Real t525 = t524 + t521;
+
+  // fin_section_1: acceleration
+  const Real t526 = t9 * t379;
+  const Real t527 = t375 * t8;
+  const Real t528 = t526 + t527;
+
+  // fin_section_1: wrench of the fluid
+  const Real t529 = par.k4 * t528;
+
+  // fin_section_1: joint force
+  const Real t530 = t529 * t9;
+  const Real t531 = constant<Real>(0.0709020735931204697442L) * t530;
+  const Real t532 = t529 * t8;
+  const Real t533 = t89 * t532;
+  const Real t534 = t531 + t533;
+  const Real t535 = t534 + t525;
+
+  // modified blocks
+  const Real t536 = t130 * t535;
+
+  // fin_section_2: acceleration
+  const Real t537 = constant<Real>(0.710077701790478711739L) * t536;
+  const Real t538 = t379 - t537;
+  const Real t539 = t538 * t3;
+  const Real t540 = t33 * t536;
+  const Real t541 = t540 - t375;
+  const Real t542 = t541 * t2;
+  const Real t543 = t539 - t542;
+
+  // fin_section_2: wrench of the fluid
+  const Real t544 = par.k4 * t543;
+
+  // fin_section_2: joint force
+  const Real t545 = t544 * t2;
+
+  // fin: wrench
+  const Real t546 = t82 * t536;
+  const Real t547 = t546 - t432;
+
+  // fin_section_2: joint force
+  const Real t548 = t547 - t545;
+
+  // fin_section_1: acceleration
+  const Real t549 = constant<Real>(0.0709020735931204697442L) * t536;
+  const Real t550 = t379 - t549;
+  const Real t551 = t550 * t9;
+  const Real t552 = t89 * t536;
+  const Real t553 = t552 - t375;
+  const Real t554 = t553 * t8;
+  const Real t555 = t551 - t554;
+
+  // fin_section_1: wrench of the fluid
+  const Real t556 = par.k4 * t555;
+
+  // fin_section_1: joint force
+  const Real t557 = t556 * t8;
+
+  // fin: joint force
+  const Real t558 = t557 - t548;
+  const Real t559 = t558 + t438;
+
+  // peduncle: joint force
+  const Real t560 = t559 * c_r_a_2_;
+
+  // fin_section_2: joint force
+  const Real t561 = t544 * t3;
+
+  // fin: wrench
+  const Real t562 = par.k41 * t536;
+  const Real t563 = t413 - t562;
+
+  // fin_section_2: joint force
+  const Real t564 = t563 + t561;
+
+  // fin_section_1: joint force
+  const Real t565 = t556 * t9;
+  const Real t566 = t565 + t564;
+
+  // peduncle: wrench of the fluid
+  const Real t567 = par.k31 * t426;
+  const Real t568 = t567 + t427;
+
+  // fin: joint force
+  const Real t569 = t568 - t566;
+
+  // peduncle: joint force
+  const Real t570 = t569 * s_r_a_2_;
+  const Real t571 = t560 - t570;
+  const Real t572 = t443 + t571;
+
+  // rear: joint force
+  const Real t573 = c_r_a_1_ * t572;
+
+  // peduncle: joint force
+  const Real t574 = t569 * c_r_a_2_;
+  const Real t575 = t559 * s_r_a_2_;
+  const Real t576 = t574 + t575;
+
+  // rear: wrench of the fluid
+  const Real t577 = t373 * par.k53;
+  const Real t578 = t577 + t451;
+
+  // peduncle: joint force
+  const Real t579 = t576 + t578;
+
+  // rear: joint force
+  const Real t580 = t579 * s_r_a_1_;
+  const Real t581 = t573 - t580;
+  const Real t582 = t455 + t581;
+
+  // trunk: joint force
+  const Real t583 = t582 * s_r_a_0_;
+
+  // rear: joint force
+  const Real t584 = c_r_a_1_ * t579;
+  const Real t585 = t572 * s_r_a_1_;
+  const Real t586 = t584 + t585;
+
+  // trunk: wrench of the fluid
+  const Real t587 = par.k12 * c_r_a_0_;
+  const Real t588 = t463 + t587;
+
+  // rear: joint force
+  const Real t589 = t586 + t588;
+
+  // trunk: joint force
+  const Real t590 = t589 * c_r_a_0_;
+  const Real t591 = t583 + t590;
+  const Real t592 = t591 + par.k55;
+
+  // trunk: joint force
+  const Real t593 = t592 - t512;
+  const Real t594 = constant<Real>(1.0L) / t593;
+  const Real t595 = t499 * t511;
+
+  // trunk: joint force
+  const Real t596 = par.k8 * t591;
+
+  // rear: joint force
+  const Real t597 = par.l1 * t586;
+
+  // fin_section_2: joint force
+  const Real t598 = t36 * t561;
+  const Real t599 = t45 * t545;
+  const Real t600 = t598 + t599;
+
+  // fin: wrench
+  const Real t601 = par.k47 * t536;
+
+  // fin: wrench
+  const Real t602 = t184 * t375;
+  const Real t603 = t202 * t379;
+  const Real t604 = t602 + t603;
+
+  // fin: wrench
+  const Real t605 = t604 - t601;
+
+  // fin_section_2: joint force
+  const Real t606 = t605 + t600;
+
+  // fin_section_1: joint force
+  const Real t607 = t557 * t98;
+  const Real t608 = t565 * t91;
+  const Real t609 = t607 + t608;
+  const Real t610 = t609 + t606;
+
+  // fin: joint force
+  const Real t611 = t566 * par.l3;
+  const Real t612 = t610 + t611;
+
+  // peduncle: wrench
+  const Real t613 = t426 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t614 = par.k29 * t426;
+  const Real t615 = t613 + t614;
+
+  // fin: joint force
+  const Real t616 = t612 - t615;
+
+  // peduncle: joint force
+  const Real t617 = par.l2 * t576;
+  const Real t618 = t616 - t617;
+
+  // rear: wrench
+  const Real t619 = par.k30 * t373;
+
+  // rear: wrench of the fluid
+  const Real t620 = t373 * par.k43;
+  const Real t621 = t619 + t620;
+
+  // peduncle: joint force
+  const Real t622 = t618 - t621;
+
+  // rear: joint force
+  const Real t623 = t622 - t597;
+
+  // trunk: wrench of the fluid
+  const Real t624 = c_r_a_0_ * par.k49;
+
+  // trunk: wrench
+  const Real t625 = par.k2 * c_r_a_0_;
+
+  // trunk: wrench of the fluid
+  const Real t626 = t624 + t625;
+
+  // rear: joint force
+  const Real t627 = t623 - t626;
+
+  // trunk: joint force
+  const Real t628 = t627 - t596;
+
+  // trunk: joint force
+  const Real t629 = t628 - t595;
+  const Real t630 = t594 * t629;
+  const Real t631 = t630 * t629;
+
+  // accelerations
+  const Real t632 = t510 - t631;
+  const Real t633 = t509 + t632;
+  const Real t634 = constant<Real>(1.0L) / t633;
+
+  // trunk: joint force
+  const Real t635 = t498 * t505;
+
+  // accelerations
+  const Real t636 = t333 - t635;
+
+  // trunk: joint force
+  const Real t637 = t511 * t498;
+  const Real t638 = t627 - t637;
+  const Real t639 = t630 * t638;
+
+  // accelerations
+  const Real t640 = t636 - t639;
+  const Real t641 = t634 * t640;
+  const Real t642 = product_error(t498, t505);
+  const Real t643 = t361 - t642;
+  const Real t644 = -t635;
+  const Real t645 = sum_error(t333, t644);
+  const Real t646 = t645 + t643;
+  const Real t647 = product_error(t630, t638);
+  const Real t648 = t646 - t647;
+  const Real t649 = -t639;
+  const Real t650 = sum_error(t636, t649);
+  const Real t651 = t648 + t650;
+  const Real t652 = t651 * t634;
+  const Real t653 = t641 + t652;
+  const Real t654 = t651 * t653;
+  const Real t655 = product_error(t640, t653);
+  const Real t656 = t654 + t655;
+
+  // rear: acceleration
+  const Real t657 = c_r_a_1_ * par.l1;
 
   // peduncle: acceleration
-  const Real t450 = par.l2 * c_r_a_2_;
-  const Real t451 = par.l2 * s_r_a_2_;
+  const Real t658 = par.l2 + t657;
+  const Real t659 = c_r_a_2_ * t658;
+
+  // rear: acceleration
+  const Real t660 = par.l1 * s_r_a_1_;
+
+  // peduncle: acceleration
+  const Real t661 = t660 * s_r_a_2_;
+  const Real t662 = t661 - t659;
 
   // fin: acceleration
-  const Real t452 = t450 + par.l3;
+  const Real t663 = par.l3 - t662;
 
-  // fin_section_1: acceleration
-  const Real t453 = t452 + t27;
-  const Real t454 = t9 * t453;
-  const Real t455 = t451 - t24;
-  const Real t456 = t8 * t455;
-  const Real t457 = t454 - t456;
+  // accelerations
+  const Real t664 = sum_error(t36, t663);
+  const Real t665 = t659 - t661;
+  const Real t666 = sum_error(par.l3, t665);
+  const Real t667 = t666 + t664;
+  const Real t668 = t667 * t3;
 
   // fin_section_2: acceleration
-  const Real t458 = t452 + t31;
-  const Real t459 = t458 * t3;
-  const Real t460 = t451 - t28;
-  const Real t461 = t460 * t2;
-  const Real t462 = t459 - t461;
+  const Real t669 = t36 + t663;
+
+  // accelerations
+  const Real t670 = product_error(t669, t3);
+  const Real t671 = t668 + t670;
+
+  // peduncle: acceleration
+  const Real t672 = t658 * s_r_a_2_;
+  const Real t673 = t660 * c_r_a_2_;
+  const Real t674 = t672 + t673;
+
+  // fin_section_2: acceleration
+  const Real t675 = t674 - t45;
+
+  // accelerations
+  const Real t676 = product_error(t675, t2);
+  const Real t677 = t671 - t676;
+
+  // fin_section_2: acceleration
+  const Real t678 = t669 * t3;
+  const Real t679 = t675 * t2;
+
+  // accelerations
+  const Real t680 = -t679;
+  const Real t681 = sum_error(t678, t680);
+  const Real t682 = t681 + t677;
+  const Real t683 = par.k4 * t682;
+
+  // fin_section_2: acceleration
+  const Real t684 = t678 - t679;
+
+  // accelerations
+  const Real t685 = product_error(par.k4, t684);
+  const Real t686 = t683 + t685;
+  const Real t687 = t686 * t3;
+
+  // fin_section_2: wrench of the fluid
+  const Real t688 = par.k4 * t684;
+
+  // accelerations
+  const Real t689 = product_error(t688, t3);
+  const Real t690 = t687 + t689;
+  const Real t691 = t690 * constant<Real>(0.710077701790478711739L);
+
+  // fin_section_2: joint force
+  const Real t692 = t688 * t3;
+
+  // accelerations
+  const Real t693 = product_error(constant<Real>(0.710077701790478711739L), t692);
+  const Real t694 = t693 + t691;
+  const Real t695 = t686 * t2;
+  const Real t696 = product_error(t688, t2);
+  const Real t697 = t696 + t695;
+  const Real t698 = t33 * t697;
+
+  // fin_section_2: joint force
+  const Real t699 = t688 * t2;
+
+  // accelerations
+  const Real t700 = product_error(t699, t33);
+  const Real t701 = t698 + t700;
+  const Real t702 = t694 + t701;
+
+  // fin_section_2: joint force
+  const Real t703 = t699 * t33;
+  const Real t704 = constant<Real>(0.710077701790478711739L) * t692;
+
+  // accelerations
+  const Real t705 = sum_error(t703, t704);
+  const Real t706 = t702 + t705;
+
+  // fin_section_2: joint force
+  const Real t707 = t703 + t704;
+
+  // accelerations
+  const Real t708 = t666 * par.k41;
+
+  // fin: wrench
+  const Real t709 = par.k41 * t663;
+
+  // accelerations
+  const Real t710 = t708 + t709;
+
+  // fin: wrench
+  const Real t711 = t82 * t674;
+
+  // accelerations
+  const Real t712 = t710 - t711;
+  const Real t713 = t712 + par.k47;
+  const Real t714 = sum_error(t707, t713);
+  const Real t715 = t714 + t706;
+  const Real t716 = sum_error(t91, t663);
+  const Real t717 = t666 + t716;
+  const Real t718 = t717 * t9;
+
+  // fin_section_1: acceleration
+  const Real t719 = t91 + t663;
+  const Real t720 = t9 * t719;
+
+  // accelerations
+  const Real t721 = t718 + t720;
+
+  // fin_section_1: acceleration
+  const Real t722 = t674 - t98;
+  const Real t723 = t722 * t8;
+
+  // accelerations
+  const Real t724 = t721 - t723;
+  const Real t725 = par.k4 * t724;
+  const Real t726 = t725 * t9;
+  const Real t727 = t726 * constant<Real>(0.0709020735931204697442L);
+  const Real t728 = t725 * t8;
+  const Real t729 = t89 * t728;
+  const Real t730 = t727 + t729;
+  const Real t731 = t713 + t707;
+  const Real t732 = sum_error(t730, t731);
+  const Real t733 = t732 + t715;
+  const Real t734 = t130 * t733;
+  const Real t735 = t730 + t731;
+  const Real t736 = product_error(t130, t735);
+  const Real t737 = t736 + t734;
+  const Real t738 = t737 * constant<Real>(0.0709020735931204697442L);
+  const Real t739 = t130 * t735;
+  const Real t740 = constant<Real>(0.0709020735931204697442L) * t739;
+  const Real t741 = t738 + t740;
+  const Real t742 = -t741;
+  const Real t743 = sum_error(t719, t742);
+  const Real t744 = t743 + t717;
+  const Real t745 = t9 * t744;
+  const Real t746 = t719 - t741;
+  const Real t747 = product_error(t9, t746);
+  const Real t748 = t747 + t745;
+  const Real t749 = t737 * t89;
+  const Real t750 = t89 * t739;
+  const Real t751 = t749 + t750;
+  const Real t752 = t722 + t751;
+  const Real t753 = t752 * t8;
+  const Real t754 = -t753;
+  const Real t755 = t9 * t746;
+  const Real t756 = sum_error(t755, t754);
+  const Real t757 = t748 + t756;
+  const Real t758 = t757 * par.k4;
+  const Real t759 = t755 - t753;
+  const Real t760 = product_error(par.k4, t759);
+  const Real t761 = t760 + t758;
+  const Real t762 = t761 * t9;
+  const Real t763 = par.k4 * t759;
+  const Real t764 = product_error(t763, t9);
+  const Real t765 = t762 + t764;
+  const Real t766 = constant<Real>(0.710077701790478711739L) * t737;
+  const Real t767 = product_error(constant<Real>(0.710077701790478711739L), t739);
+  const Real t768 = t767 + t766;
+  const Real t769 = t667 - t768;
+  const Real t770 = constant<Real>(0.710077701790478711739L) * t739;
+  const Real t771 = t669 - t770;
+  const Real t772 = t771 + t769;
+  const Real t773 = t772 * t3;
+  const Real t774 = t737 * t33;
+  const Real t775 = product_error(t33, t739);
+  const Real t776 = t775 + t774;
+  const Real t777 = t33 * t739;
+  const Real t778 = t675 + t777;
+  const Real t779 = t778 + t776;
+  const Real t780 = t779 * t2;
+  const Real t781 = t773 - t780;
+  const Real t782 = par.k4 * t781;
+  const Real t783 = t782 * t3;
+  const Real t784 = t737 * par.k41;
+  const Real t785 = t739 * par.k41;
+  const Real t786 = t784 + t785;
+
+  // fin: wrench
+  const Real t787 = par.k6 * t663;
+
+  // accelerations
+  const Real t788 = t666 * par.k6;
+  const Real t789 = t787 + t788;
+  const Real t790 = t789 + t202;
+  const Real t791 = t790 - t786;
+  const Real t792 = t791 + t783;
+  const Real t793 = t763 * t9;
+  const Real t794 = sum_error(t793, t792);
+  const Real t795 = t765 + t794;
 
   // peduncle: wrench
-  const Real t463 = par.k18 * t450;
-  const Real t464 = t463 + par.k36;
-  const Real t465 = t450 * par.k36;
-  const Real t466 = par.k19 + t465;
-  const Real t467 = par.k18 * t451;
+  const Real t796 = par.k18 * t662;
+  const Real t797 = t796 - par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t468 = t450 * par.k31;
-  const Real t469 = par.k29 + t468;
-  const Real t470 = t464 + t469;
-  const Real t471 = t450 * par.k29;
-  const Real t472 = t471 + par.k44;
-  const Real t473 = t466 + t472;
+  const Real t798 = par.k31 * t662;
+  const Real t799 = t798 - par.k29;
+
+  // accelerations
+  const Real t800 = sum_error(t797, t799);
+  const Real t801 = t800 - t795;
+  const Real t802 = t792 + t793;
+  const Real t803 = -t802;
+
+  // peduncle: wrench of the fluid
+  const Real t804 = t797 + t799;
+
+  // accelerations
+  const Real t805 = sum_error(t804, t803);
+  const Real t806 = t801 + t805;
+  const Real t807 = t806 * c_r_a_2_;
+  const Real t808 = t804 - t802;
+  const Real t809 = product_error(t808, c_r_a_2_);
+  const Real t810 = t807 + t809;
+  const Real t811 = t761 * t8;
+  const Real t812 = t763 * t8;
+  const Real t813 = t811 + t812;
+  const Real t814 = t782 * t2;
+  const Real t815 = t737 * t82;
+  const Real t816 = t82 * t739;
+  const Real t817 = t815 + t816;
 
   // fin: wrench
-  const Real t474 = t452 * t19;
-  const Real t475 = t10 * t451;
-  const Real t476 = t474 - t475;
-  const Real t477 = t15 + t476;
-  const Real t478 = t452 * par.k6;
-  const Real t479 = t478 + t19;
-  const Real t480 = t451 * par.k6;
-  const Real t481 = t480 - t10;
+  const Real t818 = par.k6 * t674;
+  const Real t819 = t818 - t184;
 
-  // fin_section_1: wrench of the fluid
-  const Real t482 = par.k4 * t457;
+  // accelerations
+  const Real t820 = t817 + t819;
+  const Real t821 = t820 - t814;
+  const Real t822 = t813 - t821;
 
-  // fin_section_2: wrench of the fluid
-  const Real t483 = par.k4 * t462;
+  // peduncle: wrench
+  const Real t823 = par.k18 * t674;
 
-  // fin_section_2: joint force
-  const Real t484 = t483 * t2;
-  const Real t485 = t481 - t484;
-  const Real t486 = t484 * t28;
-  const Real t487 = t3 * t483;
-  const Real t488 = t31 * t487;
-  const Real t489 = t486 + t488;
-  const Real t490 = t477 + t489;
-  const Real t491 = t487 + t479;
+  // accelerations
+  const Real t824 = t822 - t823;
+  const Real t825 = s_r_a_2_ * t824;
+  const Real t826 = t808 * c_r_a_2_;
+  const Real t827 = sum_error(t825, t826);
+  const Real t828 = t810 + t827;
 
-  // fin_section_1: joint force
-  const Real t492 = t9 * t482;
-  const Real t493 = t492 + t491;
-  const Real t494 = t492 * t27;
-  const Real t495 = t8 * t482;
-  const Real t496 = t24 * t495;
-  const Real t497 = t494 + t496;
-  const Real t498 = t490 + t497;
+  // rear: wrench of the fluid
+  const Real t829 = t657 * par.k53;
+  const Real t830 = t829 + par.k43;
 
-  // fin: joint force
-  const Real t499 = t493 * par.l3;
-  const Real t500 = t499 + t498;
-  const Real t501 = t500 + t473;
-  const Real t502 = t495 - t485;
-  const Real t503 = t502 - t467;
-  const Real t504 = t493 + t470;
+  // rear: wrench
+  const Real t831 = par.k22 * t657;
+  const Real t832 = par.k30 + t831;
 
-  // peduncle: joint force
-  const Real t505 = t503 * s_r_a_2_;
-  const Real t506 = c_r_a_2_ * t504;
-  const Real t507 = t505 - t506;
-  const Real t508 = par.l2 * t507;
-  const Real t509 = t501 - t508;
-  const Real t510 = t509 + par.k57;
+  // accelerations
+  const Real t833 = sum_error(t830, t832);
+  const Real t834 = t828 - t833;
+  const Real t835 = t826 + t825;
 
-  // fin_section_1: acceleration
-  const Real t511 = t8 * t24;
-  const Real t512 = t27 + par.l3;
-  const Real t513 = t9 * t512;
-  const Real t514 = t511 + t513;
+  // rear: wrench of the fluid
+  const Real t836 = t830 + t832;
+  const Real t837 = -t836;
 
-  // fin_section_2: acceleration
-  const Real t515 = t28 * t2;
-  const Real t516 = t31 + par.l3;
-  const Real t517 = t516 * t3;
-  const Real t518 = t515 + t517;
+  // accelerations
+  const Real t838 = sum_error(t835, t837);
+  const Real t839 = t834 + t838;
+  const Real t840 = c_r_a_1_ * t839;
+  const Real t841 = t835 - t836;
+  const Real t842 = product_error(t841, c_r_a_1_);
+  const Real t843 = t842 + t840;
+  const Real t844 = t806 * s_r_a_2_;
+  const Real t845 = t808 * s_r_a_2_;
+  const Real t846 = t845 + t844;
+  const Real t847 = c_r_a_2_ * t824;
+  const Real t848 = t847 - t846;
+
+  // rear: wrench
+  const Real t849 = par.k22 * t660;
+
+  // accelerations
+  const Real t850 = t848 - t849;
+  const Real t851 = t850 * s_r_a_1_;
+  const Real t852 = c_r_a_1_ * t841;
+  const Real t853 = sum_error(t852, t851);
+  const Real t854 = t843 + t853;
+  const Real t855 = t854 * par.l1;
+  const Real t856 = t852 + t851;
+  const Real t857 = product_error(t856, par.l1);
+  const Real t858 = t855 + t857;
+  const Real t859 = par.l2 * t828;
+  const Real t860 = product_error(par.l2, t835);
+  const Real t861 = t860 + t859;
+  const Real t862 = t813 * t98;
+  const Real t863 = t793 * t91;
+  const Real t864 = t862 + t863;
+  const Real t865 = t45 * t814;
+  const Real t866 = t36 * t783;
+  const Real t867 = t865 + t866;
+  const Real t868 = t737 * par.k47;
+  const Real t869 = t739 * par.k47;
+  const Real t870 = t869 + t868;
+  const Real t871 = t666 * t202;
 
   // fin: wrench
-  const Real t519 = t19 * par.l3;
-  const Real t520 = t519 + t15;
-  const Real t521 = t19 + par.k60;
+  const Real t872 = t202 * t663;
 
-  // fin_section_1: wrench of the fluid
-  const Real t522 = t514 * par.k4;
+  // accelerations
+  const Real t873 = t871 + t872;
 
-  // fin_section_2: wrench of the fluid
-  const Real t523 = par.k4 * t518;
+  // fin: wrench
+  const Real t874 = t184 * t674;
 
-  // fin_section_2: joint force
-  const Real t524 = t523 * t3;
-  const Real t525 = t31 * t524;
-  const Real t526 = t523 * t2;
-  const Real t527 = t28 * t526;
-  const Real t528 = t525 + t527;
-  const Real t529 = t520 + t528;
-  const Real t530 = t521 + t524;
+  // accelerations
+  const Real t875 = t873 - t874;
+  const Real t876 = t296 + t875;
+  const Real t877 = t876 - t870;
+  const Real t878 = t867 + t877;
+  const Real t879 = sum_error(t878, t864);
+  const Real t880 = t765 * t91;
+  const Real t881 = product_error(t793, t91);
+  const Real t882 = t880 + t881;
+  const Real t883 = sum_error(t863, t862);
+  const Real t884 = t882 + t883;
+  const Real t885 = t879 + t884;
+  const Real t886 = t795 * par.l3;
+  const Real t887 = product_error(t802, par.l3);
+  const Real t888 = t887 + t886;
+  const Real t889 = t885 + t888;
+  const Real t890 = t864 + t878;
+  const Real t891 = t802 * par.l3;
+  const Real t892 = sum_error(t890, t891);
+  const Real t893 = t889 + t892;
+  const Real t894 = t891 + t890;
 
-  // fin_section_1: joint force
-  const Real t531 = t522 * t9;
-  const Real t532 = t530 + t531;
-  const Real t533 = t27 * t531;
-  const Real t534 = t522 * t8;
-  const Real t535 = t534 * t24;
-  const Real t536 = t533 + t535;
-  const Real t537 = t536 + t529;
+  // peduncle: wrench
+  const Real t895 = par.k37 * t662;
+  const Real t896 = par.k19 - t895;
 
-  // fin: joint force
-  const Real t538 = t532 * par.l3;
-  const Real t539 = t538 + t537;
-  const Real t540 = t539 + par.k58;
+  // peduncle: wrench of the fluid
+  const Real t897 = par.k29 * t662;
+  const Real t898 = par.k45 - t897;
+  const Real t899 = t896 + t898;
 
-  // fin_section_1: acceleration
-  const Real t541 = t25 * t8;
-  const Real t542 = constant<Real>(0.0709020735931204697442L) * t9;
-  const Real t543 = t541 + t542;
+  // accelerations
+  const Real t900 = sum_error(t899, t894);
+  const Real t901 = t900 + t893;
+  const Real t902 = t901 - t861;
+  const Real t903 = par.l2 * t835;
+  const Real t904 = -t903;
+  const Real t905 = t899 + t894;
+  const Real t906 = sum_error(t905, t904);
+  const Real t907 = t902 + t906;
+
+  // rear: wrench of the fluid
+  const Real t908 = t657 * par.k43;
+  const Real t909 = par.k36 + t908;
+
+  // rear: wrench
+  const Real t910 = par.k30 * t657;
+  const Real t911 = par.k23 + t910;
+
+  // accelerations
+  const Real t912 = sum_error(t909, t911);
+  const Real t913 = sum_error(par.k36, t908);
+  const Real t914 = t913 + t912;
+  const Real t915 = t914 + t907;
+  const Real t916 = t905 - t903;
+
+  // rear: wrench of the fluid
+  const Real t917 = t909 + t911;
+
+  // accelerations
+  const Real t918 = sum_error(t916, t917);
+  const Real t919 = t918 + t915;
+  const Real t920 = t919 - t858;
+  const Real t921 = par.l1 * t856;
+  const Real t922 = -t921;
+  const Real t923 = t916 + t917;
+  const Real t924 = sum_error(t923, t922);
+  const Real t925 = t920 + t924;
+  const Real t926 = t923 - t921;
+  const Real t927 = sum_error(t926, par.k57);
+  const Real t928 = t925 + t927;
+
+  // trunk: joint force
+  const Real t929 = t504 * t498;
+
+  // accelerations
+  const Real t930 = product_error(t498, t929);
+  const Real t931 = t928 - t930;
+  const Real t932 = t926 + par.k57;
+
+  // trunk: joint force
+  const Real t933 = t498 * t929;
+
+  // accelerations
+  const Real t934 = -t933;
+  const Real t935 = sum_error(t932, t934);
+  const Real t936 = t935 + t931;
+
+  // trunk: joint force
+  const Real t937 = t594 * t638;
+
+  // accelerations
+  const Real t938 = product_error(t937, t638);
+  const Real t939 = t936 - t938;
+  const Real t940 = t932 - t933;
+
+  // trunk: joint force
+  const Real t941 = t937 * t638;
+
+  // accelerations
+  const Real t942 = -t941;
+  const Real t943 = sum_error(t940, t942);
+  const Real t944 = t943 + t939;
+  const Real t945 = t944 - t656;
+  const Real t946 = t653 * t640;
+  const Real t947 = t940 - t941;
+  const Real t948 = t947 - t946;
+  const Real t949 = t948 + t945;
+  const Real t950 = constant<Real>(1.0L) / t949;
+
+  // trunk: joint force
+  const Real t951 = t493 * t505;
+
+  // accelerations
+  const Real t952 = t326 - t951;
+
+  // trunk: joint force
+  const Real t953 = t493 * t511;
+  const Real t954 = t622 - t953;
+  const Real t955 = t954 * t630;
+
+  // accelerations
+  const Real t956 = t952 - t955;
+  const Real t957 = product_error(t956, t653);
+  const Real t958 = product_error(t493, t505);
+  const Real t959 = t355 - t958;
+  const Real t960 = -t951;
+  const Real t961 = sum_error(t326, t960);
+  const Real t962 = t959 + t961;
+  const Real t963 = product_error(t954, t630);
+  const Real t964 = t962 - t963;
+  const Real t965 = -t955;
+  const Real t966 = sum_error(t952, t965);
+  const Real t967 = t966 + t964;
+  const Real t968 = t653 * t967;
+  const Real t969 = t957 + t968;
+  const Real t970 = product_error(t493, t929);
+  const Real t971 = t919 - t970;
+
+  // trunk: joint force
+  const Real t972 = t493 * t929;
+
+  // accelerations
+  const Real t973 = -t972;
+  const Real t974 = sum_error(t923, t973);
+  const Real t975 = t974 + t971;
+  const Real t976 = product_error(t937, t954);
+  const Real t977 = t975 - t976;
+  const Real t978 = t923 - t972;
+
+  // trunk: joint force
+  const Real t979 = t937 * t954;
+
+  // accelerations
+  const Real t980 = -t979;
+  const Real t981 = sum_error(t978, t980);
+  const Real t982 = t977 + t981;
+  const Real t983 = t982 - t969;
+  const Real t984 = t956 * t653;
+  const Real t985 = -t984;
+  const Real t986 = t978 - t979;
+  const Real t987 = sum_error(t986, t985);
+  const Real t988 = t983 + t987;
+  const Real t989 = t988 * t950;
+  const Real t990 = t986 - t984;
+  const Real t991 = product_error(t950, t990);
+  const Real t992 = t989 + t991;
+  const Real t993 = t992 * t990;
+  const Real t994 = t990 * t950;
+  const Real t995 = t994 * t988;
+  const Real t996 = t995 + t993;
+  const Real t997 = t994 * t990;
+  const Real t998 = t996 + t997;
+  const Real t999 = t634 * t956;
+  const Real t1000 = t634 * t967;
+  const Real t1001 = t999 + t1000;
+  const Real t1002 = t956 * t1001;
+
+  // peduncle: acceleration
+  const Real t1003 = par.l2 * c_r_a_2_;
+
+  // fin: acceleration
+  const Real t1004 = t1003 + par.l3;
 
   // fin_section_2: acceleration
-  const Real t544 = t29 * t2;
-  const Real t545 = constant<Real>(0.710077701790478711739L) * t3;
-  const Real t546 = t544 + t545;
+  const Real t1005 = t1004 + t36;
+  const Real t1006 = t1005 * t3;
 
-  // fin_section_1: wrench of the fluid
-  const Real t547 = par.k4 * t543;
+  // peduncle: acceleration
+  const Real t1007 = par.l2 * s_r_a_2_;
+
+  // fin_section_2: acceleration
+  const Real t1008 = t1007 - t45;
+  const Real t1009 = t1008 * t2;
+
+  // accelerations
+  const Real t1010 = -t1009;
+  const Real t1011 = sum_error(t1006, t1010);
+  const Real t1012 = product_error(t1005, t3);
+  const Real t1013 = t1012 + t1011;
+  const Real t1014 = par.k4 * t1013;
+
+  // fin_section_2: acceleration
+  const Real t1015 = t1006 - t1009;
+
+  // accelerations
+  const Real t1016 = product_error(par.k4, t1015);
+  const Real t1017 = t1016 + t1014;
+  const Real t1018 = t1017 * t3;
 
   // fin_section_2: wrench of the fluid
-  const Real t548 = par.k4 * t546;
+  const Real t1019 = par.k4 * t1015;
+
+  // accelerations
+  const Real t1020 = product_error(t3, t1019);
+  const Real t1021 = t1018 + t1020;
+  const Real t1022 = constant<Real>(0.710077701790478711739L) * t1021;
 
   // fin_section_2: joint force
-  const Real t549 = t548 * t3;
-  const Real t550 = t549 + par.k40;
-  const Real t551 = constant<Real>(0.710077701790478711739L) * t549;
-  const Real t552 = t548 * t2;
-  const Real t553 = t29 * t552;
-  const Real t554 = t551 + t553;
-  const Real t555 = par.k43 + t554;
-  const Real t556 = t552 * t28;
-  const Real t557 = t549 * t31;
-  const Real t558 = t556 + t557;
-  const Real t559 = t558 + par.k46;
-  const Real t560 = t16 + t552;
+  const Real t1023 = t3 * t1019;
 
-  // fin_section_1: joint force
-  const Real t561 = t9 * t547;
-  const Real t562 = constant<Real>(0.0709020735931204697442L) * t561;
-  const Real t563 = t547 * t8;
-  const Real t564 = t563 * t25;
-  const Real t565 = t562 + t564;
-  const Real t566 = t565 + t555;
-  const Real t567 = t561 * t27;
-  const Real t568 = t563 * t24;
-  const Real t569 = t567 + t568;
-  const Real t570 = t559 + t569;
-  const Real t571 = t550 + t561;
-  const Real t572 = t563 + t560;
+  // accelerations
+  const Real t1024 = product_error(constant<Real>(0.710077701790478711739L), t1023);
+  const Real t1025 = t1024 + t1022;
+  const Real t1026 = t1017 * t2;
 
-  // fin: joint force
-  const Real t573 = t571 * par.l3;
-  const Real t574 = t570 + t573;
+  // fin_section_2: joint force
+  const Real t1027 = t1019 * t2;
 
-  // peduncle: joint force
-  const Real t575 = t572 * c_r_a_2_;
-  const Real t576 = t571 * s_r_a_2_;
-  const Real t577 = t575 + t576;
-  const Real t578 = t572 * s_r_a_2_;
-  const Real t579 = t571 * c_r_a_2_;
-  const Real t580 = t578 - t579;
-  const Real t581 = par.l2 * t580;
-  const Real t582 = t574 - t581;
+  // accelerations
+  const Real t1028 = t1027 + t1026;
+  const Real t1029 = t33 * t1028;
 
-  // rear: joint force
-  const Real t583 = t577 * s_r_a_1_;
-  const Real t584 = c_r_a_1_ * t580;
-  const Real t585 = t583 + t584;
-  const Real t586 = par.l1 * t585;
-  const Real t587 = t582 - t586;
+  // fin_section_2: joint force
+  const Real t1030 = constant<Real>(0.710077701790478711739L) * t1023;
 
-  // springs, dampers and generalised forces
-  const Real t588 = r_p[0] * constant<Real>(2.0L);
-  const Real t589 = t588 * par.k71;
+  // accelerations
+  const Real t1031 = sum_error(t1030, t1029);
+  const Real t1032 = t1025 + t1031;
+  const Real t1033 = t1030 + t1029;
 
-  // reduced accelerations
-  const Real t590 = constant<Real>(1.0L) / t147;
-  const Real t591 = t109 * t590;
-  const Real t592 = t109 * t591;
-  const Real t593 = t566 - t592;
-  const Real t594 = t590 * t141;
-  const Real t595 = t594 * t141;
-  const Real t596 = t225 - t595;
-  const Real t597 = constant<Real>(1.0L) / t596;
-  const Real t598 = t109 * t594;
-  const Real t599 = t193 - t598;
-  const Real t600 = t597 * t599;
-  const Real t601 = t600 * t599;
-  const Real t602 = t593 - t601;
-  const Real t603 = t143 * t590;
-  const Real t604 = t109 * t603;
-  const Real t605 = t321 - t604;
-  const Real t606 = t143 * t594;
-  const Real t607 = t227 - t606;
-  const Real t608 = t597 * t607;
-  const Real t609 = t608 * t599;
-  const Real t610 = t605 - t609;
-  const Real t611 = t143 * t603;
-  const Real t612 = t359 - t611;
-  const Real t613 = t608 * t607;
-  const Real t614 = t612 - t613;
-  const Real t615 = constant<Real>(1.0L) / t614;
-  const Real t616 = t610 * t615;
-  const Real t617 = t616 * t610;
-  const Real t618 = t602 - t617;
-  const Real t619 = constant<Real>(1.0L) / t618;
+  // fin: wrench
+  const Real t1034 = t1004 * par.k41;
+  const Real t1035 = t82 * t1007;
+  const Real t1036 = t1034 - t1035;
+  const Real t1037 = t1036 + par.k47;
+
+  // accelerations
+  const Real t1038 = sum_error(t1033, t1037);
+  const Real t1039 = t1032 + t1038;
+  const Real t1040 = t1037 + t1033;
+  const Real t1041 = sum_error(t1004, t91);
+  const Real t1042 = t9 * t1041;
+
+  // fin_section_1: acceleration
+  const Real t1043 = t1004 + t91;
+  const Real t1044 = t9 * t1043;
+
+  // accelerations
+  const Real t1045 = t1042 + t1044;
+
+  // fin_section_1: acceleration
+  const Real t1046 = t1007 - t98;
+  const Real t1047 = t8 * t1046;
+
+  // accelerations
+  const Real t1048 = t1045 - t1047;
+  const Real t1049 = par.k4 * t1048;
+  const Real t1050 = t1049 * t8;
+  const Real t1051 = t89 * t1050;
+  const Real t1052 = t1049 * t9;
+  const Real t1053 = constant<Real>(0.0709020735931204697442L) * t1052;
+  const Real t1054 = t1051 + t1053;
+  const Real t1055 = sum_error(t1040, t1054);
+  const Real t1056 = t1039 + t1055;
+  const Real t1057 = t130 * t1056;
+  const Real t1058 = t1040 + t1054;
+  const Real t1059 = product_error(t130, t1058);
+  const Real t1060 = t1059 + t1057;
+  const Real t1061 = constant<Real>(0.0709020735931204697442L) * t1060;
+  const Real t1062 = t1058 * t130;
+  const Real t1063 = constant<Real>(0.0709020735931204697442L) * t1062;
+  const Real t1064 = t1063 + t1061;
+  const Real t1065 = -t1064;
+  const Real t1066 = sum_error(t1043, t1065);
+  const Real t1067 = t1066 + t1041;
+  const Real t1068 = t9 * t1067;
+  const Real t1069 = t1043 - t1064;
+  const Real t1070 = product_error(t1069, t9);
+  const Real t1071 = t1068 + t1070;
+  const Real t1072 = t89 * t1060;
+  const Real t1073 = t89 * t1062;
+  const Real t1074 = t1072 + t1073;
+  const Real t1075 = t1074 + t1046;
+  const Real t1076 = t8 * t1075;
+  const Real t1077 = -t1076;
+  const Real t1078 = t9 * t1069;
+  const Real t1079 = sum_error(t1078, t1077);
+  const Real t1080 = t1071 + t1079;
+  const Real t1081 = par.k4 * t1080;
+  const Real t1082 = t1078 - t1076;
+  const Real t1083 = product_error(par.k4, t1082);
+  const Real t1084 = t1081 + t1083;
+  const Real t1085 = t1084 * t9;
+  const Real t1086 = par.k4 * t1082;
+  const Real t1087 = product_error(t1086, t9);
+  const Real t1088 = t1087 + t1085;
+  const Real t1089 = t1088 * t91;
+  const Real t1090 = t1086 * t9;
+  const Real t1091 = t91 * t1090;
+  const Real t1092 = t1089 + t1091;
+  const Real t1093 = t1084 * t8;
+  const Real t1094 = t1086 * t8;
+  const Real t1095 = t1094 + t1093;
+  const Real t1096 = t1095 * t98;
+  const Real t1097 = t1092 + t1096;
+  const Real t1098 = constant<Real>(0.710077701790478711739L) * t1060;
+  const Real t1099 = product_error(t1062, constant<Real>(0.710077701790478711739L));
+  const Real t1100 = t1099 + t1098;
+  const Real t1101 = constant<Real>(0.710077701790478711739L) * t1062;
+  const Real t1102 = t1005 - t1101;
+  const Real t1103 = t1102 - t1100;
+  const Real t1104 = t1103 * t3;
+  const Real t1105 = t33 * t1060;
+  const Real t1106 = t33 * t1062;
+  const Real t1107 = t1106 + t1105;
+  const Real t1108 = t1008 + t1107;
+  const Real t1109 = t1108 * t2;
+  const Real t1110 = t1104 - t1109;
+  const Real t1111 = par.k4 * t1110;
+  const Real t1112 = t1111 * t2;
+  const Real t1113 = t45 * t1112;
+  const Real t1114 = t1111 * t3;
+  const Real t1115 = t36 * t1114;
+  const Real t1116 = t1113 + t1115;
+  const Real t1117 = t1060 * par.k47;
+  const Real t1118 = par.k47 * t1062;
+  const Real t1119 = t1117 + t1118;
+
+  // fin: wrench
+  const Real t1120 = t1004 * t202;
+  const Real t1121 = t184 * t1007;
+  const Real t1122 = t1120 - t1121;
+  const Real t1123 = t296 + t1122;
+
+  // accelerations
+  const Real t1124 = t1123 - t1119;
+  const Real t1125 = t1124 + t1116;
+  const Real t1126 = t1125 + t1097;
+  const Real t1127 = t1060 * par.k41;
+  const Real t1128 = par.k41 * t1062;
+  const Real t1129 = t1128 + t1127;
+
+  // fin: wrench
+  const Real t1130 = t1004 * par.k6;
+  const Real t1131 = t1130 + t202;
+
+  // accelerations
+  const Real t1132 = t1131 - t1129;
+  const Real t1133 = t1114 + t1132;
+  const Real t1134 = t1133 + t1090;
+  const Real t1135 = t1134 * par.l3;
+  const Real t1136 = t1135 + t1126;
+
+  // peduncle: wrench
+  const Real t1137 = t1003 * par.k37;
+  const Real t1138 = par.k19 + t1137;
+
+  // peduncle: wrench of the fluid
+  const Real t1139 = t1003 * par.k29;
+  const Real t1140 = t1139 + par.k45;
+  const Real t1141 = t1138 + t1140;
+
+  // accelerations
+  const Real t1142 = t1136 + t1141;
+  const Real t1143 = t82 * t1060;
+  const Real t1144 = t82 * t1062;
+  const Real t1145 = t1144 + t1143;
+
+  // fin: wrench
+  const Real t1146 = t1007 * par.k6;
+  const Real t1147 = t1146 - t184;
+
+  // accelerations
+  const Real t1148 = t1145 + t1147;
+  const Real t1149 = t1148 - t1112;
+  const Real t1150 = t1095 - t1149;
+
+  // peduncle: wrench
+  const Real t1151 = par.k18 * t1007;
+
+  // accelerations
+  const Real t1152 = t1150 - t1151;
+  const Real t1153 = t1152 * s_r_a_2_;
+
+  // peduncle: wrench
+  const Real t1154 = par.k18 * t1003;
+  const Real t1155 = t1154 + par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t1156 = t1003 * par.k31;
+  const Real t1157 = par.k29 + t1156;
+  const Real t1158 = t1155 + t1157;
+
+  // accelerations
+  const Real t1159 = t1134 + t1158;
+  const Real t1160 = c_r_a_2_ * t1159;
+  const Real t1161 = t1153 - t1160;
+  const Real t1162 = par.l2 * t1161;
+  const Real t1163 = t1142 - t1162;
+  const Real t1164 = par.k58 + t1163;
+
+  // trunk: joint force
+  const Real t1165 = t493 * t504;
+  const Real t1166 = t493 * t1165;
+
+  // accelerations
+  const Real t1167 = t1164 - t1166;
+
+  // trunk: joint force
+  const Real t1168 = t594 * t954;
+  const Real t1169 = t954 * t1168;
+
+  // accelerations
+  const Real t1170 = t1167 - t1169;
+  const Real t1171 = t1170 - t1002;
+  const Real t1172 = t1171 - t998;
+  const Real t1173 = product_error(t1001, t956);
+  const Real t1174 = t1001 * t967;
+  const Real t1175 = t1173 + t1174;
+  const Real t1176 = sum_error(t1126, t1135);
+  const Real t1177 = sum_error(t1090, t1133);
+  const Real t1178 = t1177 + t1088;
+  const Real t1179 = t1178 * par.l3;
+  const Real t1180 = product_error(t1134, par.l3);
+  const Real t1181 = t1179 + t1180;
+  const Real t1182 = t1181 + t1176;
+  const Real t1183 = sum_error(t1136, t1141);
+  const Real t1184 = t1182 + t1183;
+  const Real t1185 = -t1160;
+  const Real t1186 = sum_error(t1153, t1185);
+  const Real t1187 = sum_error(t1158, t1134);
+  const Real t1188 = t1178 + t1187;
+  const Real t1189 = t1188 * c_r_a_2_;
+  const Real t1190 = product_error(t1159, c_r_a_2_);
+  const Real t1191 = t1190 + t1189;
+  const Real t1192 = t1186 - t1191;
+  const Real t1193 = par.l2 * t1192;
+  const Real t1194 = product_error(par.l2, t1161);
+  const Real t1195 = t1193 + t1194;
+  const Real t1196 = t1184 - t1195;
+  const Real t1197 = -t1162;
+  const Real t1198 = sum_error(t1142, t1197);
+  const Real t1199 = t1198 + t1196;
+  const Real t1200 = sum_error(t1163, par.k58);
+  const Real t1201 = t1200 + t1199;
+  const Real t1202 = product_error(t493, t1165);
+  const Real t1203 = t1201 - t1202;
+  const Real t1204 = -t1166;
+  const Real t1205 = sum_error(t1164, t1204);
+  const Real t1206 = t1203 + t1205;
+  const Real t1207 = product_error(t954, t1168);
+  const Real t1208 = t1206 - t1207;
+  const Real t1209 = -t1169;
+  const Real t1210 = sum_error(t1167, t1209);
+  const Real t1211 = t1210 + t1208;
+  const Real t1212 = t1211 - t1175;
+  const Real t1213 = -t1002;
+  const Real t1214 = sum_error(t1170, t1213);
+  const Real t1215 = t1212 + t1214;
+  const Real t1216 = t1215 + t1172;
+  const Real t1217 = constant<Real>(1.0L) / t1216;
+
+  // trunk: joint force
+  const Real t1218 = t505 * t487;
+
+  // accelerations
+  const Real t1219 = t318 - t1218;
+
+  // trunk: joint force
+  const Real t1220 = t511 * t487;
+  const Real t1221 = t616 - t1220;
+  const Real t1222 = t1221 * t630;
+
+  // accelerations
+  const Real t1223 = t1219 - t1222;
+  const Real t1224 = t653 * t1223;
+
+  // trunk: joint force
+  const Real t1225 = t487 * t929;
+
+  // accelerations
+  const Real t1226 = t905 - t1225;
+
+  // trunk: joint force
+  const Real t1227 = t1221 * t937;
+
+  // accelerations
+  const Real t1228 = t1226 - t1227;
+  const Real t1229 = t1228 - t1224;
+  const Real t1230 = t992 * t1229;
+  const Real t1231 = -t1224;
+  const Real t1232 = sum_error(t1228, t1231);
+  const Real t1233 = product_error(t505, t487);
+  const Real t1234 = t344 - t1233;
+  const Real t1235 = -t1218;
+  const Real t1236 = sum_error(t318, t1235);
+  const Real t1237 = t1236 + t1234;
+  const Real t1238 = product_error(t1221, t630);
+  const Real t1239 = t1237 - t1238;
+  const Real t1240 = -t1222;
+  const Real t1241 = sum_error(t1219, t1240);
+  const Real t1242 = t1239 + t1241;
+  const Real t1243 = t653 * t1242;
+  const Real t1244 = product_error(t1223, t653);
+  const Real t1245 = t1243 + t1244;
+  const Real t1246 = product_error(t487, t929);
+  const Real t1247 = t901 - t1246;
+  const Real t1248 = -t1225;
+  const Real t1249 = sum_error(t905, t1248);
+  const Real t1250 = t1249 + t1247;
+  const Real t1251 = product_error(t1221, t937);
+  const Real t1252 = t1250 - t1251;
+  const Real t1253 = -t1227;
+  const Real t1254 = sum_error(t1226, t1253);
+  const Real t1255 = t1252 + t1254;
+  const Real t1256 = t1255 - t1245;
+  const Real t1257 = t1232 + t1256;
+  const Real t1258 = t1257 * t994;
+  const Real t1259 = t1258 + t1230;
+  const Real t1260 = t1229 * t994;
+  const Real t1261 = t1259 + t1260;
+  const Real t1262 = t1001 * t1223;
+
+  // trunk: joint force
+  const Real t1263 = t1221 * t1168;
+  const Real t1264 = t1165 * t487;
+
+  // accelerations
+  const Real t1265 = t1142 - t1264;
+  const Real t1266 = t1265 - t1263;
+  const Real t1267 = t1266 - t1262;
+  const Real t1268 = t1267 - t1261;
+  const Real t1269 = -t1262;
+  const Real t1270 = sum_error(t1266, t1269);
+  const Real t1271 = product_error(t1223, t1001);
+  const Real t1272 = t1001 * t1242;
+  const Real t1273 = t1271 + t1272;
+  const Real t1274 = -t1263;
+  const Real t1275 = sum_error(t1265, t1274);
+  const Real t1276 = -t1264;
+  const Real t1277 = sum_error(t1142, t1276);
+  const Real t1278 = t1184 + t1277;
+  const Real t1279 = t1278 + t1275;
+  const Real t1280 = t1279 - t1273;
+  const Real t1281 = t1270 + t1280;
+  const Real t1282 = t1268 + t1281;
+  const Real t1283 = t1282 * t1217;
+  const Real t1284 = t1282 * t1283;
+  const Real t1285 = t1229 * t950;
+  const Real t1286 = t1257 * t950;
+  const Real t1287 = t1285 + t1286;
+  const Real t1288 = t1257 * t1287;
+  const Real t1289 = t1287 * t1229;
+  const Real t1290 = t1288 + t1289;
+  const Real t1291 = t634 * t1242;
+  const Real t1292 = t634 * t1223;
+  const Real t1293 = t1291 + t1292;
+  const Real t1294 = t1223 * t1293;
+  const Real t1295 = t1242 * t1293;
+  const Real t1296 = t1294 + t1295;
+
+  // trunk: joint force
+  const Real t1297 = t1221 * t594;
+  const Real t1298 = t1221 * t1297;
+
+  // fin_section_2: acceleration
+  const Real t1299 = t36 + par.l3;
+  const Real t1300 = t1299 * t3;
+  const Real t1301 = t45 * t2;
+
+  // accelerations
+  const Real t1302 = sum_error(t1301, t1300);
+  const Real t1303 = product_error(t1299, t3);
+  const Real t1304 = t1302 + t1303;
+  const Real t1305 = par.k4 * t1304;
+
+  // fin_section_2: acceleration
+  const Real t1306 = t1301 + t1300;
+
+  // accelerations
+  const Real t1307 = product_error(par.k4, t1306);
+  const Real t1308 = t1305 + t1307;
+  const Real t1309 = t1308 * t2;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1310 = par.k4 * t1306;
+
+  // fin_section_2: joint force
+  const Real t1311 = t1310 * t2;
+
+  // accelerations
+  const Real t1312 = t1309 + t1311;
+  const Real t1313 = t33 * t1312;
+
+  // fin_section_2: joint force
+  const Real t1314 = t1310 * t3;
+  const Real t1315 = constant<Real>(0.710077701790478711739L) * t1314;
+
+  // accelerations
+  const Real t1316 = t1315 + t1313;
+  const Real t1317 = par.k60 + t1316;
+
+  // fin_section_1: acceleration
+  const Real t1318 = t91 + par.l3;
+  const Real t1319 = t9 * t1318;
+
+  // accelerations
+  const Real t1320 = sum_error(t91, par.l3);
+  const Real t1321 = t9 * t1320;
+  const Real t1322 = t1319 + t1321;
+
+  // fin_section_1: acceleration
+  const Real t1323 = t8 * t98;
+
+  // accelerations
+  const Real t1324 = t1323 + t1322;
+  const Real t1325 = par.k4 * t1324;
+  const Real t1326 = t1325 * t8;
+  const Real t1327 = t89 * t1326;
+  const Real t1328 = t1325 * t9;
+  const Real t1329 = t1328 * constant<Real>(0.0709020735931204697442L);
+  const Real t1330 = t1327 + t1329;
+  const Real t1331 = sum_error(t1317, t1330);
+  const Real t1332 = sum_error(par.k60, t1316);
+  const Real t1333 = sum_error(t1315, t1313);
+  const Real t1334 = t1308 * t3;
+  const Real t1335 = product_error(t1310, t3);
+  const Real t1336 = t1335 + t1334;
+  const Real t1337 = constant<Real>(0.710077701790478711739L) * t1336;
+  const Real t1338 = product_error(constant<Real>(0.710077701790478711739L), t1314);
+  const Real t1339 = t1338 + t1337;
+  const Real t1340 = t1333 + t1339;
+  const Real t1341 = t1332 + t1340;
+  const Real t1342 = t1331 + t1341;
+  const Real t1343 = t130 * t1342;
+  const Real t1344 = t1317 + t1330;
+  const Real t1345 = product_error(t130, t1344);
+  const Real t1346 = t1343 + t1345;
+  const Real t1347 = constant<Real>(0.0709020735931204697442L) * t1346;
+  const Real t1348 = t130 * t1344;
+  const Real t1349 = constant<Real>(0.0709020735931204697442L) * t1348;
+  const Real t1350 = t1349 + t1347;
+  const Real t1351 = -t1350;
+  const Real t1352 = sum_error(t1318, t1351);
+  const Real t1353 = t1352 + t1320;
+  const Real t1354 = t9 * t1353;
+  const Real t1355 = t1318 - t1350;
+  const Real t1356 = product_error(t9, t1355);
+  const Real t1357 = t1356 + t1354;
+  const Real t1358 = t89 * t1346;
+  const Real t1359 = t89 * t1348;
+  const Real t1360 = t1359 + t1358;
+  const Real t1361 = t1360 - t98;
+  const Real t1362 = t1361 * t8;
+  const Real t1363 = -t1362;
+  const Real t1364 = t1355 * t9;
+  const Real t1365 = sum_error(t1364, t1363);
+  const Real t1366 = t1365 + t1357;
+  const Real t1367 = par.k4 * t1366;
+  const Real t1368 = t1364 - t1362;
+  const Real t1369 = product_error(par.k4, t1368);
+  const Real t1370 = t1369 + t1367;
+  const Real t1371 = t1370 * t9;
+  const Real t1372 = par.k4 * t1368;
+  const Real t1373 = product_error(t9, t1372);
+  const Real t1374 = t1373 + t1371;
+  const Real t1375 = t1374 * t91;
+  const Real t1376 = t9 * t1372;
+  const Real t1377 = t1376 * t91;
+  const Real t1378 = t1377 + t1375;
+  const Real t1379 = t1370 * t8;
+  const Real t1380 = t1372 * t8;
+  const Real t1381 = t1379 + t1380;
+  const Real t1382 = t1381 * t98;
+  const Real t1383 = t1378 + t1382;
+  const Real t1384 = constant<Real>(0.710077701790478711739L) * t1346;
+  const Real t1385 = product_error(constant<Real>(0.710077701790478711739L), t1348);
+  const Real t1386 = t1385 + t1384;
+  const Real t1387 = constant<Real>(0.710077701790478711739L) * t1348;
+  const Real t1388 = t1299 - t1387;
+  const Real t1389 = t1388 - t1386;
+  const Real t1390 = t1389 * t3;
+  const Real t1391 = t33 * t1346;
+  const Real t1392 = t33 * t1348;
+  const Real t1393 = t1391 + t1392;
+  const Real t1394 = t1393 - t45;
+  const Real t1395 = t1394 * t2;
+  const Real t1396 = t1390 - t1395;
+  const Real t1397 = par.k4 * t1396;
+  const Real t1398 = t1397 * t3;
+  const Real t1399 = t1398 * t36;
+  const Real t1400 = t1397 * t2;
+  const Real t1401 = t45 * t1400;
+  const Real t1402 = t1399 + t1401;
+  const Real t1403 = t1346 * par.k47;
+  const Real t1404 = t1348 * par.k47;
+  const Real t1405 = t1404 + t1403;
+
+  // fin: wrench
+  const Real t1406 = t202 * par.l3;
+  const Real t1407 = t1406 + t296;
+
+  // accelerations
+  const Real t1408 = t1407 - t1405;
+  const Real t1409 = t1408 + t1402;
+  const Real t1410 = t1383 + t1409;
+  const Real t1411 = t1346 * par.k41;
+  const Real t1412 = t1348 * par.k41;
+  const Real t1413 = t1412 + t1411;
+
+  // fin: wrench
+  const Real t1414 = t202 + par.k61;
+
+  // accelerations
+  const Real t1415 = t1414 - t1413;
+  const Real t1416 = t1398 + t1415;
+  const Real t1417 = t1376 + t1416;
+  const Real t1418 = t1417 + t1374;
+  const Real t1419 = t1418 * par.l3;
+  const Real t1420 = t1419 + t1410;
+  const Real t1421 = t1420 + par.k59;
+
+  // trunk: joint force
+  const Real t1422 = t504 * t487;
+  const Real t1423 = t1422 * t487;
+
+  // accelerations
+  const Real t1424 = t1421 - t1423;
+  const Real t1425 = t1424 - t1298;
+  const Real t1426 = -t1423;
+  const Real t1427 = sum_error(t1421, t1426);
+  const Real t1428 = sum_error(par.k59, t1420);
+  const Real t1429 = t1428 + t1427;
+  const Real t1430 = t1429 + t1425;
+  const Real t1431 = t1430 - t1296;
+  const Real t1432 = t1431 - t1290;
+  const Real t1433 = t1432 - t1284;
+  const Real t1434 = constant<Real>(1.0L) / t1433;
 
   // trunk: twist
-  const Real t620 = par.k8 * w[2];
-  const Real t621 = w[1] - t620;
-  const Real t622 = t621 * c_r_a_0_;
-  const Real t623 = s_r_a_0_ * w[0];
-  const Real t624 = t622 - t623;
-  const Real t625 = w[2] + w[4];
-  const Real t626 = w[0] * c_r_a_0_;
-  const Real t627 = t621 * s_r_a_0_;
-  const Real t628 = t626 + t627;
+  const Real t1435 = par.k8 * w[2];
+  const Real t1436 = w[1] - t1435;
+  const Real t1437 = t1436 * c_r_a_0_;
+  const Real t1438 = s_r_a_0_ * w[0];
+  const Real t1439 = t1437 - t1438;
+  const Real t1440 = w[2] + w[4];
 
   // rear: twist
-  const Real t629 = c_r_a_1_ * t628;
-  const Real t630 = t625 * par.l1;
-  const Real t631 = t624 - t630;
-  const Real t632 = s_r_a_1_ * t631;
-  const Real t633 = t629 + t632;
-  const Real t634 = w[5] + t625;
-  const Real t635 = c_r_a_1_ * t631;
-  const Real t636 = t628 * s_r_a_1_;
-  const Real t637 = t635 - t636;
+  const Real t1441 = t1440 * par.l1;
+  const Real t1442 = t1439 - t1441;
+  const Real t1443 = c_r_a_1_ * t1442;
+
+  // trunk: twist
+  const Real t1444 = t1436 * s_r_a_0_;
+  const Real t1445 = w[0] * c_r_a_0_;
+  const Real t1446 = t1445 + t1444;
+
+  // rear: twist
+  const Real t1447 = t1446 * s_r_a_1_;
+  const Real t1448 = t1443 - t1447;
+  const Real t1449 = w[5] + t1440;
 
   // peduncle: twist
-  const Real t638 = t633 * c_r_a_2_;
-  const Real t639 = par.l2 * t634;
-  const Real t640 = t637 - t639;
-  const Real t641 = t640 * s_r_a_2_;
-  const Real t642 = t638 + t641;
-  const Real t643 = t640 * c_r_a_2_;
-  const Real t644 = t633 * s_r_a_2_;
-  const Real t645 = t643 - t644;
-  const Real t646 = t634 + w[6];
+  const Real t1450 = par.l2 * t1449;
+  const Real t1451 = t1448 - t1450;
+  const Real t1452 = t1451 * c_r_a_2_;
+
+  // rear: twist
+  const Real t1453 = s_r_a_1_ * t1442;
+  const Real t1454 = c_r_a_1_ * t1446;
+  const Real t1455 = t1454 + t1453;
+
+  // peduncle: twist
+  const Real t1456 = t1455 * s_r_a_2_;
+  const Real t1457 = t1452 - t1456;
+  const Real t1458 = t1449 + w[6];
 
   // fin: twist
-  const Real t647 = t646 * par.l3;
-  const Real t648 = t647 - t645;
-
-  // fin_tip: twist
-  const Real t649 = t646 * t23;
-  const Real t650 = t648 + t649;
-  const Real t651 = t650 + w[3];
-  const Real t652 = t6 * t651;
-  const Real t653 = t646 * r_p[0];
-  const Real t654 = t642 + t653;
-  const Real t655 = t20 * w[3];
-  const Real t656 = t654 + t655;
-  const Real t657 = t656 * t5;
-  const Real t658 = t652 + t657;
-  const Real t659 = t651 * t5;
-  const Real t660 = t656 * t6;
-  const Real t661 = t659 - t660;
-
-  // fin_section_1: twist
-  const Real t662 = t646 * t24;
-  const Real t663 = t662 + t642;
-  const Real t664 = t25 * w[3];
-  const Real t665 = t663 + t664;
-  const Real t666 = t665 * t8;
-  const Real t667 = constant<Real>(0.0709020735931204697442L) * w[3];
-  const Real t668 = t646 * t27;
-  const Real t669 = t668 + t648;
-  const Real t670 = t667 + t669;
-  const Real t671 = t9 * t670;
-  const Real t672 = t666 + t671;
-  const Real t673 = par.k5 * w[3];
-  const Real t674 = t673 + t646;
-  const Real t675 = t670 * t8;
-  const Real t676 = t9 * t665;
-  const Real t677 = t675 - t676;
+  const Real t1459 = t1458 * par.l3;
+  const Real t1460 = t1459 - t1457;
 
   // fin_section_2: twist
-  const Real t678 = par.k16 * w[3];
-  const Real t679 = t678 + t646;
-  const Real t680 = t31 * t646;
-  const Real t681 = t648 + t680;
-  const Real t682 = constant<Real>(0.710077701790478711739L) * w[3];
-  const Real t683 = t681 + t682;
-  const Real t684 = t683 * t3;
-  const Real t685 = t29 * w[3];
-  const Real t686 = t28 * t646;
-  const Real t687 = t686 + t642;
-  const Real t688 = t685 + t687;
-  const Real t689 = t688 * t2;
-  const Real t690 = t684 + t689;
-  const Real t691 = t683 * t2;
-  const Real t692 = t688 * t3;
-  const Real t693 = t691 - t692;
+  const Real t1461 = t36 * t1458;
+  const Real t1462 = t1460 + t1461;
+  const Real t1463 = constant<Real>(0.710077701790478711739L) * w[3];
+  const Real t1464 = t1462 + t1463;
+  const Real t1465 = t1464 * t2;
 
-  // head: acceleration
-  const Real t694 = w[2] * w[2];
-  const Real t695 = w[2] * w[0];
-  const Real t696 = w[2] * w[1];
+  // peduncle: twist
+  const Real t1466 = t1451 * s_r_a_2_;
+  const Real t1467 = t1455 * c_r_a_2_;
+  const Real t1468 = t1467 + t1466;
 
-  // trunk: acceleration
-  const Real t697 = t625 * t625;
-  const Real t698 = s_r_a_0_ * t695;
-  const Real t699 = par.k8 * t694;
-  const Real t700 = t699 - t696;
-  const Real t701 = c_r_a_0_ * t700;
-  const Real t702 = t698 + t701;
-  const Real t703 = t695 * c_r_a_0_;
-  const Real t704 = s_r_a_0_ * t700;
-  const Real t705 = t703 - t704;
-
-  // rear: acceleration
-  const Real t706 = c_r_a_1_ * t705;
-  const Real t707 = t697 * par.l1;
-  const Real t708 = t707 + t702;
-  const Real t709 = t708 * s_r_a_1_;
-  const Real t710 = t706 - t709;
-  const Real t711 = s_r_a_1_ * t705;
-  const Real t712 = c_r_a_1_ * t708;
-  const Real t713 = t711 + t712;
-  const Real t714 = t634 * t634;
-
-  // peduncle: acceleration
-  const Real t715 = par.l2 * t714;
-  const Real t716 = t715 + t713;
-  const Real t717 = t716 * c_r_a_2_;
-  const Real t718 = t710 * s_r_a_2_;
-  const Real t719 = t717 + t718;
-  const Real t720 = t710 * c_r_a_2_;
-  const Real t721 = t716 * s_r_a_2_;
-  const Real t722 = t720 - t721;
-  const Real t723 = t646 * t646;
-
-  // fin: acceleration
-  const Real t724 = t723 * par.l3;
-  const Real t725 = t724 + t719;
-  const Real t726 = t721 - t720;
-
-  // fin_tip: acceleration
-  const Real t727 = w[3] * w[3];
-
-  // fin_section_1: acceleration
-  const Real t728 = par.k9 * t727;
-  const Real t729 = t667 * t646;
-  const Real t730 = t729 * constant<Real>(2.0L);
-  const Real t731 = t723 * t27;
-  const Real t732 = t731 + t725;
-  const Real t733 = t730 + t732;
-  const Real t734 = t728 + t733;
-  const Real t735 = t734 * t8;
-  const Real t736 = t723 * t24;
-  const Real t737 = t726 - t736;
-  const Real t738 = t646 * t664;
-  const Real t739 = constant<Real>(2.0L) * t738;
-  const Real t740 = t737 - t739;
-  const Real t741 = t740 * t9;
-  const Real t742 = t735 + t741;
-
-  // fin_section_2: acceleration
-  const Real t743 = t727 * par.k51;
-  const Real t744 = t682 * t646;
-  const Real t745 = t744 * constant<Real>(2.0L);
-  const Real t746 = t31 * t723;
-  const Real t747 = t746 + t725;
-  const Real t748 = t745 + t747;
-  const Real t749 = t743 + t748;
-  const Real t750 = t749 * t2;
-  const Real t751 = t28 * t723;
-  const Real t752 = t726 - t751;
-  const Real t753 = t685 * t646;
-  const Real t754 = t753 * constant<Real>(2.0L);
-  const Real t755 = t752 - t754;
-  const Real t756 = t755 * t3;
-  const Real t757 = t750 + t756;
-
-  // head: wrench
-  const Real t758 = par.k49 * t695;
-  const Real t759 = par.k49 * t696;
-
-  // head: wrench of the fluid
-  const Real t760 = par.m_x * w[0];
-  const Real t761 = t760 * w[2];
-  const Real t762 = t758 + t761;
-  const Real t763 = par.k15 * w[1];
-  const Real t764 = t763 * w[0];
-  const Real t765 = t760 * w[1];
-  const Real t766 = t764 - t765;
-  const Real t767 = w[2] * t763;
-  const Real t768 = t759 + t767;
-
-  // trunk: wrench
-  const Real t769 = par.k1 * t702;
-  const Real t770 = par.k2 * t697;
-  const Real t771 = t769 + t770;
-  const Real t772 = par.k2 * t705;
-  const Real t773 = par.k1 * t705;
-
-  // trunk: wrench of the fluid
-  const Real t774 = t624 * par.k12;
-  const Real t775 = t625 * par.k48;
-  const Real t776 = t774 - t775;
-  const Real t777 = t776 * t628;
-  const Real t778 = t625 * t628;
-  const Real t779 = t705 - t778;
-  const Real t780 = t779 * par.k48;
-  const Real t781 = t777 - t780;
-  const Real t782 = t781 - t772;
-  const Real t783 = t779 * par.k12;
-  const Real t784 = t783 + t773;
-  const Real t785 = t776 * t625;
-  const Real t786 = t771 - t785;
-
-  // rear: wrench
-  const Real t787 = par.k22 * t710;
-  const Real t788 = par.k30 * t714;
-  const Real t789 = par.k22 * t713;
-  const Real t790 = t788 + t789;
-  const Real t791 = par.k30 * t710;
-
-  // rear: wrench of the fluid
-  const Real t792 = t637 * par.k52;
-  const Real t793 = t634 * par.k42;
-  const Real t794 = t792 - t793;
-  const Real t795 = t633 * t794;
-  const Real t796 = t633 * t634;
-  const Real t797 = t710 - t796;
-  const Real t798 = t797 * par.k42;
-  const Real t799 = t795 - t798;
-  const Real t800 = t799 - t791;
-  const Real t801 = t797 * par.k52;
-  const Real t802 = t801 + t787;
-  const Real t803 = t634 * t794;
-  const Real t804 = t790 - t803;
-
-  // peduncle: wrench
-  const Real t805 = par.k18 * t722;
-  const Real t806 = t719 * par.k18;
-  const Real t807 = t723 * par.k36;
-  const Real t808 = t806 + t807;
-  const Real t809 = t722 * par.k36;
-
-  // peduncle: wrench of the fluid
-  const Real t810 = t642 * t646;
-  const Real t811 = t722 - t810;
-  const Real t812 = t811 * par.k31;
-  const Real t813 = t805 + t812;
-  const Real t814 = t645 * par.k31;
-  const Real t815 = par.k29 * t646;
-  const Real t816 = t814 - t815;
-  const Real t817 = t646 * t816;
-  const Real t818 = t808 - t817;
-  const Real t819 = t642 * t816;
-  const Real t820 = par.k29 * t811;
-  const Real t821 = t819 - t820;
-  const Real t822 = t821 - t809;
-
-  // fin: wrench
-  const Real t823 = par.k6 * t726;
-  const Real t824 = t10 * t723;
-  const Real t825 = t823 - t824;
-  const Real t826 = t16 * w[3];
-  const Real t827 = t646 * t826;
-  const Real t828 = constant<Real>(2.0L) * t827;
-  const Real t829 = t825 - t828;
-  const Real t830 = t12 * t723;
-  const Real t831 = par.k40 * t726;
-  const Real t832 = t16 * t725;
-  const Real t833 = t831 + t832;
-  const Real t834 = t830 + t833;
-  const Real t835 = t723 * t11;
-  const Real t836 = t834 - t835;
-  const Real t837 = t727 * par.k24;
-  const Real t838 = w[3] * par.k40;
-  const Real t839 = t838 * t646;
-  const Real t840 = t839 * constant<Real>(2.0L);
-  const Real t841 = t837 + t840;
-  const Real t842 = t725 * par.k6;
-  const Real t843 = t723 * t19;
-  const Real t844 = t842 + t843;
-  const Real t845 = t841 + t844;
-  const Real t846 = t10 * t725;
-  const Real t847 = t19 * t726;
-  const Real t848 = t846 + t847;
-  const Real t849 = w[3] * t11;
-  const Real t850 = t12 * w[3];
-  const Real t851 = t849 - t850;
-  const Real t852 = t646 * t851;
-  const Real t853 = constant<Real>(2.0L) * t852;
-  const Real t854 = t848 + t853;
-
-  // fin_section_1: wrench of the fluid
-  const Real t855 = par.k4 * t672;
-  const Real t856 = t677 * t855;
-  const Real t857 = t674 * t677;
-  const Real t858 = t742 - t857;
-  const Real t859 = t858 * par.k4;
-  const Real t860 = t674 * t855;
-
-  // fin_section_2: wrench of the fluid
-  const Real t861 = par.k4 * t690;
-  const Real t862 = t679 * t861;
-  const Real t863 = t679 * t693;
-  const Real t864 = t757 - t863;
-  const Real t865 = par.k4 * t864;
-  const Real t866 = t693 * t861;
+  // fin_section_2: twist
+  const Real t1469 = t45 * t1458;
+  const Real t1470 = t1469 + t1468;
+  const Real t1471 = t33 * w[3];
+  const Real t1472 = t1471 + t1470;
+  const Real t1473 = t1472 * t3;
+  const Real t1474 = t1465 - t1473;
 
   // applied wrenches
-  const Real t867 = par.k28 * t646;
-  const Real t868 = t645 - t867;
-  const Real t869 = abs(t868);
-  const Real t870 = par.k65 * t869;
-  const Real t871 = t870 * par.k27;
-  const Real t872 = t871 * t868;
-  const Real t873 = t813 + t872;
-  const Real t874 = par.k26 * t646;
-  const Real t875 = t645 - t874;
-  const Real t876 = abs(t875);
-  const Real t877 = t876 * par.k65;
-  const Real t878 = par.k27 * t877;
-  const Real t879 = t878 * t875;
-  const Real t880 = t873 + t879;
-  const Real t881 = w[2] * par.k20;
-  const Real t882 = w[1] - t881;
-  const Real t883 = abs(t882);
-  const Real t884 = t883 * par.k70;
-  const Real t885 = par.k14 * t884;
-  const Real t886 = t882 * t885;
-  const Real t887 = t886 * par.k20;
-  const Real t888 = t766 - t887;
-  const Real t889 = t881 + w[1];
-  const Real t890 = abs(t889);
-  const Real t891 = t890 * par.k70;
-  const Real t892 = par.k14 * t891;
-  const Real t893 = t889 * t892;
-  const Real t894 = t893 * par.k20;
-  const Real t895 = t888 + t894;
-  const Real t896 = abs(t693);
-  const Real t897 = t896 * par.k67;
-  const Real t898 = t897 * par.k3;
-  const Real t899 = t898 * t693;
-  const Real t900 = t899 - t862;
-  const Real t901 = t625 * par.k37;
-  const Real t902 = t624 - t901;
-  const Real t903 = abs(t902);
-  const Real t904 = t903 * par.k68;
-  const Real t905 = par.k11 * t904;
-  const Real t906 = t905 * t902;
-  const Real t907 = t906 * par.k37;
-  const Real t908 = t782 - t907;
-  const Real t909 = t625 * par.k38;
-  const Real t910 = t624 - t909;
-  const Real t911 = abs(t910);
-  const Real t912 = par.k68 * t911;
-  const Real t913 = par.k11 * t912;
-  const Real t914 = t910 * t913;
-  const Real t915 = t914 * par.k38;
-  const Real t916 = t908 - t915;
-  const Real t917 = abs(t690);
-  const Real t918 = par.k61 * t917;
-  const Real t919 = par.k3 * t918;
-  const Real t920 = t690 * t919;
-  const Real t921 = t865 + t920;
-  const Real t922 = t906 + t784;
-  const Real t923 = t914 + t922;
-  const Real t924 = abs(t672);
-  const Real t925 = par.k61 * t924;
-  const Real t926 = par.k3 * t925;
-  const Real t927 = t672 * t926;
-  const Real t928 = t927 + t859;
-  const Real t929 = t634 * par.k32;
-  const Real t930 = t637 - t929;
-  const Real t931 = abs(t930);
-  const Real t932 = par.k64 * t931;
-  const Real t933 = t932 * par.k33;
-  const Real t934 = t930 * t933;
-  const Real t935 = t634 * par.k34;
-  const Real t936 = t637 - t935;
-  const Real t937 = abs(t936);
-  const Real t938 = par.k64 * t937;
-  const Real t939 = t938 * par.k33;
-  const Real t940 = t936 * t939;
-  const Real t941 = t802 + t940;
-  const Real t942 = t934 + t941;
-  const Real t943 = t762 + t886;
-  const Real t944 = t893 + t943;
-  const Real t945 = t658 * t661;
-  const Real t946 = par.m_w * t945;
-  const Real t947 = abs(t628);
-  const Real t948 = t947 * par.k69;
-  const Real t949 = par.k11 * t948;
-  const Real t950 = t628 * t949;
-  const Real t951 = t950 + t786;
-  const Real t952 = t951 + t950;
-  const Real t953 = abs(t633);
-  const Real t954 = t953 * par.k66;
-  const Real t955 = t954 * par.k33;
-  const Real t956 = t633 * t955;
-  const Real t957 = t804 + t956;
-  const Real t958 = t957 + t956;
-  const Real t959 = par.k28 * t872;
-  const Real t960 = t822 - t959;
-  const Real t961 = par.k26 * t879;
-  const Real t962 = t960 - t961;
-  const Real t963 = t658 * t658;
-  const Real t964 = par.m_w * t963;
-  const Real t965 = t964 * constant<Real>(0.5L);
-  const Real t966 = abs(w[0]);
-  const Real t967 = par.k63 * t966;
-  const Real t968 = par.k14 * t967;
-  const Real t969 = t968 * w[0];
-  const Real t970 = t969 - t768;
-  const Real t971 = t969 + t970;
-  const Real t972 = abs(t677);
-  const Real t973 = t972 * par.k67;
-  const Real t974 = par.k3 * t973;
-  const Real t975 = t974 * t677;
-  const Real t976 = t975 - t860;
-  const Real t977 = t940 * par.k34;
-  const Real t978 = t800 - t977;
-  const Real t979 = t934 * par.k32;
-  const Real t980 = t978 - t979;
-  const Real t981 = abs(t642);
-  const Real t982 = par.k62 * t981;
-  const Real t983 = t982 * par.k27;
-  const Real t984 = t642 * t983;
-  const Real t985 = t818 + t984;
-  const Real t986 = t985 + t984;
+  const Real t1475 = abs(t1474);
+  const Real t1476 = t1475 * par.k68;
+  const Real t1477 = t1476 * par.k3;
+  const Real t1478 = t1477 * t1474;
+
+  // fin_section_2: twist
+  const Real t1479 = t1464 * t3;
+  const Real t1480 = t1472 * t2;
+  const Real t1481 = t1479 + t1480;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1482 = par.k4 * t1481;
+
+  // fin_section_2: twist
+  const Real t1483 = par.k16 * w[3];
+  const Real t1484 = t1483 + t1458;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1485 = t1484 * t1482;
+
+  // applied wrenches
+  const Real t1486 = t1478 - t1485;
 
   // fin_section_2: joint force
-  const Real t987 = t900 * t2;
-  const Real t988 = t921 * t3;
-  const Real t989 = t987 + t988;
-  const Real t990 = constant<Real>(0.710077701790478711739L) * t989;
-  const Real t991 = t900 * t3;
-  const Real t992 = t921 * t2;
-  const Real t993 = t991 - t992;
-  const Real t994 = t29 * t993;
-  const Real t995 = t990 - t994;
-  const Real t996 = par.k16 * t866;
-  const Real t997 = t995 + t996;
-  const Real t998 = t997 + t836;
-  const Real t999 = t829 + t989;
-  const Real t1000 = t993 - t845;
-  const Real t1001 = t31 * t989;
-  const Real t1002 = t28 * t993;
-  const Real t1003 = t1001 - t1002;
-  const Real t1004 = t1003 + t866;
-  const Real t1005 = t1004 + t854;
+  const Real t1487 = t1486 * t3;
+
+  // head: acceleration
+  const Real t1488 = w[2] * w[2];
+
+  // trunk: acceleration
+  const Real t1489 = par.k8 * t1488;
+
+  // head: acceleration
+  const Real t1490 = w[2] * w[1];
+
+  // trunk: acceleration
+  const Real t1491 = t1489 - t1490;
+  const Real t1492 = c_r_a_0_ * t1491;
+
+  // head: acceleration
+  const Real t1493 = w[2] * w[0];
+
+  // trunk: acceleration
+  const Real t1494 = s_r_a_0_ * t1493;
+  const Real t1495 = t1494 + t1492;
+  const Real t1496 = t1440 * t1440;
+
+  // rear: acceleration
+  const Real t1497 = t1496 * par.l1;
+  const Real t1498 = t1497 + t1495;
+  const Real t1499 = c_r_a_1_ * t1498;
+
+  // trunk: acceleration
+  const Real t1500 = s_r_a_0_ * t1491;
+  const Real t1501 = t1493 * c_r_a_0_;
+  const Real t1502 = t1501 - t1500;
+
+  // rear: acceleration
+  const Real t1503 = s_r_a_1_ * t1502;
+  const Real t1504 = t1503 + t1499;
+  const Real t1505 = t1449 * t1449;
+
+  // peduncle: acceleration
+  const Real t1506 = par.l2 * t1505;
+  const Real t1507 = t1506 + t1504;
+  const Real t1508 = t1507 * c_r_a_2_;
+
+  // rear: acceleration
+  const Real t1509 = t1498 * s_r_a_1_;
+  const Real t1510 = c_r_a_1_ * t1502;
+  const Real t1511 = t1510 - t1509;
+
+  // peduncle: acceleration
+  const Real t1512 = t1511 * s_r_a_2_;
+  const Real t1513 = t1508 + t1512;
+  const Real t1514 = t1458 * t1458;
+
+  // fin: acceleration
+  const Real t1515 = t1514 * par.l3;
+  const Real t1516 = t1515 + t1513;
+
+  // fin_section_2: acceleration
+  const Real t1517 = t36 * t1514;
+  const Real t1518 = t1517 + t1516;
+  const Real t1519 = t1463 * t1458;
+  const Real t1520 = t1519 * constant<Real>(2.0L);
+  const Real t1521 = t1520 + t1518;
+
+  // fin_tip: acceleration
+  const Real t1522 = w[3] * w[3];
+
+  // fin_section_2: acceleration
+  const Real t1523 = t1522 * par.k52;
+  const Real t1524 = t1523 + t1521;
+  const Real t1525 = t1524 * t2;
+
+  // peduncle: acceleration
+  const Real t1526 = t1507 * s_r_a_2_;
+  const Real t1527 = t1511 * c_r_a_2_;
+
+  // fin: acceleration
+  const Real t1528 = t1526 - t1527;
+
+  // fin_section_2: acceleration
+  const Real t1529 = t45 * t1514;
+  const Real t1530 = t1528 - t1529;
+  const Real t1531 = t1471 * t1458;
+  const Real t1532 = t1531 * constant<Real>(2.0L);
+  const Real t1533 = t1530 - t1532;
+  const Real t1534 = t1533 * t3;
+  const Real t1535 = t1525 + t1534;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1536 = t1484 * t1474;
+  const Real t1537 = t1535 - t1536;
+  const Real t1538 = par.k4 * t1537;
+
+  // applied wrenches
+  const Real t1539 = abs(t1481);
+  const Real t1540 = par.k62 * t1539;
+  const Real t1541 = par.k3 * t1540;
+  const Real t1542 = t1481 * t1541;
+  const Real t1543 = t1538 + t1542;
+
+  // fin_section_2: joint force
+  const Real t1544 = t1543 * t2;
+  const Real t1545 = t1487 - t1544;
+
+  // fin: wrench
+  const Real t1546 = t1516 * par.k6;
+  const Real t1547 = t1514 * t202;
+  const Real t1548 = t1546 + t1547;
+  const Real t1549 = w[3] * par.k41;
+  const Real t1550 = t1549 * t1458;
+  const Real t1551 = t1550 * constant<Real>(2.0L);
+  const Real t1552 = t1522 * par.k24;
+  const Real t1553 = t1552 + t1551;
+  const Real t1554 = t1553 + t1548;
+
+  // fin_section_2: joint force
+  const Real t1555 = t1545 - t1554;
+
+  // fin_section_1: twist
+  const Real t1556 = t1458 * t91;
+  const Real t1557 = t1556 + t1460;
+  const Real t1558 = constant<Real>(0.0709020735931204697442L) * w[3];
+  const Real t1559 = t1558 + t1557;
+  const Real t1560 = t1559 * t8;
+  const Real t1561 = t1458 * t98;
+  const Real t1562 = t1561 + t1468;
+  const Real t1563 = t89 * w[3];
+  const Real t1564 = t1562 + t1563;
+  const Real t1565 = t9 * t1564;
+  const Real t1566 = t1560 - t1565;
+
+  // applied wrenches
+  const Real t1567 = abs(t1566);
+  const Real t1568 = t1567 * par.k68;
+  const Real t1569 = par.k3 * t1568;
+  const Real t1570 = t1569 * t1566;
+
+  // fin_section_1: twist
+  const Real t1571 = t9 * t1559;
+  const Real t1572 = t1564 * t8;
+  const Real t1573 = t1572 + t1571;
+
+  // fin_section_1: wrench of the fluid
+  const Real t1574 = par.k4 * t1573;
+
+  // fin_section_1: twist
+  const Real t1575 = par.k5 * w[3];
+  const Real t1576 = t1575 + t1458;
+
+  // fin_section_1: wrench of the fluid
+  const Real t1577 = t1576 * t1574;
+
+  // applied wrenches
+  const Real t1578 = t1570 - t1577;
 
   // fin_section_1: joint force
-  const Real t1006 = t8 * t976;
-  const Real t1007 = t928 * t9;
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = t27 * t1008;
-  const Real t1010 = t9 * t976;
-  const Real t1011 = t928 * t8;
-  const Real t1012 = t1010 - t1011;
-  const Real t1013 = t1012 * t24;
-  const Real t1014 = t1009 - t1013;
-  const Real t1015 = t856 + t1014;
-  const Real t1016 = t1015 + t1005;
-  const Real t1017 = t1012 + t1000;
-  const Real t1018 = t999 + t1008;
-  const Real t1019 = par.k5 * t856;
-  const Real t1020 = constant<Real>(0.0709020735931204697442L) * t1008;
-  const Real t1021 = t25 * t1012;
-  const Real t1022 = t1020 - t1021;
-  const Real t1023 = t1019 + t1022;
-  const Real t1024 = t998 + t1023;
+  const Real t1579 = t9 * t1578;
+
+  // applied wrenches
+  const Real t1580 = abs(t1573);
+  const Real t1581 = par.k62 * t1580;
+  const Real t1582 = par.k3 * t1581;
+  const Real t1583 = t1573 * t1582;
+
+  // fin_section_1: acceleration
+  const Real t1584 = t1514 * t91;
+  const Real t1585 = t1584 + t1516;
+  const Real t1586 = t1558 * t1458;
+  const Real t1587 = t1586 * constant<Real>(2.0L);
+  const Real t1588 = t1587 + t1585;
+  const Real t1589 = par.k9 * t1522;
+  const Real t1590 = t1589 + t1588;
+  const Real t1591 = t1590 * t8;
+  const Real t1592 = t1514 * t98;
+  const Real t1593 = t1528 - t1592;
+  const Real t1594 = t1458 * t1563;
+  const Real t1595 = constant<Real>(2.0L) * t1594;
+  const Real t1596 = t1593 - t1595;
+  const Real t1597 = t1596 * t9;
+  const Real t1598 = t1591 + t1597;
+
+  // fin_section_1: wrench of the fluid
+  const Real t1599 = t1576 * t1566;
+  const Real t1600 = t1598 - t1599;
+  const Real t1601 = t1600 * par.k4;
+
+  // applied wrenches
+  const Real t1602 = t1583 + t1601;
+
+  // fin_section_1: joint force
+  const Real t1603 = t1602 * t8;
+  const Real t1604 = t1579 - t1603;
+  const Real t1605 = t1604 + t1555;
+
+  // fin_tip: station
+  const Real t1606 = r_p[0] * par.k48;
+  const Real t1607 = t1606 * t34;
+  const Real t1608 = par.lf - t1607;
+
+  // fin_tip: twist
+  const Real t1609 = t1458 * t1608;
+  const Real t1610 = t1460 + t1609;
+  const Real t1611 = t1610 + w[3];
+  const Real t1612 = t6 * t1611;
+  const Real t1613 = t1458 * r_p[0];
+  const Real t1614 = t1468 + t1613;
+  const Real t1615 = t1606 * w[3];
+  const Real t1616 = t1614 + t1615;
+  const Real t1617 = t1616 * t5;
+  const Real t1618 = t1612 + t1617;
+
+  // applied wrenches
+  const Real t1619 = t1618 * t1618;
+  const Real t1620 = par.m_w * t1619;
+  const Real t1621 = t1620 * constant<Real>(0.5L);
 
   // fin_tip: joint force
-  const Real t1025 = t965 * t5;
-  const Real t1026 = t6 * t946;
-  const Real t1027 = t1025 - t1026;
-  const Real t1028 = t6 * t965;
-  const Real t1029 = t946 * t5;
-  const Real t1030 = t1028 + t1029;
-  const Real t1031 = t1030 * t20;
-  const Real t1032 = t1027 - t1031;
-  const Real t1033 = t1032 + t1024;
-  const Real t1034 = t1027 * t23;
-  const Real t1035 = t1030 * r_p[0];
-  const Real t1036 = t1034 - t1035;
-  const Real t1037 = t1036 + t1016;
-  const Real t1038 = t1027 + t1018;
-  const Real t1039 = t1017 + t1030;
+  const Real t1622 = t6 * t1621;
+
+  // fin_tip: twist
+  const Real t1623 = t1611 * t5;
+  const Real t1624 = t1616 * t6;
+  const Real t1625 = t1623 - t1624;
+
+  // applied wrenches
+  const Real t1626 = t1618 * t1625;
+  const Real t1627 = par.m_w * t1626;
+
+  // fin_tip: joint force
+  const Real t1628 = t1627 * t5;
+  const Real t1629 = t1622 + t1628;
+  const Real t1630 = t1605 + t1629;
+
+  // peduncle: wrench
+  const Real t1631 = t1513 * par.k18;
+  const Real t1632 = t1514 * par.k37;
+  const Real t1633 = t1631 + t1632;
+
+  // peduncle: wrench of the fluid
+  const Real t1634 = t1457 * par.k31;
+  const Real t1635 = par.k29 * t1458;
+  const Real t1636 = t1634 - t1635;
+  const Real t1637 = t1458 * t1636;
+  const Real t1638 = t1633 - t1637;
+
+  // applied wrenches
+  const Real t1639 = abs(t1468);
+  const Real t1640 = par.k63 * t1639;
+  const Real t1641 = t1640 * par.k27;
+  const Real t1642 = t1468 * t1641;
+  const Real t1643 = t1638 + t1642;
+  const Real t1644 = t1643 + t1642;
 
   // fin: joint force
-  const Real t1040 = t880 - t1038;
-  const Real t1041 = t1038 * par.l3;
-  const Real t1042 = t1041 + t1037;
-  const Real t1043 = t1042 + t962;
-  const Real t1044 = t986 - t1039;
+  const Real t1645 = t1644 - t1630;
 
   // peduncle: joint force
-  const Real t1045 = c_r_a_2_ * t1044;
-  const Real t1046 = t1040 * s_r_a_2_;
-  const Real t1047 = t1045 - t1046;
-  const Real t1048 = t1047 + t958;
-  const Real t1049 = t1040 * c_r_a_2_;
-  const Real t1050 = t1044 * s_r_a_2_;
-  const Real t1051 = t1049 + t1050;
-  const Real t1052 = par.l2 * t1051;
-  const Real t1053 = t1043 - t1052;
-  const Real t1054 = t1053 + t980;
-  const Real t1055 = t942 + t1051;
+  const Real t1646 = c_r_a_2_ * t1645;
+
+  // fin_section_2: joint force
+  const Real t1647 = t1486 * t2;
+  const Real t1648 = t1543 * t3;
+  const Real t1649 = t1647 + t1648;
+
+  // fin: wrench
+  const Real t1650 = par.k6 * t1528;
+  const Real t1651 = t184 * t1514;
+  const Real t1652 = t1650 - t1651;
+  const Real t1653 = t82 * w[3];
+  const Real t1654 = t1458 * t1653;
+  const Real t1655 = constant<Real>(2.0L) * t1654;
+  const Real t1656 = t1652 - t1655;
+
+  // fin_section_2: joint force
+  const Real t1657 = t1656 + t1649;
+
+  // fin_section_1: joint force
+  const Real t1658 = t8 * t1578;
+  const Real t1659 = t1602 * t9;
+  const Real t1660 = t1658 + t1659;
+  const Real t1661 = t1657 + t1660;
+
+  // fin_tip: joint force
+  const Real t1662 = t1621 * t5;
+  const Real t1663 = t6 * t1627;
+  const Real t1664 = t1662 - t1663;
+  const Real t1665 = t1664 + t1661;
+
+  // applied wrenches
+  const Real t1666 = par.k28 * t1458;
+  const Real t1667 = t1457 - t1666;
+  const Real t1668 = abs(t1667);
+  const Real t1669 = par.k66 * t1668;
+  const Real t1670 = t1669 * par.k27;
+  const Real t1671 = t1670 * t1667;
+
+  // peduncle: acceleration
+  const Real t1672 = t1527 - t1526;
+
+  // peduncle: wrench of the fluid
+  const Real t1673 = t1468 * t1458;
+  const Real t1674 = t1672 - t1673;
+  const Real t1675 = t1674 * par.k31;
+
+  // peduncle: wrench
+  const Real t1676 = par.k18 * t1672;
+
+  // peduncle: wrench of the fluid
+  const Real t1677 = t1676 + t1675;
+
+  // applied wrenches
+  const Real t1678 = t1677 + t1671;
+  const Real t1679 = par.k26 * t1458;
+  const Real t1680 = t1457 - t1679;
+  const Real t1681 = abs(t1680);
+  const Real t1682 = t1681 * par.k66;
+  const Real t1683 = par.k27 * t1682;
+  const Real t1684 = t1683 * t1680;
+  const Real t1685 = t1678 + t1684;
+
+  // fin: joint force
+  const Real t1686 = t1685 - t1665;
+
+  // peduncle: joint force
+  const Real t1687 = t1686 * s_r_a_2_;
+  const Real t1688 = t1646 - t1687;
+
+  // rear: wrench
+  const Real t1689 = par.k22 * t1504;
+  const Real t1690 = par.k30 * t1505;
+  const Real t1691 = t1690 + t1689;
+
+  // rear: wrench of the fluid
+  const Real t1692 = t1448 * par.k53;
+  const Real t1693 = t1449 * par.k43;
+  const Real t1694 = t1692 - t1693;
+  const Real t1695 = t1449 * t1694;
+  const Real t1696 = t1691 - t1695;
+
+  // applied wrenches
+  const Real t1697 = abs(t1455);
+  const Real t1698 = t1697 * par.k67;
+  const Real t1699 = t1698 * par.k34;
+  const Real t1700 = t1455 * t1699;
+  const Real t1701 = t1696 + t1700;
+  const Real t1702 = t1701 + t1700;
+
+  // peduncle: joint force
+  const Real t1703 = t1688 + t1702;
 
   // rear: joint force
-  const Real t1056 = c_r_a_1_ * t1055;
-  const Real t1057 = t1048 * s_r_a_1_;
-  const Real t1058 = t1056 + t1057;
-  const Real t1059 = t923 + t1058;
-  const Real t1060 = t1048 * c_r_a_1_;
-  const Real t1061 = s_r_a_1_ * t1055;
-  const Real t1062 = t1060 - t1061;
-  const Real t1063 = t1062 + t952;
-  const Real t1064 = t1058 * par.l1;
-  const Real t1065 = t1054 - t1064;
-  const Real t1066 = t916 + t1065;
+  const Real t1704 = t1703 * c_r_a_1_;
+
+  // peduncle: joint force
+  const Real t1705 = t1686 * c_r_a_2_;
+  const Real t1706 = t1645 * s_r_a_2_;
+  const Real t1707 = t1705 + t1706;
+
+  // applied wrenches
+  const Real t1708 = t1449 * par.k35;
+  const Real t1709 = t1448 - t1708;
+  const Real t1710 = abs(t1709);
+  const Real t1711 = par.k65 * t1710;
+  const Real t1712 = t1711 * par.k34;
+  const Real t1713 = t1709 * t1712;
+
+  // rear: wrench of the fluid
+  const Real t1714 = t1455 * t1449;
+  const Real t1715 = t1511 - t1714;
+  const Real t1716 = t1715 * par.k53;
+
+  // rear: wrench
+  const Real t1717 = par.k22 * t1511;
+
+  // rear: wrench of the fluid
+  const Real t1718 = t1716 + t1717;
+
+  // applied wrenches
+  const Real t1719 = t1718 + t1713;
+  const Real t1720 = t1449 * par.k33;
+  const Real t1721 = t1448 - t1720;
+  const Real t1722 = abs(t1721);
+  const Real t1723 = par.k65 * t1722;
+  const Real t1724 = t1723 * par.k34;
+  const Real t1725 = t1721 * t1724;
+  const Real t1726 = t1725 + t1719;
+
+  // peduncle: joint force
+  const Real t1727 = t1726 + t1707;
+
+  // rear: joint force
+  const Real t1728 = s_r_a_1_ * t1727;
+  const Real t1729 = t1704 - t1728;
+
+  // applied wrenches
+  const Real t1730 = abs(t1446);
+  const Real t1731 = t1730 * par.k70;
+  const Real t1732 = par.k11 * t1731;
+  const Real t1733 = t1446 * t1732;
+
+  // trunk: wrench
+  const Real t1734 = par.k1 * t1495;
+  const Real t1735 = par.k2 * t1496;
+  const Real t1736 = t1734 + t1735;
+
+  // trunk: wrench of the fluid
+  const Real t1737 = t1439 * par.k12;
+  const Real t1738 = t1440 * par.k49;
+  const Real t1739 = t1737 - t1738;
+  const Real t1740 = t1739 * t1440;
+  const Real t1741 = t1736 - t1740;
+
+  // applied wrenches
+  const Real t1742 = t1733 + t1741;
+  const Real t1743 = t1742 + t1733;
+
+  // rear: joint force
+  const Real t1744 = t1729 + t1743;
 
   // trunk: joint force
-  const Real t1067 = s_r_a_0_ * t1063;
-  const Real t1068 = t1059 * c_r_a_0_;
-  const Real t1069 = t1067 + t1068;
-  const Real t1070 = t1069 * par.k8;
-  const Real t1071 = t1066 - t1070;
-  const Real t1072 = t895 + t1071;
-  const Real t1073 = t1063 * c_r_a_0_;
-  const Real t1074 = t1059 * s_r_a_0_;
-  const Real t1075 = t1073 - t1074;
-  const Real t1076 = t1075 + t971;
-  const Real t1077 = t1069 + t944;
+  const Real t1745 = s_r_a_0_ * t1744;
 
-  // springs, dampers and generalised forces
-  const Real t1078 = w[3] * constant<Real>(2.0L);
-  const Real t1079 = par.k72 * t1078;
-  const Real t1080 = t589 + t1079;
-  const Real t1081 = t1033 + t1080;
+  // rear: joint force
+  const Real t1746 = c_r_a_1_ * t1727;
+  const Real t1747 = t1703 * s_r_a_1_;
+  const Real t1748 = t1746 + t1747;
+
+  // applied wrenches
+  const Real t1749 = t1440 * par.k38;
+  const Real t1750 = t1439 - t1749;
+  const Real t1751 = abs(t1750);
+  const Real t1752 = t1751 * par.k69;
+  const Real t1753 = par.k11 * t1752;
+  const Real t1754 = t1753 * t1750;
+
+  // trunk: wrench of the fluid
+  const Real t1755 = t1440 * t1446;
+  const Real t1756 = t1502 - t1755;
+  const Real t1757 = t1756 * par.k12;
+
+  // trunk: wrench
+  const Real t1758 = par.k1 * t1502;
+
+  // trunk: wrench of the fluid
+  const Real t1759 = t1757 + t1758;
+
+  // applied wrenches
+  const Real t1760 = t1754 + t1759;
+  const Real t1761 = t1440 * par.k39;
+  const Real t1762 = t1439 - t1761;
+  const Real t1763 = abs(t1762);
+  const Real t1764 = par.k69 * t1763;
+  const Real t1765 = par.k11 * t1764;
+  const Real t1766 = t1762 * t1765;
+  const Real t1767 = t1766 + t1760;
+
+  // rear: joint force
+  const Real t1768 = t1767 + t1748;
+
+  // trunk: joint force
+  const Real t1769 = t1768 * c_r_a_0_;
+  const Real t1770 = t1745 + t1769;
+  const Real t1771 = t1770 * par.k8;
+
+  // fin_section_2: joint force
+  const Real t1772 = t36 * t1649;
+  const Real t1773 = t45 * t1545;
+  const Real t1774 = t1772 - t1773;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1775 = t1474 * t1482;
+
+  // fin_section_2: joint force
+  const Real t1776 = t1774 + t1775;
+
+  // fin: wrench
+  const Real t1777 = t184 * t1516;
+  const Real t1778 = t202 * t1528;
+  const Real t1779 = t1777 + t1778;
+  const Real t1780 = w[3] * t292;
+  const Real t1781 = t293 * w[3];
+  const Real t1782 = t1780 - t1781;
+  const Real t1783 = t1458 * t1782;
+  const Real t1784 = constant<Real>(2.0L) * t1783;
+  const Real t1785 = t1779 + t1784;
+
+  // fin_section_2: joint force
+  const Real t1786 = t1776 + t1785;
+
+  // fin_section_1: joint force
+  const Real t1787 = t91 * t1660;
+  const Real t1788 = t1604 * t98;
+  const Real t1789 = t1787 - t1788;
+
+  // fin_section_1: wrench of the fluid
+  const Real t1790 = t1566 * t1574;
+
+  // fin_section_1: joint force
+  const Real t1791 = t1790 + t1789;
+  const Real t1792 = t1791 + t1786;
+
+  // fin_tip: joint force
+  const Real t1793 = t1664 * t1608;
+  const Real t1794 = t1629 * r_p[0];
+  const Real t1795 = t1793 - t1794;
+  const Real t1796 = t1795 + t1792;
+
+  // fin: joint force
+  const Real t1797 = t1665 * par.l3;
+  const Real t1798 = t1797 + t1796;
+
+  // applied wrenches
+  const Real t1799 = par.k28 * t1671;
+
+  // peduncle: wrench of the fluid
+  const Real t1800 = t1468 * t1636;
+  const Real t1801 = par.k29 * t1674;
+  const Real t1802 = t1800 - t1801;
+
+  // peduncle: wrench
+  const Real t1803 = t1672 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t1804 = t1802 - t1803;
+
+  // applied wrenches
+  const Real t1805 = t1804 - t1799;
+  const Real t1806 = par.k26 * t1684;
+  const Real t1807 = t1805 - t1806;
+
+  // fin: joint force
+  const Real t1808 = t1798 + t1807;
+
+  // peduncle: joint force
+  const Real t1809 = par.l2 * t1707;
+  const Real t1810 = t1808 - t1809;
+
+  // applied wrenches
+  const Real t1811 = t1713 * par.k35;
+
+  // rear: wrench of the fluid
+  const Real t1812 = t1455 * t1694;
+  const Real t1813 = t1715 * par.k43;
+  const Real t1814 = t1812 - t1813;
+
+  // rear: wrench
+  const Real t1815 = par.k30 * t1511;
+
+  // rear: wrench of the fluid
+  const Real t1816 = t1814 - t1815;
+
+  // applied wrenches
+  const Real t1817 = t1816 - t1811;
+  const Real t1818 = t1725 * par.k33;
+  const Real t1819 = t1817 - t1818;
+
+  // peduncle: joint force
+  const Real t1820 = t1810 + t1819;
+
+  // rear: joint force
+  const Real t1821 = t1748 * par.l1;
+  const Real t1822 = t1820 - t1821;
+
+  // applied wrenches
+  const Real t1823 = t1754 * par.k38;
+
+  // trunk: wrench of the fluid
+  const Real t1824 = t1739 * t1446;
+  const Real t1825 = t1756 * par.k49;
+  const Real t1826 = t1824 - t1825;
+
+  // trunk: wrench
+  const Real t1827 = par.k2 * t1502;
+
+  // trunk: wrench of the fluid
+  const Real t1828 = t1826 - t1827;
+
+  // applied wrenches
+  const Real t1829 = t1828 - t1823;
+  const Real t1830 = t1766 * par.k39;
+  const Real t1831 = t1829 - t1830;
+
+  // rear: joint force
+  const Real t1832 = t1831 + t1822;
+
+  // trunk: joint force
+  const Real t1833 = t1832 - t1771;
+
+  // applied wrenches
+  const Real t1834 = w[2] * par.k20;
+  const Real t1835 = w[1] - t1834;
+  const Real t1836 = abs(t1835);
+  const Real t1837 = t1836 * par.k71;
+  const Real t1838 = par.k14 * t1837;
+  const Real t1839 = t1835 * t1838;
+  const Real t1840 = t1839 * par.k20;
+
+  // head: wrench of the fluid
+  const Real t1841 = par.k15 * w[1];
+  const Real t1842 = t1841 * w[0];
+  const Real t1843 = par.m_x * w[0];
+  const Real t1844 = t1843 * w[1];
+  const Real t1845 = t1842 - t1844;
+
+  // applied wrenches
+  const Real t1846 = t1845 - t1840;
+  const Real t1847 = t1834 + w[1];
+  const Real t1848 = abs(t1847);
+  const Real t1849 = t1848 * par.k71;
+  const Real t1850 = par.k14 * t1849;
+  const Real t1851 = t1847 * t1850;
+  const Real t1852 = t1851 * par.k20;
+  const Real t1853 = t1846 + t1852;
+
+  // trunk: joint force
+  const Real t1854 = t1853 + t1833;
 
   // reduced forces
-  const Real t1082 = tau_a[2] - t1043;
-  const Real t1083 = tau_a[0] - t1066;
-  const Real t1084 = tau_a[1] - t1054;
+  const Real t1855 = -t1854;
 
-  // reduced accelerations
-  const Real t1085 = t590 * t138;
-  const Real t1086 = t1076 * t1085;
-  const Real t1087 = t1083 + t1086;
-  const Real t1088 = t594 * t138;
-  const Real t1089 = t216 - t1088;
-  const Real t1090 = t1089 * t597;
-  const Real t1091 = t594 * t1076;
-  const Real t1092 = t1091 - t1077;
-  const Real t1093 = t1090 * t1092;
-  const Real t1094 = t1087 - t1093;
-  const Real t1095 = t138 * t603;
-  const Real t1096 = t353 - t1095;
-  const Real t1097 = t1089 * t608;
-  const Real t1098 = t1096 - t1097;
-  const Real t1099 = t615 * t1098;
-  const Real t1100 = t1076 * t603;
-  const Real t1101 = t1100 - t1072;
-  const Real t1102 = t608 * t1092;
-  const Real t1103 = t1101 - t1102;
-  const Real t1104 = t1099 * t1103;
-  const Real t1105 = t1094 - t1104;
-  const Real t1106 = t138 * t591;
-  const Real t1107 = t587 - t1106;
-  const Real t1108 = t1089 * t600;
-  const Real t1109 = t1107 - t1108;
-  const Real t1110 = t616 * t1098;
-  const Real t1111 = t1109 - t1110;
-  const Real t1112 = t619 * t1111;
-  const Real t1113 = t1076 * t591;
-  const Real t1114 = t1113 - t1081;
-  const Real t1115 = t600 * t1092;
-  const Real t1116 = t1114 - t1115;
-  const Real t1117 = t616 * t1103;
-  const Real t1118 = t1116 - t1117;
-  const Real t1119 = t1112 * t1118;
-  const Real t1120 = t1105 - t1119;
-  const Real t1121 = t138 * t1085;
-  const Real t1122 = t449 - t1121;
-  const Real t1123 = t1089 * t1090;
-  const Real t1124 = t1122 - t1123;
-  const Real t1125 = t1099 * t1098;
-  const Real t1126 = t1124 - t1125;
-  const Real t1127 = t1112 * t1111;
-  const Real t1128 = t1126 - t1127;
-  const Real t1129 = constant<Real>(1.0L) / t1128;
-  const Real t1130 = t1120 * t1129;
-  const Real t1131 = t127 * t1085;
-  const Real t1132 = t438 - t1131;
-  const Real t1133 = t127 * t594;
-  const Real t1134 = t210 - t1133;
-  const Real t1135 = t1090 * t1134;
-  const Real t1136 = t1132 - t1135;
-  const Real t1137 = t127 * t603;
-  const Real t1138 = t341 - t1137;
-  const Real t1139 = t608 * t1134;
-  const Real t1140 = t1138 - t1139;
-  const Real t1141 = t1099 * t1140;
-  const Real t1142 = t1136 - t1141;
-  const Real t1143 = t127 * t591;
-  const Real t1144 = t582 - t1143;
-  const Real t1145 = t600 * t1134;
-  const Real t1146 = t1144 - t1145;
-  const Real t1147 = t616 * t1140;
-  const Real t1148 = t1146 - t1147;
-  const Real t1149 = t1112 * t1148;
-  const Real t1150 = t1142 - t1149;
-  const Real t1151 = t1129 * t1150;
-  const Real t1152 = t590 * t127;
-  const Real t1153 = t1152 * t1076;
-  const Real t1154 = t1153 + t1084;
-  const Real t1155 = t597 * t1134;
-  const Real t1156 = t1155 * t1092;
-  const Real t1157 = t1154 - t1156;
-  const Real t1158 = t1140 * t615;
-  const Real t1159 = t1103 * t1158;
-  const Real t1160 = t1157 - t1159;
-  const Real t1161 = t619 * t1148;
-  const Real t1162 = t1161 * t1118;
-  const Real t1163 = t1160 - t1162;
-  const Real t1164 = t1120 * t1151;
-  const Real t1165 = t1163 - t1164;
-  const Real t1166 = t127 * t1152;
-  const Real t1167 = t510 - t1166;
-  const Real t1168 = t1155 * t1134;
-  const Real t1169 = t1167 - t1168;
-  const Real t1170 = t1140 * t1158;
-  const Real t1171 = t1169 - t1170;
-  const Real t1172 = t1161 * t1148;
-  const Real t1173 = t1171 - t1172;
-  const Real t1174 = t1151 * t1150;
-  const Real t1175 = t1173 - t1174;
-  const Real t1176 = constant<Real>(1.0L) / t1175;
-  const Real t1177 = t1165 * t1176;
-  const Real t1178 = t114 * t590;
-  const Real t1179 = t114 * t1178;
-  const Real t1180 = t540 - t1179;
-  const Real t1181 = t114 * t594;
-  const Real t1182 = t198 - t1181;
-  const Real t1183 = t597 * t1182;
-  const Real t1184 = t1183 * t1182;
-  const Real t1185 = t1180 - t1184;
-  const Real t1186 = t114 * t603;
-  const Real t1187 = t329 - t1186;
-  const Real t1188 = t608 * t1182;
-  const Real t1189 = t1187 - t1188;
-  const Real t1190 = t1189 * t615;
-  const Real t1191 = t1190 * t1189;
-  const Real t1192 = t1185 - t1191;
-  const Real t1193 = t114 * t591;
-  const Real t1194 = t574 - t1193;
-  const Real t1195 = t600 * t1182;
-  const Real t1196 = t1194 - t1195;
-  const Real t1197 = t616 * t1189;
-  const Real t1198 = t1196 - t1197;
-  const Real t1199 = t619 * t1198;
-  const Real t1200 = t1199 * t1198;
-  const Real t1201 = t1192 - t1200;
-  const Real t1202 = t114 * t1085;
-  const Real t1203 = t429 - t1202;
-  const Real t1204 = t1090 * t1182;
-  const Real t1205 = t1203 - t1204;
-  const Real t1206 = t1099 * t1189;
-  const Real t1207 = t1205 - t1206;
-  const Real t1208 = t1112 * t1198;
-  const Real t1209 = t1207 - t1208;
-  const Real t1210 = t1129 * t1209;
-  const Real t1211 = t1210 * t1209;
-  const Real t1212 = t1201 - t1211;
-  const Real t1213 = t114 * t1152;
-  const Real t1214 = t501 - t1213;
-  const Real t1215 = t1155 * t1182;
-  const Real t1216 = t1214 - t1215;
-  const Real t1217 = t1189 * t1158;
-  const Real t1218 = t1216 - t1217;
-  const Real t1219 = t1161 * t1198;
-  const Real t1220 = t1218 - t1219;
-  const Real t1221 = t1151 * t1209;
-  const Real t1222 = t1220 - t1221;
-  const Real t1223 = t1222 * t1176;
-  const Real t1224 = t1222 * t1223;
-  const Real t1225 = t1212 - t1224;
-  const Real t1226 = constant<Real>(1.0L) / t1225;
-  const Real t1227 = t1178 * t1076;
-  const Real t1228 = t1082 + t1227;
-  const Real t1229 = t1183 * t1092;
-  const Real t1230 = t1228 - t1229;
-  const Real t1231 = t1190 * t1103;
-  const Real t1232 = t1230 - t1231;
-  const Real t1233 = t1199 * t1118;
-  const Real t1234 = t1232 - t1233;
-  const Real t1235 = t1120 * t1210;
-  const Real t1236 = t1234 - t1235;
-  const Real t1237 = t1165 * t1223;
-  const Real t1238 = t1236 - t1237;
-  const Real t1239 = t1226 * t1238;
-  const Real t1240 = t1239 * t1223;
-  const Real t1241 = t1177 - t1240;
-  const Real t1242 = t1151 * t1241;
-  const Real t1243 = t1130 - t1242;
-  const Real t1244 = t1210 * t1239;
-  const Real t1245 = t1243 - t1244;
-  const Real t1246 = t1085 * t1245;
-  const Real t1247 = t619 * t1118;
-  const Real t1248 = t1112 * t1245;
-  const Real t1249 = t1247 - t1248;
-  const Real t1250 = t1161 * t1241;
-  const Real t1251 = t1249 - t1250;
-  const Real t1252 = t1199 * t1239;
-  const Real t1253 = t1251 - t1252;
-  const Real t1254 = t1253 * t591;
-  const Real t1255 = t590 * t1076;
-  const Real t1256 = t597 * t1092;
-  const Real t1257 = t1103 * t615;
-  const Real t1258 = t616 * t1253;
-  const Real t1259 = t1257 - t1258;
-  const Real t1260 = t1099 * t1245;
-  const Real t1261 = t1259 - t1260;
-  const Real t1262 = t1241 * t1158;
-  const Real t1263 = t1261 - t1262;
-  const Real t1264 = t1190 * t1239;
-  const Real t1265 = t1263 - t1264;
-  const Real t1266 = t608 * t1265;
-  const Real t1267 = t1256 - t1266;
-  const Real t1268 = t600 * t1253;
-  const Real t1269 = t1267 - t1268;
-  const Real t1270 = t1090 * t1245;
-  const Real t1271 = t1269 - t1270;
-  const Real t1272 = t1155 * t1241;
-  const Real t1273 = t1271 - t1272;
-  const Real t1274 = t1183 * t1239;
-  const Real t1275 = t1273 - t1274;
-  const Real t1276 = t594 * t1275;
-  const Real t1277 = t1255 + t1276;
-  const Real t1278 = t1265 * t603;
-  const Real t1279 = t1277 + t1278;
-  const Real t1280 = t1254 + t1279;
-  const Real t1281 = t1246 + t1280;
-  const Real t1282 = t1152 * t1241;
-  const Real t1283 = t1281 + t1282;
-  const Real t1284 = t1178 * t1239;
-  const Real t1285 = t1283 + t1284;
-  const Real t1286 = -t1285;
+  // fin_section_2: joint force
+  const Real t1856 = constant<Real>(0.710077701790478711739L) * t1649;
+  const Real t1857 = t33 * t1545;
+  const Real t1858 = t1856 - t1857;
+  const Real t1859 = par.k16 * t1775;
+  const Real t1860 = t1858 + t1859;
 
-  w_dot[0] = t1286;
-  w_dot[1] = t1275;
-  w_dot[2] = t1265;
-  w_dot[3] = t1253;
-  w_dot[4] = t1245;
-  w_dot[5] = t1241;
-  w_dot[6] = t1239;
-  eta_dot[0] = t1286;
-  eta_dot[1] = t1275;
-  eta_dot[2] = t1265;
-  r_p_ddot[0] = t1253;
-  r_a_ddot_out[0] = t1245;
-  r_a_ddot_out[1] = t1241;
-  r_a_ddot_out[2] = t1239;
+  // fin: wrench
+  const Real t1861 = t82 * t1516;
+  const Real t1862 = par.k41 * t1528;
+  const Real t1863 = t1862 + t1861;
+  const Real t1864 = t293 * t1514;
+  const Real t1865 = t1864 + t1863;
+  const Real t1866 = t1514 * t292;
+  const Real t1867 = t1865 - t1866;
+
+  // fin_section_2: joint force
+  const Real t1868 = t1860 + t1867;
+
+  // fin_section_1: joint force
+  const Real t1869 = constant<Real>(0.0709020735931204697442L) * t1660;
+  const Real t1870 = t89 * t1604;
+  const Real t1871 = t1869 - t1870;
+  const Real t1872 = par.k5 * t1790;
+  const Real t1873 = t1872 + t1871;
+  const Real t1874 = t1868 + t1873;
+
+  // fin_tip: joint force
+  const Real t1875 = t1629 * t1606;
+  const Real t1876 = t1664 - t1875;
+  const Real t1877 = t1876 + t1874;
+
+  // springs, dampers and generalised forces
+  const Real t1878 = r_p[0] * constant<Real>(2.0L);
+  const Real t1879 = t1878 * par.k72;
+
+  // springs, dampers and generalised forces
+  const Real t1880 = w[3] * constant<Real>(2.0L);
+  const Real t1881 = par.k73 * t1880;
+  const Real t1882 = t1879 + t1881;
+  const Real t1883 = t1877 + t1882;
+
+  // accelerations
+  const Real t1884 = t1883 * t134;
+  const Real t1885 = t136 * t1883;
+  const Real t1886 = t1884 + t1885;
+  const Real t1887 = sum_error(t1886, t1855);
+
+  // trunk: joint force
+  const Real t1888 = -t1771;
+
+  // accelerations
+  const Real t1889 = sum_error(t1832, t1888);
+  const Real t1890 = sum_error(t1853, t1833);
+  const Real t1891 = t1889 + t1890;
+  const Real t1892 = t1887 - t1891;
+  const Real t1893 = t1886 - t1854;
+
+  // trunk: joint force
+  const Real t1894 = t1744 * c_r_a_0_;
+  const Real t1895 = t1768 * s_r_a_0_;
+  const Real t1896 = t1894 - t1895;
+
+  // applied wrenches
+  const Real t1897 = abs(w[0]);
+  const Real t1898 = par.k64 * t1897;
+  const Real t1899 = par.k14 * t1898;
+  const Real t1900 = t1899 * w[0];
+
+  // head: wrench
+  const Real t1901 = par.k50 * t1490;
+
+  // head: wrench of the fluid
+  const Real t1902 = w[2] * t1841;
+  const Real t1903 = t1901 + t1902;
+
+  // applied wrenches
+  const Real t1904 = t1900 - t1903;
+  const Real t1905 = t1900 + t1904;
+
+  // trunk: joint force
+  const Real t1906 = t1896 + t1905;
+
+  // trunk: joint force
+  const Real t1907 = t402 * t1883;
+  const Real t1908 = t1907 - t1906;
+
+  // trunk: joint force
+  const Real t1909 = t1908 * t505;
+
+  // accelerations
+  const Real t1910 = t1893 - t1909;
+  const Real t1911 = t1910 + t1892;
+
+  // trunk: joint force
+  const Real t1912 = t1908 * t511;
+
+  // head: wrench
+  const Real t1913 = par.k50 * t1493;
+
+  // head: wrench of the fluid
+  const Real t1914 = t1843 * w[2];
+  const Real t1915 = t1913 + t1914;
+
+  // applied wrenches
+  const Real t1916 = t1915 + t1839;
+  const Real t1917 = t1851 + t1916;
+
+  // trunk: joint force
+  const Real t1918 = t1770 + t1917;
+
+  // trunk: joint force
+  const Real t1919 = t1883 * t536;
+  const Real t1920 = t1919 - t1918;
+
+  // trunk: joint force
+  const Real t1921 = t1920 - t1912;
+  const Real t1922 = t630 * t1921;
+
+  // accelerations
+  const Real t1923 = t1911 - t1922;
+  const Real t1924 = t653 * t1923;
+
+  // trunk: joint force
+  const Real t1925 = t937 * t1921;
+  const Real t1926 = t1908 * t929;
+
+  // reduced forces
+  const Real t1927 = tau_a[0] - t1832;
+
+  // accelerations
+  const Real t1928 = t1883 * t739;
+  const Real t1929 = t1928 + t1927;
+  const Real t1930 = t1929 - t1926;
+  const Real t1931 = t1930 - t1925;
+  const Real t1932 = t1931 - t1924;
+  const Real t1933 = -t1925;
+  const Real t1934 = sum_error(t1930, t1933);
+  const Real t1935 = -t1926;
+  const Real t1936 = sum_error(t1929, t1935);
+
+  // springs, dampers and generalised forces
+  const Real t1937 = -t1832;
+
+  // accelerations
+  const Real t1938 = sum_error(tau_a[0], t1937);
+  const Real t1939 = product_error(t1883, t739);
+  const Real t1940 = t737 * t1883;
+  const Real t1941 = t1939 + t1940;
+  const Real t1942 = t1941 + t1938;
+  const Real t1943 = sum_error(t1927, t1928);
+  const Real t1944 = t1942 + t1943;
+  const Real t1945 = t1936 + t1944;
+  const Real t1946 = t1945 + t1934;
+  const Real t1947 = t1932 + t1946;
+  const Real t1948 = t992 * t1947;
+  const Real t1949 = t1947 * t994;
+  const Real t1950 = t1949 + t1948;
+  const Real t1951 = t1001 * t1923;
+
+  // trunk: joint force
+  const Real t1952 = t1921 * t1168;
+  const Real t1953 = t1908 * t1165;
+
+  // reduced forces
+  const Real t1954 = tau_a[1] - t1820;
+
+  // accelerations
+  const Real t1955 = t1883 * t1062;
+  const Real t1956 = t1883 * t1060;
+  const Real t1957 = t1955 + t1956;
+  const Real t1958 = t1954 + t1957;
+  const Real t1959 = t1958 - t1953;
+  const Real t1960 = t1959 - t1952;
+  const Real t1961 = t1960 - t1951;
+  const Real t1962 = t1961 - t1950;
+  const Real t1963 = t1962 * t1283;
+  const Real t1964 = t1287 * t1947;
+  const Real t1965 = t1923 * t1293;
+
+  // trunk: joint force
+  const Real t1966 = t1297 * t1921;
+  const Real t1967 = t1908 * t1422;
+
+  // accelerations
+  const Real t1968 = t1883 * t1346;
+  const Real t1969 = t1883 * t1348;
+  const Real t1970 = t1968 + t1969;
+
+  // reduced forces
+  const Real t1971 = tau_a[2] - t1808;
+
+  // accelerations
+  const Real t1972 = t1970 + t1971;
+  const Real t1973 = t1972 - t1967;
+  const Real t1974 = t1973 - t1966;
+  const Real t1975 = t1974 - t1965;
+  const Real t1976 = t1975 - t1964;
+  const Real t1977 = t1976 - t1963;
+  const Real t1978 = t1977 * t1434;
+  const Real t1979 = t1978 * t1283;
+  const Real t1980 = t1962 * t1217;
+  const Real t1981 = t1980 - t1979;
+  const Real t1982 = t1981 * t994;
+  const Real t1983 = -t1982;
+  const Real t1984 = t1947 * t950;
+  const Real t1985 = sum_error(t1984, t1983);
+  const Real t1986 = product_error(t994, t1981);
+  const Real t1987 = t992 * t1981;
+  const Real t1988 = t1986 + t1987;
+  const Real t1989 = t1985 - t1988;
+  const Real t1990 = product_error(t1287, t1978);
+  const Real t1991 = t1989 - t1990;
+  const Real t1992 = t1984 - t1982;
+  const Real t1993 = t1287 * t1978;
+  const Real t1994 = t1992 - t1993;
+  const Real t1995 = t1994 + t1991;
+  const Real t1996 = t653 * t1995;
+  const Real t1997 = t634 * t1923;
+  const Real t1998 = t1997 - t1996;
+  const Real t1999 = t1001 * t1981;
+  const Real t2000 = t1998 - t1999;
+  const Real t2001 = t1978 * t1293;
+  const Real t2002 = t2000 - t2001;
+  const Real t2003 = t2002 * t630;
+
+  // trunk: joint force
+  const Real t2004 = t594 * t1921;
+
+  // accelerations
+  const Real t2005 = t2004 - t2003;
+  const Real t2006 = t937 * t1995;
+  const Real t2007 = t2005 - t2006;
+  const Real t2008 = t1981 * t1168;
+  const Real t2009 = t2007 - t2008;
+  const Real t2010 = t1978 * t1297;
+  const Real t2011 = t2009 - t2010;
+  const Real t2012 = t511 * t2011;
+
+  // trunk: joint force
+  const Real t2013 = t1908 * t504;
+
+  // accelerations
+  const Real t2014 = t2013 - t2012;
+  const Real t2015 = t2002 * t505;
+  const Real t2016 = t2014 - t2015;
+  const Real t2017 = t1995 * t929;
+  const Real t2018 = t2016 - t2017;
+  const Real t2019 = t1981 * t1165;
+  const Real t2020 = t2018 - t2019;
+  const Real t2021 = t1422 * t1978;
+  const Real t2022 = t2020 - t2021;
+  const Real t2023 = t402 * t2022;
+
+  // trunk: joint force
+  const Real t2024 = t130 * t1883;
+
+  // accelerations
+  const Real t2025 = t2024 + t2023;
+  const Real t2026 = t2011 * t536;
+  const Real t2027 = t2025 + t2026;
+  const Real t2028 = t2002 * t134;
+  const Real t2029 = t2002 * t136;
+  const Real t2030 = t2028 + t2029;
+  const Real t2031 = t2030 + t2027;
+  const Real t2032 = t737 * t1995;
+  const Real t2033 = t1995 * t739;
+  const Real t2034 = t2032 + t2033;
+  const Real t2035 = t2034 + t2031;
+  const Real t2036 = t1981 * t1062;
+  const Real t2037 = t1060 * t1981;
+  const Real t2038 = t2036 + t2037;
+  const Real t2039 = t2035 + t2038;
+  const Real t2040 = t1348 * t1978;
+  const Real t2041 = t1346 * t1978;
+  const Real t2042 = t2040 + t2041;
+  const Real t2043 = t2042 + t2039;
+  const Real t2044 = -t2043;
+
+  w_dot[0] = t2022;
+  w_dot[1] = t2011;
+  w_dot[2] = t2002;
+  w_dot[3] = t2044;
+  w_dot[4] = t1995;
+  w_dot[5] = t1981;
+  w_dot[6] = t1978;
+  eta_dot[0] = t2022;
+  eta_dot[1] = t2011;
+  eta_dot[2] = t2002;
+  r_p_ddot[0] = t2044;
+  r_a_ddot_out[0] = t1995;
+  r_a_ddot_out[1] = t1981;
+  r_a_ddot_out[2] = t1978;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;
@@ -7953,8 +9693,8 @@ inline void energies(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k40;
-  const Real t11 = r_p[0] * par.k43;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
@@ -7965,7 +9705,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k47;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -7974,11 +9714,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k45 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k51;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -8076,25 +9816,25 @@ inline void energies(const Prepared<Real>& par,
 
   // trunk: wrench of the fluid
   const Real t106 = par.k12 * t39;
-  const Real t107 = t40 * par.k48;
+  const Real t107 = t40 * par.k49;
   const Real t108 = t106 - t107;
-  const Real t109 = par.k39 * t40;
-  const Real t110 = t39 * par.k48;
+  const Real t109 = par.k40 * t40;
+  const Real t110 = t39 * par.k49;
   const Real t111 = t109 - t110;
 
   // rear: wrench of the fluid
-  const Real t112 = par.k35 * t46;
-  const Real t113 = t45 * par.k42;
+  const Real t112 = par.k36 * t46;
+  const Real t113 = t45 * par.k43;
   const Real t114 = t112 - t113;
-  const Real t115 = t45 * par.k52;
-  const Real t116 = par.k42 * t46;
+  const Real t115 = t45 * par.k53;
+  const Real t116 = par.k43 * t46;
   const Real t117 = t115 - t116;
 
   // peduncle: wrench of the fluid
   const Real t118 = par.k31 * t58;
   const Real t119 = par.k29 * t50;
   const Real t120 = t118 - t119;
-  const Real t121 = t50 * par.k44;
+  const Real t121 = t50 * par.k45;
   const Real t122 = par.k29 * t58;
   const Real t123 = t121 - t122;
 
@@ -8110,7 +9850,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t128 = par.k26 * t50;
   const Real t129 = t58 - t128;
   const Real t130 = abs(t129);
-  const Real t131 = par.k65 * t130;
+  const Real t131 = par.k66 * t130;
   const Real t132 = t131 * par.k27;
   const Real t133 = t132 * t129;
   const Real t134 = par.k26 * t133;
@@ -8118,97 +9858,97 @@ inline void energies(const Prepared<Real>& par,
   const Real t136 = par.m_w * t135;
   const Real t137 = constant<Real>(0.5L) * t136;
   const Real t138 = abs(t98);
-  const Real t139 = par.k61 * t138;
+  const Real t139 = par.k62 * t138;
   const Real t140 = t139 * par.k3;
   const Real t141 = t98 * t140;
   const Real t142 = abs(t84);
-  const Real t143 = par.k67 * t142;
+  const Real t143 = par.k68 * t142;
   const Real t144 = par.k3 * t143;
   const Real t145 = t84 * t144;
-  const Real t146 = par.k38 * t40;
+  const Real t146 = par.k39 * t40;
   const Real t147 = t39 - t146;
   const Real t148 = abs(t147);
-  const Real t149 = t148 * par.k68;
+  const Real t149 = t148 * par.k69;
   const Real t150 = par.k11 * t149;
   const Real t151 = t150 * t147;
-  const Real t152 = t151 * par.k38;
+  const Real t152 = t151 * par.k39;
   const Real t153 = abs(t87);
-  const Real t154 = par.k61 * t153;
+  const Real t154 = par.k62 * t153;
   const Real t155 = t154 * par.k3;
   const Real t156 = t155 * t87;
-  const Real t157 = par.k32 * t46;
+  const Real t157 = par.k33 * t46;
   const Real t158 = t45 - t157;
   const Real t159 = abs(t158);
-  const Real t160 = par.k64 * t159;
-  const Real t161 = t160 * par.k33;
+  const Real t160 = par.k65 * t159;
+  const Real t161 = t160 * par.k34;
   const Real t162 = t158 * t161;
-  const Real t163 = t162 * par.k32;
+  const Real t163 = t162 * par.k33;
   const Real t164 = par.k20 * eta[2];
   const Real t165 = eta[1] - t164;
   const Real t166 = abs(t165);
-  const Real t167 = t166 * par.k70;
+  const Real t167 = t166 * par.k71;
   const Real t168 = par.k14 * t167;
   const Real t169 = t165 * t168;
   const Real t170 = par.k20 * t169;
-  const Real t171 = par.k37 * t40;
+  const Real t171 = par.k38 * t40;
   const Real t172 = t39 - t171;
   const Real t173 = abs(t172);
-  const Real t174 = t173 * par.k68;
+  const Real t174 = t173 * par.k69;
   const Real t175 = par.k11 * t174;
   const Real t176 = t175 * t172;
-  const Real t177 = t176 * par.k37;
+  const Real t177 = t176 * par.k38;
   const Real t178 = abs(t36);
-  const Real t179 = par.k69 * t178;
+  const Real t179 = par.k70 * t178;
   const Real t180 = par.k11 * t179;
   const Real t181 = t36 * t180;
   const Real t182 = abs(t101);
-  const Real t183 = par.k67 * t182;
+  const Real t183 = par.k68 * t182;
   const Real t184 = par.k3 * t183;
   const Real t185 = t184 * t101;
   const Real t186 = abs(t55);
-  const Real t187 = par.k62 * t186;
+  const Real t187 = par.k63 * t186;
   const Real t188 = t187 * par.k27;
   const Real t189 = t188 * t55;
-  const Real t190 = par.k34 * t46;
+  const Real t190 = par.k35 * t46;
   const Real t191 = t45 - t190;
   const Real t192 = abs(t191);
-  const Real t193 = par.k64 * t192;
-  const Real t194 = par.k33 * t193;
+  const Real t193 = par.k65 * t192;
+  const Real t194 = par.k34 * t193;
   const Real t195 = t194 * t191;
-  const Real t196 = t195 * par.k34;
+  const Real t196 = t195 * par.k35;
   const Real t197 = abs(t49);
-  const Real t198 = par.k66 * t197;
-  const Real t199 = t198 * par.k33;
+  const Real t198 = par.k67 * t197;
+  const Real t199 = t198 * par.k34;
   const Real t200 = t199 * t49;
   const Real t201 = par.k28 * t50;
   const Real t202 = t58 - t201;
   const Real t203 = abs(t202);
-  const Real t204 = par.k65 * t203;
+  const Real t204 = par.k66 * t203;
   const Real t205 = t204 * par.k27;
   const Real t206 = t205 * t202;
   const Real t207 = par.k28 * t206;
   const Real t208 = eta[1] + t164;
   const Real t209 = abs(t208);
-  const Real t210 = t209 * par.k70;
+  const Real t210 = t209 * par.k71;
   const Real t211 = par.k14 * t210;
   const Real t212 = t211 * t208;
   const Real t213 = par.k20 * t212;
   const Real t214 = abs(eta[0]);
-  const Real t215 = par.k63 * t214;
+  const Real t215 = par.k64 * t214;
   const Real t216 = par.k14 * t215;
   const Real t217 = eta[0] * t216;
 
   // springs, dampers and generalised forces
   const Real t218 = r_p_dot[0] * constant<Real>(2.0L);
-  const Real t219 = par.k72 * t218;
+  const Real t219 = par.k73 * t218;
 
   // head: energy
-  const Real t220 = eta[2] * par.k50;
+  const Real t220 = eta[2] * par.k51;
   const Real t221 = eta[2] * t220;
   const Real t222 = eta[0] * eta[0];
   const Real t223 = eta[1] * eta[1];
   const Real t224 = t222 + t223;
-  const Real t225 = par.k49 * t224;
+  const Real t225 = par.k50 * t224;
   const Real t226 = t221 + t225;
   const Real t227 = t226 * constant<Real>(0.5L);
   const Real t228 = t103 * eta[0];
@@ -8220,7 +9960,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t234 = t227 + t233;
 
   // trunk: energy
-  const Real t235 = par.k41 * t40;
+  const Real t235 = par.k42 * t40;
   const Real t236 = t235 * t40;
   const Real t237 = t36 * t36;
   const Real t238 = t39 * t39;
@@ -8270,7 +10010,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t278 = t55 * t55;
   const Real t279 = t277 + t278;
   const Real t280 = par.k18 * t279;
-  const Real t281 = par.k36 * t50;
+  const Real t281 = par.k37 * t50;
   const Real t282 = t58 * t281;
   const Real t283 = t282 * constant<Real>(2.0L);
   const Real t284 = t280 - t283;
@@ -8280,10 +10020,10 @@ inline void energies(const Prepared<Real>& par,
   const Real t288 = t274 + t287;
 
   // fin: energy
-  const Real t289 = t102 * par.k43;
-  const Real t290 = t50 * par.k46;
+  const Real t289 = t102 * par.k44;
+  const Real t290 = t50 * par.k47;
   const Real t291 = t16 * t55;
-  const Real t292 = t60 * par.k40;
+  const Real t292 = t60 * par.k41;
   const Real t293 = t291 + t292;
   const Real t294 = t290 + t293;
   const Real t295 = t294 * t218;
@@ -8312,7 +10052,7 @@ inline void energies(const Prepared<Real>& par,
 
   // fin_section_2: energy
   const Real t316 = r_p[0] * r_p[0];
-  const Real t317 = t316 * par.k71;
+  const Real t317 = t316 * par.k72;
   const Real t318 = t98 * t125;
   const Real t319 = constant<Real>(0.5L) * t318;
   const Real t320 = t315 + t319;
@@ -8449,7 +10189,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t10 = -s_g_2_;
 
   // fin_tip: station
-  const Real t11 = r_p[0] * par.k47;
+  const Real t11 = r_p[0] * par.k48;
   const Real t12 = constant<Real>(0.5L) * r_p[0];
   const Real t13 = t11 * t12;
   const Real t14 = par.lf - t13;
@@ -8458,11 +10198,11 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t15 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t16 = par.k9 * r_p[0];
   const Real t17 = t16 * t12;
-  const Real t18 = par.k45 - t17;
+  const Real t18 = par.k46 - t17;
 
   // fin_section_2: station
   const Real t19 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k52;
   const Real t21 = t20 * t12;
   const Real t22 = par.k10 - t21;
 

@@ -12,9 +12,9 @@
 //   kinematics                        10 add, 25 mul, 1 div, 4 neg, 4 sin, 4 cos
 //   constraints                       20 add, 43 mul, 6 neg, 4 sin, 4 cos
 //   free_dynamics                     26 add, 50 mul, 4 neg, 4 sin, 4 cos
-//   forward_dynamics                  40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
+//   forward_dynamics                  39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
 //   inverse_torques                   70 add, 125 mul, 2 div, 4 sin, 4 cos
-//   multipliers                       57 add, 115 mul, 4 div, 4 sin, 4 cos
+//   multipliers                       126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
 //   torque_driven_kinematics          15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
 //   torque_driven_velocities          none
 //   torque_driven_dynamics            104 add, 163 mul, 4 div, 1 neg, 4 sin, 4 cos
@@ -50,6 +50,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace five_bar::standard {
 
@@ -117,6 +118,48 @@ constexpr Real broadcast(long double value, ...) {
 template <class Real>
 constexpr Real constant(long double value) {
   return broadcast<Real>(value, nullptr, 0);
+}
+
+// What rounding leaves of an operation, exact value minus rounded one, by error-free transformations. They ask for
+// operations that are rounded one by one: no -ffast-math, and -ffp-contract=off where a processor has fused ones.
+
+template <class Real>
+constexpr int significant_bits(typename Real::value_type*) {
+  return std::numeric_limits<typename Real::value_type>::digits;
+}
+template <class Real>
+constexpr int significant_bits(...) {
+  return std::numeric_limits<Real>::is_specialized ? std::numeric_limits<Real>::digits
+                                                   : std::numeric_limits<double>::digits;
+}
+
+/// a + b = fl(a + b) + this (Knuth 1969).
+template <class Real>
+inline Real sum_error(const Real& a, const Real& b) noexcept {
+  const Real sum = a + b;
+  const Real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
+/// a b = fl(a b) + this, from halves of the operands' digits (Dekker 1971).
+template <class Real>
+inline Real product_error(const Real& a, const Real& b) noexcept {
+  constexpr int half = (significant_bits<Real>(nullptr) + 1) / 2;
+  const Real splitter = constant<Real>(static_cast<long double>((1ULL << half) + 1));
+  const Real a_scaled = splitter * a;
+  const Real b_scaled = splitter * b;
+  const Real a_high = a_scaled - (a_scaled - a);
+  const Real b_high = b_scaled - (b_scaled - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return (((a_high * b_high - a * b) + a_high * b_low) + a_low * b_high) + a_low * b_low;
+}
+
+/// a / b = fl(a / b) + this, up to the rounding of this.
+template <class Real>
+inline Real quotient_error(const Real& a, const Real& b) noexcept {
+  const Real quotient = a / b;
+  return ((a - quotient * b) - product_error(quotient, b)) / b;
 }
 
 }  // namespace detail
@@ -570,8 +613,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: projected recursion
-/// operations: 40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
+/// route: projected recursion, stable forms
+/// operations: 39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a       (2) rad or m: left, right
@@ -596,139 +639,136 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
+  const Real t1 = r_a[0] - r_a[1];
+  const Real t2 = sin(t1);
+  const Real t3 = r_a[1] - r_a[0];
+  const Real t4 = sin(t3);
 
   // kernel
-  const Real t1 = s_r_p_1_ * par.l_1;
-  const Real t2 = s_r_a_0_ * s_r_a_1_;
-  const Real t3 = c_r_a_1_ * c_r_a_0_;
-  const Real t4 = t2 + t3;
-  const Real t5 = s_r_p_1_ * t4;
-  const Real t6 = s_r_a_1_ * c_r_a_0_;
-  const Real t7 = c_r_a_1_ * s_r_a_0_;
-  const Real t8 = t6 - t7;
-  const Real t9 = c_r_p_1_ * t8;
-  const Real t10 = t5 + t9;
-  const Real t11 = c_r_p_0_ * t10;
-  const Real t12 = c_r_p_1_ * t4;
-  const Real t13 = s_r_p_1_ * t8;
-  const Real t14 = t12 - t13;
-  const Real t15 = s_r_p_0_ * t14;
-  const Real t16 = t11 - t15;
-  const Real t17 = t16 * par.l_2;
-  const Real t18 = constant<Real>(1.0L) / t17;
-  const Real t19 = t1 * t18;
-  const Real t20 = r_a_dot[1] * t19;
-  const Real t21 = par.l_1 * t10;
-  const Real t22 = t21 + t17;
-  const Real t23 = t22 * t18;
-  const Real t24 = r_a_dot[0] * t23;
-  const Real t25 = t20 - t24;
-  const Real t26 = c_r_p_0_ * t8;
-  const Real t27 = s_r_p_0_ * t4;
-  const Real t28 = t26 - t27;
-  const Real t29 = par.l_1 * t28;
-  const Real t30 = t29 + t17;
-  const Real t31 = t30 * t18;
-  const Real t32 = t31 * r_a_dot[1];
-  const Real t33 = s_r_p_0_ * par.l_1;
-  const Real t34 = t18 * t33;
-  const Real t35 = r_a_dot[0] * t34;
-  const Real t36 = t32 + t35;
+  const Real t5 = s_r_a_0_ * s_r_a_1_;
+  const Real t6 = c_r_a_1_ * c_r_a_0_;
+  const Real t7 = t5 + t6;
+  const Real t8 = c_r_p_1_ * t7;
+  const Real t9 = s_r_p_1_ * t7;
+  const Real t10 = s_r_p_0_ * t7;
+  const Real t11 = s_r_p_1_ * par.l_1;
+  const Real t12 = s_r_p_0_ * par.l_1;
 
   // joint angles
-  const Real t37 = r_a_dot[0] * c_r_a_0_;
-  const Real t38 = c_r_a_1_ * r_a_dot[1];
-  const Real t39 = s_r_a_1_ * r_a_dot[1];
-  const Real t40 = r_a_dot[0] * s_r_a_0_;
-
-  // joint angles
-  const Real t41 = s_r_p_0_ * t25;
-  const Real t42 = t25 * c_r_p_0_;
-  const Real t43 = t36 * c_r_p_1_;
-  const Real t44 = s_r_p_1_ * t36;
+  const Real t13 = r_a_dot[0] * c_r_a_0_;
+  const Real t14 = c_r_a_1_ * r_a_dot[1];
+  const Real t15 = s_r_a_1_ * r_a_dot[1];
+  const Real t16 = r_a_dot[0] * s_r_a_0_;
 
   // drift of the kernel
-  const Real t45 = t42 * par.l_1;
-  const Real t46 = t18 * t45;
-  const Real t47 = t8 * t44;
-  const Real t48 = c_r_a_0_ * t38;
-  const Real t49 = s_r_a_1_ * t40;
-  const Real t50 = t48 - t49;
-  const Real t51 = c_r_a_1_ * t37;
-  const Real t52 = s_r_a_0_ * t39;
-  const Real t53 = t51 - t52;
-  const Real t54 = t50 - t53;
-  const Real t55 = c_r_p_1_ * t54;
-  const Real t56 = t47 + t55;
-  const Real t57 = s_r_a_0_ * t38;
-  const Real t58 = s_r_a_1_ * t37;
-  const Real t59 = t57 + t58;
-  const Real t60 = c_r_a_1_ * t40;
-  const Real t61 = c_r_a_0_ * t39;
-  const Real t62 = t60 + t61;
-  const Real t63 = t59 - t62;
-  const Real t64 = s_r_p_1_ * t63;
-  const Real t65 = t43 * t4;
-  const Real t66 = t64 - t65;
-  const Real t67 = t56 + t66;
-  const Real t68 = c_r_p_0_ * t67;
-  const Real t69 = t41 * t10;
-  const Real t70 = t68 - t69;
-  const Real t71 = t42 * t14;
-  const Real t72 = t44 * t4;
-  const Real t73 = t63 * c_r_p_1_;
-  const Real t74 = t72 + t73;
-  const Real t75 = s_r_p_1_ * t54;
-  const Real t76 = t43 * t8;
-  const Real t77 = t75 - t76;
-  const Real t78 = t74 - t77;
-  const Real t79 = s_r_p_0_ * t78;
-  const Real t80 = t71 + t79;
-  const Real t81 = t70 - t80;
-  const Real t82 = par.l_2 * t81;
-  const Real t83 = t82 * t18;
-  const Real t84 = t83 / t17;
-  const Real t85 = t84 * t33;
-  const Real t86 = t46 - t85;
-  const Real t87 = r_a_dot[0] * t86;
-  const Real t88 = c_r_p_0_ * t54;
-  const Real t89 = t41 * t8;
-  const Real t90 = t88 - t89;
-  const Real t91 = t42 * t4;
-  const Real t92 = s_r_p_0_ * t63;
-  const Real t93 = t91 + t92;
-  const Real t94 = t90 - t93;
-  const Real t95 = t94 * par.l_1;
-  const Real t96 = t82 + t95;
-  const Real t97 = t96 * t18;
-  const Real t98 = t30 * t84;
-  const Real t99 = t97 - t98;
-  const Real t100 = t99 * r_a_dot[1];
-  const Real t101 = t87 + t100;
-  const Real t102 = t31 * r_a_ddot[1];
-  const Real t103 = r_a_ddot[0] * t34;
-  const Real t104 = t102 + t103;
-  const Real t105 = t101 + t104;
-  const Real t106 = -t105;
-  const Real t107 = r_a_ddot[1] * t19;
-  const Real t108 = r_a_ddot[0] * t23;
-  const Real t109 = t107 - t108;
-  const Real t110 = t84 * t1;
-  const Real t111 = t43 * par.l_1;
-  const Real t112 = t18 * t111;
-  const Real t113 = t110 + t112;
-  const Real t114 = r_a_dot[1] * t113;
-  const Real t115 = t67 * par.l_1;
-  const Real t116 = t82 + t115;
-  const Real t117 = t116 * t18;
-  const Real t118 = t84 * t22;
-  const Real t119 = t117 - t118;
-  const Real t120 = r_a_dot[0] * t119;
-  const Real t121 = t114 + t120;
-  const Real t122 = t109 - t121;
+  const Real t17 = c_r_a_0_ * t14;
+  const Real t18 = s_r_a_1_ * t16;
+  const Real t19 = t17 - t18;
+  const Real t20 = c_r_a_1_ * t13;
+  const Real t21 = s_r_a_0_ * t15;
+  const Real t22 = t20 - t21;
+  const Real t23 = t19 - t22;
+  const Real t24 = s_r_p_1_ * t23;
+  const Real t25 = c_r_p_1_ * t23;
+  const Real t26 = c_r_p_0_ * t23;
 
-  r_p_ddot[0] = t122;
-  r_p_ddot[1] = t106;
+  // passive accelerations
+  const Real t27 = c_r_p_1_ * t4;
+  const Real t28 = t9 + t27;
+  const Real t29 = t28 * c_r_p_0_;
+  const Real t30 = s_r_p_1_ * t4;
+  const Real t31 = t8 - t30;
+  const Real t32 = s_r_p_0_ * t31;
+  const Real t33 = t29 - t32;
+  const Real t34 = t33 * par.l_2;
+  const Real t35 = constant<Real>(1.0L) / t34;
+  const Real t36 = t35 * t11;
+  const Real t37 = r_a_dot[1] * t36;
+  const Real t38 = t28 * par.l_1;
+  const Real t39 = t38 + t34;
+  const Real t40 = t35 * t39;
+  const Real t41 = r_a_dot[0] * t40;
+  const Real t42 = t37 - t41;
+  const Real t43 = c_r_p_0_ * t42;
+  const Real t44 = par.l_1 * t43;
+  const Real t45 = t35 * t44;
+  const Real t46 = t35 * t12;
+  const Real t47 = t46 * r_a_dot[0];
+  const Real t48 = c_r_p_0_ * t4;
+  const Real t49 = t48 - t10;
+  const Real t50 = t49 * par.l_1;
+  const Real t51 = t50 + t34;
+  const Real t52 = t35 * t51;
+  const Real t53 = r_a_dot[1] * t52;
+  const Real t54 = t47 + t53;
+  const Real t55 = s_r_p_1_ * t54;
+  const Real t56 = t55 * t4;
+  const Real t57 = t25 + t56;
+  const Real t58 = r_a_dot[1] * t2;
+  const Real t59 = r_a_dot[0] * t4;
+  const Real t60 = t58 + t59;
+  const Real t61 = s_r_p_1_ * t60;
+  const Real t62 = c_r_p_1_ * t54;
+  const Real t63 = t62 * t7;
+  const Real t64 = t61 - t63;
+  const Real t65 = t57 + t64;
+  const Real t66 = c_r_p_0_ * t65;
+  const Real t67 = s_r_p_0_ * t42;
+  const Real t68 = t28 * t67;
+  const Real t69 = t66 - t68;
+  const Real t70 = c_r_p_1_ * t60;
+  const Real t71 = t55 * t7;
+  const Real t72 = t70 + t71;
+  const Real t73 = t62 * t4;
+  const Real t74 = t24 - t73;
+  const Real t75 = t72 - t74;
+  const Real t76 = t75 * s_r_p_0_;
+  const Real t77 = t31 * t43;
+  const Real t78 = t76 + t77;
+  const Real t79 = t69 - t78;
+  const Real t80 = t79 * par.l_2;
+  const Real t81 = t80 * t35;
+  const Real t82 = t81 / t34;
+  const Real t83 = t82 * t12;
+  const Real t84 = t45 - t83;
+  const Real t85 = t84 * r_a_dot[0];
+  const Real t86 = t67 * t4;
+  const Real t87 = t26 - t86;
+  const Real t88 = t43 * t7;
+  const Real t89 = s_r_p_0_ * t60;
+  const Real t90 = t88 + t89;
+  const Real t91 = t87 - t90;
+  const Real t92 = par.l_1 * t91;
+  const Real t93 = t80 + t92;
+  const Real t94 = t35 * t93;
+  const Real t95 = t82 * t51;
+  const Real t96 = t94 - t95;
+  const Real t97 = r_a_dot[1] * t96;
+  const Real t98 = t85 + t97;
+  const Real t99 = t46 * r_a_ddot[0];
+  const Real t100 = r_a_ddot[1] * t52;
+  const Real t101 = t99 + t100;
+  const Real t102 = t98 + t101;
+  const Real t103 = -t102;
+  const Real t104 = r_a_ddot[1] * t36;
+  const Real t105 = r_a_ddot[0] * t40;
+  const Real t106 = t104 - t105;
+  const Real t107 = t65 * par.l_1;
+  const Real t108 = t80 + t107;
+  const Real t109 = t35 * t108;
+  const Real t110 = t82 * t39;
+  const Real t111 = t109 - t110;
+  const Real t112 = t111 * r_a_dot[0];
+  const Real t113 = par.l_1 * t62;
+  const Real t114 = t113 * t35;
+  const Real t115 = t82 * t11;
+  const Real t116 = t114 + t115;
+  const Real t117 = t116 * r_a_dot[1];
+  const Real t118 = t112 + t117;
+  const Real t119 = t106 - t118;
+
+  r_p_ddot[0] = t119;
+  r_p_ddot[1] = t103;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
@@ -1003,8 +1043,8 @@ inline void inverse_torques(const Prepared<Real>& par,
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion
-/// operations: 57 add, 115 mul, 4 div, 4 sin, 4 cos
+/// route: projected recursion, stable forms, compensated beyond 25 ulps
+/// operations: 126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a       (2) rad or m: left, right
@@ -1021,6 +1061,9 @@ inline void multipliers(const Prepared<Real>& par,
   using std::cos;
   using std::sin;
   using detail::constant;
+  using detail::product_error;
+  using detail::quotient_error;
+  using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
   const Real s_r_p_1_ = sin(r_p[1]);
@@ -1029,213 +1072,231 @@ inline void multipliers(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
+  const Real t1 = r_a[0] - r_a[1];
+  const Real t2 = sin(t1);
+  const Real t3 = r_a[1] - r_a[0];
+  const Real t4 = sin(t3);
 
   // joint angles
-  const Real t1 = s_r_p_0_ * c_r_a_0_;
-  const Real t2 = c_r_p_0_ * s_r_a_0_;
-  const Real t3 = t1 + t2;
-  const Real t4 = t3 * par.l_2;
-  const Real t5 = c_r_p_0_ * c_r_a_0_;
-  const Real t6 = s_r_p_0_ * s_r_a_0_;
-  const Real t7 = t5 - t6;
-  const Real t8 = par.l_2 * t7;
-  const Real t9 = s_r_a_1_ * c_r_p_1_;
-  const Real t10 = c_r_a_1_ * s_r_p_1_;
-  const Real t11 = t9 + t10;
+  const Real t5 = s_r_p_0_ * c_r_a_0_;
+  const Real t6 = c_r_p_0_ * s_r_a_0_;
+  const Real t7 = t5 + t6;
+  const Real t8 = t7 * par.l_2;
+  const Real t9 = c_r_p_0_ * c_r_a_0_;
+  const Real t10 = s_r_p_0_ * s_r_a_0_;
+  const Real t11 = t9 - t10;
   const Real t12 = par.l_2 * t11;
-  const Real t13 = c_r_a_1_ * c_r_p_1_;
-  const Real t14 = s_r_p_1_ * s_r_a_1_;
-  const Real t15 = t13 - t14;
-  const Real t16 = t15 * par.l_2;
+  const Real t13 = s_r_a_1_ * c_r_p_1_;
+  const Real t14 = c_r_a_1_ * s_r_p_1_;
+  const Real t15 = t13 + t14;
+  const Real t16 = par.l_2 * t15;
+  const Real t17 = c_r_a_1_ * c_r_p_1_;
+  const Real t18 = s_r_p_1_ * s_r_a_1_;
+  const Real t19 = t17 - t18;
+  const Real t20 = t19 * par.l_2;
+  const Real t21 = -t20;
 
   // kernel
-  const Real t17 = constant<Real>(1.0L) / t4;
-  const Real t18 = t8 * t17;
-  const Real t19 = t12 * t18;
-  const Real t20 = t19 - t16;
-  const Real t21 = constant<Real>(1.0L) / t20;
-  const Real t22 = s_r_p_1_ * par.l_1;
-  const Real t23 = s_r_a_0_ * s_r_a_1_;
-  const Real t24 = c_r_a_1_ * c_r_a_0_;
-  const Real t25 = t23 + t24;
-  const Real t26 = s_r_p_1_ * t25;
-  const Real t27 = s_r_a_1_ * c_r_a_0_;
-  const Real t28 = c_r_a_1_ * s_r_a_0_;
-  const Real t29 = t27 - t28;
-  const Real t30 = c_r_p_1_ * t29;
-  const Real t31 = t26 + t30;
-  const Real t32 = c_r_p_0_ * t31;
-  const Real t33 = c_r_p_1_ * t25;
-  const Real t34 = s_r_p_1_ * t29;
-  const Real t35 = t33 - t34;
-  const Real t36 = s_r_p_0_ * t35;
-  const Real t37 = t32 - t36;
-  const Real t38 = t37 * par.l_2;
-  const Real t39 = constant<Real>(1.0L) / t38;
-  const Real t40 = t22 * t39;
-  const Real t41 = r_a_dot[1] * t40;
-  const Real t42 = par.l_1 * t31;
-  const Real t43 = t42 + t38;
-  const Real t44 = t43 * t39;
-  const Real t45 = r_a_dot[0] * t44;
-  const Real t46 = t41 - t45;
-  const Real t47 = c_r_p_0_ * t29;
-  const Real t48 = s_r_p_0_ * t25;
-  const Real t49 = t47 - t48;
-  const Real t50 = par.l_1 * t49;
-  const Real t51 = t50 + t38;
-  const Real t52 = t51 * t39;
-  const Real t53 = t52 * r_a_dot[1];
-  const Real t54 = s_r_p_0_ * par.l_1;
-  const Real t55 = t39 * t54;
-  const Real t56 = r_a_dot[0] * t55;
-  const Real t57 = t53 + t56;
+  const Real t22 = s_r_a_0_ * s_r_a_1_;
+  const Real t23 = c_r_a_1_ * c_r_a_0_;
+  const Real t24 = t22 + t23;
+  const Real t25 = c_r_p_1_ * t24;
+  const Real t26 = constant<Real>(1.0L) / t8;
+  const Real t27 = t12 * t26;
+  const Real t28 = t16 * t27;
+  const Real t29 = t28 - t20;
+  const Real t30 = constant<Real>(1.0L) / t29;
+  const Real t31 = s_r_p_1_ * t24;
+  const Real t32 = s_r_p_0_ * t24;
+  const Real t33 = s_r_p_1_ * par.l_1;
+  const Real t34 = s_r_p_0_ * par.l_1;
 
   // joint angles
-  const Real t58 = r_a_dot[1] * r_a_dot[1];
-  const Real t59 = r_a_dot[0] * c_r_a_0_;
-  const Real t60 = r_a_dot[0] * r_a_dot[0];
-  const Real t61 = c_r_a_1_ * r_a_dot[1];
-  const Real t62 = s_r_a_1_ * r_a_dot[1];
-  const Real t63 = r_a_dot[0] * s_r_a_0_;
+  const Real t35 = r_a_dot[1] * r_a_dot[1];
+  const Real t36 = r_a_dot[0] * c_r_a_0_;
+  const Real t37 = r_a_dot[0] * r_a_dot[0];
+  const Real t38 = c_r_a_1_ * r_a_dot[1];
+  const Real t39 = s_r_a_1_ * r_a_dot[1];
+  const Real t40 = r_a_dot[0] * s_r_a_0_;
 
   // left_crank: acceleration
-  const Real t64 = par.g * c_r_a_0_;
-  const Real t65 = par.g * s_r_a_0_;
+  const Real t41 = par.g * c_r_a_0_;
+  const Real t42 = par.g * s_r_a_0_;
 
   // left_rod: acceleration
-  const Real t66 = par.l_1 * t60;
-  const Real t67 = t65 - t66;
-  const Real t68 = s_r_p_0_ * t67;
+  const Real t43 = par.l_1 * t37;
+  const Real t44 = t42 - t43;
+  const Real t45 = s_r_p_0_ * t44;
 
   // right_crank: acceleration
-  const Real t69 = par.g * s_r_a_1_;
-  const Real t70 = c_r_a_1_ * par.g;
+  const Real t46 = par.g * s_r_a_1_;
+  const Real t47 = c_r_a_1_ * par.g;
 
   // right_rod: acceleration
-  const Real t71 = t58 * par.l_1;
-  const Real t72 = t69 - t71;
-  const Real t73 = s_r_p_1_ * t72;
-
-  // joint angles
-  const Real t74 = s_r_p_0_ * t46;
-  const Real t75 = t46 * c_r_p_0_;
-  const Real t76 = t57 * c_r_p_1_;
-  const Real t77 = s_r_p_1_ * t57;
+  const Real t48 = t35 * par.l_1;
+  const Real t49 = t46 - t48;
+  const Real t50 = s_r_p_1_ * t49;
 
   // drift of the kernel
-  const Real t78 = t75 * par.l_1;
-  const Real t79 = t39 * t78;
-  const Real t80 = t29 * t77;
-  const Real t81 = c_r_a_0_ * t61;
-  const Real t82 = s_r_a_1_ * t63;
-  const Real t83 = t81 - t82;
-  const Real t84 = c_r_a_1_ * t59;
-  const Real t85 = s_r_a_0_ * t62;
-  const Real t86 = t84 - t85;
-  const Real t87 = t83 - t86;
-  const Real t88 = c_r_p_1_ * t87;
-  const Real t89 = t80 + t88;
-  const Real t90 = s_r_a_0_ * t61;
-  const Real t91 = s_r_a_1_ * t59;
-  const Real t92 = t90 + t91;
-  const Real t93 = c_r_a_1_ * t63;
-  const Real t94 = c_r_a_0_ * t62;
-  const Real t95 = t93 + t94;
-  const Real t96 = t92 - t95;
-  const Real t97 = s_r_p_1_ * t96;
-  const Real t98 = t76 * t25;
-  const Real t99 = t97 - t98;
-  const Real t100 = t89 + t99;
-  const Real t101 = c_r_p_0_ * t100;
-  const Real t102 = t74 * t31;
-  const Real t103 = t101 - t102;
-  const Real t104 = t75 * t35;
-  const Real t105 = t77 * t25;
-  const Real t106 = t96 * c_r_p_1_;
-  const Real t107 = t105 + t106;
-  const Real t108 = s_r_p_1_ * t87;
-  const Real t109 = t76 * t29;
-  const Real t110 = t108 - t109;
-  const Real t111 = t107 - t110;
-  const Real t112 = s_r_p_0_ * t111;
-  const Real t113 = t104 + t112;
-  const Real t114 = t103 - t113;
-  const Real t115 = par.l_2 * t114;
-  const Real t116 = t115 * t39;
-  const Real t117 = t116 / t38;
-  const Real t118 = t117 * t54;
-  const Real t119 = t79 - t118;
-  const Real t120 = r_a_dot[0] * t119;
-  const Real t121 = c_r_p_0_ * t87;
-  const Real t122 = t74 * t29;
-  const Real t123 = t121 - t122;
-  const Real t124 = t75 * t25;
-  const Real t125 = s_r_p_0_ * t96;
-  const Real t126 = t124 + t125;
-  const Real t127 = t123 - t126;
-  const Real t128 = t127 * par.l_1;
-  const Real t129 = t115 + t128;
-  const Real t130 = t129 * t39;
-  const Real t131 = t51 * t117;
-  const Real t132 = t130 - t131;
-  const Real t133 = t132 * r_a_dot[1];
-  const Real t134 = t120 + t133;
-  const Real t135 = t52 * r_a_ddot[1];
-  const Real t136 = r_a_ddot[0] * t55;
-  const Real t137 = t135 + t136;
-  const Real t138 = t134 + t137;
-  const Real t139 = r_a_ddot[1] * t40;
-  const Real t140 = r_a_ddot[0] * t44;
-  const Real t141 = t139 - t140;
-  const Real t142 = t117 * t22;
-  const Real t143 = t76 * par.l_1;
-  const Real t144 = t39 * t143;
-  const Real t145 = t142 + t144;
-  const Real t146 = r_a_dot[1] * t145;
-  const Real t147 = t100 * par.l_1;
-  const Real t148 = t115 + t147;
-  const Real t149 = t148 * t39;
-  const Real t150 = t117 * t43;
-  const Real t151 = t149 - t150;
-  const Real t152 = r_a_dot[0] * t151;
-  const Real t153 = t146 + t152;
-  const Real t154 = t141 - t153;
+  const Real t51 = c_r_a_0_ * t38;
+  const Real t52 = s_r_a_1_ * t40;
+  const Real t53 = t51 - t52;
+  const Real t54 = c_r_a_1_ * t36;
+  const Real t55 = s_r_a_0_ * t39;
+  const Real t56 = t54 - t55;
+  const Real t57 = t53 - t56;
+  const Real t58 = s_r_p_1_ * t57;
+  const Real t59 = c_r_p_1_ * t57;
+  const Real t60 = c_r_p_0_ * t57;
 
   // left_rod: acceleration
-  const Real t155 = r_a_ddot[0] * par.l_1;
-  const Real t156 = t64 + t155;
-  const Real t157 = c_r_p_0_ * t156;
-  const Real t158 = t157 - t68;
-  const Real t159 = r_a_ddot[0] + t154;
+  const Real t61 = r_a_ddot[0] * par.l_1;
+  const Real t62 = t41 + t61;
+  const Real t63 = c_r_p_0_ * t62;
+  const Real t64 = t63 - t45;
 
   // right_rod: acceleration
-  const Real t160 = r_a_ddot[1] - t138;
-  const Real t161 = r_a_ddot[1] * par.l_1;
-  const Real t162 = t70 + t161;
-  const Real t163 = t162 * c_r_p_1_;
-  const Real t164 = t163 - t73;
+  const Real t65 = r_a_ddot[1] * par.l_1;
+  const Real t66 = t47 + t65;
+  const Real t67 = t66 * c_r_p_1_;
+  const Real t68 = t67 - t50;
 
   // left_rod: wrench
-  const Real t165 = t158 * par.k3;
-  const Real t166 = t159 * par.k4;
-  const Real t167 = t165 + t166;
+  const Real t69 = t64 * par.k3;
 
   // right_rod: wrench
-  const Real t168 = par.k3 * t164;
-  const Real t169 = t160 * par.k4;
-  const Real t170 = t168 + t169;
+  const Real t70 = par.k3 * t68;
+
+  // passive accelerations
+  const Real t71 = c_r_p_1_ * t4;
+  const Real t72 = t31 + t71;
+  const Real t73 = t72 * c_r_p_0_;
+  const Real t74 = s_r_p_1_ * t4;
+  const Real t75 = t25 - t74;
+  const Real t76 = s_r_p_0_ * t75;
+  const Real t77 = t73 - t76;
+  const Real t78 = t77 * par.l_2;
+  const Real t79 = constant<Real>(1.0L) / t78;
+  const Real t80 = t79 * t33;
+  const Real t81 = r_a_dot[1] * t80;
+  const Real t82 = t72 * par.l_1;
+  const Real t83 = t82 + t78;
+  const Real t84 = t79 * t83;
+  const Real t85 = r_a_dot[0] * t84;
+  const Real t86 = t81 - t85;
+  const Real t87 = c_r_p_0_ * t86;
+  const Real t88 = par.l_1 * t87;
+  const Real t89 = t79 * t88;
+  const Real t90 = t79 * t34;
+  const Real t91 = t90 * r_a_dot[0];
+  const Real t92 = c_r_p_0_ * t4;
+  const Real t93 = t92 - t32;
+  const Real t94 = t93 * par.l_1;
+  const Real t95 = t94 + t78;
+  const Real t96 = t79 * t95;
+  const Real t97 = r_a_dot[1] * t96;
+  const Real t98 = t91 + t97;
+  const Real t99 = s_r_p_1_ * t98;
+  const Real t100 = t99 * t4;
+  const Real t101 = t59 + t100;
+  const Real t102 = r_a_dot[1] * t2;
+  const Real t103 = r_a_dot[0] * t4;
+  const Real t104 = t102 + t103;
+  const Real t105 = s_r_p_1_ * t104;
+  const Real t106 = c_r_p_1_ * t98;
+  const Real t107 = t106 * t24;
+  const Real t108 = t105 - t107;
+  const Real t109 = t101 + t108;
+  const Real t110 = c_r_p_0_ * t109;
+  const Real t111 = s_r_p_0_ * t86;
+  const Real t112 = t72 * t111;
+  const Real t113 = t110 - t112;
+  const Real t114 = c_r_p_1_ * t104;
+  const Real t115 = t99 * t24;
+  const Real t116 = t114 + t115;
+  const Real t117 = t106 * t4;
+  const Real t118 = t58 - t117;
+  const Real t119 = t116 - t118;
+  const Real t120 = t119 * s_r_p_0_;
+  const Real t121 = t75 * t87;
+  const Real t122 = t120 + t121;
+  const Real t123 = t113 - t122;
+  const Real t124 = t123 * par.l_2;
+  const Real t125 = t124 * t79;
+  const Real t126 = t125 / t78;
+  const Real t127 = t126 * t34;
+  const Real t128 = t89 - t127;
+  const Real t129 = t128 * r_a_dot[0];
+  const Real t130 = t111 * t4;
+  const Real t131 = t60 - t130;
+  const Real t132 = t87 * t24;
+  const Real t133 = s_r_p_0_ * t104;
+  const Real t134 = t132 + t133;
+  const Real t135 = t131 - t134;
+  const Real t136 = par.l_1 * t135;
+  const Real t137 = t124 + t136;
+  const Real t138 = t79 * t137;
+  const Real t139 = t126 * t95;
+  const Real t140 = t138 - t139;
+  const Real t141 = r_a_dot[1] * t140;
+  const Real t142 = t129 + t141;
+  const Real t143 = t90 * r_a_ddot[0];
+  const Real t144 = r_a_ddot[1] * t96;
+  const Real t145 = t143 + t144;
+  const Real t146 = t142 + t145;
+  const Real t147 = r_a_ddot[1] * t80;
+  const Real t148 = r_a_ddot[0] * t84;
+  const Real t149 = t147 - t148;
+  const Real t150 = t109 * par.l_1;
+  const Real t151 = t124 + t150;
+  const Real t152 = t79 * t151;
+  const Real t153 = t126 * t83;
+  const Real t154 = t152 - t153;
+  const Real t155 = t154 * r_a_dot[0];
+  const Real t156 = par.l_1 * t106;
+  const Real t157 = t156 * t79;
+  const Real t158 = t126 * t33;
+  const Real t159 = t157 + t158;
+  const Real t160 = t159 * r_a_dot[1];
+  const Real t161 = t155 + t160;
+  const Real t162 = t149 - t161;
 
   // multipliers
-  const Real t171 = t167 * t17;
-  const Real t172 = t12 * t171;
-  const Real t173 = t170 + t172;
-  const Real t174 = t21 * t173;
-  const Real t175 = t174 * t18;
-  const Real t176 = t175 - t171;
+  const Real t163 = t162 + r_a_ddot[0];
+  const Real t164 = par.k4 * t163;
+  const Real t165 = t69 + t164;
+  const Real t166 = t165 * t26;
+  const Real t167 = t166 * t16;
+  const Real t168 = r_a_ddot[1] - t146;
+  const Real t169 = t168 * par.k4;
+  const Real t170 = t169 + t70;
+  const Real t171 = t167 + t170;
+  const Real t172 = t30 * t171;
+  const Real t173 = product_error(t166, t16);
+  const Real t174 = sum_error(t167, t170);
+  const Real t175 = t173 + t174;
+  const Real t176 = t30 * t175;
+  const Real t177 = quotient_error(constant<Real>(1.0L), t29);
+  const Real t178 = product_error(t16, t27);
+  const Real t179 = sum_error(t28, t21);
+  const Real t180 = t178 + t179;
+  const Real t181 = t30 * t180;
+  const Real t182 = t181 / t29;
+  const Real t183 = t177 - t182;
+  const Real t184 = t183 * t171;
+  const Real t185 = t176 + t184;
+  const Real t186 = product_error(t30, t171);
+  const Real t187 = t185 + t186;
+  const Real t188 = t172 + t187;
+  const Real t189 = t187 * t27;
+  const Real t190 = product_error(t172, t27);
+  const Real t191 = t189 + t190;
+  const Real t192 = t172 * t27;
+  const Real t193 = t192 - t166;
+  const Real t194 = t191 + t193;
 
-  lambda[0] = t176;
-  lambda[1] = t174;
+  lambda[0] = t194;
+  lambda[1] = t188;
 }
 
 /// All velocities from the reduced ones, active joints free.

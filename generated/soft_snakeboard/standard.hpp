@@ -20,11 +20,11 @@
 //   multipliers                41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
 //   torque_driven_kinematics   3 mul, 2 neg, 1 sin, 1 cos
 //   torque_driven_velocities   2 add, 5 mul, 1 div, 1 sin, 1 cos
-//   torque_driven_dynamics     94 add, 149 mul, 4 div, 1 neg, 2 sin, 2 cos
+//   torque_driven_dynamics     222 add, 212 mul, 2 div, 4 neg, 2 sin, 2 cos
 //   torque_driven_multipliers  41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
 //   energies                   27 add, 47 mul, 1 div, 1 sin, 1 cos
 //   body_poses                 12 add, 10 mul, 3 neg, 3 sin, 3 cos
-//   prepare                    14 add, 29 mul, 4 div, once per set of parameters
+//   prepare                    35 add, 44 mul, 4 div, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -48,6 +48,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace soft_snakeboard::standard {
 
@@ -136,6 +137,48 @@ constexpr Real constant(long double value) {
   return broadcast<Real>(value, nullptr, 0);
 }
 
+// What rounding leaves of an operation, exact value minus rounded one, by error-free transformations. They ask for
+// operations that are rounded one by one: no -ffast-math, and -ffp-contract=off where a processor has fused ones.
+
+template <class Real>
+constexpr int significant_bits(typename Real::value_type*) {
+  return std::numeric_limits<typename Real::value_type>::digits;
+}
+template <class Real>
+constexpr int significant_bits(...) {
+  return std::numeric_limits<Real>::is_specialized ? std::numeric_limits<Real>::digits
+                                                   : std::numeric_limits<double>::digits;
+}
+
+/// a + b = fl(a + b) + this (Knuth 1969).
+template <class Real>
+inline Real sum_error(const Real& a, const Real& b) noexcept {
+  const Real sum = a + b;
+  const Real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
+/// a b = fl(a b) + this, from halves of the operands' digits (Dekker 1971).
+template <class Real>
+inline Real product_error(const Real& a, const Real& b) noexcept {
+  constexpr int half = (significant_bits<Real>(nullptr) + 1) / 2;
+  const Real splitter = constant<Real>(static_cast<long double>((1ULL << half) + 1));
+  const Real a_scaled = splitter * a;
+  const Real b_scaled = splitter * b;
+  const Real a_high = a_scaled - (a_scaled - a);
+  const Real b_high = b_scaled - (b_scaled - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return (((a_high * b_high - a * b) + a_high * b_low) + a_low * b_high) + a_low * b_low;
+}
+
+/// a / b = fl(a / b) + this, up to the rounding of this.
+template <class Real>
+inline Real quotient_error(const Real& a, const Real& b) noexcept {
+  const Real quotient = a / b;
+  return ((a - quotient * b) - product_error(quotient, b)) / b;
+}
+
 }  // namespace detail
 
 /// What may differ from one robot of this kind to the next, with the values of the description.
@@ -190,15 +233,20 @@ struct Prepared {
   Real k22;  // 0.666667 * (3 * l * l - L * L)
   Real k23;  // J_h + k8 + J_p
   Real k24;  // 1 / k8
-  Real k25;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
+  Real k25;  // k18 * k5
+  Real k26;  // k5 * k25
+  Real k27;  // product_error(k18, k5)
+  Real k28;  // product_error(k5, k25) + k27 * k5
+  Real k29;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 14 add, 29 mul, 4 div
+/// operations: 35 add, 44 mul, 4 div
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using detail::constant;
+  using detail::product_error;
   const Real t1 = par.rhoA * par.L;
   const Real t2 = t1 * constant<Real>(0.391495878019812868251L);
   const Real t3 = constant<Real>(0.5L) * t1;
@@ -259,9 +307,21 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   // reduced accelerations
   const Real t45 = constant<Real>(1.0L) / t13;
 
+  // rear_axle: joint force
+  const Real t46 = t33 * t7;
+
+  // beam_3: wrench
+  const Real t47 = t7 * t46;
+
+  // accelerations
+  const Real t48 = product_error(t7, t46);
+  const Real t49 = product_error(t33, t7);
+  const Real t50 = t49 * t7;
+  const Real t51 = t48 + t50;
+
   // beam_4: energy
-  const Real t46 = constant<Real>(0.5L) * t24;
-  const Real t47 = t22 + t46;
+  const Real t52 = constant<Real>(0.5L) * t24;
+  const Real t53 = t22 + t52;
 
   result.m_p = par.m_p;
   result.J_p = par.J_p;
@@ -296,7 +356,11 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k22 = t42;
   result.k23 = t44;
   result.k24 = t45;
-  result.k25 = t47;
+  result.k25 = t46;
+  result.k26 = t47;
+  result.k27 = t49;
+  result.k28 = t51;
+  result.k29 = t53;
   return result;
 }
 
@@ -1971,8 +2035,8 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: all blocks, (66)-(68)
-/// operations: 94 add, 149 mul, 4 div, 1 neg, 2 sin, 2 cos
+/// route: modes first, compensated beyond 25 ulps
+/// operations: 222 add, 212 mul, 2 div, 4 neg, 2 sin, 2 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (2) rad or m: re3, re4
 /// @param[in]  r_a           (2) rad or m: r1, r3
@@ -1998,6 +2062,8 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   using std::cos;
   using std::sin;
   using detail::constant;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
@@ -2019,346 +2085,423 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t9 = s_r_a_0_ * par.l;
   const Real t10 = par.l * c_r_a_0_;
 
-  // rear_axle: wrench
-  const Real t11 = par.m_a * c_r_a_0_;
-  const Real t12 = s_r_a_0_ * par.m_a;
-
-  // beam_3: wrench
-  const Real t13 = s_r_a_1_ * par.k2;
-  const Real t14 = s_r_a_1_ * par.k3;
-  const Real t15 = t4 * c_r_a_1_;
-  const Real t16 = t14 + t15;
-  const Real t17 = s_r_a_1_ * par.k1;
-  const Real t18 = par.k1 * c_r_a_1_;
-
-  // beam_4: wrench
-  const Real t19 = t5 * c_r_a_1_;
-  const Real t20 = t14 + t19;
-
-  // beam_3: joint force
-  const Real t21 = constant<Real>(2.0L) * t18;
-  const Real t22 = t17 * constant<Real>(2.0L);
-  const Real t23 = t20 - t16;
-
-  // hub: joint force
-  const Real t24 = t21 * c_r_a_1_;
-  const Real t25 = s_r_a_1_ * t22;
-  const Real t26 = t24 + t25;
-  const Real t27 = par.m_p + t26;
-
-  // front_axle: joint force
-  const Real t28 = t12 * c_r_a_0_;
-  const Real t29 = t11 * s_r_a_0_;
-  const Real t30 = t28 - t29;
-  const Real t31 = par.l * t30;
-  const Real t32 = t31 + t23;
-  const Real t33 = t12 * s_r_a_0_;
-  const Real t34 = t11 * c_r_a_0_;
-  const Real t35 = t33 + t34;
-  const Real t36 = t27 + t35;
-
-  // rear_axle: joint force
-  const Real t37 = t29 - t28;
-  const Real t38 = t37 * par.l;
-  const Real t39 = t32 - t38;
-  const Real t40 = t36 + t35;
-
-  // rear_axle: wrench
-  const Real t41 = par.m_a * t10;
-  const Real t42 = t9 * par.m_a;
-
-  // beam_4: joint force
-  const Real t43 = par.J_h + t8;
-
-  // beam_3: joint force
-  const Real t44 = t3 + t43;
-
-  // hub: joint force
-  const Real t45 = par.J_p + t44;
-
-  // front_axle: joint force
-  const Real t46 = t41 * c_r_a_0_;
-  const Real t47 = s_r_a_0_ * t42;
-  const Real t48 = t46 + t47;
-  const Real t49 = t48 * par.l;
-  const Real t50 = par.J_a + t49;
-  const Real t51 = t50 + t45;
-
-  // rear_axle: joint force
-  const Real t52 = t50 + t51;
-
   // springs, dampers and generalised forces
-  const Real t53 = r_p[1] * constant<Real>(2.0L);
-  const Real t54 = t53 * par.k11;
-  const Real t55 = r_p[0] * constant<Real>(2.0L);
-  const Real t56 = t55 * par.k11;
-
-  // beam_3: wrench
-  const Real t57 = s_r_a_0_ * par.k5;
-
-  // reduced mass matrix
-  const Real t58 = t13 * t10;
-  const Real t59 = t57 + t58;
-
-  // reduced mass matrix
-  const Real t60 = t58 - t57;
-
-  // reduced mass matrix
-  const Real t61 = t40 * t10;
-  const Real t62 = t39 * s_r_a_0_;
-  const Real t63 = t61 - t62;
-  const Real t64 = t63 * t10;
-  const Real t65 = t39 * t10;
-  const Real t66 = t52 * s_r_a_0_;
-  const Real t67 = t65 - t66;
-  const Real t68 = t67 * s_r_a_0_;
-  const Real t69 = t64 - t68;
-
-  // reduced accelerations
-  const Real t70 = constant<Real>(1.0L) / t69;
-  const Real t71 = t60 * t70;
-  const Real t72 = t60 * t71;
-  const Real t73 = par.k4 - t72;
-  const Real t74 = t70 * t59;
-  const Real t75 = t74 * t60;
-  const Real t76 = t74 * t59;
-  const Real t77 = par.k4 - t76;
-  const Real t78 = constant<Real>(1.0L) / t77;
-  const Real t79 = t75 * t78;
-  const Real t80 = t75 * t79;
-  const Real t81 = t73 - t80;
-  const Real t82 = constant<Real>(1.0L) / t81;
-
-  // kernel
-  const Real t83 = t10 * w[0];
-  const Real t84 = s_r_a_0_ * w[0];
-
-  // hub: twist
-  const Real t85 = w[4] - t84;
-
-  // platform: acceleration
-  const Real t86 = t84 * t84;
-  const Real t87 = t83 * t84;
+  const Real t11 = r_p[1] * constant<Real>(2.0L);
+  const Real t12 = t11 * par.k11;
+  const Real t13 = r_p[0] * constant<Real>(2.0L);
+  const Real t14 = t13 * par.k11;
 
   // rear_axle: acceleration
-  const Real t88 = t86 * par.l;
-  const Real t89 = c_r_a_0_ * t88;
-  const Real t90 = s_r_a_0_ * t87;
-  const Real t91 = t89 - t90;
-  const Real t92 = t87 * c_r_a_0_;
-  const Real t93 = s_r_a_0_ * t88;
-  const Real t94 = t92 + t93;
+  const Real t15 = t9 * c_r_a_0_;
+  const Real t16 = s_r_a_0_ * t10;
+  const Real t17 = t15 - t16;
+  const Real t18 = t10 * c_r_a_0_;
+  const Real t19 = t9 * s_r_a_0_;
+  const Real t20 = t18 + t19;
 
   // front_axle: acceleration
-  const Real t95 = t90 - t89;
+  const Real t21 = t16 - t15;
 
   // hub: acceleration
-  const Real t96 = t85 * t85;
-  const Real t97 = t87 * c_r_a_1_;
-  const Real t98 = s_r_a_1_ * t87;
+  const Real t22 = t10 * c_r_a_1_;
+  const Real t23 = s_r_a_1_ * t10;
 
-  // drift of the kernel
-  const Real t99 = w[3] * c_r_a_0_;
-  const Real t100 = t99 * w[0];
-  const Real t101 = w[3] * s_r_a_0_;
-  const Real t102 = t101 * par.l;
-  const Real t103 = w[0] * t102;
-
-  // beam_3: wrench
-  const Real t104 = w[1] * t1;
-  const Real t105 = t104 * t85;
-  const Real t106 = t105 * constant<Real>(2.0L);
-  const Real t107 = par.k3 * t96;
-  const Real t108 = t100 * par.k5;
-  const Real t109 = t96 * t1;
-  const Real t110 = t96 * t4;
-  const Real t111 = par.k2 * w[1];
-  const Real t112 = t111 * t85;
-  const Real t113 = constant<Real>(2.0L) * t112;
-
-  // beam_4: wrench
-  const Real t114 = t6 * t96;
-  const Real t115 = t5 * t96;
-  const Real t116 = t6 * w[2];
-  const Real t117 = t116 * t85;
-  const Real t118 = t117 * constant<Real>(2.0L);
-  const Real t119 = w[2] * par.k2;
-  const Real t120 = t119 * t85;
-  const Real t121 = t120 * constant<Real>(2.0L);
-
-  // springs, dampers and generalised forces
-  const Real t122 = constant<Real>(2.0L) * w[1];
-  const Real t123 = par.c_e * t122;
-  const Real t124 = t123 * constant<Real>(0.5L);
-  const Real t125 = t56 + t124;
-  const Real t126 = w[2] * constant<Real>(2.0L);
-  const Real t127 = par.c_e * t126;
-  const Real t128 = constant<Real>(0.5L) * t127;
-  const Real t129 = t54 + t128;
-
-  // reduced mass matrix
-  const Real t130 = s_r_a_0_ * t44;
-
-  // reduced accelerations
-  const Real t131 = tau_a[0] * par.k24;
+  // platform: wrench
+  const Real t24 = par.m_p * t10;
+  const Real t25 = par.J_p * s_r_a_0_;
 
   // rear_axle: wrench
-  const Real t132 = t91 * par.m_a;
-  const Real t133 = t94 * par.m_a;
+  const Real t26 = s_r_a_0_ * par.J_a;
+  const Real t27 = par.m_a * t17;
+  const Real t28 = par.m_a * t20;
 
   // front_axle: wrench
-  const Real t134 = par.m_a * t95;
+  const Real t29 = par.m_a * t21;
+
+  // hub: wrench
+  const Real t30 = s_r_a_0_ * par.J_h;
 
   // beam_3: wrench
-  const Real t135 = par.k2 * t97;
-  const Real t136 = t109 + t135;
-  const Real t137 = t98 * t4;
-  const Real t138 = par.k3 * t97;
-  const Real t139 = t137 - t138;
-  const Real t140 = t139 + t106;
-  const Real t141 = par.k1 * t97;
-  const Real t142 = t110 + t141;
-  const Real t143 = par.k1 * t98;
-  const Real t144 = t107 + t143;
-  const Real t145 = t144 + t113;
+  const Real t31 = s_r_a_0_ * par.k5;
+  const Real t32 = -t31;
+  const Real t33 = t22 * t4;
+  const Real t34 = par.k3 * t23;
+  const Real t35 = t33 + t34;
+  const Real t36 = t3 * s_r_a_0_;
+  const Real t37 = t35 + t36;
+  const Real t38 = par.k1 * t23;
+  const Real t39 = par.k3 * s_r_a_0_;
+  const Real t40 = t38 + t39;
+  const Real t41 = par.k1 * t22;
+  const Real t42 = s_r_a_0_ * t4;
+  const Real t43 = t41 + t42;
+  const Real t44 = par.k2 * t23;
+  const Real t45 = t31 + t44;
 
   // beam_4: wrench
-  const Real t146 = t135 - t114;
-  const Real t147 = t143 - t107;
-  const Real t148 = t5 * t98;
-  const Real t149 = t138 - t148;
-  const Real t150 = t118 + t149;
+  const Real t46 = t44 - t31;
+  const Real t47 = t38 - t39;
+  const Real t48 = s_r_a_0_ * t8;
+  const Real t49 = -t48;
+  const Real t50 = t5 * s_r_a_0_;
+  const Real t51 = t5 * t22;
+  const Real t52 = t51 + t34;
+  const Real t53 = t52 - t48;
 
   // beam_4: joint force
-  const Real t151 = t121 - t147;
-  const Real t152 = t115 - t141;
+  const Real t54 = t41 - t50;
 
   // beam_3: joint force
-  const Real t153 = t150 + t140;
-  const Real t154 = t152 - t142;
-  const Real t155 = t151 - t145;
+  const Real t55 = t54 + t43;
 
   // hub: joint force
-  const Real t156 = t155 * c_r_a_1_;
-  const Real t157 = s_r_a_1_ * t154;
-  const Real t158 = t156 - t157;
+  const Real t56 = t55 * c_r_a_1_;
 
   // front_axle: joint force
-  const Real t159 = c_r_a_0_ * t134;
-  const Real t160 = s_r_a_0_ * t133;
-  const Real t161 = t159 - t160;
-  const Real t162 = t161 + t158;
-  const Real t163 = s_r_a_0_ * t134;
-  const Real t164 = c_r_a_0_ * t133;
-  const Real t165 = t163 + t164;
-  const Real t166 = t165 * par.l;
-  const Real t167 = t153 - t166;
+  const Real t57 = t28 * c_r_a_0_;
+  const Real t58 = s_r_a_0_ * t29;
+  const Real t59 = t57 + t58;
+  const Real t60 = t29 * c_r_a_0_;
+  const Real t61 = s_r_a_0_ * t28;
+  const Real t62 = t60 - t61;
+  const Real t63 = par.l * t62;
+  const Real t64 = t63 - t26;
 
   // rear_axle: joint force
-  const Real t168 = s_r_a_0_ * t132;
-  const Real t169 = t168 - t164;
-  const Real t170 = t169 * par.l;
-  const Real t171 = t132 * c_r_a_0_;
-  const Real t172 = t171 + t160;
-  const Real t173 = t172 + t162;
+  const Real t65 = t27 * c_r_a_0_;
+  const Real t66 = t61 + t65;
+  const Real t67 = t66 * par.l;
+  const Real t68 = t26 + t67;
+  const Real t69 = t27 * s_r_a_0_;
+  const Real t70 = t57 - t69;
+
+  // modified blocks
+  const Real t71 = par.k18 * t45;
+  const Real t72 = t46 * par.k18;
+
+  // kernel
+  const Real t73 = t10 * w[0];
+  const Real t74 = s_r_a_0_ * w[0];
+
+  // hub: twist
+  const Real t75 = w[4] - t74;
+
+  // platform: acceleration
+  const Real t76 = t74 * t74;
+  const Real t77 = t73 * t74;
+
+  // rear_axle: acceleration
+  const Real t78 = t76 * par.l;
+
+  // hub: acceleration
+  const Real t79 = t75 * t75;
+  const Real t80 = t77 * c_r_a_1_;
+  const Real t81 = s_r_a_1_ * t77;
+
+  // drift of the kernel
+  const Real t82 = w[3] * c_r_a_0_;
+  const Real t83 = t82 * w[0];
+  const Real t84 = w[3] * s_r_a_0_;
+  const Real t85 = t84 * par.l;
+  const Real t86 = w[0] * t85;
+
+  // rear_axle: acceleration
+  const Real t87 = t83 * par.l;
+  const Real t88 = t87 - t77;
+  const Real t89 = t88 * c_r_a_0_;
+  const Real t90 = t78 - t86;
+  const Real t91 = s_r_a_0_ * t90;
+  const Real t92 = t89 - t91;
+  const Real t93 = t90 * c_r_a_0_;
+  const Real t94 = s_r_a_0_ * t88;
+  const Real t95 = t93 + t94;
+
+  // front_axle: acceleration
+  const Real t96 = t87 + t77;
+  const Real t97 = t96 * s_r_a_0_;
+  const Real t98 = t86 + t78;
+  const Real t99 = t98 * c_r_a_0_;
+  const Real t100 = t97 - t99;
+  const Real t101 = t98 * s_r_a_0_;
+  const Real t102 = t96 * c_r_a_0_;
+  const Real t103 = t101 + t102;
+
+  // hub: acceleration
+  const Real t104 = s_r_a_1_ * t86;
+  const Real t105 = t104 - t80;
+  const Real t106 = t86 * c_r_a_1_;
+  const Real t107 = t106 + t81;
+
+  // beam_4: acceleration
+  const Real t108 = t80 - t104;
+
+  // platform: wrench
+  const Real t109 = t83 * par.J_p;
+  const Real t110 = par.m_p * t86;
+
+  // rear_axle: wrench
+  const Real t111 = t95 * par.m_a;
+  const Real t112 = t92 * par.m_a;
+  const Real t113 = t83 * par.J_a;
+
+  // front_axle: wrench
+  const Real t114 = t100 * par.m_a;
+  const Real t115 = t103 * par.m_a;
+
+  // hub: wrench
+  const Real t116 = t83 * par.J_h;
+
+  // beam_3: wrench
+  const Real t117 = par.k2 * t105;
+  const Real t118 = t83 * par.k5;
+  const Real t119 = t117 - t118;
+  const Real t120 = t79 * t1;
+  const Real t121 = t119 - t120;
+  const Real t122 = t83 * t4;
+  const Real t123 = par.k3 * t79;
+  const Real t124 = t122 - t123;
+  const Real t125 = par.k1 * t107;
+  const Real t126 = t124 - t125;
+  const Real t127 = par.k2 * w[1];
+  const Real t128 = t127 * t75;
+  const Real t129 = constant<Real>(2.0L) * t128;
+  const Real t130 = t126 - t129;
+  const Real t131 = par.k1 * t105;
+  const Real t132 = t83 * par.k3;
+  const Real t133 = t79 * t4;
+  const Real t134 = t132 + t133;
+  const Real t135 = t131 - t134;
+  const Real t136 = w[1] * t1;
+  const Real t137 = t136 * t75;
+  const Real t138 = t137 * constant<Real>(2.0L);
+  const Real t139 = t4 * t107;
+  const Real t140 = par.k3 * t105;
+  const Real t141 = t139 + t140;
+  const Real t142 = t3 * t83;
+  const Real t143 = t141 - t142;
+  const Real t144 = t138 + t143;
+
+  // beam_4: wrench
+  const Real t145 = t6 * w[2];
+  const Real t146 = t145 * t75;
+  const Real t147 = t146 * constant<Real>(2.0L);
+  const Real t148 = par.k3 * t108;
+  const Real t149 = t5 * t107;
+  const Real t150 = t148 - t149;
+  const Real t151 = t83 * t8;
+  const Real t152 = t150 - t151;
+  const Real t153 = t147 + t152;
+  const Real t154 = par.k2 * t108;
+  const Real t155 = t154 - t118;
+  const Real t156 = t6 * t79;
+  const Real t157 = t155 - t156;
+  const Real t158 = t5 * t83;
+  const Real t159 = t158 - t123;
+  const Real t160 = t125 + t159;
+  const Real t161 = par.k1 * t108;
+  const Real t162 = t5 * t79;
+  const Real t163 = t162 + t132;
+  const Real t164 = w[2] * par.k2;
+  const Real t165 = t164 * t75;
+  const Real t166 = t165 * constant<Real>(2.0L);
+
+  // beam_4: joint force
+  const Real t167 = t166 - t160;
+  const Real t168 = t163 - t161;
+  const Real t169 = t153 - t116;
+
+  // beam_3: joint force
+  const Real t170 = t144 + t169;
+  const Real t171 = t167 + t130;
+  const Real t172 = t135 + t168;
+
+  // hub: joint force
+  const Real t173 = t170 - t109;
+  const Real t174 = t171 * c_r_a_1_;
+  const Real t175 = s_r_a_1_ * t172;
+  const Real t176 = t174 - t175;
+  const Real t177 = t176 - t110;
+
+  // front_axle: joint force
+  const Real t178 = t114 * c_r_a_0_;
+  const Real t179 = s_r_a_0_ * t115;
+  const Real t180 = t178 - t179;
+  const Real t181 = t180 + t177;
+  const Real t182 = s_r_a_0_ * t114;
+  const Real t183 = t115 * c_r_a_0_;
+  const Real t184 = t182 + t183;
+  const Real t185 = t184 * par.l;
+  const Real t186 = t185 + t113;
+  const Real t187 = t173 - t186;
+
+  // rear_axle: joint force
+  const Real t188 = t111 * s_r_a_0_;
+  const Real t189 = t112 * c_r_a_0_;
+  const Real t190 = t188 + t189;
+  const Real t191 = par.l * t190;
+  const Real t192 = t113 + t191;
+  const Real t193 = t111 * c_r_a_0_;
+  const Real t194 = t112 * s_r_a_0_;
+  const Real t195 = t193 - t194;
+  const Real t196 = t195 + t181;
 
   // springs, dampers and generalised forces
-  const Real t174 = t136 - t125;
-  const Real t175 = t170 - t167;
-  const Real t176 = t146 + t129;
-
-  // reduced mass matrix
-  const Real t177 = t10 * t23;
-  const Real t178 = t177 - t130;
+  const Real t197 = w[2] * constant<Real>(2.0L);
+  const Real t198 = par.c_e * t197;
+  const Real t199 = constant<Real>(0.5L) * t198;
+  const Real t200 = t12 + t199;
+  const Real t201 = t157 + t200;
+  const Real t202 = constant<Real>(2.0L) * w[1];
+  const Real t203 = par.c_e * t202;
+  const Real t204 = t203 * constant<Real>(0.5L);
+  const Real t205 = t14 + t204;
+  const Real t206 = t205 + t121;
 
   // reduced forces
-  const Real t179 = t13 * t103;
-  const Real t180 = t179 - t108;
-  const Real t181 = t174 - t180;
-  const Real t182 = t108 + t179;
-  const Real t183 = t182 - t176;
-  const Real t184 = t100 * t44;
-  const Real t185 = t103 * t23;
-  const Real t186 = t184 + t185;
-  const Real t187 = t186 - t153;
-  const Real t188 = tau_a[1] + t187;
-  const Real t189 = t39 * t100;
-  const Real t190 = t40 * t103;
-  const Real t191 = t189 + t190;
-  const Real t192 = t191 - t173;
-  const Real t193 = t192 * t10;
-  const Real t194 = t52 * t100;
-  const Real t195 = t39 * t103;
-  const Real t196 = t194 + t195;
-  const Real t197 = t175 + t196;
-  const Real t198 = t197 * s_r_a_0_;
-  const Real t199 = t193 - t198;
+  const Real t207 = t10 * t196;
+  const Real t208 = t192 - t187;
+  const Real t209 = t208 * s_r_a_0_;
+  const Real t210 = t207 + t209;
+  const Real t211 = tau_a[1] - t170;
 
   // reduced accelerations
-  const Real t200 = t74 * t199;
-  const Real t201 = t181 + t200;
-  const Real t202 = t78 * t201;
-  const Real t203 = t71 * t199;
-  const Real t204 = t183 - t203;
-  const Real t205 = t79 * t201;
-  const Real t206 = t204 - t205;
-  const Real t207 = t82 * t206;
-  const Real t208 = t70 * t178;
-  const Real t209 = t208 * t178;
-  const Real t210 = t44 - t209;
-  const Real t211 = t74 * t178;
-  const Real t212 = t211 + par.k5;
-  const Real t213 = t78 * t212;
-  const Real t214 = t212 * t213;
-  const Real t215 = t210 - t214;
-  const Real t216 = t71 * t178;
-  const Real t217 = par.k5 - t216;
-  const Real t218 = t79 * t212;
-  const Real t219 = t217 - t218;
-  const Real t220 = t82 * t219;
-  const Real t221 = t220 * t219;
-  const Real t222 = t215 - t221;
-  const Real t223 = constant<Real>(1.0L) / t222;
-  const Real t224 = t199 * t208;
-  const Real t225 = t188 - t224;
-  const Real t226 = t201 * t213;
-  const Real t227 = t225 - t226;
-  const Real t228 = t206 * t220;
-  const Real t229 = t227 - t228;
-  const Real t230 = t223 * t229;
-  const Real t231 = t230 * t220;
-  const Real t232 = t207 - t231;
-  const Real t233 = t232 * t79;
-  const Real t234 = t202 - t233;
-  const Real t235 = t230 * t213;
-  const Real t236 = t234 - t235;
-  const Real t237 = t74 * t236;
-  const Real t238 = t199 * t70;
-  const Real t239 = t237 + t238;
-  const Real t240 = t71 * t232;
-  const Real t241 = t239 - t240;
-  const Real t242 = t208 * t230;
-  const Real t243 = t241 - t242;
+  const Real t212 = tau_a[0] * par.k24;
+
+  // rear_axle: joint force
+  const Real t213 = par.k18 * t201;
+  const Real t214 = par.k18 * t206;
+
+  // beam_3: wrench
+  const Real t215 = par.k2 * t71;
+  const Real t216 = t71 * par.k5;
+  const Real t217 = t216 - t37;
+
+  // beam_4: wrench
+  const Real t218 = par.k5 * t72;
+  const Real t219 = t53 - t218;
+  const Real t220 = par.k2 * t72;
+
+  // rear_axle: joint force
+  const Real t221 = t72 * t201;
+  const Real t222 = t71 * t206;
+
+  // beam_3: wrench
+  const Real t223 = t3 - par.k26;
+
+  // beam_4: wrench
+  const Real t224 = t8 - par.k26;
+
+  // rear_axle: joint force
+  const Real t225 = par.k25 * t206;
+  const Real t226 = par.k25 * t201;
 
   // accelerations
-  const Real t244 = s_r_a_0_ * t243;
-  const Real t245 = t244 + t100;
-  const Real t246 = -t245;
-  const Real t247 = t243 * t10;
-  const Real t248 = t247 - t103;
+  const Real t227 = par.k27 * t201;
+  const Real t228 = t227 + t226;
+  const Real t229 = par.k27 * t206;
+  const Real t230 = t225 + t229;
+  const Real t231 = t230 + t211;
+  const Real t232 = t228 + t231;
+  const Real t233 = product_error(t46, par.k18);
+  const Real t234 = sum_error(t44, t32);
+  const Real t235 = product_error(s_r_a_0_, par.k5);
+  const Real t236 = t234 - t235;
+  const Real t237 = par.k18 * t236;
+  const Real t238 = t233 + t237;
+  const Real t239 = t238 * t201;
+  const Real t240 = t239 + t221;
+  const Real t241 = sum_error(t31, t44);
+  const Real t242 = t241 + t235;
+  const Real t243 = par.k18 * t242;
+  const Real t244 = product_error(par.k18, t45);
+  const Real t245 = t243 + t244;
+  const Real t246 = t245 * t206;
+  const Real t247 = t246 + t222;
+  const Real t248 = t247 + t210;
+  const Real t249 = t240 - t248;
+  const Real t250 = t245 * par.k5;
+  const Real t251 = product_error(t71, par.k5);
+  const Real t252 = t250 + t251;
+  const Real t253 = product_error(t3, s_r_a_0_);
+  const Real t254 = sum_error(t35, t36);
+  const Real t255 = t253 + t254;
+  const Real t256 = t252 - t255;
+  const Real t257 = t256 + t217;
+  const Real t258 = sum_error(t52, t49);
+  const Real t259 = product_error(s_r_a_0_, t8);
+  const Real t260 = t258 - t259;
+  const Real t261 = t238 * par.k5;
+  const Real t262 = product_error(par.k5, t72);
+  const Real t263 = t261 + t262;
+  const Real t264 = t260 - t263;
+  const Real t265 = t219 + t264;
+  const Real t266 = t265 - t30;
+  const Real t267 = t257 + t266;
+  const Real t268 = par.k2 * t238;
+  const Real t269 = t268 + t220;
+  const Real t270 = t269 - t47;
+  const Real t271 = t245 * par.k2;
+  const Real t272 = t215 + t271;
+  const Real t273 = t272 - t40;
+  const Real t274 = t270 + t273;
+  const Real t275 = s_r_a_1_ * t274;
+  const Real t276 = t56 - t275;
+  const Real t277 = t24 + t276;
+  const Real t278 = t59 + t277;
+  const Real t279 = t278 + t70;
+  const Real t280 = t279 * t10;
+  const Real t281 = t267 - t25;
+  const Real t282 = t281 + t64;
+  const Real t283 = t282 - t68;
+  const Real t284 = t283 * s_r_a_0_;
+  const Real t285 = t280 - t284;
+  const Real t286 = constant<Real>(1.0L) / t285;
+  const Real t287 = t267 * t286;
+  const Real t288 = t249 * t287;
+  const Real t289 = t232 - t288;
+  const Real t290 = t223 - par.k28;
+  const Real t291 = t224 - par.k28;
+  const Real t292 = t291 + par.J_h;
+  const Real t293 = t290 + t292;
+  const Real t294 = t267 * t287;
+  const Real t295 = t293 - t294;
+  const Real t296 = constant<Real>(1.0L) / t295;
+  const Real t297 = t289 * t296;
+  const Real t298 = par.k27 * t297;
+  const Real t299 = t297 * par.k25;
+  const Real t300 = t298 + t299;
+  const Real t301 = t249 * t286;
+  const Real t302 = t297 * t287;
+  const Real t303 = t301 - t302;
+  const Real t304 = t72 * t303;
+  const Real t305 = t238 * t303;
+  const Real t306 = t304 + t305;
+  const Real t307 = t213 + t306;
+  const Real t308 = t300 + t307;
+  const Real t309 = -t308;
+  const Real t310 = t245 * t303;
+  const Real t311 = t71 * t303;
+  const Real t312 = t310 + t311;
+  const Real t313 = t312 - t214;
+  const Real t314 = t313 - t300;
+  const Real t315 = t10 * t303;
+  const Real t316 = t315 - t86;
+  const Real t317 = s_r_a_0_ * t303;
+  const Real t318 = t83 + t317;
+  const Real t319 = -t318;
 
-  w_dot_out[0] = t243;
-  w_dot_out[1] = t236;
-  w_dot_out[2] = t232;
-  w_dot_out[3] = t131;
-  w_dot_out[4] = t230;
-  eta_dot[0] = t248;
+  w_dot_out[0] = t303;
+  w_dot_out[1] = t314;
+  w_dot_out[2] = t309;
+  w_dot_out[3] = t212;
+  w_dot_out[4] = t297;
+  eta_dot[0] = t316;
   eta_dot[1] = constant<Real>(0.0L);
-  eta_dot[2] = t246;
-  r_p_ddot[0] = t236;
-  r_p_ddot[1] = t232;
-  r_a_ddot_out[0] = t131;
-  r_a_ddot_out[1] = t230;
+  eta_dot[2] = t319;
+  r_p_ddot[0] = t314;
+  r_p_ddot[1] = t309;
+  r_a_ddot_out[0] = t212;
+  r_a_ddot_out[1] = t297;
 }
 
 /// Constraint forces with the torques given, least norm.
@@ -2653,7 +2796,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t67 = t66 + t22;
   const Real t68 = constant<Real>(0.5L) * t67;
   const Real t69 = t65 + t68;
-  const Real t70 = eta[2] * par.k25;
+  const Real t70 = eta[2] * par.k29;
   const Real t71 = r_a_dot[1] * par.J_h;
   const Real t72 = t70 + t71;
   const Real t73 = t72 * eta[2];

@@ -9,13 +9,13 @@
 //   kernel: pivoted basis, nu = (Omega_X, steer, rear_spin)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           84 add, 131 mul, 5 div, 14 neg, 2 sqrt, 1 sin, 1 cos
+//   kinematics           334 add, 260 mul, 7 div, 19 neg, 2 sqrt, 1 sin, 1 cos
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
-//   reduced_dynamics     604 add, 869 mul, 9 div, 2 sqrt, 3 sin, 3 cos
-//   forward_dynamics     728 add, 1003 mul, 14 div, 2 sqrt, 3 sin, 3 cos
-//   multipliers          323 add, 467 mul, 9 div, 2 sqrt, 3 sin, 3 cos
+//   reduced_dynamics     783 add, 974 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
+//   forward_dynamics     1019 add, 1161 mul, 14 div, 5 neg, 2 sqrt, 3 sin, 3 cos
+//   multipliers          470 add, 546 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
@@ -36,6 +36,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 namespace whipple_bicycle::standard {
 
@@ -99,6 +100,48 @@ constexpr Real broadcast(long double value, ...) {
 template <class Real>
 constexpr Real constant(long double value) {
   return broadcast<Real>(value, nullptr, 0);
+}
+
+// What rounding leaves of an operation, exact value minus rounded one, by error-free transformations. They ask for
+// operations that are rounded one by one: no -ffast-math, and -ffp-contract=off where a processor has fused ones.
+
+template <class Real>
+constexpr int significant_bits(typename Real::value_type*) {
+  return std::numeric_limits<typename Real::value_type>::digits;
+}
+template <class Real>
+constexpr int significant_bits(...) {
+  return std::numeric_limits<Real>::is_specialized ? std::numeric_limits<Real>::digits
+                                                   : std::numeric_limits<double>::digits;
+}
+
+/// a + b = fl(a + b) + this (Knuth 1969).
+template <class Real>
+inline Real sum_error(const Real& a, const Real& b) noexcept {
+  const Real sum = a + b;
+  const Real part = sum - a;
+  return (a - (sum - part)) + (b - part);
+}
+
+/// a b = fl(a b) + this, from halves of the operands' digits (Dekker 1971).
+template <class Real>
+inline Real product_error(const Real& a, const Real& b) noexcept {
+  constexpr int half = (significant_bits<Real>(nullptr) + 1) / 2;
+  const Real splitter = constant<Real>(static_cast<long double>((1ULL << half) + 1));
+  const Real a_scaled = splitter * a;
+  const Real b_scaled = splitter * b;
+  const Real a_high = a_scaled - (a_scaled - a);
+  const Real b_high = b_scaled - (b_scaled - b);
+  const Real a_low = a - a_high;
+  const Real b_low = b - b_high;
+  return (((a_high * b_high - a * b) + a_high * b_low) + a_low * b_high) + a_low * b_low;
+}
+
+/// a / b = fl(a / b) + this, up to the rounding of this.
+template <class Real>
+inline Real quotient_error(const Real& a, const Real& b) noexcept {
+  const Real quotient = a / b;
+  return ((a - quotient * b) - product_error(quotient, b)) / b;
 }
 
 }  // namespace detail
@@ -405,8 +448,8 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
-/// route: kernel
-/// operations: 84 add, 131 mul, 5 div, 14 neg, 2 sqrt, 1 sin, 1 cos
+/// route: kernel, compensated beyond 25 ulps
+/// operations: 334 add, 260 mul, 7 div, 19 neg, 2 sqrt, 1 sin, 1 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p          (3) rad or m: rear_spin, steer, front_spin
@@ -426,6 +469,9 @@ inline void kinematics(const Prepared<Real>& par,
   using std::sin;
   using std::sqrt;
   using detail::constant;
+  using detail::product_error;
+  using detail::quotient_error;
+  using detail::sum_error;
   const Real s_r_p_1_ = sin(r_p[1]);
   const Real c_r_p_1_ = cos(r_p[1]);
 
@@ -534,177 +580,276 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t102 = t101 - t79;
 
   // kernel
-  const Real t103 = c_r_p_1_ * t99;
-  const Real t104 = t42 - t103;
-  const Real t105 = constant<Real>(1.0L) / t104;
-  const Real t106 = t45 * t99;
-  const Real t107 = t106 + t102;
-  const Real t108 = t107 * t105;
-  const Real t109 = t108 * t28;
-  const Real t110 = t57 * t88;
-  const Real t111 = t78 - t110;
-  const Real t112 = t34 * t99;
-  const Real t113 = t111 + t112;
-  const Real t114 = t57 * t58;
-  const Real t115 = t114 + t85;
-  const Real t116 = t115 + t106;
-  const Real t117 = t58 * t99;
-  const Real t118 = t49 - t117;
-  const Real t119 = t105 * t118;
-  const Real t120 = t116 * t119;
-  const Real t121 = t113 - t120;
-  const Real t122 = t31 * t99;
-  const Real t123 = t57 * t91;
-  const Real t124 = t69 - t123;
-  const Real t125 = t122 + t124;
-  const Real t126 = t108 * t116;
-  const Real t127 = t125 - t126;
-  const Real t128 = constant<Real>(1.0L) / t127;
-  const Real t129 = t121 * t128;
-  const Real t130 = t109 * t129;
-  const Real t131 = t28 * t119;
-  const Real t132 = t130 - t131;
-  const Real t133 = t25 * t129;
-  const Real t134 = t133 - t22;
-  const Real t135 = constant<Real>(1.0L) / t134;
-  const Real t136 = t132 * t135;
-  const Real t137 = t136 * t25;
-  const Real t138 = t137 - t109;
-  const Real t139 = t138 * t128;
-  const Real t140 = t139 * t116;
-  const Real t141 = t28 - t140;
-  const Real t142 = t105 * t141;
-  const Real t143 = -t142;
-  const Real t144 = t91 * t56;
-  const Real t145 = t122 - t144;
-  const Real t146 = t58 * t56;
-  const Real t147 = t106 + t146;
-  const Real t148 = t108 * t147;
-  const Real t149 = t145 - t148;
-  const Real t150 = t56 * t88;
-  const Real t151 = t112 - t150;
-  const Real t152 = t147 * t119;
-  const Real t153 = t151 - t152;
-  const Real t154 = t149 * t129;
-  const Real t155 = t153 - t154;
-  const Real t156 = t155 * t135;
-  const Real t157 = t25 * t156;
-  const Real t158 = t149 + t157;
-  const Real t159 = t158 * t128;
-  const Real t160 = t159 * t99;
-  const Real t161 = t99 - t160;
-  const Real t162 = nu[2] * t161;
-  const Real t163 = t139 * t99;
-  const Real t164 = t163 * nu[1];
-  const Real t165 = t62 * t45;
-  const Real t166 = t61 + t165;
-  const Real t167 = c_r_p_1_ * t62;
-  const Real t168 = t97 - t167;
-  const Real t169 = t108 * t168;
-  const Real t170 = t166 - t169;
-  const Real t171 = t58 * t62;
-  const Real t172 = t72 - t171;
-  const Real t173 = t168 * t119;
-  const Real t174 = t172 - t173;
-  const Real t175 = t170 * t129;
-  const Real t176 = t174 - t175;
-  const Real t177 = t176 * t135;
-  const Real t178 = t25 * t177;
-  const Real t179 = t170 + t178;
-  const Real t180 = t128 * t179;
-  const Real t181 = t180 * t99;
-  const Real t182 = t181 * nu[0];
-  const Real t183 = t164 + t182;
-  const Real t184 = t162 - t183;
-  const Real t185 = t116 * t180;
-  const Real t186 = t168 - t185;
-  const Real t187 = t186 * t105;
-  const Real t188 = -t187;
-  const Real t189 = -t180;
-  const Real t190 = -t181;
-  const Real t191 = -t163;
-  const Real t192 = -t136;
-  const Real t193 = -t177;
-  const Real t194 = -t139;
-  const Real t195 = -t156;
-  const Real t196 = t159 * t57;
-  const Real t197 = t196 - t56;
-  const Real t198 = t197 * nu[2];
-  const Real t199 = t57 * t139;
-  const Real t200 = t199 * nu[1];
-  const Real t201 = t57 * t180;
-  const Real t202 = t201 * nu[0];
-  const Real t203 = t200 + t202;
-  const Real t204 = t198 + t203;
-  const Real t205 = t159 * t116;
-  const Real t206 = t147 - t205;
-  const Real t207 = t206 * t105;
-  const Real t208 = -t207;
-  const Real t209 = t187 * nu[0];
-  const Real t210 = t142 * nu[1];
-  const Real t211 = t209 + t210;
-  const Real t212 = t207 * nu[2];
-  const Real t213 = t211 + t212;
-  const Real t214 = -t213;
-  const Real t215 = -t159;
-  const Real t216 = t159 * nu[2];
-  const Real t217 = t139 * nu[1];
-  const Real t218 = t180 * nu[0];
-  const Real t219 = t217 + t218;
-  const Real t220 = t216 + t219;
+  const Real t103 = t31 * t99;
+  const Real t104 = t57 * t91;
+  const Real t105 = t69 - t104;
+  const Real t106 = t103 + t105;
+  const Real t107 = t45 * t99;
+  const Real t108 = t107 + t102;
+  const Real t109 = c_r_p_1_ * t99;
+  const Real t110 = t42 - t109;
+  const Real t111 = constant<Real>(1.0L) / t110;
+  const Real t112 = t108 * t111;
+  const Real t113 = t57 * t58;
+  const Real t114 = t113 + t85;
+  const Real t115 = t114 + t107;
+  const Real t116 = t112 * t115;
+  const Real t117 = t106 - t116;
+  const Real t118 = quotient_error(constant<Real>(1.0L), t117);
+  const Real t119 = -t116;
+  const Real t120 = sum_error(t106, t119);
+  const Real t121 = product_error(t112, t115);
+  const Real t122 = t120 - t121;
+  const Real t123 = constant<Real>(1.0L) / t117;
+  const Real t124 = t122 * t123;
+  const Real t125 = t124 / t117;
+  const Real t126 = t118 - t125;
+  const Real t127 = t62 * t45;
+  const Real t128 = t61 + t127;
+  const Real t129 = c_r_p_1_ * t62;
+  const Real t130 = t97 - t129;
+  const Real t131 = t112 * t130;
+  const Real t132 = t128 - t131;
+  const Real t133 = t57 * t88;
+  const Real t134 = t78 - t133;
+  const Real t135 = t34 * t99;
+  const Real t136 = t134 + t135;
+  const Real t137 = t58 * t99;
+  const Real t138 = t49 - t137;
+  const Real t139 = t111 * t138;
+  const Real t140 = t115 * t139;
+  const Real t141 = t136 - t140;
+  const Real t142 = t141 * t123;
+  const Real t143 = t25 * t142;
+  const Real t144 = product_error(t141, t123);
+  const Real t145 = t126 * t141;
+  const Real t146 = -t140;
+  const Real t147 = sum_error(t136, t146);
+  const Real t148 = product_error(t115, t139);
+  const Real t149 = t147 - t148;
+  const Real t150 = t149 * t123;
+  const Real t151 = t145 + t150;
+  const Real t152 = t144 + t151;
+  const Real t153 = t152 * t25;
+  const Real t154 = t143 + t153;
+  const Real t155 = t154 - t22;
+  const Real t156 = constant<Real>(1.0L) / t155;
+  const Real t157 = t58 * t62;
+  const Real t158 = t72 - t157;
+  const Real t159 = t130 * t139;
+  const Real t160 = -t159;
+  const Real t161 = sum_error(t158, t160);
+  const Real t162 = product_error(t130, t139);
+  const Real t163 = t161 - t162;
+  const Real t164 = product_error(t132, t142);
+  const Real t165 = t152 * t132;
+  const Real t166 = t164 + t165;
+  const Real t167 = t163 - t166;
+  const Real t168 = t158 - t159;
+  const Real t169 = t132 * t142;
+  const Real t170 = t168 - t169;
+  const Real t171 = t167 + t170;
+  const Real t172 = t156 * t171;
+  const Real t173 = t25 * t172;
+  const Real t174 = t132 + t173;
+  const Real t175 = t126 * t174;
+  const Real t176 = sum_error(t132, t173);
+  const Real t177 = t176 * t123;
+  const Real t178 = t175 + t177;
+  const Real t179 = product_error(t123, t174);
+  const Real t180 = t178 + t179;
+  const Real t181 = t174 * t123;
+  const Real t182 = t180 + t181;
+  const Real t183 = -t182;
+  const Real t184 = t112 * t28;
+  const Real t185 = t184 * t142;
+  const Real t186 = t28 * t139;
+  const Real t187 = t185 - t186;
+  const Real t188 = product_error(t112, t28);
+  const Real t189 = t188 * t142;
+  const Real t190 = t152 * t184;
+  const Real t191 = t189 + t190;
+  const Real t192 = product_error(t184, t142);
+  const Real t193 = t191 + t192;
+  const Real t194 = product_error(t28, t139);
+  const Real t195 = t193 - t194;
+  const Real t196 = t187 + t195;
+  const Real t197 = t156 * t196;
+  const Real t198 = -t197;
+  const Real t199 = t25 * t197;
+  const Real t200 = t199 - t184;
+  const Real t201 = t200 * t123;
+  const Real t202 = -t184;
+  const Real t203 = sum_error(t199, t202);
+  const Real t204 = t203 - t188;
+  const Real t205 = t204 * t123;
+  const Real t206 = t126 * t200;
+  const Real t207 = t205 + t206;
+  const Real t208 = product_error(t200, t123);
+  const Real t209 = t207 + t208;
+  const Real t210 = t201 + t209;
+  const Real t211 = -t210;
+  const Real t212 = t91 * t56;
+  const Real t213 = t103 - t212;
+  const Real t214 = t58 * t56;
+  const Real t215 = t107 + t214;
+  const Real t216 = t112 * t215;
+  const Real t217 = t213 - t216;
+  const Real t218 = t56 * t88;
+  const Real t219 = t135 - t218;
+  const Real t220 = t215 * t139;
   const Real t221 = -t220;
-  const Real t222 = t207 * t99;
-  const Real t223 = t222 * nu[2];
-  const Real t224 = t142 * t99;
-  const Real t225 = t224 * nu[1];
-  const Real t226 = t99 * t187;
-  const Real t227 = t226 - t62;
-  const Real t228 = t227 * nu[0];
-  const Real t229 = t225 + t228;
-  const Real t230 = t223 + t229;
-  const Real t231 = t177 * nu[0];
-  const Real t232 = t136 * nu[1];
-  const Real t233 = t231 + t232;
-  const Real t234 = t156 * nu[2];
-  const Real t235 = t233 + t234;
-  const Real t236 = -t235;
+  const Real t222 = sum_error(t219, t221);
+  const Real t223 = product_error(t215, t139);
+  const Real t224 = t222 - t223;
+  const Real t225 = product_error(t217, t142);
+  const Real t226 = t152 * t217;
+  const Real t227 = t225 + t226;
+  const Real t228 = t224 - t227;
+  const Real t229 = t219 - t220;
+  const Real t230 = t217 * t142;
+  const Real t231 = t229 - t230;
+  const Real t232 = t228 + t231;
+  const Real t233 = t232 * t156;
+  const Real t234 = t233 * t25;
+  const Real t235 = t217 + t234;
+  const Real t236 = t235 * t123;
+  const Real t237 = t236 * nu[2];
+  const Real t238 = product_error(t235, t123);
+  const Real t239 = sum_error(t217, t234);
+  const Real t240 = t239 * t123;
+  const Real t241 = t235 * t126;
+  const Real t242 = t240 + t241;
+  const Real t243 = t238 + t242;
+  const Real t244 = nu[2] * t243;
+  const Real t245 = t237 + t244;
+  const Real t246 = t201 * nu[1];
+  const Real t247 = nu[1] * t209;
+  const Real t248 = t246 + t247;
+  const Real t249 = t181 * nu[0];
+  const Real t250 = t180 * nu[0];
+  const Real t251 = t249 + t250;
+  const Real t252 = t248 + t251;
+  const Real t253 = t245 + t252;
+  const Real t254 = -t253;
+  const Real t255 = t180 * t99;
+  const Real t256 = t181 * t99;
+  const Real t257 = t255 + t256;
+  const Real t258 = -t257;
+  const Real t259 = t115 * t181;
+  const Real t260 = t130 - t259;
+  const Real t261 = product_error(t115, t181);
+  const Real t262 = t180 * t115;
+  const Real t263 = t261 + t262;
+  const Real t264 = t260 - t263;
+  const Real t265 = t264 * t111;
+  const Real t266 = t265 * t99;
+  const Real t267 = t266 - t62;
+  const Real t268 = t267 * nu[0];
+  const Real t269 = t201 * t115;
+  const Real t270 = t28 - t269;
+  const Real t271 = product_error(t201, t115);
+  const Real t272 = t115 * t209;
+  const Real t273 = t271 + t272;
+  const Real t274 = t270 - t273;
+  const Real t275 = t274 * t111;
+  const Real t276 = t275 * t99;
+  const Real t277 = t276 * nu[1];
+  const Real t278 = t268 + t277;
+  const Real t279 = t236 * t115;
+  const Real t280 = t215 - t279;
+  const Real t281 = product_error(t236, t115);
+  const Real t282 = t115 * t243;
+  const Real t283 = t281 + t282;
+  const Real t284 = t280 - t283;
+  const Real t285 = t284 * t111;
+  const Real t286 = t285 * t99;
+  const Real t287 = t286 * nu[2];
+  const Real t288 = t278 + t287;
+  const Real t289 = -t265;
+  const Real t290 = t236 + t243;
+  const Real t291 = -t290;
+  const Real t292 = t265 * nu[0];
+  const Real t293 = t275 * nu[1];
+  const Real t294 = t292 + t293;
+  const Real t295 = t285 * nu[2];
+  const Real t296 = t294 + t295;
+  const Real t297 = -t296;
+  const Real t298 = t197 * nu[1];
+  const Real t299 = t172 * nu[0];
+  const Real t300 = t298 + t299;
+  const Real t301 = t233 * nu[2];
+  const Real t302 = t300 + t301;
+  const Real t303 = -t302;
+  const Real t304 = -t285;
+  const Real t305 = t236 * t57;
+  const Real t306 = t57 * t243;
+  const Real t307 = t305 + t306;
+  const Real t308 = t307 - t56;
+  const Real t309 = nu[2] * t308;
+  const Real t310 = t57 * t180;
+  const Real t311 = t57 * t181;
+  const Real t312 = t310 + t311;
+  const Real t313 = t312 * nu[0];
+  const Real t314 = t57 * t209;
+  const Real t315 = t201 * t57;
+  const Real t316 = t314 + t315;
+  const Real t317 = t316 * nu[1];
+  const Real t318 = t313 + t317;
+  const Real t319 = t309 + t318;
+  const Real t320 = t236 * t99;
+  const Real t321 = t99 * t243;
+  const Real t322 = t320 + t321;
+  const Real t323 = t99 - t322;
+  const Real t324 = nu[2] * t323;
+  const Real t325 = t201 * t99;
+  const Real t326 = t99 * t209;
+  const Real t327 = t325 + t326;
+  const Real t328 = t327 * nu[1];
+  const Real t329 = t257 * nu[0];
+  const Real t330 = t328 + t329;
+  const Real t331 = t324 - t330;
+  const Real t332 = -t327;
+  const Real t333 = -t275;
+  const Real t334 = -t233;
+  const Real t335 = -t172;
 
-  eta_out[0] = t204;
-  eta_out[1] = t230;
-  eta_out[2] = t184;
+  eta_out[0] = t319;
+  eta_out[1] = t288;
+  eta_out[2] = t331;
   eta_out[3] = nu[0];
-  eta_out[4] = t221;
-  eta_out[5] = t214;
+  eta_out[4] = t254;
+  eta_out[5] = t297;
   r_p_dot_out[0] = nu[2];
   r_p_dot_out[1] = nu[1];
-  r_p_dot_out[2] = t236;
-  H[0] = t201;
-  H[1] = t199;
-  H[2] = t197;
-  H[3] = t227;
-  H[4] = t224;
-  H[5] = t222;
-  H[6] = t190;
-  H[7] = t191;
-  H[8] = t161;
+  r_p_dot_out[2] = t303;
+  H[0] = t312;
+  H[1] = t316;
+  H[2] = t308;
+  H[3] = t267;
+  H[4] = t276;
+  H[5] = t286;
+  H[6] = t258;
+  H[7] = t332;
+  H[8] = t323;
   H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
-  H[12] = t189;
-  H[13] = t194;
-  H[14] = t215;
-  H[15] = t188;
-  H[16] = t143;
-  H[17] = t208;
+  H[12] = t183;
+  H[13] = t211;
+  H[14] = t291;
+  H[15] = t289;
+  H[16] = t333;
+  H[17] = t304;
   H[18] = constant<Real>(0.0L);
   H[19] = constant<Real>(0.0L);
   H[20] = constant<Real>(1.0L);
   H[21] = constant<Real>(0.0L);
   H[22] = constant<Real>(1.0L);
   H[23] = constant<Real>(0.0L);
-  H[24] = t193;
-  H[25] = t192;
-  H[26] = t195;
+  H[24] = t335;
+  H[25] = t198;
+  H[26] = t334;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
@@ -2173,8 +2318,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
-/// route: projected recursion
-/// operations: 604 add, 869 mul, 9 div, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, compensated beyond 25 ulps
+/// operations: 783 add, 974 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p  (3) rad or m: rear_spin, steer, front_spin
@@ -2192,6 +2337,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   using std::sin;
   using std::sqrt;
   using detail::constant;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
   const Real s_r_p_1_ = sin(r_p[1]);
@@ -2306,1504 +2453,1520 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t104 = t103 - t81;
 
   // kernel
-  const Real t105 = t31 * t101;
-  const Real t106 = t93 * t57;
-  const Real t107 = t105 - t106;
-  const Real t108 = t45 * t101;
-  const Real t109 = t108 + t104;
-  const Real t110 = c_r_p_1_ * t101;
-  const Real t111 = t42 - t110;
-  const Real t112 = constant<Real>(1.0L) / t111;
-  const Real t113 = t109 * t112;
-  const Real t114 = t59 * t57;
-  const Real t115 = t108 + t114;
-  const Real t116 = t113 * t115;
-  const Real t117 = t107 - t116;
-  const Real t118 = t34 * t101;
-  const Real t119 = t57 * t90;
-  const Real t120 = t118 - t119;
-  const Real t121 = t59 * t101;
-  const Real t122 = t49 - t121;
-  const Real t123 = t112 * t122;
-  const Real t124 = t115 * t123;
-  const Real t125 = t120 - t124;
-  const Real t126 = t58 * t90;
-  const Real t127 = t80 - t126;
-  const Real t128 = t127 + t118;
-  const Real t129 = t58 * t59;
-  const Real t130 = t129 + t87;
-  const Real t131 = t130 + t108;
-  const Real t132 = t131 * t123;
-  const Real t133 = t128 - t132;
-  const Real t134 = t58 * t93;
-  const Real t135 = t70 - t134;
-  const Real t136 = t105 + t135;
-  const Real t137 = t113 * t131;
-  const Real t138 = t136 - t137;
-  const Real t139 = constant<Real>(1.0L) / t138;
-  const Real t140 = t133 * t139;
-  const Real t141 = t117 * t140;
-  const Real t142 = t125 - t141;
-  const Real t143 = t25 * t140;
-  const Real t144 = t143 - t22;
-  const Real t145 = constant<Real>(1.0L) / t144;
-  const Real t146 = t142 * t145;
-  const Real t147 = t25 * t146;
-  const Real t148 = t117 + t147;
-  const Real t149 = t148 * t139;
-  const Real t150 = t149 * t101;
-  const Real t151 = t101 - t150;
-  const Real t152 = nu[2] * t151;
-  const Real t153 = t113 * t28;
-  const Real t154 = t153 * t140;
-  const Real t155 = t28 * t123;
-  const Real t156 = t154 - t155;
-  const Real t157 = t156 * t145;
-  const Real t158 = t157 * t25;
-  const Real t159 = t158 - t153;
-  const Real t160 = t159 * t139;
-  const Real t161 = t160 * t101;
-  const Real t162 = t161 * nu[1];
-  const Real t163 = t63 * t45;
-  const Real t164 = t62 + t163;
-  const Real t165 = c_r_p_1_ * t63;
-  const Real t166 = t99 - t165;
-  const Real t167 = t113 * t166;
-  const Real t168 = t164 - t167;
-  const Real t169 = t59 * t63;
-  const Real t170 = t74 - t169;
-  const Real t171 = t166 * t123;
-  const Real t172 = t170 - t171;
-  const Real t173 = t168 * t140;
-  const Real t174 = t172 - t173;
-  const Real t175 = t174 * t145;
-  const Real t176 = t25 * t175;
-  const Real t177 = t168 + t176;
-  const Real t178 = t139 * t177;
-  const Real t179 = t178 * t101;
-  const Real t180 = t179 * nu[0];
-  const Real t181 = t162 + t180;
-  const Real t182 = t152 - t181;
-  const Real t183 = t131 * t178;
-  const Real t184 = t166 - t183;
-  const Real t185 = t184 * t112;
-  const Real t186 = t185 * nu[0];
-  const Real t187 = t160 * t131;
-  const Real t188 = t28 - t187;
-  const Real t189 = t112 * t188;
-  const Real t190 = t189 * nu[1];
-  const Real t191 = t186 + t190;
-  const Real t192 = t149 * t131;
-  const Real t193 = t115 - t192;
-  const Real t194 = t193 * t112;
-  const Real t195 = t194 * nu[2];
-  const Real t196 = t191 + t195;
-  const Real t197 = t149 * nu[2];
-  const Real t198 = t160 * nu[1];
-  const Real t199 = t178 * nu[0];
-  const Real t200 = t198 + t199;
-  const Real t201 = t197 + t200;
-  const Real t202 = t149 * t58;
-  const Real t203 = t202 - t57;
-  const Real t204 = t203 * nu[2];
-  const Real t205 = t58 * t160;
-  const Real t206 = t205 * nu[1];
-  const Real t207 = t58 * t178;
-  const Real t208 = t207 * nu[0];
-  const Real t209 = t206 + t208;
-  const Real t210 = t204 + t209;
-  const Real t211 = t175 * nu[0];
-  const Real t212 = t157 * nu[1];
-  const Real t213 = t211 + t212;
-  const Real t214 = t146 * nu[2];
-  const Real t215 = t213 + t214;
-  const Real t216 = t194 * t101;
-  const Real t217 = t216 * nu[2];
-  const Real t218 = t189 * t101;
-  const Real t219 = t218 * nu[1];
-  const Real t220 = t101 * t185;
-  const Real t221 = t220 - t63;
-  const Real t222 = t221 * nu[0];
-  const Real t223 = t219 + t222;
-  const Real t224 = t217 + t223;
+  const Real t105 = t45 * t101;
+  const Real t106 = t105 + t104;
+  const Real t107 = c_r_p_1_ * t101;
+  const Real t108 = t42 - t107;
+  const Real t109 = constant<Real>(1.0L) / t108;
+  const Real t110 = t106 * t109;
+  const Real t111 = product_error(t110, t28);
+  const Real t112 = t58 * t90;
+  const Real t113 = t80 - t112;
+  const Real t114 = t34 * t101;
+  const Real t115 = t113 + t114;
+  const Real t116 = t58 * t59;
+  const Real t117 = t116 + t87;
+  const Real t118 = t117 + t105;
+  const Real t119 = t59 * t101;
+  const Real t120 = t49 - t119;
+  const Real t121 = t109 * t120;
+  const Real t122 = t118 * t121;
+  const Real t123 = t115 - t122;
+  const Real t124 = t31 * t101;
+  const Real t125 = t58 * t93;
+  const Real t126 = t70 - t125;
+  const Real t127 = t124 + t126;
+  const Real t128 = t110 * t118;
+  const Real t129 = t127 - t128;
+  const Real t130 = constant<Real>(1.0L) / t129;
+  const Real t131 = t123 * t130;
+  const Real t132 = t111 * t131;
+  const Real t133 = t110 * t28;
+  const Real t134 = t133 * t131;
+  const Real t135 = t28 * t121;
+  const Real t136 = t134 - t135;
+  const Real t137 = -t133;
+  const Real t138 = t59 * t63;
+  const Real t139 = t74 - t138;
+  const Real t140 = c_r_p_1_ * t63;
+  const Real t141 = t99 - t140;
+  const Real t142 = t141 * t121;
+  const Real t143 = t139 - t142;
+  const Real t144 = t63 * t45;
+  const Real t145 = t62 + t144;
+  const Real t146 = t110 * t141;
+  const Real t147 = t145 - t146;
+  const Real t148 = t147 * t131;
+  const Real t149 = t93 * t57;
+  const Real t150 = t124 - t149;
+  const Real t151 = t59 * t57;
+  const Real t152 = t105 + t151;
+  const Real t153 = t110 * t152;
+  const Real t154 = t150 - t153;
+  const Real t155 = product_error(t154, t131);
+  const Real t156 = t25 * t131;
+  const Real t157 = t57 * t90;
+  const Real t158 = t114 - t157;
+  const Real t159 = t152 * t121;
+  const Real t160 = t158 - t159;
+  const Real t161 = t154 * t131;
+  const Real t162 = t160 - t161;
+  const Real t163 = product_error(t28, t121);
+  const Real t164 = product_error(t133, t131);
+  const Real t165 = product_error(t123, t130);
+  const Real t166 = -t159;
+  const Real t167 = sum_error(t158, t166);
+  const Real t168 = product_error(t152, t121);
+  const Real t169 = t167 - t168;
+  const Real t170 = -t122;
+  const Real t171 = sum_error(t115, t170);
+  const Real t172 = product_error(t118, t121);
+  const Real t173 = t171 - t172;
+  const Real t174 = t173 * t130;
 
   // frame: acceleration
-  const Real t225 = par.g * R[7];
-  const Real t226 = par.g * R[8];
-  const Real t227 = par.g * R[6];
+  const Real t175 = par.g * R[7];
+  const Real t176 = par.g * R[8];
+  const Real t177 = par.g * R[6];
 
   // joint angles
-  const Real t228 = nu[2] - t201;
-  const Real t229 = R[8] * t201;
-  const Real t230 = t196 * R[7];
-  const Real t231 = t229 - t230;
-  const Real t232 = R[6] * t231;
-  const Real t233 = t232 * constant<Real>(2.0L);
-  const Real t234 = t201 * R[6];
-  const Real t235 = nu[0] * R[7];
-  const Real t236 = t234 + t235;
-  const Real t237 = t236 * R[8];
-  const Real t238 = t237 * constant<Real>(2.0L);
-  const Real t239 = t233 - t238;
-  const Real t240 = t239 / t54;
-  const Real t241 = t240 * t55;
-  const Real t242 = t241 / t53;
-  const Real t243 = R[8] * t242;
-  const Real t244 = t236 * t55;
-  const Real t245 = t243 + t244;
-  const Real t246 = t245 * par.r_R;
-  const Real t247 = t228 * t246;
-  const Real t248 = par.k1 * nu[0];
-  const Real t249 = t196 * par.k2;
-  const Real t250 = t248 - t249;
-  const Real t251 = t250 + nu[1];
-  const Real t252 = t251 * par.k2;
-  const Real t253 = par.k2 * nu[0];
-  const Real t254 = par.k1 * t196;
-  const Real t255 = t253 + t254;
-  const Real t256 = t255 * c_r_p_1_;
-  const Real t257 = s_r_p_1_ * t201;
-  const Real t258 = t256 - t257;
-  const Real t259 = t258 * par.k1;
-  const Real t260 = t252 - t259;
-  const Real t261 = par.k1 * t231;
-  const Real t262 = t236 * par.k2;
-  const Real t263 = t261 - t262;
-  const Real t264 = t263 * par.k1;
-  const Real t265 = par.k2 * t231;
-  const Real t266 = t236 * par.k1;
-  const Real t267 = t265 + t266;
-  const Real t268 = c_r_p_1_ * t267;
-  const Real t269 = s_r_p_1_ * nu[1];
-  const Real t270 = t269 * t3;
-  const Real t271 = t268 - t270;
-  const Real t272 = R[8] * nu[0];
-  const Real t273 = t196 * R[6];
-  const Real t274 = t272 + t273;
-  const Real t275 = s_r_p_1_ * t274;
-  const Real t276 = c_r_p_1_ * nu[1];
-  const Real t277 = t276 * R[7];
-  const Real t278 = t275 + t277;
-  const Real t279 = t271 + t278;
-  const Real t280 = t279 * par.k2;
-  const Real t281 = t264 + t280;
-  const Real t282 = t281 * t20;
-  const Real t283 = t281 * t16;
-  const Real t284 = t283 * constant<Real>(2.0L);
-  const Real t285 = t279 * par.k1;
-  const Real t286 = t263 * par.k2;
-  const Real t287 = t285 - t286;
-  const Real t288 = t287 * t12;
-  const Real t289 = t288 * constant<Real>(2.0L);
-  const Real t290 = t284 + t289;
-  const Real t291 = t290 / t71;
-  const Real t292 = t291 * t20;
-  const Real t293 = t292 / t19;
-  const Real t294 = t293 * t16;
-  const Real t295 = t282 - t294;
-  const Real t296 = t295 * par.r_F;
-  const Real t297 = t260 * t296;
-  const Real t298 = t201 * t276;
-  const Real t299 = t255 * t269;
-  const Real t300 = t298 + t299;
-  const Real t301 = par.k1 * t300;
-  const Real t302 = t25 * t301;
-  const Real t303 = t297 + t302;
-  const Real t304 = t251 * par.k1;
-  const Real t305 = t258 * par.k2;
-  const Real t306 = t304 + t305;
-  const Real t307 = t287 * t20;
-  const Real t308 = t293 * t12;
-  const Real t309 = t307 - t308;
-  const Real t310 = par.r_F * t309;
-  const Real t311 = t306 * t310;
-  const Real t312 = par.k2 * t300;
-  const Real t313 = t22 * t312;
-  const Real t314 = t311 - t313;
-  const Real t315 = t303 + t314;
-  const Real t316 = t55 * t231;
-  const Real t317 = t242 * R[6];
-  const Real t318 = t316 - t317;
-  const Real t319 = t318 * par.r_R;
-  const Real t320 = t196 * t319;
-  const Real t321 = par.c * t301;
-  const Real t322 = par.r_F * t312;
-  const Real t323 = t321 + t322;
-  const Real t324 = par.k2 * t210;
-  const Real t325 = t201 * par.k13;
-  const Real t326 = t182 + t325;
-  const Real t327 = t326 * par.k1;
-  const Real t328 = t324 - t327;
-  const Real t329 = t328 * t276;
-  const Real t330 = t196 * par.k13;
-  const Real t331 = t224 - t330;
-  const Real t332 = t269 * t331;
-  const Real t333 = t329 + t332;
-  const Real t334 = t323 + t333;
-  const Real t335 = t228 * t319;
-  const Real t336 = t255 * t276;
-  const Real t337 = t201 * t269;
-  const Real t338 = t336 - t337;
-  const Real t339 = t338 * par.c;
-  const Real t340 = t276 * t331;
-  const Real t341 = t328 * t269;
-  const Real t342 = t340 - t341;
-  const Real t343 = t342 * par.k1;
-  const Real t344 = t339 + t343;
-  const Real t345 = t201 * c_r_p_1_;
-  const Real t346 = t255 * s_r_p_1_;
-  const Real t347 = t345 + t346;
-  const Real t348 = t215 + t347;
-  const Real t349 = t348 * t296;
-  const Real t350 = t25 * t338;
-  const Real t351 = t349 + t350;
-  const Real t352 = t344 - t351;
-  const Real t353 = t342 * par.k2;
-  const Real t354 = t338 * par.r_F;
-  const Real t355 = t353 + t354;
-  const Real t356 = t22 * t338;
-  const Real t357 = t348 * t310;
-  const Real t358 = t356 + t357;
-  const Real t359 = t355 + t358;
-  const Real t360 = t246 * nu[0];
-
-  // drift of the kernel
-  const Real t361 = t320 - t360;
-  const Real t362 = t247 * t59;
-  const Real t363 = t334 - t315;
-  const Real t364 = t362 + t363;
-  const Real t365 = c_r_p_1_ * t361;
-  const Real t366 = t364 - t365;
-  const Real t367 = t335 * t45;
-  const Real t368 = t366 - t367;
-  const Real t369 = t361 * t45;
-  const Real t370 = t247 * t93;
-  const Real t371 = t352 - t370;
-  const Real t372 = t369 + t371;
-  const Real t373 = t31 * t335;
-  const Real t374 = t372 - t373;
-  const Real t375 = t113 * t368;
-  const Real t376 = t374 - t375;
-  const Real t377 = t376 * t140;
-  const Real t378 = t368 * t123;
-  const Real t379 = t59 * t361;
-  const Real t380 = t247 * t90;
-  const Real t381 = t380 + t359;
-  const Real t382 = t379 + t381;
-  const Real t383 = t34 * t335;
-  const Real t384 = t382 + t383;
-  const Real t385 = t378 + t384;
-  const Real t386 = t377 + t385;
-  const Real t387 = t386 * t145;
-  const Real t388 = t25 * t387;
-  const Real t389 = t376 - t388;
-  const Real t390 = t389 * t139;
-  const Real t391 = t131 * t390;
-  const Real t392 = t368 - t391;
-  const Real t393 = t112 * t392;
-  const Real t394 = t393 * t101;
-  const Real t395 = t361 - t394;
-  const Real t396 = t390 * t101;
-  const Real t397 = t396 + t335;
-  const Real t398 = t58 * t390;
-  const Real t399 = t247 - t398;
+  const Real t178 = R[8] * nu[0];
+  const Real t179 = par.k2 * nu[0];
+  const Real t180 = par.k1 * nu[0];
+  const Real t181 = s_r_p_1_ * nu[1];
+  const Real t182 = t181 * t3;
+  const Real t183 = c_r_p_1_ * nu[1];
+  const Real t184 = t183 * R[7];
+  const Real t185 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t400 = nu[0] * s_r_p_0_;
-  const Real t401 = t196 * c_r_p_0_;
-  const Real t402 = t400 - t401;
-  const Real t403 = nu[0] * c_r_p_0_;
-  const Real t404 = t196 * s_r_p_0_;
-  const Real t405 = t403 + t404;
-
-  // front_wheel: twist
-  const Real t406 = t306 * s_r_p_2_;
-  const Real t407 = t260 * c_r_p_2_;
-  const Real t408 = t406 + t407;
-  const Real t409 = t306 * c_r_p_2_;
-  const Real t410 = t260 * s_r_p_2_;
-  const Real t411 = t409 - t410;
+  const Real t186 = nu[0] * c_r_p_0_;
+  const Real t187 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t412 = t201 * t210;
-  const Real t413 = nu[0] * t224;
-  const Real t414 = t412 + t413;
-  const Real t415 = t397 + t414;
-  const Real t416 = t415 - t226;
-  const Real t417 = t196 * nu[0];
-  const Real t418 = t390 - t417;
-  const Real t419 = t196 * t210;
-  const Real t420 = t182 * nu[0];
+  const Real t188 = nu[0] * nu[0];
+
+  // passive accelerations
+  const Real t189 = t165 + t174;
+  const Real t190 = t189 * t147;
+  const Real t191 = t190 + t148;
+  const Real t192 = t143 - t191;
+  const Real t193 = t189 * t25;
+  const Real t194 = t156 + t193;
+  const Real t195 = t194 - t22;
+  const Real t196 = constant<Real>(1.0L) / t195;
+  const Real t197 = t192 * t196;
+  const Real t198 = t25 * t197;
+  const Real t199 = t147 + t198;
+  const Real t200 = t199 * t130;
+  const Real t201 = t118 * t200;
+  const Real t202 = t141 - t201;
+  const Real t203 = t109 * t202;
+  const Real t204 = par.k1 * t203;
+  const Real t205 = par.k2 + t204;
+  const Real t206 = s_r_p_1_ * t205;
+  const Real t207 = c_r_p_1_ * t200;
+  const Real t208 = t206 + t207;
+  const Real t209 = t208 + t197;
+  const Real t210 = t209 * par.I_Fyy;
+  const Real t211 = t197 * t210;
+  const Real t212 = par.k3 * t203;
+  const Real t213 = par.k9 - t212;
+  const Real t214 = t101 * t203;
+  const Real t215 = t214 - t63;
+  const Real t216 = t215 * par.k15;
+  const Real t217 = t213 - t216;
+  const Real t218 = par.k2 * t203;
+  const Real t219 = par.k1 - t218;
+  const Real t220 = par.k5 * t219;
+  const Real t221 = c_r_p_1_ * t205;
+  const Real t222 = s_r_p_1_ * t200;
+  const Real t223 = t221 - t222;
+  const Real t224 = t223 * par.k17;
+  const Real t225 = t220 + t224;
+  const Real t226 = par.k13 * t203;
+  const Real t227 = t215 - t226;
+  const Real t228 = c_r_p_1_ * t227;
+  const Real t229 = t58 * t200;
+  const Real t230 = par.k2 * t229;
+  const Real t231 = t200 * par.k13;
+  const Real t232 = t200 * t101;
+  const Real t233 = t231 - t232;
+  const Real t234 = t233 * par.k1;
+  const Real t235 = t230 - t234;
+  const Real t236 = s_r_p_1_ * t235;
+  const Real t237 = t228 - t236;
+  const Real t238 = par.k8 * t237;
+  const Real t239 = t225 - t238;
+  const Real t240 = par.k12 * t219;
+  const Real t241 = t222 - t221;
+  const Real t242 = par.k11 * t241;
+  const Real t243 = t240 - t242;
+  const Real t244 = t243 + t237;
+  const Real t245 = par.m_F * t244;
+  const Real t246 = t245 * par.k11;
+  const Real t247 = par.k2 * t219;
+  const Real t248 = par.k1 * t223;
+  const Real t249 = t247 - t248;
+  const Real t250 = c_r_p_2_ * t249;
+  const Real t251 = par.k1 * t219;
+  const Real t252 = par.k2 * t223;
+  const Real t253 = t251 + t252;
+  const Real t254 = t253 * s_r_p_2_;
+  const Real t255 = t250 + t254;
+  const Real t256 = par.I_Fxx * t255;
+  const Real t257 = t256 * s_r_p_2_;
+  const Real t258 = t253 * c_r_p_2_;
+  const Real t259 = t249 * s_r_p_2_;
+  const Real t260 = t258 - t259;
+  const Real t261 = par.I_Fxx * t260;
+  const Real t262 = c_r_p_2_ * t261;
+  const Real t263 = t257 + t262;
+  const Real t264 = t263 * par.k2;
+  const Real t265 = t256 * c_r_p_2_;
+  const Real t266 = t261 * s_r_p_2_;
+  const Real t267 = t265 - t266;
+  const Real t268 = par.k1 * t267;
+  const Real t269 = t264 - t268;
+  const Real t270 = t246 + t269;
+  const Real t271 = t239 + t270;
+  const Real t272 = c_r_p_1_ * t271;
+  const Real t273 = c_r_p_1_ * t235;
+  const Real t274 = s_r_p_1_ * t227;
+  const Real t275 = t273 + t274;
+  const Real t276 = par.k8 * t275;
+  const Real t277 = t233 * par.k2;
+  const Real t278 = par.k1 * t229;
+  const Real t279 = t277 + t278;
+  const Real t280 = par.k10 * t279;
+  const Real t281 = t276 - t280;
+  const Real t282 = t208 * par.k7;
+  const Real t283 = t281 - t282;
+  const Real t284 = t208 * par.k11;
+  const Real t285 = t284 + t275;
+  const Real t286 = par.k2 * t285;
+  const Real t287 = t208 * par.k12;
+  const Real t288 = t287 + t279;
+  const Real t289 = par.k1 * t288;
+  const Real t290 = t286 + t289;
+  const Real t291 = c_r_p_2_ * t290;
+  const Real t292 = par.k2 * t288;
+  const Real t293 = par.k1 * t285;
+  const Real t294 = t292 - t293;
+  const Real t295 = t294 * s_r_p_2_;
+  const Real t296 = t291 - t295;
+  const Real t297 = t296 * par.m_F;
+  const Real t298 = c_r_p_2_ * t297;
+  const Real t299 = t290 * s_r_p_2_;
+  const Real t300 = t294 * c_r_p_2_;
+  const Real t301 = t299 + t300;
+  const Real t302 = par.m_F * t301;
+  const Real t303 = t302 * s_r_p_2_;
+  const Real t304 = t298 + t303;
+  const Real t305 = t304 * par.k2;
+  const Real t306 = t302 * c_r_p_2_;
+  const Real t307 = t297 * s_r_p_2_;
+  const Real t308 = t306 - t307;
+  const Real t309 = par.k1 * t308;
+  const Real t310 = t305 - t309;
+  const Real t311 = t310 * par.k11;
+  const Real t312 = par.k2 * t308;
+  const Real t313 = par.k1 * t304;
+  const Real t314 = t312 + t313;
+  const Real t315 = t314 * par.k12;
+  const Real t316 = t311 + t315;
+  const Real t317 = t316 + t210;
+  const Real t318 = t283 - t317;
+  const Real t319 = t318 * s_r_p_1_;
+  const Real t320 = t272 - t319;
+  const Real t321 = par.k2 * t320;
+  const Real t322 = t245 * par.k12;
+  const Real t323 = t267 * par.k2;
+  const Real t324 = t263 * par.k1;
+  const Real t325 = t323 + t324;
+  const Real t326 = t322 + t325;
+  const Real t327 = par.k6 * t219;
+  const Real t328 = par.k5 * t241;
+  const Real t329 = t327 - t328;
+  const Real t330 = par.k10 * t237;
+  const Real t331 = t329 + t330;
+  const Real t332 = t326 + t331;
+  const Real t333 = par.k1 * t332;
+  const Real t334 = t321 + t333;
+  const Real t335 = t217 + t334;
+  const Real t336 = s_r_p_0_ * t203;
+  const Real t337 = t336 + c_r_p_0_;
+  const Real t338 = par.I_Rxx * t337;
+  const Real t339 = c_r_p_0_ * t338;
+  const Real t340 = c_r_p_0_ * t203;
+  const Real t341 = s_r_p_0_ - t340;
+  const Real t342 = par.I_Rxx * t341;
+  const Real t343 = t342 * s_r_p_0_;
+  const Real t344 = t339 + t343;
+  const Real t345 = t215 + par.r_R;
+  const Real t346 = par.m_R * t345;
+  const Real t347 = t346 * par.r_R;
+  const Real t348 = t344 + t347;
+  const Real t349 = t335 + t348;
+  const Real t350 = par.m_H * t275;
+  const Real t351 = t208 * par.k8;
+  const Real t352 = t350 - t351;
+  const Real t353 = t352 + t310;
+  const Real t354 = s_r_p_1_ * t353;
+  const Real t355 = par.m_H * t237;
+  const Real t356 = par.k8 * t241;
+  const Real t357 = par.k10 * t219;
+  const Real t358 = t356 + t357;
+  const Real t359 = t355 + t358;
+  const Real t360 = t359 + t245;
+  const Real t361 = t360 * c_r_p_1_;
+  const Real t362 = t354 + t361;
+  const Real t363 = t215 * par.m_B;
+  const Real t364 = par.k16 * t203;
+  const Real t365 = t364 + par.k15;
+  const Real t366 = t363 - t365;
+  const Real t367 = t362 + t366;
+  const Real t368 = t367 + t346;
+  const Real t369 = t215 * t368;
+  const Real t370 = t200 * par.r_R;
+  const Real t371 = t370 + t229;
+  const Real t372 = t371 * s_r_p_0_;
+  const Real t373 = t232 * c_r_p_0_;
+  const Real t374 = t372 - t373;
+  const Real t375 = par.m_R * t374;
+  const Real t376 = t375 * s_r_p_0_;
+  const Real t377 = t371 * c_r_p_0_;
+  const Real t378 = t232 * s_r_p_0_;
+  const Real t379 = t377 + t378;
+  const Real t380 = t379 * par.m_R;
+  const Real t381 = t380 * c_r_p_0_;
+  const Real t382 = t376 + t381;
+  const Real t383 = par.m_H * t279;
+  const Real t384 = t208 * par.k10;
+  const Real t385 = t383 + t384;
+  const Real t386 = t314 + t385;
+  const Real t387 = par.k1 * t386;
+  const Real t388 = c_r_p_1_ * t353;
+  const Real t389 = t360 * s_r_p_1_;
+  const Real t390 = t388 - t389;
+  const Real t391 = t390 * par.k2;
+  const Real t392 = t387 + t391;
+  const Real t393 = par.m_B * t229;
+  const Real t394 = t200 * par.k15;
+  const Real t395 = t393 - t394;
+  const Real t396 = t392 + t395;
+  const Real t397 = t382 + t396;
+  const Real t398 = t397 * t229;
+  const Real t399 = t369 + t398;
+  const Real t400 = t200 * par.k16;
+  const Real t401 = t232 * par.m_B;
+  const Real t402 = t400 - t401;
+  const Real t403 = par.k2 * t386;
+  const Real t404 = par.k1 * t390;
+  const Real t405 = t403 - t404;
+  const Real t406 = t402 + t405;
+  const Real t407 = t375 * c_r_p_0_;
+  const Real t408 = t380 * s_r_p_0_;
+  const Real t409 = t407 - t408;
+  const Real t410 = t406 + t409;
+  const Real t411 = t232 * t410;
+  const Real t412 = t399 - t411;
+  const Real t413 = t349 + t412;
+  const Real t414 = t318 * c_r_p_1_;
+  const Real t415 = s_r_p_1_ * t271;
+  const Real t416 = t414 + t415;
+  const Real t417 = par.k13 * t405;
+  const Real t418 = t416 - t417;
+  const Real t419 = par.k15 * t229;
+  const Real t420 = t232 * par.k16;
   const Real t421 = t419 + t420;
-  const Real t422 = t395 - t421;
-  const Real t423 = t422 - t225;
-  const Real t424 = nu[0] * nu[0];
-  const Real t425 = t201 * t201;
-  const Real t426 = t424 + t425;
-  const Real t427 = t196 * t201;
-  const Real t428 = t417 + t390;
-  const Real t429 = t196 * t224;
-  const Real t430 = t182 * t201;
-  const Real t431 = t429 - t430;
-  const Real t432 = t431 + t399;
-  const Real t433 = t432 - t227;
-  const Real t434 = t201 * nu[0];
-  const Real t435 = t393 - t434;
-  const Real t436 = t196 * t196;
-  const Real t437 = t436 + t425;
-
-  // rear_wheel: acceleration
-  const Real t438 = t427 * par.r_R;
-  const Real t439 = t423 - t438;
-  const Real t440 = t402 * nu[2];
-  const Real t441 = t393 * s_r_p_0_;
-  const Real t442 = t440 + t441;
-  const Real t443 = t418 * par.r_R;
-  const Real t444 = t433 - t443;
-  const Real t445 = t444 * s_r_p_0_;
-  const Real t446 = t426 * par.r_R;
-  const Real t447 = t416 + t446;
-  const Real t448 = t447 * c_r_p_0_;
-  const Real t449 = t445 + t448;
-  const Real t450 = t405 * nu[2];
-  const Real t451 = t393 * c_r_p_0_;
-  const Real t452 = t450 + t451;
-  const Real t453 = t405 * t228;
-  const Real t454 = t402 * t228;
-  const Real t455 = t444 * c_r_p_0_;
-  const Real t456 = t447 * s_r_p_0_;
-  const Real t457 = t455 - t456;
-
-  // fork: acceleration
-  const Real t458 = par.k13 * t437;
-  const Real t459 = t433 - t458;
-  const Real t460 = par.k1 * t459;
-  const Real t461 = t428 * par.k13;
-  const Real t462 = t416 - t461;
-  const Real t463 = par.k2 * t462;
-  const Real t464 = t460 + t463;
-  const Real t465 = c_r_p_1_ * t390;
-  const Real t466 = t393 * par.k1;
-  const Real t467 = s_r_p_1_ * t466;
-  const Real t468 = t465 + t467;
-  const Real t469 = t258 * nu[1];
-  const Real t470 = t468 - t469;
-  const Real t471 = t251 * t258;
-  const Real t472 = t470 + t471;
-  const Real t473 = t251 * t251;
-  const Real t474 = t347 * t347;
-  const Real t475 = t473 + t474;
-  const Real t476 = t471 - t470;
-  const Real t477 = t251 * t347;
-  const Real t478 = s_r_p_1_ * t390;
-  const Real t479 = t466 * c_r_p_1_;
-  const Real t480 = t478 - t479;
-  const Real t481 = t347 * nu[1];
-  const Real t482 = t480 - t481;
-  const Real t483 = t477 + t482;
-  const Real t484 = t258 * t258;
-  const Real t485 = t474 + t484;
-  const Real t486 = t393 * par.k2;
-  const Real t487 = t258 * t347;
-  const Real t488 = t486 - t487;
-  const Real t489 = par.k13 * t435;
-  const Real t490 = t489 + t423;
-  const Real t491 = c_r_p_1_ * t490;
-  const Real t492 = t459 * par.k2;
-  const Real t493 = par.k1 * t462;
-  const Real t494 = t492 - t493;
-  const Real t495 = s_r_p_1_ * t494;
-  const Real t496 = t491 - t495;
-  const Real t497 = t494 * c_r_p_1_;
-  const Real t498 = s_r_p_1_ * t490;
+  const Real t422 = par.k4 * t200;
+  const Real t423 = t421 - t422;
+  const Real t424 = t418 + t423;
+  const Real t425 = par.r_R * t382;
+  const Real t426 = par.I_Ryy * t200;
+  const Real t427 = t425 + t426;
+  const Real t428 = t424 - t427;
+  const Real t429 = t428 * t200;
+  const Real t430 = t413 - t429;
+  const Real t431 = t362 * par.k13;
+  const Real t432 = t332 * par.k2;
+  const Real t433 = par.k1 * t320;
+  const Real t434 = t432 - t433;
+  const Real t435 = t431 + t434;
+  const Real t436 = t215 * par.k16;
+  const Real t437 = par.k14 * t203;
+  const Real t438 = par.k41 + t437;
+  const Real t439 = t436 - t438;
+  const Real t440 = t435 + t439;
+  const Real t441 = t342 * c_r_p_0_;
+  const Real t442 = s_r_p_0_ * t338;
+  const Real t443 = t441 - t442;
+  const Real t444 = t440 + t443;
+  const Real t445 = t444 * t203;
+  const Real t446 = t430 - t445;
+  const Real t447 = t211 + t446;
+  const Real t448 = t189 * t133;
+  const Real t449 = t132 + t448;
+  const Real t450 = t449 + t164;
+  const Real t451 = t450 - t163;
+  const Real t452 = t451 + t136;
+  const Real t453 = t452 * t196;
+  const Real t454 = t25 * t453;
+  const Real t455 = t454 - t133;
+  const Real t456 = t455 * t130;
+  const Real t457 = t456 * t118;
+  const Real t458 = t28 - t457;
+  const Real t459 = product_error(t456, t118);
+  const Real t460 = sum_error(t454, t137);
+  const Real t461 = t460 - t111;
+  const Real t462 = t461 * t130;
+  const Real t463 = product_error(t455, t130);
+  const Real t464 = t462 + t463;
+  const Real t465 = t464 * t118;
+  const Real t466 = t459 + t465;
+  const Real t467 = t458 - t466;
+  const Real t468 = t109 * t467;
+  const Real t469 = par.k1 * t468;
+  const Real t470 = s_r_p_1_ * t469;
+  const Real t471 = t456 * c_r_p_1_;
+  const Real t472 = t464 * c_r_p_1_;
+  const Real t473 = t471 + t472;
+  const Real t474 = t470 + t473;
+  const Real t475 = t474 + t453;
+  const Real t476 = par.I_Fyy * t475;
+  const Real t477 = t189 * t154;
+  const Real t478 = t477 + t155;
+  const Real t479 = t169 - t478;
+  const Real t480 = t162 + t479;
+  const Real t481 = t480 * t196;
+  const Real t482 = t476 * t481;
+  const Real t483 = t25 * t481;
+  const Real t484 = t154 + t483;
+  const Real t485 = t484 * t130;
+  const Real t486 = t485 * t101;
+  const Real t487 = sum_error(t154, t483);
+  const Real t488 = t487 * t130;
+  const Real t489 = product_error(t484, t130);
+  const Real t490 = t488 + t489;
+  const Real t491 = t490 * t101;
+  const Real t492 = t486 + t491;
+  const Real t493 = t101 - t492;
+  const Real t494 = t456 * par.r_R;
+  const Real t495 = t464 * par.r_R;
+  const Real t496 = t494 + t495;
+  const Real t497 = t58 * t464;
+  const Real t498 = t456 * t58;
   const Real t499 = t497 + t498;
-
-  // front_wheel: acceleration
-  const Real t500 = par.k11 * t485;
-  const Real t501 = t476 * par.k12;
-  const Real t502 = t500 + t501;
-  const Real t503 = t464 + t502;
-  const Real t504 = par.k2 * t503;
-  const Real t505 = t472 * par.k11;
-  const Real t506 = t475 * par.k12;
-  const Real t507 = t505 + t506;
-  const Real t508 = t499 - t507;
-  const Real t509 = t508 * par.k1;
-  const Real t510 = t504 - t509;
-  const Real t511 = c_r_p_2_ * t510;
-  const Real t512 = par.k1 * t503;
-  const Real t513 = t508 * par.k2;
-  const Real t514 = t512 + t513;
-  const Real t515 = t514 * s_r_p_2_;
-  const Real t516 = t511 + t515;
-  const Real t517 = t470 - t387;
-  const Real t518 = t514 * c_r_p_2_;
-  const Real t519 = t510 * s_r_p_2_;
-  const Real t520 = t518 - t519;
-  const Real t521 = t483 * par.k11;
-  const Real t522 = par.k12 * t488;
-  const Real t523 = t521 + t522;
-  const Real t524 = t523 + t496;
-  const Real t525 = par.k2 * t482;
-  const Real t526 = t486 * par.k1;
-  const Real t527 = t525 + t526;
-  const Real t528 = t527 * s_r_p_2_;
-  const Real t529 = t486 * par.k2;
-  const Real t530 = par.k1 * t482;
-  const Real t531 = t529 - t530;
-  const Real t532 = c_r_p_2_ * t531;
-  const Real t533 = t528 + t532;
-  const Real t534 = t411 * t215;
-  const Real t535 = t533 - t534;
-  const Real t536 = t348 * t411;
-  const Real t537 = t348 * t408;
-  const Real t538 = c_r_p_2_ * t527;
-  const Real t539 = t531 * s_r_p_2_;
-  const Real t540 = t538 - t539;
-  const Real t541 = t408 * t215;
-  const Real t542 = t540 + t541;
-
-  // frame: wrench
-  const Real t543 = par.k3 * t435;
-  const Real t544 = t427 * par.k26;
-  const Real t545 = t543 + t544;
-  const Real t546 = t423 * par.k15;
-  const Real t547 = t545 - t546;
-  const Real t548 = t423 * par.m_B;
-  const Real t549 = t435 * par.k16;
-  const Real t550 = t427 * par.k15;
-  const Real t551 = t549 + t550;
-  const Real t552 = t548 + t551;
-  const Real t553 = t418 * par.k15;
-  const Real t554 = par.k16 * t437;
+  const Real t500 = t496 + t499;
+  const Real t501 = t500 * s_r_p_0_;
+  const Real t502 = t464 * t101;
+  const Real t503 = t456 * t101;
+  const Real t504 = t502 + t503;
+  const Real t505 = t504 * c_r_p_0_;
+  const Real t506 = t501 - t505;
+  const Real t507 = t506 * par.m_R;
+  const Real t508 = t507 * c_r_p_0_;
+  const Real t509 = t500 * c_r_p_0_;
+  const Real t510 = t504 * s_r_p_0_;
+  const Real t511 = t509 + t510;
+  const Real t512 = t511 * par.m_R;
+  const Real t513 = t512 * s_r_p_0_;
+  const Real t514 = t508 - t513;
+  const Real t515 = t474 * par.k12;
+  const Real t516 = t456 * par.k13;
+  const Real t517 = t464 * par.k13;
+  const Real t518 = t516 + t517;
+  const Real t519 = t518 - t504;
+  const Real t520 = par.k2 * t519;
+  const Real t521 = par.k1 * t499;
+  const Real t522 = t520 + t521;
+  const Real t523 = t515 + t522;
+  const Real t524 = par.k1 * t523;
+  const Real t525 = t474 * par.k11;
+  const Real t526 = t499 * par.k2;
+  const Real t527 = par.k1 * t519;
+  const Real t528 = t526 - t527;
+  const Real t529 = c_r_p_1_ * t528;
+  const Real t530 = t468 * t101;
+  const Real t531 = t468 * par.k13;
+  const Real t532 = t530 - t531;
+  const Real t533 = s_r_p_1_ * t532;
+  const Real t534 = t529 + t533;
+  const Real t535 = t525 + t534;
+  const Real t536 = t535 * par.k2;
+  const Real t537 = t524 + t536;
+  const Real t538 = c_r_p_2_ * t537;
+  const Real t539 = par.k2 * t523;
+  const Real t540 = par.k1 * t535;
+  const Real t541 = t539 - t540;
+  const Real t542 = t541 * s_r_p_2_;
+  const Real t543 = t538 - t542;
+  const Real t544 = t543 * par.m_F;
+  const Real t545 = c_r_p_2_ * t544;
+  const Real t546 = s_r_p_2_ * t537;
+  const Real t547 = c_r_p_2_ * t541;
+  const Real t548 = t546 + t547;
+  const Real t549 = t548 * par.m_F;
+  const Real t550 = s_r_p_2_ * t549;
+  const Real t551 = t545 + t550;
+  const Real t552 = par.k1 * t551;
+  const Real t553 = c_r_p_2_ * t549;
+  const Real t554 = t544 * s_r_p_2_;
   const Real t555 = t553 - t554;
-  const Real t556 = t433 * par.m_B;
-  const Real t557 = t555 + t556;
-  const Real t558 = t416 * par.m_B;
-  const Real t559 = t428 * par.k16;
-  const Real t560 = t426 * par.k15;
-  const Real t561 = t559 + t560;
-  const Real t562 = t558 - t561;
-  const Real t563 = t423 * par.k16;
-  const Real t564 = t393 * par.k14;
-  const Real t565 = par.k25 * t434;
-  const Real t566 = t564 - t565;
-  const Real t567 = par.k3 * t427;
+  const Real t556 = t555 * par.k2;
+  const Real t557 = t552 + t556;
+  const Real t558 = par.m_H * t522;
+  const Real t559 = t474 * par.k10;
+  const Real t560 = t558 + t559;
+  const Real t561 = t557 + t560;
+  const Real t562 = par.k2 * t561;
+  const Real t563 = t534 * par.m_H;
+  const Real t564 = t474 * par.k8;
+  const Real t565 = t563 - t564;
+  const Real t566 = par.k2 * t551;
+  const Real t567 = par.k1 * t555;
   const Real t568 = t566 - t567;
-  const Real t569 = t563 + t568;
-  const Real t570 = t433 * par.k15;
-  const Real t571 = t416 * par.k16;
-  const Real t572 = t570 - t571;
-  const Real t573 = t436 - t424;
-  const Real t574 = par.k3 * t573;
-  const Real t575 = par.k4 * t390;
-  const Real t576 = t417 * par.k27;
-  const Real t577 = t575 - t576;
-  const Real t578 = t574 + t577;
-  const Real t579 = t572 + t578;
-
-  // rear_wheel: wrench
-  const Real t580 = t439 * par.m_R;
-  const Real t581 = t449 * par.m_R;
-  const Real t582 = par.m_R * t457;
-  const Real t583 = par.I_Ryy * t390;
-  const Real t584 = t454 * par.k29;
-  const Real t585 = t442 * par.I_Rxx;
-  const Real t586 = t584 - t585;
-  const Real t587 = par.I_Rxx * t452;
-  const Real t588 = par.k28 * t453;
+  const Real t569 = t565 + t568;
+  const Real t570 = c_r_p_1_ * t569;
+  const Real t571 = t468 * par.k2;
+  const Real t572 = constant<Real>(1.0L) - t571;
+  const Real t573 = par.k12 * t572;
+  const Real t574 = s_r_p_1_ * t456;
+  const Real t575 = s_r_p_1_ * t464;
+  const Real t576 = t574 + t575;
+  const Real t577 = c_r_p_1_ * t469;
+  const Real t578 = t576 - t577;
+  const Real t579 = par.k11 * t578;
+  const Real t580 = t573 - t579;
+  const Real t581 = c_r_p_1_ * t532;
+  const Real t582 = s_r_p_1_ * t528;
+  const Real t583 = t581 - t582;
+  const Real t584 = t580 + t583;
+  const Real t585 = par.m_F * t584;
+  const Real t586 = t583 * par.m_H;
+  const Real t587 = par.k10 * t572;
+  const Real t588 = par.k8 * t578;
   const Real t589 = t587 + t588;
-
-  // fork: wrench
-  const Real t590 = par.k5 * t488;
-  const Real t591 = par.k17 * t482;
-  const Real t592 = t477 * par.k30;
-  const Real t593 = t591 - t592;
-  const Real t594 = t590 + t593;
-  const Real t595 = par.k8 * t496;
-  const Real t596 = t594 - t595;
-  const Real t597 = par.m_H * t499;
-  const Real t598 = par.k8 * t472;
-  const Real t599 = t475 * par.k10;
+  const Real t590 = t586 + t589;
+  const Real t591 = t585 + t590;
+  const Real t592 = s_r_p_1_ * t591;
+  const Real t593 = t570 - t592;
+  const Real t594 = par.k1 * t593;
+  const Real t595 = t562 - t594;
+  const Real t596 = t464 * par.k16;
+  const Real t597 = t456 * par.k16;
+  const Real t598 = t596 + t597;
+  const Real t599 = t504 * par.m_B;
   const Real t600 = t598 - t599;
-  const Real t601 = t597 + t600;
-  const Real t602 = t476 * par.k10;
-  const Real t603 = par.k8 * t485;
-  const Real t604 = t602 - t603;
-  const Real t605 = t464 * par.m_H;
-  const Real t606 = t604 + t605;
-  const Real t607 = par.m_H * t496;
-  const Real t608 = par.k10 * t488;
-  const Real t609 = par.k8 * t483;
+  const Real t601 = t595 + t600;
+  const Real t602 = t514 + t601;
+  const Real t603 = t493 * t602;
+  const Real t604 = par.m_R * t530;
+  const Real t605 = s_r_p_1_ * t569;
+  const Real t606 = t591 * c_r_p_1_;
+  const Real t607 = t605 + t606;
+  const Real t608 = par.m_B * t530;
+  const Real t609 = t468 * par.k16;
   const Real t610 = t608 - t609;
   const Real t611 = t607 + t610;
-  const Real t612 = par.k8 * t499;
-  const Real t613 = t464 * par.k10;
-  const Real t614 = t612 - t613;
-  const Real t615 = t473 - t484;
-  const Real t616 = par.k5 * t615;
-  const Real t617 = t470 * par.k7;
-  const Real t618 = par.k31 * t471;
-  const Real t619 = t617 + t618;
-  const Real t620 = t616 + t619;
-  const Real t621 = t614 + t620;
-  const Real t622 = t486 * par.k6;
-  const Real t623 = t487 * par.k32;
-  const Real t624 = t622 - t623;
-  const Real t625 = par.k5 * t483;
-  const Real t626 = t624 + t625;
-  const Real t627 = par.k10 * t496;
+  const Real t612 = t604 + t611;
+  const Real t613 = t485 * t118;
+  const Real t614 = t152 - t613;
+  const Real t615 = product_error(t485, t118);
+  const Real t616 = t118 * t490;
+  const Real t617 = t615 + t616;
+  const Real t618 = t614 - t617;
+  const Real t619 = t618 * t109;
+  const Real t620 = t619 * t101;
+  const Real t621 = t612 * t620;
+  const Real t622 = t485 * t58;
+  const Real t623 = t58 * t490;
+  const Real t624 = t622 + t623;
+  const Real t625 = t624 - t57;
+  const Real t626 = t507 * s_r_p_0_;
+  const Real t627 = t512 * c_r_p_0_;
   const Real t628 = t626 + t627;
-
-  // front_wheel: wrench
-  const Real t629 = t524 * par.m_F;
-  const Real t630 = par.I_Fxx * t542;
-  const Real t631 = par.k35 * t537;
-  const Real t632 = t630 - t631;
-  const Real t633 = t517 * par.I_Fyy;
-  const Real t634 = t520 * par.m_F;
-  const Real t635 = par.I_Fxx * t535;
-  const Real t636 = par.k36 * t536;
-  const Real t637 = t635 - t636;
-  const Real t638 = t516 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t639 = t629 + t611;
-  const Real t640 = t637 * s_r_p_2_;
-  const Real t641 = t632 * c_r_p_2_;
-  const Real t642 = t640 + t641;
-  const Real t643 = t642 * par.k1;
-  const Real t644 = c_r_p_2_ * t637;
-  const Real t645 = t632 * s_r_p_2_;
-  const Real t646 = t644 - t645;
-  const Real t647 = t646 * par.k2;
-  const Real t648 = t643 + t647;
-  const Real t649 = t629 * par.k12;
-  const Real t650 = t648 + t649;
-  const Real t651 = t650 + t628;
-  const Real t652 = c_r_p_2_ * t634;
-  const Real t653 = t638 * s_r_p_2_;
-  const Real t654 = t652 + t653;
-  const Real t655 = par.k1 * t654;
-  const Real t656 = c_r_p_2_ * t638;
-  const Real t657 = t634 * s_r_p_2_;
-  const Real t658 = t656 - t657;
-  const Real t659 = t658 * par.k2;
-  const Real t660 = t655 + t659;
-  const Real t661 = t660 + t606;
-  const Real t662 = t642 * par.k2;
-  const Real t663 = t646 * par.k1;
-  const Real t664 = t662 - t663;
-  const Real t665 = t629 * par.k11;
-  const Real t666 = t664 + t665;
-  const Real t667 = t596 + t666;
-  const Real t668 = par.k2 * t654;
-  const Real t669 = par.k1 * t658;
-  const Real t670 = t668 - t669;
-  const Real t671 = t601 + t670;
-  const Real t672 = t670 * par.k11;
-  const Real t673 = t660 * par.k12;
-  const Real t674 = t672 + t673;
-  const Real t675 = t633 - t674;
-  const Real t676 = t621 + t675;
-
-  // fork: joint force
-  const Real t677 = t661 * par.k2;
-  const Real t678 = c_r_p_1_ * t671;
-  const Real t679 = s_r_p_1_ * t639;
+  const Real t629 = t499 * par.m_B;
+  const Real t630 = t456 * par.k15;
+  const Real t631 = t464 * par.k15;
+  const Real t632 = t630 + t631;
+  const Real t633 = t629 - t632;
+  const Real t634 = t593 * par.k2;
+  const Real t635 = par.k1 * t561;
+  const Real t636 = t634 + t635;
+  const Real t637 = t633 + t636;
+  const Real t638 = t628 + t637;
+  const Real t639 = t625 * t638;
+  const Real t640 = t621 + t639;
+  const Real t641 = t603 + t640;
+  const Real t642 = t504 * par.k16;
+  const Real t643 = t499 * par.k15;
+  const Real t644 = t642 + t643;
+  const Real t645 = par.k4 * t456;
+  const Real t646 = par.k4 * t464;
+  const Real t647 = t645 + t646;
+  const Real t648 = t644 - t647;
+  const Real t649 = par.k8 * t534;
+  const Real t650 = par.k10 * t522;
+  const Real t651 = t649 - t650;
+  const Real t652 = t474 * par.k7;
+  const Real t653 = t651 - t652;
+  const Real t654 = t557 * par.k12;
+  const Real t655 = t568 * par.k11;
+  const Real t656 = t654 + t655;
+  const Real t657 = t476 + t656;
+  const Real t658 = t653 - t657;
+  const Real t659 = t658 * c_r_p_1_;
+  const Real t660 = t577 - t576;
+  const Real t661 = t660 * par.k17;
+  const Real t662 = par.k5 * t572;
+  const Real t663 = t661 + t662;
+  const Real t664 = par.k8 * t583;
+  const Real t665 = t663 - t664;
+  const Real t666 = t585 * par.k11;
+  const Real t667 = par.k2 * t660;
+  const Real t668 = par.k1 * t572;
+  const Real t669 = t667 + t668;
+  const Real t670 = t669 * s_r_p_2_;
+  const Real t671 = par.k2 * t572;
+  const Real t672 = par.k1 * t660;
+  const Real t673 = t671 - t672;
+  const Real t674 = t673 * c_r_p_2_;
+  const Real t675 = t670 + t674;
+  const Real t676 = par.I_Fxx * t675;
+  const Real t677 = t676 * s_r_p_2_;
+  const Real t678 = t669 * c_r_p_2_;
+  const Real t679 = t673 * s_r_p_2_;
   const Real t680 = t678 - t679;
-  const Real t681 = par.k1 * t680;
-  const Real t682 = t677 - t681;
-  const Real t683 = t562 + t682;
-  const Real t684 = t639 * c_r_p_1_;
-  const Real t685 = s_r_p_1_ * t671;
-  const Real t686 = t684 + t685;
-  const Real t687 = t552 + t686;
-  const Real t688 = par.k1 * t651;
-  const Real t689 = c_r_p_1_ * t667;
-  const Real t690 = s_r_p_1_ * t676;
-  const Real t691 = t689 - t690;
-  const Real t692 = par.k2 * t691;
-  const Real t693 = t688 + t692;
-  const Real t694 = t547 + t693;
-  const Real t695 = par.k1 * t661;
-  const Real t696 = par.k2 * t680;
-  const Real t697 = t695 + t696;
-  const Real t698 = t697 + t557;
-  const Real t699 = t686 * par.k13;
-  const Real t700 = t651 * par.k2;
-  const Real t701 = par.k1 * t691;
-  const Real t702 = t700 - t701;
-  const Real t703 = t699 + t702;
-  const Real t704 = t569 + t703;
-  const Real t705 = c_r_p_1_ * t676;
-  const Real t706 = s_r_p_1_ * t667;
-  const Real t707 = t705 + t706;
-  const Real t708 = par.k13 * t682;
+  const Real t681 = par.I_Fxx * t680;
+  const Real t682 = t681 * c_r_p_2_;
+  const Real t683 = t677 + t682;
+  const Real t684 = t683 * par.k2;
+  const Real t685 = c_r_p_2_ * t676;
+  const Real t686 = t681 * s_r_p_2_;
+  const Real t687 = t685 - t686;
+  const Real t688 = t687 * par.k1;
+  const Real t689 = t684 - t688;
+  const Real t690 = t666 + t689;
+  const Real t691 = t665 + t690;
+  const Real t692 = s_r_p_1_ * t691;
+  const Real t693 = t659 + t692;
+  const Real t694 = t595 * par.k13;
+  const Real t695 = t693 - t694;
+  const Real t696 = t648 + t695;
+  const Real t697 = t628 * par.r_R;
+  const Real t698 = t456 * par.I_Ryy;
+  const Real t699 = par.I_Ryy * t464;
+  const Real t700 = t698 + t699;
+  const Real t701 = t697 + t700;
+  const Real t702 = t696 - t701;
+  const Real t703 = t485 * t702;
+  const Real t704 = t702 * t490;
+  const Real t705 = t703 + t704;
+  const Real t706 = t641 - t705;
+  const Real t707 = par.k16 * t530;
+  const Real t708 = t468 * par.k14;
   const Real t709 = t707 - t708;
-  const Real t710 = t709 + t579;
-
-  // rear_wheel: joint force
-  const Real t711 = t580 + t687;
-  const Real t712 = t582 * c_r_p_0_;
-  const Real t713 = t581 * s_r_p_0_;
+  const Real t710 = par.k1 * t683;
+  const Real t711 = t687 * par.k2;
+  const Real t712 = t710 + t711;
+  const Real t713 = t585 * par.k12;
   const Real t714 = t712 + t713;
-  const Real t715 = t714 + t698;
-  const Real t716 = c_r_p_0_ * t589;
-  const Real t717 = t586 * s_r_p_0_;
-  const Real t718 = t716 - t717;
-  const Real t719 = t718 + t704;
-  const Real t720 = t581 * c_r_p_0_;
-  const Real t721 = t582 * s_r_p_0_;
-  const Real t722 = t720 - t721;
-  const Real t723 = t683 + t722;
-  const Real t724 = t580 * par.r_R;
-  const Real t725 = s_r_p_0_ * t589;
-  const Real t726 = t586 * c_r_p_0_;
-  const Real t727 = t725 + t726;
-  const Real t728 = t724 + t727;
-  const Real t729 = t694 + t728;
-  const Real t730 = t714 * par.r_R;
-  const Real t731 = t583 - t730;
-  const Real t732 = t710 + t731;
-
-  // reduced forces
-  const Real t733 = t633 * t175;
-  const Real t734 = t178 * t732;
-  const Real t735 = t179 * t723;
-  const Real t736 = t711 * t221;
-  const Real t737 = t715 * t207;
-  const Real t738 = t736 + t737;
-  const Real t739 = t735 - t738;
-  const Real t740 = t739 - t729;
-  const Real t741 = t734 + t740;
-  const Real t742 = t719 * t185;
-  const Real t743 = t741 + t742;
-  const Real t744 = t733 + t743;
-  const Real t745 = t157 * t633;
-  const Real t746 = t189 * t719;
-  const Real t747 = t723 * t161;
-  const Real t748 = t711 * t218;
-  const Real t749 = t715 * t205;
-  const Real t750 = t748 + t749;
-  const Real t751 = t747 - t750;
-  const Real t752 = t160 * t732;
+  const Real t715 = par.k6 * t572;
+  const Real t716 = par.k5 * t578;
+  const Real t717 = t715 - t716;
+  const Real t718 = t583 * par.k10;
+  const Real t719 = t717 + t718;
+  const Real t720 = t714 + t719;
+  const Real t721 = t720 * par.k2;
+  const Real t722 = c_r_p_1_ * t691;
+  const Real t723 = s_r_p_1_ * t658;
+  const Real t724 = t722 - t723;
+  const Real t725 = par.k1 * t724;
+  const Real t726 = t721 - t725;
+  const Real t727 = t607 * par.k13;
+  const Real t728 = t726 + t727;
+  const Real t729 = t709 + t728;
+  const Real t730 = t468 * s_r_p_0_;
+  const Real t731 = par.I_Rxx * t730;
+  const Real t732 = t731 * s_r_p_0_;
+  const Real t733 = t468 * c_r_p_0_;
+  const Real t734 = t733 * par.I_Rxx;
+  const Real t735 = t734 * c_r_p_0_;
+  const Real t736 = t732 + t735;
+  const Real t737 = t729 - t736;
+  const Real t738 = t619 * t737;
+  const Real t739 = t706 - t738;
+  const Real t740 = t739 - t700;
+  const Real t741 = t482 + t740;
+  const Real t742 = par.k1 * t619;
+  const Real t743 = s_r_p_1_ * t742;
+  const Real t744 = c_r_p_1_ * t490;
+  const Real t745 = t485 * c_r_p_1_;
+  const Real t746 = t744 + t745;
+  const Real t747 = t743 + t746;
+  const Real t748 = t481 + t747;
+  const Real t749 = par.I_Fyy * t748;
+  const Real t750 = t481 * t749;
+  const Real t751 = t485 * par.r_R;
+  const Real t752 = t490 * par.r_R;
   const Real t753 = t751 + t752;
-  const Real t754 = t746 + t753;
-  const Real t755 = t754 - t651;
-  const Real t756 = t745 + t755;
-  const Real t757 = t633 * t146;
-  const Real t758 = t194 * t719;
-  const Real t759 = t149 * t732;
-  const Real t760 = t715 * t203;
-  const Real t761 = t711 * t216;
-  const Real t762 = t760 + t761;
-  const Real t763 = t723 * t151;
-  const Real t764 = t762 + t763;
-  const Real t765 = t759 - t764;
-  const Real t766 = t758 + t765;
-  const Real t767 = t766 - t583;
-  const Real t768 = t757 + t767;
-
-  // rear_wheel: acceleration
-  const Real t769 = t178 * par.r_R;
-  const Real t770 = t207 + t769;
-  const Real t771 = t770 * s_r_p_0_;
-  const Real t772 = t179 * c_r_p_0_;
-  const Real t773 = t771 - t772;
-  const Real t774 = t179 * s_r_p_0_;
-  const Real t775 = t770 * c_r_p_0_;
-  const Real t776 = t774 + t775;
-  const Real t777 = t221 + par.r_R;
-  const Real t778 = t185 * c_r_p_0_;
-  const Real t779 = s_r_p_0_ - t778;
-  const Real t780 = t185 * s_r_p_0_;
-  const Real t781 = t780 + c_r_p_0_;
-
-  // fork: acceleration
-  const Real t782 = par.k2 * t185;
-  const Real t783 = par.k1 - t782;
-  const Real t784 = s_r_p_1_ * t178;
-  const Real t785 = par.k1 * t185;
-  const Real t786 = t785 + par.k2;
-  const Real t787 = c_r_p_1_ * t786;
-  const Real t788 = t784 - t787;
-  const Real t789 = par.k1 * t207;
-  const Real t790 = t178 * par.k13;
-  const Real t791 = t790 - t179;
-  const Real t792 = t791 * par.k2;
-  const Real t793 = t789 + t792;
-  const Real t794 = par.k2 * t207;
-  const Real t795 = par.k1 * t791;
+  const Real t754 = t625 + t753;
+  const Real t755 = t754 * s_r_p_0_;
+  const Real t756 = t493 * c_r_p_0_;
+  const Real t757 = t755 + t756;
+  const Real t758 = t757 * par.m_R;
+  const Real t759 = t758 * s_r_p_0_;
+  const Real t760 = t754 * c_r_p_0_;
+  const Real t761 = t493 * s_r_p_0_;
+  const Real t762 = t760 - t761;
+  const Real t763 = par.m_R * t762;
+  const Real t764 = c_r_p_0_ * t763;
+  const Real t765 = t759 + t764;
+  const Real t766 = t625 * par.m_B;
+  const Real t767 = t485 * par.k15;
+  const Real t768 = t490 * par.k15;
+  const Real t769 = t767 + t768;
+  const Real t770 = t766 - t769;
+  const Real t771 = t625 * par.k2;
+  const Real t772 = t490 * par.k13;
+  const Real t773 = t485 * par.k13;
+  const Real t774 = t772 + t773;
+  const Real t775 = t493 + t774;
+  const Real t776 = t775 * par.k1;
+  const Real t777 = t771 - t776;
+  const Real t778 = c_r_p_1_ * t777;
+  const Real t779 = t619 * par.k13;
+  const Real t780 = t620 - t779;
+  const Real t781 = s_r_p_1_ * t780;
+  const Real t782 = t778 + t781;
+  const Real t783 = t747 * par.k11;
+  const Real t784 = t782 + t783;
+  const Real t785 = par.k2 * t784;
+  const Real t786 = t747 * par.k12;
+  const Real t787 = t625 * par.k1;
+  const Real t788 = t775 * par.k2;
+  const Real t789 = t787 + t788;
+  const Real t790 = t786 + t789;
+  const Real t791 = par.k1 * t790;
+  const Real t792 = t785 + t791;
+  const Real t793 = t792 * c_r_p_2_;
+  const Real t794 = par.k2 * t790;
+  const Real t795 = par.k1 * t784;
   const Real t796 = t794 - t795;
-  const Real t797 = t796 * c_r_p_1_;
-  const Real t798 = par.k13 * t185;
-  const Real t799 = t221 - t798;
-  const Real t800 = s_r_p_1_ * t799;
-  const Real t801 = t797 + t800;
-  const Real t802 = s_r_p_1_ * t786;
-  const Real t803 = c_r_p_1_ * t178;
-  const Real t804 = t802 + t803;
-  const Real t805 = t787 - t784;
-  const Real t806 = t799 * c_r_p_1_;
-  const Real t807 = s_r_p_1_ * t796;
-  const Real t808 = t806 - t807;
-
-  // front_wheel: acceleration
-  const Real t809 = t783 * par.k1;
-  const Real t810 = par.k2 * t805;
-  const Real t811 = t809 + t810;
-  const Real t812 = c_r_p_2_ * t811;
-  const Real t813 = t783 * par.k2;
-  const Real t814 = par.k1 * t805;
+  const Real t797 = t796 * s_r_p_2_;
+  const Real t798 = t793 - t797;
+  const Real t799 = t798 * par.m_F;
+  const Real t800 = c_r_p_2_ * t799;
+  const Real t801 = c_r_p_2_ * t796;
+  const Real t802 = t792 * s_r_p_2_;
+  const Real t803 = t801 + t802;
+  const Real t804 = t803 * par.m_F;
+  const Real t805 = t804 * s_r_p_2_;
+  const Real t806 = t800 + t805;
+  const Real t807 = t806 * par.k2;
+  const Real t808 = t804 * c_r_p_2_;
+  const Real t809 = t799 * s_r_p_2_;
+  const Real t810 = t808 - t809;
+  const Real t811 = par.k1 * t810;
+  const Real t812 = t807 - t811;
+  const Real t813 = t782 * par.m_H;
+  const Real t814 = par.k8 * t747;
   const Real t815 = t813 - t814;
-  const Real t816 = t815 * s_r_p_2_;
-  const Real t817 = t812 - t816;
-  const Real t818 = t175 + t804;
-  const Real t819 = t811 * s_r_p_2_;
-  const Real t820 = c_r_p_2_ * t815;
-  const Real t821 = t819 + t820;
-  const Real t822 = t783 * par.k12;
-  const Real t823 = t788 * par.k11;
-  const Real t824 = t822 - t823;
-  const Real t825 = t824 + t808;
-  const Real t826 = par.k12 * t804;
-  const Real t827 = t793 + t826;
-  const Real t828 = par.k1 * t827;
-  const Real t829 = par.k11 * t804;
-  const Real t830 = t801 + t829;
-  const Real t831 = t830 * par.k2;
-  const Real t832 = t828 + t831;
-  const Real t833 = c_r_p_2_ * t832;
-  const Real t834 = par.k2 * t827;
-  const Real t835 = par.k1 * t830;
-  const Real t836 = t834 - t835;
-  const Real t837 = t836 * s_r_p_2_;
-  const Real t838 = t833 - t837;
-  const Real t839 = t832 * s_r_p_2_;
-  const Real t840 = t836 * c_r_p_2_;
-  const Real t841 = t839 + t840;
-
-  // frame: wrench
-  const Real t842 = t178 * par.k16;
-  const Real t843 = t179 * par.m_B;
-  const Real t844 = t842 - t843;
-  const Real t845 = t221 * par.k16;
-  const Real t846 = par.k14 * t185;
-  const Real t847 = par.k41 + t846;
-  const Real t848 = t845 - t847;
-  const Real t849 = t179 * par.k16;
-  const Real t850 = t207 * par.k15;
-  const Real t851 = t849 + t850;
-  const Real t852 = par.k4 * t178;
-  const Real t853 = t851 - t852;
-  const Real t854 = t221 * par.m_B;
-  const Real t855 = par.k16 * t185;
-  const Real t856 = par.k15 + t855;
-  const Real t857 = t854 - t856;
-  const Real t858 = t207 * par.m_B;
-  const Real t859 = t178 * par.k15;
-  const Real t860 = t858 - t859;
-  const Real t861 = par.k3 * t185;
-  const Real t862 = par.k9 - t861;
-  const Real t863 = t221 * par.k15;
-  const Real t864 = t862 - t863;
-
-  // rear_wheel: wrench
-  const Real t865 = t773 * par.m_R;
-  const Real t866 = t777 * par.m_R;
-  const Real t867 = par.I_Rxx * t779;
-  const Real t868 = t776 * par.m_R;
-  const Real t869 = par.I_Ryy * t178;
-  const Real t870 = par.I_Rxx * t781;
-
-  // fork: wrench
-  const Real t871 = t793 * par.m_H;
-  const Real t872 = par.k10 * t804;
-  const Real t873 = t871 + t872;
-  const Real t874 = t783 * par.k10;
-  const Real t875 = t788 * par.k8;
-  const Real t876 = t874 + t875;
-  const Real t877 = par.m_H * t808;
-  const Real t878 = t876 + t877;
-  const Real t879 = t783 * par.k6;
-  const Real t880 = t788 * par.k5;
-  const Real t881 = t879 - t880;
-  const Real t882 = par.k10 * t808;
-  const Real t883 = t881 + t882;
-  const Real t884 = par.k8 * t801;
-  const Real t885 = t793 * par.k10;
+  const Real t816 = t812 + t815;
+  const Real t817 = t816 * c_r_p_1_;
+  const Real t818 = s_r_p_1_ * t490;
+  const Real t819 = s_r_p_1_ * t485;
+  const Real t820 = t818 + t819;
+  const Real t821 = t742 * c_r_p_1_;
+  const Real t822 = t820 - t821;
+  const Real t823 = par.k8 * t822;
+  const Real t824 = t619 * par.k2;
+  const Real t825 = par.k10 * t824;
+  const Real t826 = t823 - t825;
+  const Real t827 = c_r_p_1_ * t780;
+  const Real t828 = s_r_p_1_ * t777;
+  const Real t829 = t827 - t828;
+  const Real t830 = par.m_H * t829;
+  const Real t831 = t826 + t830;
+  const Real t832 = par.k12 * t824;
+  const Real t833 = par.k11 * t822;
+  const Real t834 = t832 + t833;
+  const Real t835 = t829 - t834;
+  const Real t836 = par.m_F * t835;
+  const Real t837 = t831 + t836;
+  const Real t838 = s_r_p_1_ * t837;
+  const Real t839 = t817 - t838;
+  const Real t840 = par.k2 * t839;
+  const Real t841 = par.k1 * t806;
+  const Real t842 = t810 * par.k2;
+  const Real t843 = t841 + t842;
+  const Real t844 = par.k10 * t747;
+  const Real t845 = par.m_H * t789;
+  const Real t846 = t844 + t845;
+  const Real t847 = t843 + t846;
+  const Real t848 = par.k1 * t847;
+  const Real t849 = t840 + t848;
+  const Real t850 = t770 + t849;
+  const Real t851 = t765 + t850;
+  const Real t852 = t625 * t851;
+  const Real t853 = par.m_R * t620;
+  const Real t854 = c_r_p_1_ * t837;
+  const Real t855 = s_r_p_1_ * t816;
+  const Real t856 = t854 + t855;
+  const Real t857 = t620 * par.m_B;
+  const Real t858 = t619 * par.k16;
+  const Real t859 = t857 - t858;
+  const Real t860 = t856 + t859;
+  const Real t861 = t853 + t860;
+  const Real t862 = t620 * t861;
+  const Real t863 = t852 + t862;
+  const Real t864 = t493 * par.m_B;
+  const Real t865 = t490 * par.k16;
+  const Real t866 = t485 * par.k16;
+  const Real t867 = t865 + t866;
+  const Real t868 = t864 + t867;
+  const Real t869 = t847 * par.k2;
+  const Real t870 = par.k1 * t839;
+  const Real t871 = t869 - t870;
+  const Real t872 = t868 + t871;
+  const Real t873 = t758 * c_r_p_0_;
+  const Real t874 = s_r_p_0_ * t763;
+  const Real t875 = t873 - t874;
+  const Real t876 = t872 + t875;
+  const Real t877 = t493 * t876;
+  const Real t878 = t863 + t877;
+  const Real t879 = constant<Real>(1.0L) - t485;
+  const Real t880 = t879 - t490;
+  const Real t881 = t880 * par.I_Ryy;
+  const Real t882 = t765 * par.r_R;
+  const Real t883 = t881 - t882;
+  const Real t884 = t625 * par.k15;
+  const Real t885 = t493 * par.k16;
   const Real t886 = t884 - t885;
-  const Real t887 = par.k7 * t804;
-  const Real t888 = t886 - t887;
-  const Real t889 = par.m_H * t801;
-  const Real t890 = par.k8 * t804;
-  const Real t891 = t889 - t890;
-  const Real t892 = t783 * par.k5;
-  const Real t893 = par.k17 * t805;
-  const Real t894 = t892 + t893;
-  const Real t895 = par.k8 * t808;
-  const Real t896 = t894 - t895;
-
-  // front_wheel: wrench
-  const Real t897 = par.m_F * t841;
-  const Real t898 = t817 * par.I_Fxx;
-  const Real t899 = par.I_Fxx * t821;
-  const Real t900 = t818 * par.I_Fyy;
-  const Real t901 = t825 * par.m_F;
-  const Real t902 = par.m_F * t838;
-
-  // front_wheel: joint force
-  const Real t903 = t878 + t901;
-  const Real t904 = t901 * par.k12;
-  const Real t905 = t898 * c_r_p_2_;
-  const Real t906 = t899 * s_r_p_2_;
-  const Real t907 = t905 + t906;
-  const Real t908 = par.k1 * t907;
-  const Real t909 = c_r_p_2_ * t899;
-  const Real t910 = t898 * s_r_p_2_;
-  const Real t911 = t909 - t910;
-  const Real t912 = t911 * par.k2;
-  const Real t913 = t908 + t912;
-  const Real t914 = t904 + t913;
-  const Real t915 = t914 + t883;
-  const Real t916 = c_r_p_2_ * t902;
-  const Real t917 = t897 * s_r_p_2_;
-  const Real t918 = t916 + t917;
-  const Real t919 = par.k1 * t918;
-  const Real t920 = t897 * c_r_p_2_;
-  const Real t921 = t902 * s_r_p_2_;
-  const Real t922 = t920 - t921;
-  const Real t923 = t922 * par.k2;
-  const Real t924 = t919 + t923;
-  const Real t925 = t924 * par.k12;
-  const Real t926 = t918 * par.k2;
-  const Real t927 = t922 * par.k1;
+  const Real t887 = par.k4 * t490;
+  const Real t888 = par.k4 * t485;
+  const Real t889 = t887 + t888;
+  const Real t890 = t886 - t889;
+  const Real t891 = t821 - t820;
+  const Real t892 = par.k2 * t891;
+  const Real t893 = par.k1 * t824;
+  const Real t894 = t892 - t893;
+  const Real t895 = t894 * c_r_p_2_;
+  const Real t896 = par.k2 * t824;
+  const Real t897 = par.k1 * t891;
+  const Real t898 = t896 + t897;
+  const Real t899 = t898 * s_r_p_2_;
+  const Real t900 = t895 + t899;
+  const Real t901 = par.I_Fxx * t900;
+  const Real t902 = c_r_p_2_ * t901;
+  const Real t903 = t894 * s_r_p_2_;
+  const Real t904 = t898 * c_r_p_2_;
+  const Real t905 = t903 - t904;
+  const Real t906 = par.I_Fxx * t905;
+  const Real t907 = t906 * s_r_p_2_;
+  const Real t908 = t902 + t907;
+  const Real t909 = t908 * par.k2;
+  const Real t910 = c_r_p_2_ * t906;
+  const Real t911 = t901 * s_r_p_2_;
+  const Real t912 = t910 - t911;
+  const Real t913 = t912 * par.k1;
+  const Real t914 = t909 - t913;
+  const Real t915 = t836 * par.k11;
+  const Real t916 = t914 + t915;
+  const Real t917 = t891 * par.k17;
+  const Real t918 = par.k5 * t824;
+  const Real t919 = t917 - t918;
+  const Real t920 = par.k8 * t829;
+  const Real t921 = t919 - t920;
+  const Real t922 = t916 + t921;
+  const Real t923 = s_r_p_1_ * t922;
+  const Real t924 = t782 * par.k8;
+  const Real t925 = par.k10 * t789;
+  const Real t926 = t924 - t925;
+  const Real t927 = par.k7 * t747;
   const Real t928 = t926 - t927;
-  const Real t929 = t928 * par.k11;
-  const Real t930 = t925 + t929;
-  const Real t931 = t930 + t900;
-  const Real t932 = t888 - t931;
-  const Real t933 = par.k2 * t907;
-  const Real t934 = t911 * par.k1;
-  const Real t935 = t933 - t934;
-  const Real t936 = t901 * par.k11;
-  const Real t937 = t935 + t936;
-  const Real t938 = t937 + t896;
-  const Real t939 = t873 + t924;
-  const Real t940 = t928 + t891;
-
-  // fork: joint force
-  const Real t941 = s_r_p_1_ * t940;
-  const Real t942 = t903 * c_r_p_1_;
-  const Real t943 = t941 + t942;
-  const Real t944 = t943 + t857;
-  const Real t945 = par.k1 * t939;
-  const Real t946 = c_r_p_1_ * t940;
-  const Real t947 = s_r_p_1_ * t903;
-  const Real t948 = t946 - t947;
-  const Real t949 = t948 * par.k2;
-  const Real t950 = t945 + t949;
-  const Real t951 = t860 + t950;
-  const Real t952 = par.k2 * t939;
-  const Real t953 = par.k1 * t948;
-  const Real t954 = t952 - t953;
-  const Real t955 = t844 + t954;
-  const Real t956 = t938 * c_r_p_1_;
-  const Real t957 = s_r_p_1_ * t932;
+  const Real t929 = t843 * par.k12;
+  const Real t930 = t812 * par.k11;
+  const Real t931 = t929 + t930;
+  const Real t932 = t931 + t749;
+  const Real t933 = t928 - t932;
+  const Real t934 = t933 * c_r_p_1_;
+  const Real t935 = t923 + t934;
+  const Real t936 = par.k13 * t871;
+  const Real t937 = t935 - t936;
+  const Real t938 = t890 + t937;
+  const Real t939 = t883 + t938;
+  const Real t940 = t939 * t490;
+  const Real t941 = t485 * t939;
+  const Real t942 = t940 + t941;
+  const Real t943 = t878 - t942;
+  const Real t944 = t836 * par.k12;
+  const Real t945 = t912 * par.k2;
+  const Real t946 = par.k1 * t908;
+  const Real t947 = t945 + t946;
+  const Real t948 = t944 + t947;
+  const Real t949 = par.k10 * t829;
+  const Real t950 = par.k6 * t824;
+  const Real t951 = par.k5 * t822;
+  const Real t952 = t950 + t951;
+  const Real t953 = t949 - t952;
+  const Real t954 = t948 + t953;
+  const Real t955 = par.k2 * t954;
+  const Real t956 = c_r_p_1_ * t922;
+  const Real t957 = s_r_p_1_ * t933;
   const Real t958 = t956 - t957;
-  const Real t959 = t958 * par.k2;
-  const Real t960 = t915 * par.k1;
-  const Real t961 = t959 + t960;
-  const Real t962 = t961 + t864;
-  const Real t963 = t915 * par.k2;
-  const Real t964 = t958 * par.k1;
+  const Real t959 = par.k1 * t958;
+  const Real t960 = t955 - t959;
+  const Real t961 = t856 * par.k13;
+  const Real t962 = t960 + t961;
+  const Real t963 = par.k16 * t620;
+  const Real t964 = t619 * par.k14;
   const Real t965 = t963 - t964;
-  const Real t966 = t943 * par.k13;
-  const Real t967 = t965 + t966;
-  const Real t968 = t848 + t967;
-  const Real t969 = s_r_p_1_ * t938;
-  const Real t970 = t932 * c_r_p_1_;
-  const Real t971 = t969 + t970;
-  const Real t972 = t954 * par.k13;
-  const Real t973 = t971 - t972;
-  const Real t974 = t973 + t853;
-
-  // rear_wheel: joint force
-  const Real t975 = t865 * c_r_p_0_;
-  const Real t976 = t868 * s_r_p_0_;
-  const Real t977 = t975 - t976;
-  const Real t978 = t977 + t955;
-  const Real t979 = t865 * s_r_p_0_;
-  const Real t980 = t868 * c_r_p_0_;
-  const Real t981 = t979 + t980;
-  const Real t982 = t951 + t981;
-  const Real t983 = t944 + t866;
-  const Real t984 = t866 * par.r_R;
-  const Real t985 = t870 * c_r_p_0_;
-  const Real t986 = t867 * s_r_p_0_;
+  const Real t966 = t962 + t965;
+  const Real t967 = t619 * c_r_p_0_;
+  const Real t968 = t967 * par.I_Rxx;
+  const Real t969 = t968 * c_r_p_0_;
+  const Real t970 = t619 * s_r_p_0_;
+  const Real t971 = par.I_Rxx * t970;
+  const Real t972 = t971 * s_r_p_0_;
+  const Real t973 = t969 + t972;
+  const Real t974 = t966 - t973;
+  const Real t975 = t619 * t974;
+  const Real t976 = t943 - t975;
+  const Real t977 = t976 + t881;
+  const Real t978 = t750 + t977;
+  const Real t979 = t476 * t453;
+  const Real t980 = t638 * t499;
+  const Real t981 = t612 * t530;
+  const Real t982 = t980 + t981;
+  const Real t983 = t602 * t504;
+  const Real t984 = t982 - t983;
+  const Real t985 = t456 * t702;
+  const Real t986 = t464 * t702;
   const Real t987 = t985 + t986;
-  const Real t988 = t984 + t987;
-  const Real t989 = t962 + t988;
-  const Real t990 = t867 * c_r_p_0_;
-  const Real t991 = t870 * s_r_p_0_;
-  const Real t992 = t990 - t991;
-  const Real t993 = t992 + t968;
-  const Real t994 = t981 * par.r_R;
-  const Real t995 = t994 + t869;
-  const Real t996 = t974 - t995;
-
-  // reduced mass matrix
-  const Real t997 = t221 * t983;
-  const Real t998 = t982 * t207;
-  const Real t999 = t997 + t998;
-  const Real t1000 = t179 * t978;
-  const Real t1001 = t999 - t1000;
-  const Real t1002 = t1001 + t989;
-  const Real t1003 = t178 * t996;
-  const Real t1004 = t1002 - t1003;
-  const Real t1005 = t185 * t993;
-  const Real t1006 = t1004 - t1005;
-  const Real t1007 = t175 * t900;
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = t216 * t983;
-  const Real t1010 = t982 * t203;
+  const Real t988 = t984 - t987;
+  const Real t989 = t468 * t737;
+  const Real t990 = t988 - t989;
+  const Real t991 = t990 + t720;
+  const Real t992 = t979 + t991;
+  const Real t993 = t625 * t397;
+  const Real t994 = t368 * t620;
+  const Real t995 = t993 + t994;
+  const Real t996 = t493 * t410;
+  const Real t997 = t995 + t996;
+  const Real t998 = t428 * t490;
+  const Real t999 = t485 * t428;
+  const Real t1000 = t998 + t999;
+  const Real t1001 = t997 - t1000;
+  const Real t1002 = t619 * t444;
+  const Real t1003 = t1001 - t1002;
+  const Real t1004 = t1003 - t426;
+  const Real t1005 = t481 * t210;
+  const Real t1006 = t1004 + t1005;
+  const Real t1007 = t468 * nu[1];
+  const Real t1008 = nu[0] * t203;
+  const Real t1009 = t1007 + t1008;
+  const Real t1010 = t619 * nu[2];
   const Real t1011 = t1009 + t1010;
-  const Real t1012 = t978 * t151;
-  const Real t1013 = t1011 + t1012;
-  const Real t1014 = t149 * t996;
-  const Real t1015 = t1013 - t1014;
-  const Real t1016 = t194 * t993;
-  const Real t1017 = t1015 - t1016;
-  const Real t1018 = t1017 - t869;
-  const Real t1019 = t146 * t900;
-  const Real t1020 = t1018 + t1019;
-  const Real t1021 = t982 * t205;
-  const Real t1022 = t218 * t983;
-  const Real t1023 = t1021 + t1022;
-  const Real t1024 = t978 * t161;
-  const Real t1025 = t1023 - t1024;
-  const Real t1026 = t160 * t996;
-  const Real t1027 = t1025 - t1026;
-  const Real t1028 = t189 * t993;
+  const Real t1012 = s_r_p_0_ * t1011;
+  const Real t1013 = t186 + t1012;
+  const Real t1014 = t1013 * nu[2];
+  const Real t1015 = t200 * nu[0];
+  const Real t1016 = t456 * nu[1];
+  const Real t1017 = t464 * nu[1];
+  const Real t1018 = t1016 + t1017;
+  const Real t1019 = t1015 + t1018;
+  const Real t1020 = t490 * nu[2];
+  const Real t1021 = t485 * nu[2];
+  const Real t1022 = t1020 + t1021;
+  const Real t1023 = t1019 + t1022;
+  const Real t1024 = t1023 * R[6];
+  const Real t1025 = t185 + t1024;
+  const Real t1026 = t1025 * t55;
+  const Real t1027 = R[8] * t1023;
+  const Real t1028 = R[7] * t1011;
   const Real t1029 = t1027 - t1028;
-  const Real t1030 = t1029 + t915;
-  const Real t1031 = t157 * t900;
-  const Real t1032 = t1030 + t1031;
-
-  // rear_wheel: acceleration
-  const Real t1033 = t189 * s_r_p_0_;
-  const Real t1034 = t189 * c_r_p_0_;
-  const Real t1035 = t160 * par.r_R;
-  const Real t1036 = t205 + t1035;
-  const Real t1037 = t1036 * s_r_p_0_;
-  const Real t1038 = t161 * c_r_p_0_;
-  const Real t1039 = t1037 - t1038;
-  const Real t1040 = t1036 * c_r_p_0_;
-  const Real t1041 = t161 * s_r_p_0_;
-  const Real t1042 = t1040 + t1041;
-
-  // fork: acceleration
-  const Real t1043 = t189 * par.k1;
-  const Real t1044 = t1043 * s_r_p_1_;
-  const Real t1045 = t160 * c_r_p_1_;
-  const Real t1046 = t1044 + t1045;
-  const Real t1047 = par.k1 * t205;
-  const Real t1048 = t160 * par.k13;
-  const Real t1049 = t1048 - t161;
-  const Real t1050 = t1049 * par.k2;
-  const Real t1051 = t1047 + t1050;
-  const Real t1052 = t189 * par.k2;
-  const Real t1053 = constant<Real>(1.0L) - t1052;
-  const Real t1054 = t1043 * c_r_p_1_;
-  const Real t1055 = s_r_p_1_ * t160;
-  const Real t1056 = t1054 - t1055;
-  const Real t1057 = t1055 - t1054;
-  const Real t1058 = t189 * par.k13;
-  const Real t1059 = t218 - t1058;
-  const Real t1060 = t1059 * s_r_p_1_;
-  const Real t1061 = t205 * par.k2;
-  const Real t1062 = par.k1 * t1049;
-  const Real t1063 = t1061 - t1062;
-  const Real t1064 = c_r_p_1_ * t1063;
-  const Real t1065 = t1060 + t1064;
-  const Real t1066 = t1059 * c_r_p_1_;
-  const Real t1067 = s_r_p_1_ * t1063;
-  const Real t1068 = t1066 - t1067;
-
-  // front_wheel: acceleration
-  const Real t1069 = t1046 + t157;
-  const Real t1070 = par.k2 * t1056;
-  const Real t1071 = par.k1 * t1053;
-  const Real t1072 = t1070 + t1071;
-  const Real t1073 = t1072 * s_r_p_2_;
-  const Real t1074 = t1053 * par.k2;
-  const Real t1075 = par.k1 * t1056;
+  const Real t1030 = R[6] * t1029;
+  const Real t1031 = t1030 * constant<Real>(2.0L);
+  const Real t1032 = t1025 * R[8];
+  const Real t1033 = t1032 * constant<Real>(2.0L);
+  const Real t1034 = t1031 - t1033;
+  const Real t1035 = t1034 / t54;
+  const Real t1036 = t1035 * t55;
+  const Real t1037 = t1036 / t53;
+  const Real t1038 = R[8] * t1037;
+  const Real t1039 = t1026 + t1038;
+  const Real t1040 = t1039 * par.r_R;
+  const Real t1041 = nu[2] - t1023;
+  const Real t1042 = t1040 * t1041;
+  const Real t1043 = t1042 * t59;
+  const Real t1044 = par.k1 * t1011;
+  const Real t1045 = t179 + t1044;
+  const Real t1046 = t181 * t1045;
+  const Real t1047 = t1023 * t183;
+  const Real t1048 = t1046 + t1047;
+  const Real t1049 = t1048 * par.k2;
+  const Real t1050 = t1049 * par.r_F;
+  const Real t1051 = t1048 * par.k1;
+  const Real t1052 = t1051 * par.c;
+  const Real t1053 = t1050 + t1052;
+  const Real t1054 = t625 * nu[2];
+  const Real t1055 = t499 * nu[1];
+  const Real t1056 = nu[0] * t229;
+  const Real t1057 = t1055 + t1056;
+  const Real t1058 = t1054 + t1057;
+  const Real t1059 = par.k2 * t1058;
+  const Real t1060 = t493 * nu[2];
+  const Real t1061 = t232 * nu[0];
+  const Real t1062 = t504 * nu[1];
+  const Real t1063 = t1061 + t1062;
+  const Real t1064 = t1060 - t1063;
+  const Real t1065 = t1023 * par.k13;
+  const Real t1066 = t1064 + t1065;
+  const Real t1067 = par.k1 * t1066;
+  const Real t1068 = t1059 - t1067;
+  const Real t1069 = t183 * t1068;
+  const Real t1070 = nu[2] * t620;
+  const Real t1071 = t530 * nu[1];
+  const Real t1072 = t215 * nu[0];
+  const Real t1073 = t1071 + t1072;
+  const Real t1074 = t1070 + t1073;
+  const Real t1075 = par.k13 * t1011;
   const Real t1076 = t1074 - t1075;
-  const Real t1077 = t1076 * c_r_p_2_;
-  const Real t1078 = t1073 + t1077;
-  const Real t1079 = c_r_p_2_ * t1072;
-  const Real t1080 = t1076 * s_r_p_2_;
-  const Real t1081 = t1079 - t1080;
-  const Real t1082 = t1046 * par.k12;
-  const Real t1083 = t1051 + t1082;
-  const Real t1084 = t1083 * par.k2;
-  const Real t1085 = t1046 * par.k11;
-  const Real t1086 = t1085 + t1065;
-  const Real t1087 = par.k1 * t1086;
-  const Real t1088 = t1084 - t1087;
-  const Real t1089 = t1088 * c_r_p_2_;
-  const Real t1090 = t1083 * par.k1;
-  const Real t1091 = t1086 * par.k2;
-  const Real t1092 = t1090 + t1091;
-  const Real t1093 = s_r_p_2_ * t1092;
-  const Real t1094 = t1089 + t1093;
-  const Real t1095 = t1053 * par.k12;
-  const Real t1096 = par.k11 * t1057;
-  const Real t1097 = t1095 - t1096;
-  const Real t1098 = t1097 + t1068;
-  const Real t1099 = c_r_p_2_ * t1092;
-  const Real t1100 = t1088 * s_r_p_2_;
-  const Real t1101 = t1099 - t1100;
-
-  // frame: wrench
-  const Real t1102 = t205 * par.k15;
-  const Real t1103 = t161 * par.k16;
-  const Real t1104 = t1102 + t1103;
-  const Real t1105 = par.k4 * t160;
-  const Real t1106 = t1104 - t1105;
-  const Real t1107 = t205 * par.m_B;
-  const Real t1108 = t160 * par.k15;
-  const Real t1109 = t1107 - t1108;
-  const Real t1110 = t218 * par.m_B;
-  const Real t1111 = t189 * par.k16;
-  const Real t1112 = t1110 - t1111;
-  const Real t1113 = t160 * par.k16;
-  const Real t1114 = t161 * par.m_B;
-  const Real t1115 = t1113 - t1114;
-  const Real t1116 = t218 * par.k16;
-  const Real t1117 = t189 * par.k14;
-  const Real t1118 = t1116 - t1117;
-
-  // rear_wheel: wrench
-  const Real t1119 = par.I_Ryy * t160;
-  const Real t1120 = par.m_R * t1042;
-  const Real t1121 = t1034 * par.I_Rxx;
-  const Real t1122 = par.m_R * t1039;
-  const Real t1123 = t1033 * par.I_Rxx;
-  const Real t1124 = t218 * par.m_R;
-
-  // fork: wrench
-  const Real t1125 = par.k8 * t1065;
-  const Real t1126 = t1051 * par.k10;
-  const Real t1127 = t1125 - t1126;
-  const Real t1128 = t1046 * par.k7;
+  const Real t1077 = t1076 * t181;
+  const Real t1078 = t1069 + t1077;
+  const Real t1079 = t1053 + t1078;
+  const Real t1080 = R[6] * t1011;
+  const Real t1081 = t178 + t1080;
+  const Real t1082 = s_r_p_1_ * t1081;
+  const Real t1083 = t1082 + t184;
+  const Real t1084 = par.k2 * t1029;
+  const Real t1085 = t1025 * par.k1;
+  const Real t1086 = t1084 + t1085;
+  const Real t1087 = c_r_p_1_ * t1086;
+  const Real t1088 = t1087 - t182;
+  const Real t1089 = t1083 + t1088;
+  const Real t1090 = t1089 * par.k1;
+  const Real t1091 = par.k1 * t1029;
+  const Real t1092 = t1025 * par.k2;
+  const Real t1093 = t1091 - t1092;
+  const Real t1094 = t1093 * par.k2;
+  const Real t1095 = t1090 - t1094;
+  const Real t1096 = t1095 * t20;
+  const Real t1097 = par.k1 * t1093;
+  const Real t1098 = t1089 * par.k2;
+  const Real t1099 = t1097 + t1098;
+  const Real t1100 = t16 * t1099;
+  const Real t1101 = t1100 * constant<Real>(2.0L);
+  const Real t1102 = t12 * t1095;
+  const Real t1103 = t1102 * constant<Real>(2.0L);
+  const Real t1104 = t1101 + t1103;
+  const Real t1105 = t1104 / t71;
+  const Real t1106 = t1105 * t20;
+  const Real t1107 = t1106 / t19;
+  const Real t1108 = t1107 * t12;
+  const Real t1109 = t1096 - t1108;
+  const Real t1110 = t1109 * par.r_F;
+  const Real t1111 = t1045 * c_r_p_1_;
+  const Real t1112 = s_r_p_1_ * t1023;
+  const Real t1113 = t1111 - t1112;
+  const Real t1114 = par.k2 * t1113;
+  const Real t1115 = par.k2 * t1011;
+  const Real t1116 = t180 - t1115;
+  const Real t1117 = t1116 + nu[1];
+  const Real t1118 = par.k1 * t1117;
+  const Real t1119 = t1114 + t1118;
+  const Real t1120 = t1110 * t1119;
+  const Real t1121 = t1049 * t22;
+  const Real t1122 = t1120 - t1121;
+  const Real t1123 = t20 * t1099;
+  const Real t1124 = t1107 * t16;
+  const Real t1125 = t1123 - t1124;
+  const Real t1126 = t1125 * par.r_F;
+  const Real t1127 = par.k2 * t1117;
+  const Real t1128 = par.k1 * t1113;
   const Real t1129 = t1127 - t1128;
-  const Real t1130 = par.m_H * t1068;
-  const Real t1131 = t1053 * par.k10;
-  const Real t1132 = par.k8 * t1057;
-  const Real t1133 = t1131 + t1132;
-  const Real t1134 = t1130 + t1133;
-  const Real t1135 = t1053 * par.k6;
-  const Real t1136 = par.k5 * t1057;
-  const Real t1137 = t1135 - t1136;
-  const Real t1138 = par.k10 * t1068;
-  const Real t1139 = t1137 + t1138;
-  const Real t1140 = t1046 * par.k10;
-  const Real t1141 = t1051 * par.m_H;
-  const Real t1142 = t1140 + t1141;
-  const Real t1143 = t1056 * par.k17;
-  const Real t1144 = par.k5 * t1053;
-  const Real t1145 = t1143 + t1144;
-  const Real t1146 = par.k8 * t1068;
-  const Real t1147 = t1145 - t1146;
-  const Real t1148 = par.m_H * t1065;
-  const Real t1149 = t1046 * par.k8;
+  const Real t1130 = t1126 * t1129;
+  const Real t1131 = t1051 * t25;
+  const Real t1132 = t1130 + t1131;
+  const Real t1133 = t1122 + t1132;
+  const Real t1134 = t1079 - t1133;
+  const Real t1135 = t1043 + t1134;
+  const Real t1136 = t55 * t1029;
+  const Real t1137 = t1037 * R[6];
+  const Real t1138 = t1136 - t1137;
+  const Real t1139 = t1138 * par.r_R;
+  const Real t1140 = t1139 * t1011;
+  const Real t1141 = t1040 * nu[0];
+  const Real t1142 = t1140 - t1141;
+  const Real t1143 = t1142 * c_r_p_1_;
+  const Real t1144 = t1135 - t1143;
+  const Real t1145 = t1041 * t1139;
+  const Real t1146 = t1145 * t45;
+  const Real t1147 = t1144 - t1146;
+  const Real t1148 = t1076 * t183;
+  const Real t1149 = t181 * t1068;
   const Real t1150 = t1148 - t1149;
-
-  // front_wheel: wrench
-  const Real t1151 = par.I_Fxx * t1078;
-  const Real t1152 = par.m_F * t1094;
-  const Real t1153 = par.I_Fxx * t1081;
-  const Real t1154 = par.m_F * t1098;
-  const Real t1155 = par.m_F * t1101;
-  const Real t1156 = t1069 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t1157 = t1154 * par.k12;
-  const Real t1158 = t1151 * c_r_p_2_;
-  const Real t1159 = t1153 * s_r_p_2_;
-  const Real t1160 = t1158 - t1159;
-  const Real t1161 = t1160 * par.k2;
-  const Real t1162 = t1153 * c_r_p_2_;
-  const Real t1163 = t1151 * s_r_p_2_;
+  const Real t1151 = t1150 * par.k1;
+  const Real t1152 = t1045 * t183;
+  const Real t1153 = t1023 * t181;
+  const Real t1154 = t1152 - t1153;
+  const Real t1155 = t1154 * par.c;
+  const Real t1156 = t1151 + t1155;
+  const Real t1157 = t481 * nu[2];
+  const Real t1158 = t453 * nu[1];
+  const Real t1159 = t197 * nu[0];
+  const Real t1160 = t1158 + t1159;
+  const Real t1161 = t1157 + t1160;
+  const Real t1162 = s_r_p_1_ * t1045;
+  const Real t1163 = t1023 * c_r_p_1_;
   const Real t1164 = t1162 + t1163;
-  const Real t1165 = par.k1 * t1164;
-  const Real t1166 = t1161 + t1165;
-  const Real t1167 = t1157 + t1166;
-  const Real t1168 = t1167 + t1139;
-  const Real t1169 = t1134 + t1154;
-  const Real t1170 = c_r_p_2_ * t1155;
-  const Real t1171 = t1152 * s_r_p_2_;
-  const Real t1172 = t1170 + t1171;
-  const Real t1173 = t1172 * par.k2;
-  const Real t1174 = t1152 * c_r_p_2_;
-  const Real t1175 = t1155 * s_r_p_2_;
-  const Real t1176 = t1174 - t1175;
-  const Real t1177 = par.k1 * t1176;
-  const Real t1178 = t1173 - t1177;
-  const Real t1179 = t1178 * par.k11;
-  const Real t1180 = par.k2 * t1176;
-  const Real t1181 = t1172 * par.k1;
-  const Real t1182 = t1180 + t1181;
-  const Real t1183 = t1182 * par.k12;
-  const Real t1184 = t1179 + t1183;
-  const Real t1185 = t1184 + t1156;
-  const Real t1186 = t1129 - t1185;
-  const Real t1187 = t1154 * par.k11;
-  const Real t1188 = t1164 * par.k2;
-  const Real t1189 = par.k1 * t1160;
-  const Real t1190 = t1188 - t1189;
-  const Real t1191 = t1187 + t1190;
-  const Real t1192 = t1191 + t1147;
-  const Real t1193 = t1178 + t1150;
-  const Real t1194 = t1142 + t1182;
-
-  // fork: joint force
-  const Real t1195 = t1169 * c_r_p_1_;
-  const Real t1196 = s_r_p_1_ * t1193;
-  const Real t1197 = t1195 + t1196;
-  const Real t1198 = t1197 * par.k13;
-  const Real t1199 = t1168 * par.k2;
-  const Real t1200 = t1192 * c_r_p_1_;
-  const Real t1201 = s_r_p_1_ * t1186;
-  const Real t1202 = t1200 - t1201;
-  const Real t1203 = par.k1 * t1202;
-  const Real t1204 = t1199 - t1203;
-  const Real t1205 = t1198 + t1204;
-  const Real t1206 = t1118 + t1205;
-  const Real t1207 = t1112 + t1197;
-  const Real t1208 = par.k2 * t1194;
-  const Real t1209 = c_r_p_1_ * t1193;
-  const Real t1210 = s_r_p_1_ * t1169;
-  const Real t1211 = t1209 - t1210;
-  const Real t1212 = par.k1 * t1211;
-  const Real t1213 = t1208 - t1212;
-  const Real t1214 = t1213 + t1115;
-  const Real t1215 = s_r_p_1_ * t1192;
-  const Real t1216 = t1186 * c_r_p_1_;
+  const Real t1165 = t1161 + t1164;
+  const Real t1166 = t1165 * t1126;
+  const Real t1167 = t25 * t1154;
+  const Real t1168 = t1166 + t1167;
+  const Real t1169 = t1156 - t1168;
+  const Real t1170 = t1042 * t93;
+  const Real t1171 = t1169 - t1170;
+  const Real t1172 = t1142 * t45;
+  const Real t1173 = t1171 + t1172;
+  const Real t1174 = t31 * t1145;
+  const Real t1175 = t1173 - t1174;
+  const Real t1176 = t110 * t1147;
+  const Real t1177 = t1175 - t1176;
+  const Real t1178 = t189 * t1177;
+  const Real t1179 = t131 * t1177;
+  const Real t1180 = t1178 + t1179;
+  const Real t1181 = t34 * t1145;
+  const Real t1182 = t1042 * t90;
+  const Real t1183 = t1150 * par.k2;
+  const Real t1184 = t1154 * par.r_F;
+  const Real t1185 = t1183 + t1184;
+  const Real t1186 = t1165 * t1110;
+  const Real t1187 = t22 * t1154;
+  const Real t1188 = t1186 + t1187;
+  const Real t1189 = t1185 + t1188;
+  const Real t1190 = t1182 + t1189;
+  const Real t1191 = t1142 * t59;
+  const Real t1192 = t1190 + t1191;
+  const Real t1193 = t1181 + t1192;
+  const Real t1194 = t121 * t1147;
+  const Real t1195 = t1193 + t1194;
+  const Real t1196 = t1180 + t1195;
+  const Real t1197 = t1196 * t196;
+  const Real t1198 = t25 * t1197;
+  const Real t1199 = t1177 - t1198;
+  const Real t1200 = t1199 * t130;
+  const Real t1201 = t1200 * t118;
+  const Real t1202 = t1147 - t1201;
+  const Real t1203 = t109 * t1202;
+  const Real t1204 = t1203 * c_r_p_0_;
+  const Real t1205 = t1014 + t1204;
+  const Real t1206 = t1205 * par.I_Rxx;
+  const Real t1207 = t1013 * t1041;
+  const Real t1208 = t1207 * par.k28;
+  const Real t1209 = t1206 + t1208;
+  const Real t1210 = t1209 * c_r_p_0_;
+  const Real t1211 = c_r_p_0_ * t1011;
+  const Real t1212 = t187 - t1211;
+  const Real t1213 = t1212 * t1041;
+  const Real t1214 = t1213 * par.k29;
+  const Real t1215 = t1203 * s_r_p_0_;
+  const Real t1216 = t1212 * nu[2];
   const Real t1217 = t1215 + t1216;
-  const Real t1218 = t1213 * par.k13;
-  const Real t1219 = t1217 - t1218;
-  const Real t1220 = t1219 + t1106;
-  const Real t1221 = par.k2 * t1211;
-  const Real t1222 = par.k1 * t1194;
-  const Real t1223 = t1221 + t1222;
-  const Real t1224 = t1223 + t1109;
-
-  // rear_wheel: joint force
-  const Real t1225 = t1207 + t1124;
-  const Real t1226 = t1122 * c_r_p_0_;
-  const Real t1227 = t1120 * s_r_p_0_;
-  const Real t1228 = t1226 - t1227;
-  const Real t1229 = t1228 + t1214;
-  const Real t1230 = t1121 * c_r_p_0_;
-  const Real t1231 = t1123 * s_r_p_0_;
-  const Real t1232 = t1230 + t1231;
-  const Real t1233 = t1206 - t1232;
-  const Real t1234 = t1122 * s_r_p_0_;
-  const Real t1235 = t1120 * c_r_p_0_;
-  const Real t1236 = t1234 + t1235;
-  const Real t1237 = t1236 * par.r_R;
-  const Real t1238 = t1237 + t1119;
-  const Real t1239 = t1220 - t1238;
-  const Real t1240 = t1236 + t1224;
-
-  // reduced mass matrix
-  const Real t1241 = t157 * t1156;
-  const Real t1242 = t205 * t1240;
-  const Real t1243 = t1225 * t218;
-  const Real t1244 = t1242 + t1243;
-  const Real t1245 = t1229 * t161;
-  const Real t1246 = t1244 - t1245;
-  const Real t1247 = t1239 * t160;
-  const Real t1248 = t1246 - t1247;
-  const Real t1249 = t189 * t1233;
-  const Real t1250 = t1248 - t1249;
-  const Real t1251 = t1250 + t1168;
-  const Real t1252 = t1241 + t1251;
-  const Real t1253 = t146 * t1156;
-  const Real t1254 = t1229 * t151;
-  const Real t1255 = t1225 * t216;
-  const Real t1256 = t203 * t1240;
-  const Real t1257 = t1255 + t1256;
-  const Real t1258 = t1254 + t1257;
-  const Real t1259 = t149 * t1239;
-  const Real t1260 = t1258 - t1259;
-  const Real t1261 = t194 * t1233;
-  const Real t1262 = t1260 - t1261;
-  const Real t1263 = t1262 - t1119;
-  const Real t1264 = t1253 + t1263;
-
-  // rear_wheel: acceleration
-  const Real t1265 = t194 * s_r_p_0_;
-  const Real t1266 = t149 * par.r_R;
-  const Real t1267 = t1266 + t203;
-  const Real t1268 = t1267 * s_r_p_0_;
-  const Real t1269 = t151 * c_r_p_0_;
+  const Real t1218 = t1217 * par.I_Rxx;
+  const Real t1219 = t1214 - t1218;
+  const Real t1220 = t1219 * s_r_p_0_;
+  const Real t1221 = t1210 - t1220;
+  const Real t1222 = t1203 * t101;
+  const Real t1223 = t1142 - t1222;
+  const Real t1224 = t1058 * t1011;
+  const Real t1225 = t1064 * nu[0];
+  const Real t1226 = t1224 + t1225;
+  const Real t1227 = t1223 - t1226;
+  const Real t1228 = t1227 - t175;
+  const Real t1229 = t1023 * nu[0];
+  const Real t1230 = t1203 - t1229;
+  const Real t1231 = t1230 * par.k13;
+  const Real t1232 = t1228 + t1231;
+  const Real t1233 = s_r_p_1_ * t1232;
+  const Real t1234 = t1200 * t58;
+  const Real t1235 = t1042 - t1234;
+  const Real t1236 = t1074 * t1011;
+  const Real t1237 = t1064 * t1023;
+  const Real t1238 = t1236 - t1237;
+  const Real t1239 = t1235 + t1238;
+  const Real t1240 = t1239 - t177;
+  const Real t1241 = t1011 * t1011;
+  const Real t1242 = t1023 * t1023;
+  const Real t1243 = t1241 + t1242;
+  const Real t1244 = par.k13 * t1243;
+  const Real t1245 = t1240 - t1244;
+  const Real t1246 = par.k2 * t1245;
+  const Real t1247 = t1200 * t101;
+  const Real t1248 = t1247 + t1145;
+  const Real t1249 = t1074 * nu[0];
+  const Real t1250 = t1023 * t1058;
+  const Real t1251 = t1249 + t1250;
+  const Real t1252 = t1248 + t1251;
+  const Real t1253 = t1252 - t176;
+  const Real t1254 = nu[0] * t1011;
+  const Real t1255 = t1254 + t1200;
+  const Real t1256 = t1255 * par.k13;
+  const Real t1257 = t1253 - t1256;
+  const Real t1258 = t1257 * par.k1;
+  const Real t1259 = t1246 - t1258;
+  const Real t1260 = c_r_p_1_ * t1259;
+  const Real t1261 = t1233 + t1260;
+  const Real t1262 = par.m_H * t1261;
+  const Real t1263 = par.k1 * t1203;
+  const Real t1264 = s_r_p_1_ * t1263;
+  const Real t1265 = t1200 * c_r_p_1_;
+  const Real t1266 = t1264 + t1265;
+  const Real t1267 = t1113 * nu[1];
+  const Real t1268 = t1266 - t1267;
+  const Real t1269 = t1113 * t1117;
   const Real t1270 = t1268 + t1269;
-  const Real t1271 = t1267 * c_r_p_0_;
-  const Real t1272 = t151 * s_r_p_0_;
-  const Real t1273 = t1271 - t1272;
-  const Real t1274 = t194 * c_r_p_0_;
-  const Real t1275 = constant<Real>(1.0L) - t149;
-
-  // fork: acceleration
-  const Real t1276 = t149 * s_r_p_1_;
-  const Real t1277 = t194 * par.k1;
-  const Real t1278 = t1277 * c_r_p_1_;
-  const Real t1279 = t1276 - t1278;
-  const Real t1280 = par.k1 * t203;
-  const Real t1281 = t149 * par.k13;
-  const Real t1282 = t1281 + t151;
-  const Real t1283 = t1282 * par.k2;
-  const Real t1284 = t1280 + t1283;
-  const Real t1285 = t1278 - t1276;
-  const Real t1286 = t149 * c_r_p_1_;
-  const Real t1287 = t1277 * s_r_p_1_;
-  const Real t1288 = t1286 + t1287;
-  const Real t1289 = t194 * par.k13;
-  const Real t1290 = t216 - t1289;
-  const Real t1291 = s_r_p_1_ * t1290;
-  const Real t1292 = t203 * par.k2;
-  const Real t1293 = par.k1 * t1282;
-  const Real t1294 = t1292 - t1293;
-  const Real t1295 = c_r_p_1_ * t1294;
-  const Real t1296 = t1291 + t1295;
-  const Real t1297 = t194 * par.k2;
-  const Real t1298 = t1290 * c_r_p_1_;
-  const Real t1299 = s_r_p_1_ * t1294;
-  const Real t1300 = t1298 - t1299;
-
-  // front_wheel: acceleration
-  const Real t1301 = par.k12 * t1288;
-  const Real t1302 = t1284 + t1301;
-  const Real t1303 = par.k2 * t1302;
-  const Real t1304 = par.k11 * t1288;
-  const Real t1305 = t1304 + t1296;
-  const Real t1306 = par.k1 * t1305;
-  const Real t1307 = t1303 - t1306;
-  const Real t1308 = c_r_p_2_ * t1307;
-  const Real t1309 = par.k2 * t1305;
-  const Real t1310 = par.k1 * t1302;
-  const Real t1311 = t1309 + t1310;
-  const Real t1312 = t1311 * s_r_p_2_;
-  const Real t1313 = t1308 + t1312;
-  const Real t1314 = t1311 * c_r_p_2_;
-  const Real t1315 = t1307 * s_r_p_2_;
-  const Real t1316 = t1314 - t1315;
-  const Real t1317 = par.k2 * t1297;
-  const Real t1318 = par.k1 * t1285;
-  const Real t1319 = t1317 + t1318;
-  const Real t1320 = t1319 * s_r_p_2_;
-  const Real t1321 = par.k2 * t1285;
-  const Real t1322 = par.k1 * t1297;
+  const Real t1271 = par.k8 * t1270;
+  const Real t1272 = t1164 * t1164;
+  const Real t1273 = t1117 * t1117;
+  const Real t1274 = t1272 + t1273;
+  const Real t1275 = par.k10 * t1274;
+  const Real t1276 = t1271 - t1275;
+  const Real t1277 = t1262 + t1276;
+  const Real t1278 = t1113 * t1113;
+  const Real t1279 = t1278 + t1272;
+  const Real t1280 = par.k11 * t1279;
+  const Real t1281 = t1269 - t1268;
+  const Real t1282 = t1281 * par.k12;
+  const Real t1283 = t1280 + t1282;
+  const Real t1284 = par.k1 * t1245;
+  const Real t1285 = t1257 * par.k2;
+  const Real t1286 = t1284 + t1285;
+  const Real t1287 = t1283 + t1286;
+  const Real t1288 = par.k1 * t1287;
+  const Real t1289 = t1270 * par.k11;
+  const Real t1290 = par.k12 * t1274;
+  const Real t1291 = t1289 + t1290;
+  const Real t1292 = t1261 - t1291;
+  const Real t1293 = par.k2 * t1292;
+  const Real t1294 = t1288 + t1293;
+  const Real t1295 = t1294 * c_r_p_2_;
+  const Real t1296 = par.k2 * t1287;
+  const Real t1297 = par.k1 * t1292;
+  const Real t1298 = t1296 - t1297;
+  const Real t1299 = t1298 * s_r_p_2_;
+  const Real t1300 = t1295 - t1299;
+  const Real t1301 = t1300 * par.m_F;
+  const Real t1302 = t1301 * c_r_p_2_;
+  const Real t1303 = t1294 * s_r_p_2_;
+  const Real t1304 = c_r_p_2_ * t1298;
+  const Real t1305 = t1303 + t1304;
+  const Real t1306 = t1305 * par.m_F;
+  const Real t1307 = t1306 * s_r_p_2_;
+  const Real t1308 = t1302 + t1307;
+  const Real t1309 = t1308 * par.k2;
+  const Real t1310 = t1306 * c_r_p_2_;
+  const Real t1311 = t1301 * s_r_p_2_;
+  const Real t1312 = t1310 - t1311;
+  const Real t1313 = t1312 * par.k1;
+  const Real t1314 = t1309 - t1313;
+  const Real t1315 = t1277 + t1314;
+  const Real t1316 = s_r_p_1_ * t1315;
+  const Real t1317 = t1203 * par.k2;
+  const Real t1318 = t1113 * t1164;
+  const Real t1319 = t1317 - t1318;
+  const Real t1320 = t1319 * par.k10;
+  const Real t1321 = s_r_p_1_ * t1200;
+  const Real t1322 = c_r_p_1_ * t1263;
   const Real t1323 = t1321 - t1322;
-  const Real t1324 = c_r_p_2_ * t1323;
-  const Real t1325 = t1320 + t1324;
-  const Real t1326 = t146 + t1288;
-  const Real t1327 = t1279 * par.k11;
-  const Real t1328 = par.k12 * t1297;
-  const Real t1329 = t1327 + t1328;
-  const Real t1330 = t1300 - t1329;
-  const Real t1331 = t1323 * s_r_p_2_;
-  const Real t1332 = c_r_p_2_ * t1319;
-  const Real t1333 = t1331 - t1332;
-
-  // frame: wrench
-  const Real t1334 = t216 * par.k16;
-  const Real t1335 = t194 * par.k14;
-  const Real t1336 = t1334 - t1335;
-  const Real t1337 = t216 * par.m_B;
-  const Real t1338 = t194 * par.k16;
-  const Real t1339 = t1337 - t1338;
-  const Real t1340 = t149 * par.k16;
-  const Real t1341 = t151 * par.m_B;
-  const Real t1342 = t1340 + t1341;
-  const Real t1343 = t203 * par.m_B;
-  const Real t1344 = t149 * par.k15;
-  const Real t1345 = t1343 - t1344;
-  const Real t1346 = t203 * par.k15;
-  const Real t1347 = par.k16 * t151;
-  const Real t1348 = t1346 - t1347;
-  const Real t1349 = t149 * par.k4;
-  const Real t1350 = t1348 - t1349;
-
-  // rear_wheel: wrench
-  const Real t1351 = t1265 * par.I_Rxx;
-  const Real t1352 = t216 * par.m_R;
-  const Real t1353 = par.I_Ryy * t1275;
-  const Real t1354 = par.I_Rxx * t1274;
-  const Real t1355 = t1270 * par.m_R;
-  const Real t1356 = t1273 * par.m_R;
-
-  // fork: wrench
-  const Real t1357 = par.m_H * t1296;
-  const Real t1358 = par.k8 * t1288;
-  const Real t1359 = t1357 - t1358;
-  const Real t1360 = t1279 * par.k8;
-  const Real t1361 = par.k10 * t1297;
-  const Real t1362 = t1360 - t1361;
-  const Real t1363 = par.m_H * t1300;
-  const Real t1364 = t1362 + t1363;
-  const Real t1365 = t1284 * par.m_H;
-  const Real t1366 = par.k10 * t1288;
-  const Real t1367 = t1365 + t1366;
-  const Real t1368 = t1285 * par.k17;
-  const Real t1369 = par.k5 * t1297;
-  const Real t1370 = t1368 - t1369;
-  const Real t1371 = par.k8 * t1300;
-  const Real t1372 = t1370 - t1371;
-  const Real t1373 = par.k10 * t1300;
-  const Real t1374 = par.k6 * t1297;
-  const Real t1375 = t1279 * par.k5;
-  const Real t1376 = t1374 + t1375;
-  const Real t1377 = t1373 - t1376;
-  const Real t1378 = par.k8 * t1296;
-  const Real t1379 = t1284 * par.k10;
-  const Real t1380 = t1378 - t1379;
-  const Real t1381 = par.k7 * t1288;
-  const Real t1382 = t1380 - t1381;
-
-  // front_wheel: wrench
-  const Real t1383 = par.m_F * t1330;
-  const Real t1384 = t1313 * par.m_F;
-  const Real t1385 = par.I_Fxx * t1325;
-  const Real t1386 = par.I_Fyy * t1326;
-  const Real t1387 = par.I_Fxx * t1333;
-  const Real t1388 = t1316 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1389 = c_r_p_2_ * t1388;
-  const Real t1390 = t1384 * s_r_p_2_;
-  const Real t1391 = t1389 + t1390;
-  const Real t1392 = t1391 * par.k2;
-  const Real t1393 = t1384 * c_r_p_2_;
-  const Real t1394 = t1388 * s_r_p_2_;
-  const Real t1395 = t1393 - t1394;
-  const Real t1396 = par.k1 * t1395;
-  const Real t1397 = t1392 - t1396;
-  const Real t1398 = par.k11 * t1397;
-  const Real t1399 = t1391 * par.k1;
-  const Real t1400 = t1395 * par.k2;
-  const Real t1401 = t1399 + t1400;
-  const Real t1402 = t1401 * par.k12;
-  const Real t1403 = t1398 + t1402;
-  const Real t1404 = t1386 + t1403;
-  const Real t1405 = t1382 - t1404;
-  const Real t1406 = t1387 * s_r_p_2_;
-  const Real t1407 = c_r_p_2_ * t1385;
-  const Real t1408 = t1406 + t1407;
-  const Real t1409 = t1408 * par.k2;
-  const Real t1410 = c_r_p_2_ * t1387;
-  const Real t1411 = t1385 * s_r_p_2_;
-  const Real t1412 = t1410 - t1411;
-  const Real t1413 = t1412 * par.k1;
-  const Real t1414 = t1409 - t1413;
-  const Real t1415 = t1383 * par.k11;
-  const Real t1416 = t1414 + t1415;
-  const Real t1417 = t1372 + t1416;
-  const Real t1418 = par.k1 * t1408;
-  const Real t1419 = t1412 * par.k2;
-  const Real t1420 = t1418 + t1419;
-  const Real t1421 = t1383 * par.k12;
+  const Real t1324 = t1164 * nu[1];
+  const Real t1325 = t1323 - t1324;
+  const Real t1326 = t1164 * t1117;
+  const Real t1327 = t1325 + t1326;
+  const Real t1328 = par.k8 * t1327;
+  const Real t1329 = t1320 - t1328;
+  const Real t1330 = t1232 * c_r_p_1_;
+  const Real t1331 = s_r_p_1_ * t1259;
+  const Real t1332 = t1330 - t1331;
+  const Real t1333 = t1332 * par.m_H;
+  const Real t1334 = t1329 + t1333;
+  const Real t1335 = t1319 * par.k12;
+  const Real t1336 = par.k11 * t1327;
+  const Real t1337 = t1335 + t1336;
+  const Real t1338 = t1332 + t1337;
+  const Real t1339 = par.m_F * t1338;
+  const Real t1340 = t1334 + t1339;
+  const Real t1341 = t1340 * c_r_p_1_;
+  const Real t1342 = t1316 + t1341;
+  const Real t1343 = t1342 * par.k13;
+  const Real t1344 = par.k2 * t1317;
+  const Real t1345 = par.k1 * t1325;
+  const Real t1346 = t1344 - t1345;
+  const Real t1347 = t1346 * c_r_p_2_;
+  const Real t1348 = par.k1 * t1317;
+  const Real t1349 = par.k2 * t1325;
+  const Real t1350 = t1348 + t1349;
+  const Real t1351 = t1350 * s_r_p_2_;
+  const Real t1352 = t1347 + t1351;
+  const Real t1353 = c_r_p_2_ * t1119;
+  const Real t1354 = t1129 * s_r_p_2_;
+  const Real t1355 = t1353 - t1354;
+  const Real t1356 = t1161 * t1355;
+  const Real t1357 = t1352 - t1356;
+  const Real t1358 = par.I_Fxx * t1357;
+  const Real t1359 = t1165 * t1355;
+  const Real t1360 = par.k36 * t1359;
+  const Real t1361 = t1358 - t1360;
+  const Real t1362 = c_r_p_2_ * t1361;
+  const Real t1363 = t1350 * c_r_p_2_;
+  const Real t1364 = t1346 * s_r_p_2_;
+  const Real t1365 = t1363 - t1364;
+  const Real t1366 = c_r_p_2_ * t1129;
+  const Real t1367 = s_r_p_2_ * t1119;
+  const Real t1368 = t1366 + t1367;
+  const Real t1369 = t1161 * t1368;
+  const Real t1370 = t1365 + t1369;
+  const Real t1371 = par.I_Fxx * t1370;
+  const Real t1372 = t1165 * t1368;
+  const Real t1373 = par.k35 * t1372;
+  const Real t1374 = t1371 - t1373;
+  const Real t1375 = t1374 * s_r_p_2_;
+  const Real t1376 = t1362 - t1375;
+  const Real t1377 = par.k2 * t1376;
+  const Real t1378 = t1361 * s_r_p_2_;
+  const Real t1379 = c_r_p_2_ * t1374;
+  const Real t1380 = t1378 + t1379;
+  const Real t1381 = par.k1 * t1380;
+  const Real t1382 = t1377 + t1381;
+  const Real t1383 = t1339 * par.k12;
+  const Real t1384 = t1382 + t1383;
+  const Real t1385 = t1332 * par.k10;
+  const Real t1386 = par.k6 * t1317;
+  const Real t1387 = t1318 * par.k32;
+  const Real t1388 = t1386 - t1387;
+  const Real t1389 = par.k5 * t1327;
+  const Real t1390 = t1388 + t1389;
+  const Real t1391 = t1385 + t1390;
+  const Real t1392 = t1384 + t1391;
+  const Real t1393 = t1392 * par.k2;
+  const Real t1394 = t1380 * par.k2;
+  const Real t1395 = par.k1 * t1376;
+  const Real t1396 = t1394 - t1395;
+  const Real t1397 = t1339 * par.k11;
+  const Real t1398 = t1396 + t1397;
+  const Real t1399 = par.k5 * t1319;
+  const Real t1400 = t1325 * par.k17;
+  const Real t1401 = par.k30 * t1326;
+  const Real t1402 = t1400 - t1401;
+  const Real t1403 = t1399 + t1402;
+  const Real t1404 = t1332 * par.k8;
+  const Real t1405 = t1403 - t1404;
+  const Real t1406 = t1398 + t1405;
+  const Real t1407 = c_r_p_1_ * t1406;
+  const Real t1408 = t1268 - t1197;
+  const Real t1409 = par.I_Fyy * t1408;
+  const Real t1410 = t1314 * par.k11;
+  const Real t1411 = t1312 * par.k2;
+  const Real t1412 = t1308 * par.k1;
+  const Real t1413 = t1411 + t1412;
+  const Real t1414 = t1413 * par.k12;
+  const Real t1415 = t1410 + t1414;
+  const Real t1416 = t1409 - t1415;
+  const Real t1417 = par.k8 * t1261;
+  const Real t1418 = par.k10 * t1286;
+  const Real t1419 = t1417 - t1418;
+  const Real t1420 = t1268 * par.k7;
+  const Real t1421 = t1269 * par.k31;
   const Real t1422 = t1420 + t1421;
-  const Real t1423 = t1422 + t1377;
-  const Real t1424 = t1383 + t1364;
-  const Real t1425 = t1401 + t1367;
-  const Real t1426 = t1359 + t1397;
+  const Real t1423 = t1273 - t1278;
+  const Real t1424 = par.k5 * t1423;
+  const Real t1425 = t1422 + t1424;
+  const Real t1426 = t1419 + t1425;
+  const Real t1427 = t1416 + t1426;
+  const Real t1428 = s_r_p_1_ * t1427;
+  const Real t1429 = t1407 - t1428;
+  const Real t1430 = par.k1 * t1429;
+  const Real t1431 = t1393 - t1430;
+  const Real t1432 = t1343 + t1431;
+  const Real t1433 = t1203 * par.k14;
+  const Real t1434 = par.k25 * t1229;
+  const Real t1435 = t1433 - t1434;
+  const Real t1436 = t1023 * t1011;
+  const Real t1437 = par.k3 * t1436;
+  const Real t1438 = t1435 - t1437;
+  const Real t1439 = t1228 * par.k16;
+  const Real t1440 = t1438 + t1439;
+  const Real t1441 = t1432 + t1440;
+  const Real t1442 = t1221 + t1441;
+  const Real t1443 = t468 * t1442;
+  const Real t1444 = t1200 - t1254;
+  const Real t1445 = t1444 * par.r_R;
+  const Real t1446 = t1240 - t1445;
+  const Real t1447 = t1446 * s_r_p_0_;
+  const Real t1448 = t188 + t1242;
+  const Real t1449 = t1448 * par.r_R;
+  const Real t1450 = t1253 + t1449;
+  const Real t1451 = t1450 * c_r_p_0_;
+  const Real t1452 = t1447 + t1451;
+  const Real t1453 = t1452 * par.m_R;
+  const Real t1454 = t1453 * c_r_p_0_;
+  const Real t1455 = t1446 * c_r_p_0_;
+  const Real t1456 = t1450 * s_r_p_0_;
+  const Real t1457 = t1455 - t1456;
+  const Real t1458 = t1457 * par.m_R;
+  const Real t1459 = s_r_p_0_ * t1458;
+  const Real t1460 = t1454 - t1459;
+  const Real t1461 = par.m_H * t1286;
+  const Real t1462 = t1281 * par.k10;
+  const Real t1463 = par.k8 * t1279;
+  const Real t1464 = t1462 - t1463;
+  const Real t1465 = t1461 + t1464;
+  const Real t1466 = t1413 + t1465;
+  const Real t1467 = t1466 * par.k2;
+  const Real t1468 = t1315 * c_r_p_1_;
+  const Real t1469 = s_r_p_1_ * t1340;
+  const Real t1470 = t1468 - t1469;
+  const Real t1471 = par.k1 * t1470;
+  const Real t1472 = t1467 - t1471;
+  const Real t1473 = t1253 * par.m_B;
+  const Real t1474 = t1448 * par.k15;
+  const Real t1475 = t1255 * par.k16;
+  const Real t1476 = t1474 + t1475;
+  const Real t1477 = t1473 - t1476;
+  const Real t1478 = t1472 + t1477;
+  const Real t1479 = t1460 + t1478;
+  const Real t1480 = t1479 * t504;
+  const Real t1481 = t1436 * par.r_R;
+  const Real t1482 = t1228 - t1481;
+  const Real t1483 = par.m_R * t1482;
+  const Real t1484 = t1230 * par.k16;
+  const Real t1485 = t1436 * par.k15;
+  const Real t1486 = t1484 + t1485;
+  const Real t1487 = t1228 * par.m_B;
+  const Real t1488 = t1486 + t1487;
+  const Real t1489 = t1342 + t1488;
+  const Real t1490 = t1483 + t1489;
+  const Real t1491 = t1490 * t530;
+  const Real t1492 = t1240 * par.m_B;
+  const Real t1493 = t1444 * par.k15;
+  const Real t1494 = par.k16 * t1243;
+  const Real t1495 = t1493 - t1494;
+  const Real t1496 = t1492 + t1495;
+  const Real t1497 = par.k2 * t1470;
+  const Real t1498 = t1466 * par.k1;
+  const Real t1499 = t1497 + t1498;
+  const Real t1500 = t1496 + t1499;
+  const Real t1501 = t1453 * s_r_p_0_;
+  const Real t1502 = c_r_p_0_ * t1458;
+  const Real t1503 = t1501 + t1502;
+  const Real t1504 = t1500 + t1503;
+  const Real t1505 = t499 * t1504;
+  const Real t1506 = t1491 + t1505;
+  const Real t1507 = t1480 - t1506;
+  const Real t1508 = t1200 * par.I_Ryy;
+  const Real t1509 = t1503 * par.r_R;
+  const Real t1510 = t1508 - t1509;
+  const Real t1511 = t1240 * par.k15;
+  const Real t1512 = t1253 * par.k16;
+  const Real t1513 = t1511 - t1512;
+  const Real t1514 = t1241 - t188;
+  const Real t1515 = par.k3 * t1514;
+  const Real t1516 = par.k4 * t1200;
+  const Real t1517 = t1254 * par.k27;
+  const Real t1518 = t1516 - t1517;
+  const Real t1519 = t1515 + t1518;
+  const Real t1520 = t1513 + t1519;
+  const Real t1521 = s_r_p_1_ * t1406;
+  const Real t1522 = c_r_p_1_ * t1427;
+  const Real t1523 = t1521 + t1522;
+  const Real t1524 = t1472 * par.k13;
+  const Real t1525 = t1523 - t1524;
+  const Real t1526 = t1520 + t1525;
+  const Real t1527 = t1510 + t1526;
+  const Real t1528 = t456 * t1527;
+  const Real t1529 = t464 * t1527;
+  const Real t1530 = t1528 + t1529;
+  const Real t1531 = t1507 + t1530;
+  const Real t1532 = t1443 + t1531;
+  const Real t1533 = t1532 - t1392;
+  const Real t1534 = t453 * t1409;
+  const Real t1535 = t1533 + t1534;
+  const Real t1536 = t232 * t1479;
+  const Real t1537 = t1504 * t229;
+  const Real t1538 = t215 * t1490;
+  const Real t1539 = t1537 + t1538;
+  const Real t1540 = t1536 - t1539;
+  const Real t1541 = t1483 * par.r_R;
+  const Real t1542 = t1219 * c_r_p_0_;
+  const Real t1543 = t1209 * s_r_p_0_;
+  const Real t1544 = t1542 + t1543;
+  const Real t1545 = t1541 + t1544;
+  const Real t1546 = t1230 * par.k3;
+  const Real t1547 = t1436 * par.k26;
+  const Real t1548 = t1546 + t1547;
+  const Real t1549 = t1228 * par.k15;
+  const Real t1550 = t1548 - t1549;
+  const Real t1551 = t1392 * par.k1;
+  const Real t1552 = par.k2 * t1429;
+  const Real t1553 = t1551 + t1552;
+  const Real t1554 = t1550 + t1553;
+  const Real t1555 = t1545 + t1554;
+  const Real t1556 = t1540 - t1555;
+  const Real t1557 = t200 * t1527;
+  const Real t1558 = t1556 + t1557;
+  const Real t1559 = t1442 * t203;
+  const Real t1560 = t1558 + t1559;
+  const Real t1561 = t197 * t1409;
+  const Real t1562 = t1560 + t1561;
+  const Real t1563 = t619 * t1442;
+  const Real t1564 = t490 * t1527;
+  const Real t1565 = t485 * t1527;
+  const Real t1566 = t1564 + t1565;
+  const Real t1567 = t625 * t1504;
+  const Real t1568 = t1490 * t620;
+  const Real t1569 = t1567 + t1568;
+  const Real t1570 = t493 * t1479;
+  const Real t1571 = t1569 + t1570;
+  const Real t1572 = t1566 - t1571;
+  const Real t1573 = t1563 + t1572;
+  const Real t1574 = t1573 - t1508;
+  const Real t1575 = t481 * t1409;
+  const Real t1576 = t1574 + t1575;
+  const Real t1577 = t453 * t210;
+  const Real t1578 = t397 * t499;
+  const Real t1579 = t368 * t530;
+  const Real t1580 = t1578 + t1579;
+  const Real t1581 = t504 * t410;
+  const Real t1582 = t1580 - t1581;
+  const Real t1583 = t464 * t428;
+  const Real t1584 = t456 * t428;
+  const Real t1585 = t1583 + t1584;
+  const Real t1586 = t1582 - t1585;
+  const Real t1587 = t468 * t444;
+  const Real t1588 = t1586 - t1587;
+  const Real t1589 = t1588 + t332;
+  const Real t1590 = t1577 + t1589;
 
-  // fork: joint force
-  const Real t1427 = par.k2 * t1425;
-  const Real t1428 = c_r_p_1_ * t1426;
-  const Real t1429 = s_r_p_1_ * t1424;
-  const Real t1430 = t1428 - t1429;
-  const Real t1431 = par.k1 * t1430;
-  const Real t1432 = t1427 - t1431;
-  const Real t1433 = t1342 + t1432;
-  const Real t1434 = s_r_p_1_ * t1426;
-  const Real t1435 = c_r_p_1_ * t1424;
-  const Real t1436 = t1434 + t1435;
-  const Real t1437 = t1436 + t1339;
-  const Real t1438 = t1436 * par.k13;
-  const Real t1439 = t1423 * par.k2;
-  const Real t1440 = t1417 * c_r_p_1_;
-  const Real t1441 = t1405 * s_r_p_1_;
-  const Real t1442 = t1440 - t1441;
-  const Real t1443 = t1442 * par.k1;
-  const Real t1444 = t1439 - t1443;
-  const Real t1445 = t1438 + t1444;
-  const Real t1446 = t1336 + t1445;
-  const Real t1447 = par.k1 * t1425;
-  const Real t1448 = par.k2 * t1430;
-  const Real t1449 = t1447 + t1448;
-  const Real t1450 = t1449 + t1345;
-  const Real t1451 = t1405 * c_r_p_1_;
-  const Real t1452 = s_r_p_1_ * t1417;
-  const Real t1453 = t1451 + t1452;
-  const Real t1454 = t1432 * par.k13;
-  const Real t1455 = t1453 - t1454;
-  const Real t1456 = t1455 + t1350;
-
-  // rear_wheel: joint force
-  const Real t1457 = t1351 * s_r_p_0_;
-  const Real t1458 = t1354 * c_r_p_0_;
-  const Real t1459 = t1457 + t1458;
-  const Real t1460 = t1446 - t1459;
-  const Real t1461 = t1355 * c_r_p_0_;
-  const Real t1462 = t1356 * s_r_p_0_;
-  const Real t1463 = t1461 - t1462;
-  const Real t1464 = t1463 + t1433;
-  const Real t1465 = t1437 + t1352;
-  const Real t1466 = t1355 * s_r_p_0_;
-  const Real t1467 = t1356 * c_r_p_0_;
-  const Real t1468 = t1466 + t1467;
-  const Real t1469 = t1468 * par.r_R;
-  const Real t1470 = t1353 - t1469;
-  const Real t1471 = t1470 + t1456;
-  const Real t1472 = t1468 + t1450;
-
-  // reduced mass matrix
-  const Real t1473 = t203 * t1472;
-  const Real t1474 = t216 * t1465;
-  const Real t1475 = t1473 + t1474;
-  const Real t1476 = t1464 * t151;
-  const Real t1477 = t1475 + t1476;
-  const Real t1478 = t149 * t1471;
-  const Real t1479 = t1477 - t1478;
-  const Real t1480 = t1460 * t194;
-  const Real t1481 = t1479 - t1480;
-  const Real t1482 = t1481 + t1353;
-  const Real t1483 = t146 * t1386;
-  const Real t1484 = t1482 + t1483;
-
-  M_r[0] = t1008;
-  M_r[1] = t1032;
-  M_r[2] = t1020;
-  M_r[3] = t1032;
-  M_r[4] = t1252;
-  M_r[5] = t1264;
-  M_r[6] = t1020;
-  M_r[7] = t1264;
-  M_r[8] = t1484;
-  f_r[0] = t744;
-  f_r[1] = t756;
-  f_r[2] = t768;
+  M_r[0] = t447;
+  M_r[1] = t1590;
+  M_r[2] = t1006;
+  M_r[3] = t1590;
+  M_r[4] = t992;
+  M_r[5] = t741;
+  M_r[6] = t1006;
+  M_r[7] = t741;
+  M_r[8] = t978;
+  f_r[0] = t1562;
+  f_r[1] = t1535;
+  f_r[2] = t1576;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: orthogonal basis, projected recursion
-/// operations: 728 add, 1003 mul, 14 div, 2 sqrt, 3 sin, 3 cos
+/// route: orthogonal basis, projected recursion, compensated beyond 25 ulps
+/// operations: 1019 add, 1161 mul, 14 div, 5 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -3823,6 +3986,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
   using std::sin;
   using std::sqrt;
   using detail::constant;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
   const Real s_r_p_1_ = sin(r_p[1]);
@@ -3884,2668 +4049,2040 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // joint angles
   const Real t49 = s_r_p_1_ * par.k1;
-  const Real t50 = t22 * t49;
-  const Real t51 = par.c * t49;
-  const Real t52 = s_r_p_1_ * par.k13;
-  const Real t53 = par.k1 * t52;
-  const Real t54 = t51 - t53;
+  const Real t50 = t28 * t49;
+  const Real t51 = s_r_p_1_ * par.k13;
+  const Real t52 = par.k2 * t51;
+  const Real t53 = par.r_F * t49;
+  const Real t54 = t52 - t53;
   const Real t55 = t54 - t50;
+  const Real t56 = s_r_p_1_ * par.k2;
 
   // kernel
-  const Real t56 = t49 * t45;
-  const Real t57 = t56 + t55;
-  const Real t58 = t57 * t48;
+  const Real t57 = t56 * t45;
+  const Real t58 = t55 - t57;
+  const Real t59 = t48 * t58;
 
   // joint angles
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t28 * t59;
-  const Real t61 = t60 - t50;
-  const Real t62 = t59 * par.r_F;
-  const Real t63 = t62 + t51;
-  const Real t64 = s_r_p_1_ * par.k23;
-  const Real t65 = t63 - t64;
-  const Real t66 = t61 + t65;
-  const Real t67 = R[8] * t43;
-  const Real t68 = t67 * par.r_R;
-  const Real t69 = t68 - par.r_R;
+  const Real t60 = t28 * t56;
+  const Real t61 = t22 * t49;
+  const Real t62 = t60 - t61;
+  const Real t63 = t56 * par.r_F;
+  const Real t64 = par.c * t49;
+  const Real t65 = t63 + t64;
+  const Real t66 = s_r_p_1_ * par.k23;
+  const Real t67 = t65 - t66;
+  const Real t68 = t62 + t67;
+  const Real t69 = R[8] * t43;
+  const Real t70 = t69 * par.r_R;
+  const Real t71 = t70 - par.r_R;
 
   // kernel
-  const Real t70 = t69 * t59;
-  const Real t71 = t70 + t66;
-  const Real t72 = t71 + t56;
-  const Real t73 = t58 * t72;
+  const Real t72 = t71 * t56;
+  const Real t73 = t72 + t68;
+  const Real t74 = t49 * t45;
+  const Real t75 = t73 + t74;
+  const Real t76 = t75 * t59;
+  const Real t77 = -t76;
 
   // joint angles
-  const Real t74 = t22 * c_r_p_1_;
-  const Real t75 = c_r_p_1_ * par.k23;
-  const Real t76 = t75 * par.k1;
-  const Real t77 = t76 + par.k21;
-  const Real t78 = c_r_p_1_ * par.c;
-  const Real t79 = t78 - t77;
-  const Real t80 = t79 - t74;
-  const Real t81 = c_r_p_1_ * par.k2;
-  const Real t82 = par.k1 * t81;
-  const Real t83 = par.k22 - t82;
+  const Real t78 = t28 * c_r_p_1_;
+  const Real t79 = c_r_p_1_ * par.k23;
+  const Real t80 = t79 * par.k2;
+  const Real t81 = t80 - par.k24;
+  const Real t82 = c_r_p_1_ * par.r_F;
+  const Real t83 = t81 - t82;
+  const Real t84 = t83 - t78;
+  const Real t85 = c_r_p_1_ * par.k2;
+  const Real t86 = par.k2 * t85;
+  const Real t87 = par.k19 + t86;
 
   // kernel
-  const Real t84 = t69 * t83;
-  const Real t85 = t80 - t84;
-  const Real t86 = t25 * t45;
-  const Real t87 = t86 + t85;
-  const Real t88 = t87 - t73;
-  const Real t89 = constant<Real>(1.0L) / t88;
+  const Real t88 = t71 * t87;
+  const Real t89 = t84 - t88;
+  const Real t90 = t30 * t45;
+  const Real t91 = t89 + t90;
+  const Real t92 = sum_error(t91, t77);
+  const Real t93 = product_error(t75, t59);
+  const Real t94 = t92 - t93;
 
   // joint angles
-  const Real t90 = t28 * t49;
-  const Real t91 = par.k2 * t52;
-  const Real t92 = par.r_F * t49;
-  const Real t93 = t91 - t92;
-  const Real t94 = t93 - t90;
+  const Real t95 = par.k1 * t51;
+  const Real t96 = t64 - t95;
+  const Real t97 = t96 - t61;
 
   // kernel
-  const Real t95 = t59 * t45;
-  const Real t96 = t94 - t95;
-  const Real t97 = t48 * t96;
-  const Real t98 = t72 * t97;
+  const Real t98 = t74 + t97;
+  const Real t99 = t98 * t48;
+  const Real t100 = t99 * t75;
 
   // joint angles
-  const Real t99 = t28 * c_r_p_1_;
-  const Real t100 = t75 * par.k2;
-  const Real t101 = t100 - par.k24;
-  const Real t102 = c_r_p_1_ * par.r_F;
-  const Real t103 = t101 - t102;
-  const Real t104 = t103 - t99;
-  const Real t105 = par.k2 * t81;
-  const Real t106 = par.k19 + t105;
+  const Real t101 = t22 * c_r_p_1_;
+  const Real t102 = t79 * par.k1;
+  const Real t103 = t102 + par.k21;
+  const Real t104 = c_r_p_1_ * par.c;
+  const Real t105 = t104 - t103;
+  const Real t106 = t105 - t101;
+  const Real t107 = par.k1 * t85;
+  const Real t108 = par.k22 - t107;
 
   // kernel
-  const Real t107 = t69 * t106;
-  const Real t108 = t104 - t107;
-  const Real t109 = t30 * t45;
-  const Real t110 = t108 + t109;
-  const Real t111 = t110 - t98;
-  const Real t112 = t111 * t89;
-  const Real t113 = t22 * t112;
-  const Real t114 = t113 - t28;
-  const Real t115 = constant<Real>(1.0L) / t114;
+  const Real t109 = t71 * t108;
+  const Real t110 = t106 - t109;
+  const Real t111 = t25 * t45;
+  const Real t112 = t111 + t110;
+  const Real t113 = t112 - t100;
+  const Real t114 = constant<Real>(1.0L) / t113;
+  const Real t115 = t94 * t114;
+  const Real t116 = t91 - t76;
+  const Real t117 = product_error(t116, t114);
+
+  // passive accelerations
+  const Real t118 = t117 + t115;
 
   // joint angles
-  const Real t116 = t22 * t83;
-  const Real t117 = t28 * t106;
-  const Real t118 = t116 + t117;
-  const Real t119 = par.r_F * t106;
-  const Real t120 = t83 * par.c;
-  const Real t121 = t119 - t120;
-  const Real t122 = t121 + t118;
-  const Real t123 = par.r_R - t68;
+  const Real t119 = par.k1 * t28;
+  const Real t120 = t22 * par.k2;
+  const Real t121 = t119 + t120;
+  const Real t122 = t121 + par.k12;
 
   // kernel
-  const Real t124 = c_r_p_1_ * t123;
-  const Real t125 = t122 - t124;
-  const Real t126 = t58 * t125;
+  const Real t123 = t99 * t122;
 
-  // joint angles
-  const Real t127 = t22 * t59;
-  const Real t128 = t59 * par.c;
-  const Real t129 = t127 - t128;
+  // passive accelerations
+  const Real t124 = t118 * t123;
 
   // kernel
-  const Real t130 = t123 * t49;
-  const Real t131 = t129 + t130;
-  const Real t132 = t131 - t126;
-  const Real t133 = t132 * t112;
-  const Real t134 = t125 * t97;
+  const Real t125 = t116 * t114;
+  const Real t126 = product_error(t99, t122);
+  const Real t127 = t126 * t125;
 
-  // joint angles
-  const Real t135 = t62 + t60;
+  // passive accelerations
+  const Real t128 = t127 + t124;
 
   // kernel
-  const Real t136 = t59 * t123;
-  const Real t137 = t135 - t136;
-  const Real t138 = t137 - t134;
-  const Real t139 = t138 - t133;
-  const Real t140 = t139 * t115;
-  const Real t141 = t22 * t140;
-  const Real t142 = t132 + t141;
-  const Real t143 = t89 * t142;
-  const Real t144 = t72 * t143;
-  const Real t145 = t125 - t144;
-  const Real t146 = t145 * t48;
-  const Real t147 = t146 * nu[0];
+  const Real t129 = product_error(t123, t125);
 
-  // joint angles
-  const Real t148 = par.k1 * t28;
-  const Real t149 = t22 * par.k2;
-  const Real t150 = t148 + t149;
-  const Real t151 = t150 + par.k12;
+  // passive accelerations
+  const Real t130 = t128 + t129;
 
   // kernel
-  const Real t152 = t58 * t151;
-  const Real t153 = t152 * t112;
-  const Real t154 = t151 * t97;
-  const Real t155 = t153 - t154;
-  const Real t156 = t155 * t115;
-  const Real t157 = t156 * t22;
-  const Real t158 = t157 - t152;
-  const Real t159 = t158 * t89;
-  const Real t160 = t159 * t72;
-  const Real t161 = t151 - t160;
-  const Real t162 = t48 * t161;
-  const Real t163 = t162 * nu[1];
-  const Real t164 = t147 + t163;
-  const Real t165 = t59 * t68;
-  const Real t166 = t56 + t165;
-  const Real t167 = t58 * t166;
-  const Real t168 = t83 * t68;
-  const Real t169 = t86 - t168;
-  const Real t170 = t169 - t167;
-  const Real t171 = t170 * t112;
-  const Real t172 = t166 * t97;
-  const Real t173 = t68 * t106;
-  const Real t174 = t109 - t173;
-  const Real t175 = t174 - t172;
-  const Real t176 = t175 - t171;
-  const Real t177 = t176 * t115;
-  const Real t178 = t22 * t177;
-  const Real t179 = t170 + t178;
-  const Real t180 = t179 * t89;
-  const Real t181 = t180 * t72;
-  const Real t182 = t166 - t181;
-  const Real t183 = t182 * t48;
-  const Real t184 = t183 * nu[2];
-  const Real t185 = t164 + t184;
+  const Real t131 = product_error(t122, t59);
 
-  // joint angles
-  const Real t186 = t185 * R[7];
+  // passive accelerations
+  const Real t132 = t130 - t131;
 
   // kernel
-  const Real t187 = t159 * nu[1];
-  const Real t188 = t143 * nu[0];
-  const Real t189 = t187 + t188;
-  const Real t190 = t180 * nu[2];
-  const Real t191 = t190 + t189;
+  const Real t133 = t123 * t125;
+  const Real t134 = t122 * t59;
+  const Real t135 = t133 - t134;
 
-  // joint angles
-  const Real t192 = R[8] * t191;
-  const Real t193 = t192 - t186;
-  const Real t194 = par.k2 * t193;
-  const Real t195 = t191 * R[6];
-  const Real t196 = nu[0] * R[7];
-  const Real t197 = t195 + t196;
-  const Real t198 = t197 * par.k1;
-  const Real t199 = t194 + t198;
-  const Real t200 = c_r_p_1_ * t199;
-  const Real t201 = s_r_p_1_ * nu[1];
-  const Real t202 = t201 * t3;
-  const Real t203 = t200 - t202;
-  const Real t204 = t185 * R[6];
-  const Real t205 = R[8] * nu[0];
-  const Real t206 = t205 + t204;
-  const Real t207 = s_r_p_1_ * t206;
-  const Real t208 = c_r_p_1_ * nu[1];
-  const Real t209 = t208 * R[7];
-  const Real t210 = t207 + t209;
-  const Real t211 = t203 + t210;
-  const Real t212 = t211 * par.k2;
-  const Real t213 = par.k1 * t193;
-  const Real t214 = t197 * par.k2;
-  const Real t215 = t213 - t214;
-  const Real t216 = t215 * par.k1;
-  const Real t217 = t216 + t212;
-  const Real t218 = t217 * t16;
-  const Real t219 = t218 * constant<Real>(2.0L);
-  const Real t220 = t211 * par.k1;
-  const Real t221 = t215 * par.k2;
-  const Real t222 = t220 - t221;
-  const Real t223 = t222 * t12;
-  const Real t224 = t223 * constant<Real>(2.0L);
-  const Real t225 = t219 + t224;
-
-  // joint angles
-  const Real t226 = constant<Real>(2.0L) * t19;
-
-  // joint angles
-  const Real t227 = t225 / t226;
-  const Real t228 = t227 * t20;
-  const Real t229 = t228 / t19;
-  const Real t230 = t229 * t16;
-  const Real t231 = t217 * t20;
-  const Real t232 = t231 - t230;
-  const Real t233 = t232 * par.r_F;
-  const Real t234 = par.k1 * t185;
-  const Real t235 = par.k2 * nu[0];
-  const Real t236 = t235 + t234;
-  const Real t237 = t236 * c_r_p_1_;
-  const Real t238 = s_r_p_1_ * t191;
-  const Real t239 = t237 - t238;
-  const Real t240 = t239 * par.k1;
-  const Real t241 = t185 * par.k2;
-  const Real t242 = par.k1 * nu[0];
-  const Real t243 = t242 - t241;
-  const Real t244 = t243 + nu[1];
-  const Real t245 = t244 * par.k2;
-  const Real t246 = t245 - t240;
-  const Real t247 = t246 * t233;
-  const Real t248 = t236 * t201;
-  const Real t249 = t191 * t208;
-  const Real t250 = t249 + t248;
-  const Real t251 = par.k1 * t250;
-  const Real t252 = t22 * t251;
-  const Real t253 = t247 + t252;
-  const Real t254 = t229 * t12;
-  const Real t255 = t222 * t20;
-  const Real t256 = t255 - t254;
-  const Real t257 = par.r_F * t256;
-  const Real t258 = t239 * par.k2;
-  const Real t259 = t244 * par.k1;
-  const Real t260 = t259 + t258;
-  const Real t261 = t260 * t257;
-  const Real t262 = par.k2 * t250;
-  const Real t263 = t28 * t262;
-  const Real t264 = t261 - t263;
-  const Real t265 = t253 + t264;
-  const Real t266 = par.c * t251;
-  const Real t267 = par.r_F * t262;
-  const Real t268 = t266 + t267;
+  // passive accelerations
+  const Real t136 = t132 + t135;
+  const Real t137 = t118 * t22;
 
   // kernel
-  const Real t269 = t45 * t146;
-  const Real t270 = t269 - t123;
-  const Real t271 = t270 * nu[0];
-  const Real t272 = t162 * t45;
-  const Real t273 = t272 * nu[1];
-  const Real t274 = t273 + t271;
-  const Real t275 = t183 * t45;
-  const Real t276 = t275 * nu[2];
-  const Real t277 = t276 + t274;
+  const Real t138 = t22 * t125;
 
-  // joint angles
-  const Real t278 = t185 * par.k13;
-  const Real t279 = t277 - t278;
-  const Real t280 = t201 * t279;
+  // passive accelerations
+  const Real t139 = t138 + t137;
+  const Real t140 = t139 - t28;
+  const Real t141 = constant<Real>(1.0L) / t140;
+  const Real t142 = t136 * t141;
+  const Real t143 = t22 * t142;
 
   // kernel
-  const Real t281 = t180 * t45;
-  const Real t282 = t45 - t281;
-  const Real t283 = nu[2] * t282;
-  const Real t284 = t159 * t45;
-  const Real t285 = t284 * nu[1];
-  const Real t286 = t143 * t45;
-  const Real t287 = t286 * nu[0];
-  const Real t288 = t285 + t287;
-  const Real t289 = t283 - t288;
+  const Real t144 = -t123;
+
+  // passive accelerations
+  const Real t145 = sum_error(t143, t144);
+  const Real t146 = t145 - t126;
+  const Real t147 = t146 * t114;
+  const Real t148 = t143 - t123;
+  const Real t149 = product_error(t148, t114);
+  const Real t150 = t147 + t149;
+  const Real t151 = t150 * t75;
+  const Real t152 = t148 * t114;
+  const Real t153 = product_error(t152, t75);
+  const Real t154 = t153 + t151;
+  const Real t155 = t152 * t75;
+  const Real t156 = t122 - t155;
+  const Real t157 = t156 - t154;
+  const Real t158 = t48 * t157;
+  const Real t159 = t158 * nu[1];
 
   // joint angles
-  const Real t290 = t191 * par.k13;
-  const Real t291 = t289 + t290;
-  const Real t292 = t291 * par.k1;
+  const Real t160 = t22 * t108;
+  const Real t161 = t28 * t87;
+  const Real t162 = t160 + t161;
+  const Real t163 = par.r_F * t87;
+  const Real t164 = t108 * par.c;
+  const Real t165 = t163 - t164;
+  const Real t166 = t165 + t162;
+  const Real t167 = par.r_R - t70;
 
   // kernel
-  const Real t293 = t180 * t69;
-  const Real t294 = t293 - t68;
-  const Real t295 = t294 * nu[2];
-  const Real t296 = t69 * t159;
-  const Real t297 = t296 * nu[1];
-  const Real t298 = t69 * t143;
-  const Real t299 = t298 * nu[0];
-  const Real t300 = t297 + t299;
-  const Real t301 = t295 + t300;
+  const Real t168 = c_r_p_1_ * t167;
+  const Real t169 = t166 - t168;
+  const Real t170 = t99 * t169;
 
   // joint angles
-  const Real t302 = par.k2 * t301;
-  const Real t303 = t302 - t292;
-  const Real t304 = t303 * t208;
-  const Real t305 = t304 + t280;
-  const Real t306 = t268 + t305;
-
-  // drift of the kernel
-  const Real t307 = t306 - t265;
-
-  // joint angles
-  const Real t308 = R[6] * t193;
-  const Real t309 = t308 * constant<Real>(2.0L);
-  const Real t310 = t197 * R[8];
-  const Real t311 = t310 * constant<Real>(2.0L);
-  const Real t312 = t309 - t311;
-
-  // joint angles
-  const Real t313 = constant<Real>(2.0L) * t42;
-
-  // joint angles
-  const Real t314 = t312 / t313;
-  const Real t315 = t314 * t43;
-  const Real t316 = t315 / t42;
-  const Real t317 = R[8] * t316;
-  const Real t318 = t197 * t43;
-  const Real t319 = t317 + t318;
-  const Real t320 = t319 * par.r_R;
-  const Real t321 = nu[2] - t191;
-  const Real t322 = t321 * t320;
-
-  // drift of the kernel
-  const Real t323 = t322 * t59;
-  const Real t324 = t323 + t307;
-
-  // joint angles
-  const Real t325 = t316 * R[6];
-  const Real t326 = t43 * t193;
-  const Real t327 = t326 - t325;
-  const Real t328 = t327 * par.r_R;
-  const Real t329 = t185 * t328;
-  const Real t330 = t320 * nu[0];
-
-  // drift of the kernel
-  const Real t331 = t329 - t330;
-  const Real t332 = c_r_p_1_ * t331;
-  const Real t333 = t324 - t332;
-
-  // joint angles
-  const Real t334 = t321 * t328;
-
-  // drift of the kernel
-  const Real t335 = t334 * t49;
-  const Real t336 = t333 - t335;
-  const Real t337 = t58 * t336;
-
-  // joint angles
-  const Real t338 = t236 * s_r_p_1_;
-  const Real t339 = t191 * c_r_p_1_;
-  const Real t340 = t339 + t338;
+  const Real t171 = t22 * t56;
+  const Real t172 = t56 * par.c;
+  const Real t173 = t171 - t172;
 
   // kernel
-  const Real t341 = t140 * nu[0];
-  const Real t342 = t156 * nu[1];
-  const Real t343 = t341 + t342;
-  const Real t344 = t177 * nu[2];
-  const Real t345 = t343 + t344;
+  const Real t174 = t167 * t49;
+  const Real t175 = t173 + t174;
+  const Real t176 = t175 - t170;
+
+  // passive accelerations
+  const Real t177 = t118 * t176;
+
+  // accelerations
+  const Real t178 = -t170;
+  const Real t179 = sum_error(t175, t178);
+  const Real t180 = product_error(t99, t169);
+  const Real t181 = t179 - t180;
+  const Real t182 = t181 * t125;
+  const Real t183 = t177 + t182;
+
+  // kernel
+  const Real t184 = product_error(t176, t125);
+
+  // accelerations
+  const Real t185 = t184 + t183;
+
+  // kernel
+  const Real t186 = t169 * t59;
+  const Real t187 = -t186;
 
   // joint angles
-  const Real t346 = t345 + t340;
-  const Real t347 = t346 * t233;
-  const Real t348 = t236 * t208;
-  const Real t349 = t191 * t201;
-  const Real t350 = t348 - t349;
-  const Real t351 = t22 * t350;
-  const Real t352 = t347 + t351;
-  const Real t353 = t208 * t279;
-  const Real t354 = t303 * t201;
-  const Real t355 = t353 - t354;
-  const Real t356 = t355 * par.k1;
-  const Real t357 = t350 * par.c;
-  const Real t358 = t357 + t356;
-  const Real t359 = t358 - t352;
+  const Real t188 = t63 + t60;
 
-  // drift of the kernel
-  const Real t360 = t322 * t83;
-  const Real t361 = t359 - t360;
-  const Real t362 = t331 * t49;
-  const Real t363 = t362 + t361;
-  const Real t364 = t25 * t334;
-  const Real t365 = t363 - t364;
-  const Real t366 = t365 - t337;
-  const Real t367 = t366 * t112;
-  const Real t368 = t336 * t97;
+  // kernel
+  const Real t189 = t56 * t167;
+  const Real t190 = t188 - t189;
+  const Real t191 = sum_error(t190, t187);
+  const Real t192 = product_error(t169, t59);
+  const Real t193 = t191 - t192;
+
+  // accelerations
+  const Real t194 = t193 - t185;
+
+  // kernel
+  const Real t195 = t176 * t125;
+  const Real t196 = t190 - t186;
+  const Real t197 = t196 - t195;
+
+  // accelerations
+  const Real t198 = t194 + t197;
+  const Real t199 = t198 * t141;
+  const Real t200 = t22 * t199;
+  const Real t201 = sum_error(t176, t200);
+  const Real t202 = t181 + t201;
+  const Real t203 = t202 * t114;
+  const Real t204 = t200 + t176;
+  const Real t205 = product_error(t114, t204);
+  const Real t206 = t203 + t205;
+  const Real t207 = t75 * t206;
+  const Real t208 = t114 * t204;
+  const Real t209 = product_error(t75, t208);
+  const Real t210 = t209 + t207;
+  const Real t211 = t75 * t208;
+  const Real t212 = t169 - t211;
+  const Real t213 = t212 - t210;
+  const Real t214 = t213 * t48;
+  const Real t215 = t214 * nu[0];
+  const Real t216 = t159 + t215;
+
+  // kernel
+  const Real t217 = t56 * t70;
+  const Real t218 = t74 + t217;
+  const Real t219 = t99 * t218;
+  const Real t220 = t108 * t70;
+  const Real t221 = t111 - t220;
+  const Real t222 = t221 - t219;
+
+  // passive accelerations
+  const Real t223 = t118 * t222;
+
+  // kernel
+  const Real t224 = t222 * t125;
+
+  // accelerations
+  const Real t225 = t223 + t224;
+
+  // kernel
+  const Real t226 = t218 * t59;
+  const Real t227 = t70 * t87;
+  const Real t228 = t90 - t227;
+  const Real t229 = t228 - t226;
+
+  // accelerations
+  const Real t230 = t229 - t225;
+  const Real t231 = t230 * t141;
+  const Real t232 = t22 * t231;
+  const Real t233 = sum_error(t222, t232);
+  const Real t234 = t233 * t114;
+  const Real t235 = t222 + t232;
+  const Real t236 = product_error(t235, t114);
+  const Real t237 = t234 + t236;
+  const Real t238 = t75 * t237;
+  const Real t239 = t235 * t114;
+  const Real t240 = product_error(t239, t75);
+  const Real t241 = t238 + t240;
+  const Real t242 = t239 * t75;
+  const Real t243 = t218 - t242;
+  const Real t244 = t243 - t241;
+  const Real t245 = t244 * t48;
+  const Real t246 = t245 * nu[2];
+  const Real t247 = t246 + t216;
+  const Real t248 = t247 * R[7];
+
+  // passive accelerations
+  const Real t249 = t150 * nu[1];
+  const Real t250 = t152 * nu[1];
+  const Real t251 = t250 + t249;
+
+  // accelerations
+  const Real t252 = t206 * nu[0];
+  const Real t253 = t208 * nu[0];
+  const Real t254 = t252 + t253;
+  const Real t255 = t251 + t254;
+  const Real t256 = t237 * nu[2];
+  const Real t257 = t239 * nu[2];
+  const Real t258 = t256 + t257;
+  const Real t259 = t255 + t258;
+  const Real t260 = R[8] * t259;
+  const Real t261 = t260 - t248;
+  const Real t262 = par.k2 * t261;
+  const Real t263 = t259 * R[6];
 
   // joint angles
-  const Real t369 = t346 * t257;
-  const Real t370 = t28 * t350;
-  const Real t371 = t370 + t369;
-  const Real t372 = t355 * par.k2;
-  const Real t373 = t350 * par.r_F;
-  const Real t374 = t372 + t373;
-  const Real t375 = t374 + t371;
+  const Real t264 = nu[0] * R[7];
 
-  // drift of the kernel
-  const Real t376 = t322 * t106;
-  const Real t377 = t376 + t375;
-  const Real t378 = t59 * t331;
-  const Real t379 = t378 + t377;
-  const Real t380 = t30 * t334;
-  const Real t381 = t379 + t380;
-  const Real t382 = t368 + t381;
-  const Real t383 = t367 + t382;
-  const Real t384 = t383 * t115;
-  const Real t385 = t22 * t384;
-  const Real t386 = t366 - t385;
-  const Real t387 = t386 * t89;
-  const Real t388 = t72 * t387;
-  const Real t389 = t336 - t388;
-  const Real t390 = t48 * t389;
+  // accelerations
+  const Real t265 = t264 + t263;
+  const Real t266 = par.k1 * t265;
+  const Real t267 = t262 + t266;
+  const Real t268 = c_r_p_1_ * t267;
 
-  // fork: acceleration
-  const Real t391 = t390 * par.k1;
-  const Real t392 = s_r_p_1_ * t391;
-  const Real t393 = c_r_p_1_ * t387;
-  const Real t394 = t393 + t392;
-  const Real t395 = t239 * nu[1];
-  const Real t396 = t394 - t395;
-  const Real t397 = t244 * t239;
-  const Real t398 = t397 - t396;
+  // joint angles
+  const Real t269 = s_r_p_1_ * nu[1];
+  const Real t270 = t269 * t3;
 
-  // front_wheel: acceleration
-  const Real t399 = t398 * par.k12;
+  // accelerations
+  const Real t271 = t268 - t270;
+  const Real t272 = t247 * R[6];
 
-  // fork: acceleration
-  const Real t400 = t340 * t340;
-  const Real t401 = t239 * t239;
-  const Real t402 = t400 + t401;
+  // joint angles
+  const Real t273 = R[8] * nu[0];
 
-  // front_wheel: acceleration
-  const Real t403 = par.k11 * t402;
-  const Real t404 = t403 + t399;
+  // accelerations
+  const Real t274 = t273 + t272;
+  const Real t275 = s_r_p_1_ * t274;
 
-  // drift of the kernel
-  const Real t405 = t69 * t387;
-  const Real t406 = t322 - t405;
+  // joint angles
+  const Real t276 = c_r_p_1_ * nu[1];
+  const Real t277 = t276 * R[7];
+
+  // accelerations
+  const Real t278 = t275 + t277;
+  const Real t279 = t278 + t271;
+  const Real t280 = par.k2 * t279;
+  const Real t281 = par.k1 * t261;
+  const Real t282 = t265 * par.k2;
+  const Real t283 = t281 - t282;
+  const Real t284 = t283 * par.k1;
+  const Real t285 = t280 + t284;
+  const Real t286 = t285 * t16;
+  const Real t287 = t286 * constant<Real>(2.0L);
+  const Real t288 = par.k1 * t279;
+  const Real t289 = t283 * par.k2;
+  const Real t290 = t288 - t289;
+  const Real t291 = t290 * t12;
+  const Real t292 = t291 * constant<Real>(2.0L);
+  const Real t293 = t287 + t292;
+
+  // joint angles
+  const Real t294 = constant<Real>(2.0L) * t19;
+
+  // accelerations
+  const Real t295 = t293 / t294;
+  const Real t296 = t295 * t20;
+  const Real t297 = t296 / t19;
+  const Real t298 = t297 * t16;
+  const Real t299 = t285 * t20;
+  const Real t300 = t299 - t298;
+  const Real t301 = t300 * par.r_F;
+  const Real t302 = par.k1 * t247;
+
+  // joint angles
+  const Real t303 = par.k2 * nu[0];
+
+  // accelerations
+  const Real t304 = t303 + t302;
+  const Real t305 = t304 * c_r_p_1_;
+  const Real t306 = t259 * s_r_p_1_;
+  const Real t307 = t305 - t306;
+  const Real t308 = par.k1 * t307;
+  const Real t309 = t247 * par.k2;
+
+  // joint angles
+  const Real t310 = par.k1 * nu[0];
+
+  // accelerations
+  const Real t311 = t310 - t309;
+  const Real t312 = t311 + nu[1];
+  const Real t313 = t312 * par.k2;
+  const Real t314 = t313 - t308;
+  const Real t315 = t314 * t301;
+  const Real t316 = t304 * t269;
+  const Real t317 = t259 * t276;
+  const Real t318 = t316 + t317;
+  const Real t319 = t318 * par.k1;
+  const Real t320 = t22 * t319;
+  const Real t321 = t320 + t315;
+  const Real t322 = t12 * t297;
+  const Real t323 = t290 * t20;
+  const Real t324 = t323 - t322;
+  const Real t325 = par.r_F * t324;
+  const Real t326 = par.k2 * t307;
+  const Real t327 = par.k1 * t312;
+  const Real t328 = t326 + t327;
+  const Real t329 = t328 * t325;
+  const Real t330 = t318 * par.k2;
+  const Real t331 = t28 * t330;
+  const Real t332 = t329 - t331;
+  const Real t333 = t321 + t332;
+  const Real t334 = par.r_F * t330;
+  const Real t335 = t319 * par.c;
+  const Real t336 = t334 + t335;
+  const Real t337 = t214 * t45;
+  const Real t338 = t337 - t167;
+  const Real t339 = t338 * nu[0];
+
+  // passive accelerations
+  const Real t340 = t158 * t45;
+  const Real t341 = t340 * nu[1];
+
+  // accelerations
+  const Real t342 = t341 + t339;
+  const Real t343 = t245 * t45;
+  const Real t344 = t343 * nu[2];
+  const Real t345 = t344 + t342;
+  const Real t346 = t247 * par.k13;
+  const Real t347 = t345 - t346;
+  const Real t348 = t269 * t347;
+  const Real t349 = t259 * par.k13;
+  const Real t350 = t206 * t45;
+  const Real t351 = t208 * t45;
+  const Real t352 = t351 + t350;
+  const Real t353 = t352 * nu[0];
+
+  // passive accelerations
+  const Real t354 = t150 * t45;
+  const Real t355 = t152 * t45;
+  const Real t356 = t354 + t355;
+  const Real t357 = t356 * nu[1];
+
+  // accelerations
+  const Real t358 = t353 + t357;
+  const Real t359 = t237 * t45;
+  const Real t360 = t239 * t45;
+  const Real t361 = t359 + t360;
+  const Real t362 = t45 - t361;
+  const Real t363 = t362 * nu[2];
+  const Real t364 = t363 - t358;
+  const Real t365 = t349 + t364;
+  const Real t366 = par.k1 * t365;
+
+  // passive accelerations
+  const Real t367 = t71 * t150;
+  const Real t368 = t152 * t71;
+  const Real t369 = t367 + t368;
+  const Real t370 = t369 * nu[1];
+
+  // accelerations
+  const Real t371 = t71 * t206;
+  const Real t372 = t71 * t208;
+  const Real t373 = t371 + t372;
+  const Real t374 = t373 * nu[0];
+  const Real t375 = t370 + t374;
+  const Real t376 = t71 * t237;
+  const Real t377 = t71 * t239;
+  const Real t378 = t377 + t376;
+  const Real t379 = t378 - t70;
+  const Real t380 = t379 * nu[2];
+  const Real t381 = t380 + t375;
+  const Real t382 = t381 * par.k2;
+  const Real t383 = t382 - t366;
+  const Real t384 = t276 * t383;
+  const Real t385 = t384 + t348;
+  const Real t386 = t385 + t336;
+  const Real t387 = t386 - t333;
+  const Real t388 = t261 * R[6];
+  const Real t389 = t388 * constant<Real>(2.0L);
+  const Real t390 = R[8] * t265;
+  const Real t391 = t390 * constant<Real>(2.0L);
+  const Real t392 = t389 - t391;
+
+  // joint angles
+  const Real t393 = constant<Real>(2.0L) * t42;
+
+  // accelerations
+  const Real t394 = t392 / t393;
+  const Real t395 = t394 * t43;
+  const Real t396 = t395 / t42;
+  const Real t397 = R[8] * t396;
+  const Real t398 = t43 * t265;
+  const Real t399 = t397 + t398;
+  const Real t400 = par.r_R * t399;
+  const Real t401 = nu[2] - t259;
+  const Real t402 = t401 * t400;
+  const Real t403 = t56 * t402;
+  const Real t404 = t403 + t387;
+  const Real t405 = t396 * R[6];
+  const Real t406 = t43 * t261;
+  const Real t407 = t406 - t405;
+  const Real t408 = t407 * par.r_R;
+  const Real t409 = t408 * t247;
+  const Real t410 = t400 * nu[0];
+  const Real t411 = t409 - t410;
+  const Real t412 = c_r_p_1_ * t411;
+  const Real t413 = t404 - t412;
+  const Real t414 = t401 * t408;
+  const Real t415 = t49 * t414;
+  const Real t416 = t413 - t415;
+  const Real t417 = t99 * t416;
+  const Real t418 = t304 * s_r_p_1_;
+  const Real t419 = t259 * c_r_p_1_;
+  const Real t420 = t419 + t418;
+  const Real t421 = nu[0] * t199;
+
+  // passive accelerations
+  const Real t422 = t142 * nu[1];
+
+  // accelerations
+  const Real t423 = t421 + t422;
+  const Real t424 = t231 * nu[2];
+  const Real t425 = t424 + t423;
+  const Real t426 = t420 + t425;
+  const Real t427 = t426 * t301;
+  const Real t428 = t304 * t276;
+  const Real t429 = t259 * t269;
+  const Real t430 = t428 - t429;
+  const Real t431 = t22 * t430;
+  const Real t432 = t427 + t431;
+  const Real t433 = t347 * t276;
+  const Real t434 = t269 * t383;
+  const Real t435 = t433 - t434;
+  const Real t436 = par.k1 * t435;
+  const Real t437 = par.c * t430;
+  const Real t438 = t436 + t437;
+  const Real t439 = t438 - t432;
+  const Real t440 = t108 * t402;
+  const Real t441 = t439 - t440;
+  const Real t442 = t411 * t49;
+  const Real t443 = t441 + t442;
+  const Real t444 = t25 * t414;
+  const Real t445 = t443 - t444;
+  const Real t446 = t445 - t417;
+  const Real t447 = product_error(t446, t125);
+  const Real t448 = t118 * t446;
+  const Real t449 = t447 + t448;
+  const Real t450 = t416 * t59;
+  const Real t451 = t426 * t325;
+  const Real t452 = t28 * t430;
+  const Real t453 = t451 + t452;
+  const Real t454 = par.k2 * t435;
+  const Real t455 = par.r_F * t430;
+  const Real t456 = t454 + t455;
+  const Real t457 = t456 + t453;
+  const Real t458 = t402 * t87;
+  const Real t459 = t458 + t457;
+  const Real t460 = t56 * t411;
+  const Real t461 = t460 + t459;
+  const Real t462 = t30 * t414;
+  const Real t463 = t461 + t462;
+  const Real t464 = sum_error(t450, t463);
+  const Real t465 = product_error(t416, t59);
+  const Real t466 = t465 + t464;
+  const Real t467 = t466 + t449;
+  const Real t468 = t446 * t125;
+  const Real t469 = t463 + t450;
+  const Real t470 = t469 + t468;
+  const Real t471 = t467 + t470;
+  const Real t472 = t471 * t141;
+  const Real t473 = t472 * t22;
+  const Real t474 = -t473;
+  const Real t475 = sum_error(t446, t474);
+  const Real t476 = t475 * t114;
+  const Real t477 = t446 - t473;
+  const Real t478 = product_error(t477, t114);
+  const Real t479 = t476 + t478;
+  const Real t480 = t75 * t479;
+  const Real t481 = t477 * t114;
+  const Real t482 = product_error(t75, t481);
+  const Real t483 = t480 + t482;
+  const Real t484 = t481 * t75;
+  const Real t485 = t416 - t484;
+  const Real t486 = t485 - t483;
+  const Real t487 = t48 * t486;
+  const Real t488 = par.k1 * t487;
+  const Real t489 = s_r_p_1_ * t488;
+  const Real t490 = c_r_p_1_ * t479;
+  const Real t491 = t481 * c_r_p_1_;
+  const Real t492 = t490 + t491;
+  const Real t493 = t489 + t492;
+  const Real t494 = t307 * nu[1];
+  const Real t495 = t493 - t494;
+  const Real t496 = t312 * t307;
+  const Real t497 = t496 - t495;
+  const Real t498 = t497 * par.k12;
+  const Real t499 = t420 * t420;
+  const Real t500 = t307 * t307;
+  const Real t501 = t499 + t500;
+  const Real t502 = par.k11 * t501;
+  const Real t503 = t498 + t502;
+  const Real t504 = t479 * t45;
+  const Real t505 = t481 * t45;
+  const Real t506 = t505 + t504;
+  const Real t507 = t506 + t414;
+  const Real t508 = t345 * nu[0];
+  const Real t509 = t259 * t381;
+  const Real t510 = t508 + t509;
+  const Real t511 = t510 + t507;
 
   // frame: acceleration
-  const Real t407 = t185 * t277;
-  const Real t408 = t289 * t191;
-  const Real t409 = t407 - t408;
-  const Real t410 = t409 + t406;
+  const Real t512 = par.g * R[8];
+
+  // accelerations
+  const Real t513 = t511 - t512;
+  const Real t514 = t247 * nu[0];
+  const Real t515 = t514 + t481;
+  const Real t516 = t515 + t479;
+  const Real t517 = par.k13 * t516;
+  const Real t518 = t513 - t517;
+  const Real t519 = par.k2 * t518;
+  const Real t520 = t71 * t479;
+  const Real t521 = t71 * t481;
+  const Real t522 = t521 + t520;
+  const Real t523 = t402 - t522;
+  const Real t524 = t247 * t345;
+  const Real t525 = t259 * t364;
+  const Real t526 = t524 - t525;
+  const Real t527 = t523 + t526;
 
   // frame: acceleration
-  const Real t411 = par.g * R[6];
+  const Real t528 = par.g * R[6];
+
+  // accelerations
+  const Real t529 = t527 - t528;
+  const Real t530 = t247 * t247;
+  const Real t531 = t259 * t259;
+  const Real t532 = t530 + t531;
+  const Real t533 = par.k13 * t532;
+  const Real t534 = t529 - t533;
+  const Real t535 = par.k1 * t534;
+  const Real t536 = t519 + t535;
+  const Real t537 = t536 + t503;
+  const Real t538 = t537 * par.k2;
+  const Real t539 = t487 * t45;
+  const Real t540 = t411 - t539;
+  const Real t541 = t381 * t247;
+  const Real t542 = t364 * nu[0];
+  const Real t543 = t541 + t542;
+  const Real t544 = t540 - t543;
 
   // frame: acceleration
-  const Real t412 = t410 - t411;
-  const Real t413 = t185 * t185;
-  const Real t414 = t191 * t191;
-  const Real t415 = t413 + t414;
-
-  // fork: acceleration
-  const Real t416 = par.k13 * t415;
-  const Real t417 = t412 - t416;
-  const Real t418 = par.k1 * t417;
-
-  // drift of the kernel
-  const Real t419 = t387 * t45;
-  const Real t420 = t419 + t334;
-
-  // frame: acceleration
-  const Real t421 = nu[0] * t277;
-  const Real t422 = t191 * t301;
-  const Real t423 = t422 + t421;
-  const Real t424 = t420 + t423;
-
-  // frame: acceleration
-  const Real t425 = par.g * R[8];
-
-  // frame: acceleration
-  const Real t426 = t424 - t425;
-  const Real t427 = t185 * nu[0];
-  const Real t428 = t427 + t387;
-
-  // fork: acceleration
-  const Real t429 = t428 * par.k13;
-  const Real t430 = t426 - t429;
-  const Real t431 = par.k2 * t430;
-  const Real t432 = t418 + t431;
-
-  // front_wheel: acceleration
-  const Real t433 = t432 + t404;
-  const Real t434 = par.k1 * t433;
-
-  // drift of the kernel
-  const Real t435 = t390 * t45;
-  const Real t436 = t331 - t435;
-
-  // frame: acceleration
-  const Real t437 = t185 * t301;
-  const Real t438 = t289 * nu[0];
-  const Real t439 = t437 + t438;
-  const Real t440 = t436 - t439;
-
-  // frame: acceleration
-  const Real t441 = par.g * R[7];
-
-  // frame: acceleration
-  const Real t442 = t440 - t441;
-  const Real t443 = t191 * nu[0];
-  const Real t444 = t390 - t443;
-
-  // fork: acceleration
-  const Real t445 = par.k13 * t444;
-  const Real t446 = t445 + t442;
-  const Real t447 = s_r_p_1_ * t446;
-  const Real t448 = t417 * par.k2;
-  const Real t449 = par.k1 * t430;
-  const Real t450 = t448 - t449;
-  const Real t451 = t450 * c_r_p_1_;
-  const Real t452 = t451 + t447;
-  const Real t453 = t396 + t397;
-
-  // front_wheel: acceleration
-  const Real t454 = t453 * par.k11;
-
-  // fork: acceleration
-  const Real t455 = t244 * t244;
-  const Real t456 = t455 + t400;
-
-  // front_wheel: acceleration
-  const Real t457 = t456 * par.k12;
-  const Real t458 = t454 + t457;
-  const Real t459 = t452 - t458;
-  const Real t460 = t459 * par.k2;
-  const Real t461 = t434 + t460;
-  const Real t462 = t461 * c_r_p_2_;
-  const Real t463 = par.k2 * t433;
-  const Real t464 = t459 * par.k1;
-  const Real t465 = t463 - t464;
-  const Real t466 = t465 * s_r_p_2_;
-  const Real t467 = t462 - t466;
-
-  // front_wheel: wrench
-  const Real t468 = t467 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t469 = c_r_p_2_ * t468;
-
-  // front_wheel: acceleration
-  const Real t470 = c_r_p_2_ * t465;
-  const Real t471 = t461 * s_r_p_2_;
-  const Real t472 = t470 + t471;
-
-  // front_wheel: wrench
-  const Real t473 = t472 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t474 = t473 * s_r_p_2_;
-  const Real t475 = t469 + t474;
-  const Real t476 = par.k2 * t475;
-  const Real t477 = c_r_p_2_ * t473;
-  const Real t478 = t468 * s_r_p_2_;
-  const Real t479 = t477 - t478;
-  const Real t480 = par.k1 * t479;
-  const Real t481 = t476 - t480;
-  const Real t482 = t481 * par.k11;
-  const Real t483 = par.k1 * t475;
-  const Real t484 = t479 * par.k2;
-  const Real t485 = t483 + t484;
-  const Real t486 = t485 * par.k12;
-  const Real t487 = t482 + t486;
-
-  // front_wheel: acceleration
-  const Real t488 = t396 - t384;
-
-  // front_wheel: wrench
-  const Real t489 = t488 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t490 = t489 - t487;
-
-  // fork: wrench
-  const Real t491 = par.k8 * t452;
-  const Real t492 = t432 * par.k10;
-  const Real t493 = t491 - t492;
-  const Real t494 = t396 * par.k7;
-  const Real t495 = par.k31 * t397;
-  const Real t496 = t494 + t495;
-  const Real t497 = t455 - t401;
-  const Real t498 = par.k5 * t497;
-  const Real t499 = t498 + t496;
-  const Real t500 = t493 + t499;
-
-  // front_wheel: joint force
-  const Real t501 = t500 + t490;
-
-  // fork: joint force
-  const Real t502 = s_r_p_1_ * t501;
-
-  // fork: acceleration
-  const Real t503 = t391 * c_r_p_1_;
-  const Real t504 = s_r_p_1_ * t387;
-  const Real t505 = t504 - t503;
-  const Real t506 = t340 * nu[1];
-  const Real t507 = t505 - t506;
-
-  // front_wheel: acceleration
-  const Real t508 = par.k2 * t507;
-
-  // fork: acceleration
-  const Real t509 = t390 * par.k2;
-
-  // front_wheel: acceleration
-  const Real t510 = t509 * par.k1;
-  const Real t511 = t508 + t510;
-  const Real t512 = t511 * s_r_p_2_;
-  const Real t513 = par.k1 * t507;
-  const Real t514 = t509 * par.k2;
-  const Real t515 = t514 - t513;
-  const Real t516 = c_r_p_2_ * t515;
-  const Real t517 = t512 + t516;
-
-  // front_wheel: twist
-  const Real t518 = t260 * c_r_p_2_;
-  const Real t519 = t246 * s_r_p_2_;
-  const Real t520 = t518 - t519;
-
-  // front_wheel: acceleration
-  const Real t521 = t520 * t345;
-  const Real t522 = t517 - t521;
-
-  // front_wheel: wrench
-  const Real t523 = par.I_Fxx * t522;
-
-  // front_wheel: acceleration
-  const Real t524 = t346 * t520;
-
-  // front_wheel: wrench
-  const Real t525 = par.k36 * t524;
-  const Real t526 = t523 - t525;
-
-  // front_wheel: joint force
-  const Real t527 = t526 * s_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t528 = c_r_p_2_ * t511;
-  const Real t529 = t515 * s_r_p_2_;
-  const Real t530 = t528 - t529;
-
-  // front_wheel: twist
-  const Real t531 = t260 * s_r_p_2_;
-  const Real t532 = t246 * c_r_p_2_;
-  const Real t533 = t531 + t532;
-
-  // front_wheel: acceleration
-  const Real t534 = t533 * t345;
-  const Real t535 = t530 + t534;
-
-  // front_wheel: wrench
-  const Real t536 = par.I_Fxx * t535;
-
-  // front_wheel: acceleration
-  const Real t537 = t346 * t533;
-
-  // front_wheel: wrench
-  const Real t538 = par.k35 * t537;
-  const Real t539 = t536 - t538;
-
-  // front_wheel: joint force
-  const Real t540 = t539 * c_r_p_2_;
-  const Real t541 = t527 + t540;
-  const Real t542 = t541 * par.k2;
-  const Real t543 = c_r_p_2_ * t526;
-  const Real t544 = t539 * s_r_p_2_;
-  const Real t545 = t543 - t544;
-  const Real t546 = t545 * par.k1;
-  const Real t547 = t542 - t546;
-
-  // fork: acceleration
-  const Real t548 = t244 * t340;
-  const Real t549 = t548 + t507;
-
-  // front_wheel: acceleration
-  const Real t550 = t549 * par.k11;
-
-  // fork: acceleration
-  const Real t551 = t239 * t340;
-  const Real t552 = t509 - t551;
-
-  // front_wheel: acceleration
-  const Real t553 = par.k12 * t552;
-  const Real t554 = t550 + t553;
-
-  // fork: acceleration
-  const Real t555 = c_r_p_1_ * t446;
-  const Real t556 = s_r_p_1_ * t450;
-  const Real t557 = t555 - t556;
-
-  // front_wheel: acceleration
-  const Real t558 = t554 + t557;
-
-  // front_wheel: wrench
-  const Real t559 = t558 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t560 = t559 * par.k11;
-  const Real t561 = t547 + t560;
-
-  // fork: wrench
-  const Real t562 = par.k8 * t557;
-  const Real t563 = par.k17 * t507;
-  const Real t564 = t548 * par.k30;
-  const Real t565 = t563 - t564;
-  const Real t566 = par.k5 * t552;
-  const Real t567 = t566 + t565;
-  const Real t568 = t567 - t562;
-
-  // front_wheel: joint force
-  const Real t569 = t568 + t561;
-
-  // fork: joint force
-  const Real t570 = c_r_p_1_ * t569;
-  const Real t571 = t570 - t502;
-  const Real t572 = par.k2 * t571;
-
-  // front_wheel: joint force
-  const Real t573 = t541 * par.k1;
-  const Real t574 = t545 * par.k2;
-  const Real t575 = t573 + t574;
-  const Real t576 = t559 * par.k12;
-  const Real t577 = t575 + t576;
-
-  // fork: wrench
-  const Real t578 = par.k10 * t557;
-  const Real t579 = par.k5 * t549;
-  const Real t580 = t509 * par.k6;
-  const Real t581 = t551 * par.k32;
-  const Real t582 = t580 - t581;
-  const Real t583 = t582 + t579;
-  const Real t584 = t583 + t578;
-
-  // front_wheel: joint force
-  const Real t585 = t577 + t584;
-
-  // fork: joint force
-  const Real t586 = par.k1 * t585;
-  const Real t587 = t586 + t572;
-
-  // frame: wrench
-  const Real t588 = t442 * par.k15;
-  const Real t589 = par.k3 * t444;
-
-  // frame: acceleration
-  const Real t590 = t185 * t191;
-
-  // frame: wrench
-  const Real t591 = t590 * par.k26;
-  const Real t592 = t589 + t591;
-  const Real t593 = t592 - t588;
-
-  // fork: joint force
-  const Real t594 = t593 + t587;
-
-  // rear_wheel: acceleration
-  const Real t595 = t590 * par.r_R;
-  const Real t596 = t442 - t595;
-
-  // rear_wheel: wrench
-  const Real t597 = t596 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t598 = t597 * par.r_R;
-
-  // rear_wheel: acceleration
-  const Real t599 = t390 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t600 = t185 * s_r_p_0_;
-  const Real t601 = nu[0] * c_r_p_0_;
-  const Real t602 = t601 + t600;
-
-  // rear_wheel: acceleration
-  const Real t603 = t602 * nu[2];
-  const Real t604 = t603 + t599;
-
-  // rear_wheel: wrench
-  const Real t605 = par.I_Rxx * t604;
-
-  // rear_wheel: acceleration
-  const Real t606 = t602 * t321;
-
-  // rear_wheel: wrench
-  const Real t607 = par.k28 * t606;
-  const Real t608 = t605 + t607;
-
-  // rear_wheel: joint force
-  const Real t609 = s_r_p_0_ * t608;
-
-  // rear_wheel: acceleration
-  const Real t610 = t390 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t611 = t185 * c_r_p_0_;
-  const Real t612 = nu[0] * s_r_p_0_;
-  const Real t613 = t612 - t611;
-
-  // rear_wheel: acceleration
-  const Real t614 = t613 * nu[2];
-  const Real t615 = t614 + t610;
-
-  // rear_wheel: wrench
-  const Real t616 = t615 * par.I_Rxx;
-
-  // rear_wheel: acceleration
-  const Real t617 = t613 * t321;
-
-  // rear_wheel: wrench
-  const Real t618 = t617 * par.k29;
-  const Real t619 = t618 - t616;
-
-  // rear_wheel: joint force
-  const Real t620 = t619 * c_r_p_0_;
-  const Real t621 = t609 + t620;
-  const Real t622 = t598 + t621;
-  const Real t623 = t594 + t622;
-
-  // orthogonal basis
-  const Real t624 = t270 * t270;
-  const Real t625 = t298 * t298;
+  const Real t545 = par.g * R[7];
+
+  // accelerations
+  const Real t546 = t544 - t545;
+  const Real t547 = t259 * nu[0];
+  const Real t548 = t487 - t547;
+  const Real t549 = par.k13 * t548;
+  const Real t550 = t549 + t546;
+  const Real t551 = s_r_p_1_ * t550;
+  const Real t552 = t534 * par.k2;
+  const Real t553 = par.k1 * t518;
+  const Real t554 = t552 - t553;
+  const Real t555 = c_r_p_1_ * t554;
+  const Real t556 = t551 + t555;
+  const Real t557 = t496 + t495;
+  const Real t558 = t557 * par.k11;
+  const Real t559 = t312 * t312;
+  const Real t560 = t499 + t559;
+  const Real t561 = par.k12 * t560;
+  const Real t562 = t558 + t561;
+  const Real t563 = t556 - t562;
+  const Real t564 = par.k1 * t563;
+  const Real t565 = t538 - t564;
+  const Real t566 = t565 * c_r_p_2_;
+  const Real t567 = par.k2 * t563;
+  const Real t568 = par.k1 * t537;
+  const Real t569 = t567 + t568;
+  const Real t570 = s_r_p_2_ * t569;
+  const Real t571 = t566 + t570;
+  const Real t572 = par.m_F * t571;
+  const Real t573 = t572 * c_r_p_2_;
+  const Real t574 = c_r_p_2_ * t569;
+  const Real t575 = t565 * s_r_p_2_;
+  const Real t576 = t574 - t575;
+  const Real t577 = t576 * par.m_F;
+  const Real t578 = t577 * s_r_p_2_;
+  const Real t579 = t573 - t578;
+  const Real t580 = par.k2 * t579;
+  const Real t581 = t572 * s_r_p_2_;
+  const Real t582 = c_r_p_2_ * t577;
+  const Real t583 = t581 + t582;
+  const Real t584 = t583 * par.k1;
+  const Real t585 = t580 + t584;
+  const Real t586 = t585 * par.k12;
+  const Real t587 = t583 * par.k2;
+  const Real t588 = par.k1 * t579;
+  const Real t589 = t587 - t588;
+  const Real t590 = t589 * par.k11;
+  const Real t591 = t586 + t590;
+  const Real t592 = t495 - t472;
+  const Real t593 = t592 * par.I_Fyy;
+  const Real t594 = t593 - t591;
+  const Real t595 = par.k8 * t556;
+  const Real t596 = t536 * par.k10;
+  const Real t597 = t595 - t596;
+  const Real t598 = par.k7 * t495;
+  const Real t599 = par.k31 * t496;
+  const Real t600 = t599 + t598;
+  const Real t601 = t559 - t500;
+  const Real t602 = par.k5 * t601;
+  const Real t603 = t602 + t600;
+  const Real t604 = t597 + t603;
+  const Real t605 = t594 + t604;
+  const Real t606 = s_r_p_1_ * t605;
+  const Real t607 = c_r_p_1_ * t488;
+  const Real t608 = s_r_p_1_ * t479;
+  const Real t609 = s_r_p_1_ * t481;
+  const Real t610 = t609 + t608;
+  const Real t611 = t610 - t607;
+  const Real t612 = t420 * nu[1];
+  const Real t613 = t611 - t612;
+  const Real t614 = t613 * par.k2;
+  const Real t615 = t487 * par.k2;
+  const Real t616 = par.k1 * t615;
+  const Real t617 = t614 + t616;
+  const Real t618 = c_r_p_2_ * t617;
+  const Real t619 = par.k1 * t613;
+  const Real t620 = t615 * par.k2;
+  const Real t621 = t620 - t619;
+  const Real t622 = t621 * s_r_p_2_;
+  const Real t623 = t618 - t622;
+  const Real t624 = c_r_p_2_ * t314;
+  const Real t625 = t328 * s_r_p_2_;
   const Real t626 = t624 + t625;
-  const Real t627 = t286 * t286;
-  const Real t628 = t627 + t626;
-  const Real t629 = t628 + constant<Real>(1.0L);
-  const Real t630 = t143 * t143;
-  const Real t631 = t630 + t629;
-  const Real t632 = t146 * t146;
-  const Real t633 = t631 + t632;
-  const Real t634 = t140 * t140;
-  const Real t635 = t633 + t634;
-  const Real t636 = constant<Real>(1.0L) / t635;
-  const Real t637 = t272 * t270;
-  const Real t638 = t296 * t298;
-  const Real t639 = t638 + t637;
-  const Real t640 = t286 * t284;
-  const Real t641 = t639 + t640;
-  const Real t642 = t159 * t143;
-  const Real t643 = t641 + t642;
-  const Real t644 = t162 * t146;
-  const Real t645 = t643 + t644;
-  const Real t646 = t156 * t140;
-  const Real t647 = t645 + t646;
-  const Real t648 = t647 * t636;
-  const Real t649 = t648 * t298;
-  const Real t650 = t296 - t649;
-  const Real t651 = t650 * t650;
-  const Real t652 = t648 * t270;
-  const Real t653 = t272 - t652;
-  const Real t654 = t653 * t653;
-  const Real t655 = t651 + t654;
-  const Real t656 = t648 * t286;
-  const Real t657 = t656 - t284;
-  const Real t658 = t657 * t657;
-  const Real t659 = t658 + t655;
-  const Real t660 = t648 * t648;
-  const Real t661 = t660 + t659;
-  const Real t662 = t648 * t143;
-  const Real t663 = t662 - t159;
-  const Real t664 = t663 * t663;
-  const Real t665 = t661 + t664;
-  const Real t666 = t648 * t146;
-  const Real t667 = t666 - t162;
-  const Real t668 = t667 * t667;
-  const Real t669 = t665 + t668;
-  const Real t670 = constant<Real>(1.0L) + t669;
-  const Real t671 = t648 * t140;
-  const Real t672 = t671 - t156;
-  const Real t673 = t672 * t672;
-  const Real t674 = t670 + t673;
-  const Real t675 = constant<Real>(1.0L) / t674;
-  const Real t676 = t275 * t270;
-  const Real t677 = t294 * t298;
-  const Real t678 = t676 + t677;
-  const Real t679 = t286 * t282;
-  const Real t680 = t678 - t679;
-  const Real t681 = t180 * t143;
-  const Real t682 = t681 + t680;
-  const Real t683 = t183 * t146;
-  const Real t684 = t682 + t683;
-  const Real t685 = t177 * t140;
-  const Real t686 = t684 + t685;
-  const Real t687 = t636 * t686;
-  const Real t688 = t687 * t298;
-  const Real t689 = t294 - t688;
-  const Real t690 = t689 * t650;
-  const Real t691 = t687 * t270;
-  const Real t692 = t275 - t691;
-  const Real t693 = t692 * t653;
-  const Real t694 = t690 + t693;
-  const Real t695 = t286 * t687;
-  const Real t696 = t695 + t282;
-  const Real t697 = t696 * t657;
-  const Real t698 = t697 + t694;
-  const Real t699 = t648 * t687;
-  const Real t700 = t698 + t699;
-  const Real t701 = t687 * t143;
-  const Real t702 = t701 - t180;
-  const Real t703 = t702 * t663;
-  const Real t704 = t700 + t703;
-  const Real t705 = t687 * t146;
-  const Real t706 = t705 - t183;
-  const Real t707 = t667 * t706;
-  const Real t708 = t707 + t704;
-  const Real t709 = t140 * t687;
-  const Real t710 = t709 - t177;
-  const Real t711 = t672 * t710;
-  const Real t712 = t711 + t708;
-  const Real t713 = t712 * t675;
-  const Real t714 = t648 * t713;
-  const Real t715 = t714 - t687;
+  const Real t627 = t626 * t425;
+  const Real t628 = t627 + t623;
+  const Real t629 = t628 * par.I_Fxx;
+  const Real t630 = t626 * t426;
+  const Real t631 = par.k35 * t630;
+  const Real t632 = t629 - t631;
+  const Real t633 = t632 * c_r_p_2_;
+  const Real t634 = t621 * c_r_p_2_;
+  const Real t635 = t617 * s_r_p_2_;
+  const Real t636 = t634 + t635;
+  const Real t637 = c_r_p_2_ * t328;
+  const Real t638 = t314 * s_r_p_2_;
+  const Real t639 = t637 - t638;
+  const Real t640 = t425 * t639;
+  const Real t641 = t636 - t640;
+  const Real t642 = t641 * par.I_Fxx;
+  const Real t643 = t426 * t639;
+  const Real t644 = par.k36 * t643;
+  const Real t645 = t642 - t644;
+  const Real t646 = t645 * s_r_p_2_;
+  const Real t647 = t633 + t646;
+  const Real t648 = par.k2 * t647;
+  const Real t649 = t645 * c_r_p_2_;
+  const Real t650 = t632 * s_r_p_2_;
+  const Real t651 = t649 - t650;
+  const Real t652 = par.k1 * t651;
+  const Real t653 = t648 - t652;
+  const Real t654 = c_r_p_1_ * t550;
+  const Real t655 = s_r_p_1_ * t554;
+  const Real t656 = t654 - t655;
+  const Real t657 = t420 * t312;
+  const Real t658 = t613 + t657;
+  const Real t659 = t658 * par.k11;
+  const Real t660 = t420 * t307;
+  const Real t661 = t615 - t660;
+  const Real t662 = t661 * par.k12;
+  const Real t663 = t659 + t662;
+  const Real t664 = t656 + t663;
+  const Real t665 = par.m_F * t664;
+  const Real t666 = t665 * par.k11;
+  const Real t667 = t666 + t653;
+  const Real t668 = par.k8 * t656;
+  const Real t669 = t613 * par.k17;
+  const Real t670 = par.k30 * t657;
+  const Real t671 = t669 - t670;
+  const Real t672 = par.k5 * t661;
+  const Real t673 = t671 + t672;
+  const Real t674 = t673 - t668;
+  const Real t675 = t667 + t674;
+  const Real t676 = c_r_p_1_ * t675;
+  const Real t677 = t676 - t606;
+  const Real t678 = par.k2 * t677;
+  const Real t679 = par.k1 * t647;
+  const Real t680 = t651 * par.k2;
+  const Real t681 = t679 + t680;
+  const Real t682 = t665 * par.k12;
+  const Real t683 = t682 + t681;
+  const Real t684 = t656 * par.k10;
+  const Real t685 = par.k5 * t658;
+  const Real t686 = par.k6 * t615;
+  const Real t687 = t660 * par.k32;
+  const Real t688 = t686 - t687;
+  const Real t689 = t688 + t685;
+  const Real t690 = t684 + t689;
+  const Real t691 = t690 + t683;
+  const Real t692 = par.k1 * t691;
+  const Real t693 = t692 + t678;
+  const Real t694 = par.k15 * t546;
+  const Real t695 = par.k3 * t548;
+  const Real t696 = t259 * t247;
+  const Real t697 = t696 * par.k26;
+  const Real t698 = t695 + t697;
+  const Real t699 = t698 - t694;
+  const Real t700 = t693 + t699;
+  const Real t701 = t696 * par.r_R;
+  const Real t702 = t546 - t701;
+  const Real t703 = par.m_R * t702;
+  const Real t704 = t703 * par.r_R;
+  const Real t705 = t487 * c_r_p_0_;
+  const Real t706 = t247 * s_r_p_0_;
 
-  // reduced forces
-  const Real t716 = t715 * t623;
+  // rear_wheel: twist
+  const Real t707 = nu[0] * c_r_p_0_;
 
-  // fork: wrench
-  const Real t717 = par.m_H * t452;
-  const Real t718 = par.k8 * t453;
-  const Real t719 = t456 * par.k10;
-  const Real t720 = t718 - t719;
-  const Real t721 = t717 + t720;
+  // accelerations
+  const Real t708 = t707 + t706;
+  const Real t709 = t708 * nu[2];
+  const Real t710 = t705 + t709;
+  const Real t711 = par.I_Rxx * t710;
+  const Real t712 = t401 * t708;
+  const Real t713 = t712 * par.k28;
+  const Real t714 = t713 + t711;
+  const Real t715 = t714 * s_r_p_0_;
+  const Real t716 = t487 * s_r_p_0_;
+  const Real t717 = t247 * c_r_p_0_;
 
-  // front_wheel: joint force
-  const Real t722 = t721 + t481;
+  // rear_wheel: twist
+  const Real t718 = nu[0] * s_r_p_0_;
 
-  // fork: joint force
-  const Real t723 = c_r_p_1_ * t722;
-
-  // fork: wrench
-  const Real t724 = par.m_H * t557;
-  const Real t725 = par.k8 * t549;
-  const Real t726 = par.k10 * t552;
-  const Real t727 = t726 - t725;
-  const Real t728 = t724 + t727;
-
-  // front_wheel: joint force
-  const Real t729 = t559 + t728;
-
-  // fork: joint force
-  const Real t730 = s_r_p_1_ * t729;
-  const Real t731 = t723 - t730;
-  const Real t732 = par.k2 * t731;
-
-  // fork: wrench
-  const Real t733 = t398 * par.k10;
-  const Real t734 = par.k8 * t402;
-  const Real t735 = t733 - t734;
-  const Real t736 = t432 * par.m_H;
-  const Real t737 = t735 + t736;
-
-  // front_wheel: joint force
-  const Real t738 = t485 + t737;
-
-  // fork: joint force
-  const Real t739 = par.k1 * t738;
-  const Real t740 = t739 + t732;
-
-  // frame: wrench
-  const Real t741 = t412 * par.m_B;
-
-  // frame: acceleration
-  const Real t742 = t387 - t427;
-
-  // frame: wrench
-  const Real t743 = t742 * par.k15;
-  const Real t744 = par.k16 * t415;
-  const Real t745 = t743 - t744;
-  const Real t746 = t745 + t741;
-
-  // fork: joint force
-  const Real t747 = t740 + t746;
-
-  // rear_wheel: acceleration
-  const Real t748 = t742 * par.r_R;
-  const Real t749 = t412 - t748;
-  const Real t750 = t749 * c_r_p_0_;
-
-  // frame: acceleration
-  const Real t751 = nu[0] * nu[0];
-  const Real t752 = t751 + t414;
-
-  // rear_wheel: acceleration
-  const Real t753 = t752 * par.r_R;
-  const Real t754 = t426 + t753;
-  const Real t755 = t754 * s_r_p_0_;
-  const Real t756 = t750 - t755;
-
-  // rear_wheel: wrench
-  const Real t757 = par.m_R * t756;
-
-  // rear_wheel: joint force
-  const Real t758 = t757 * c_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t759 = t749 * s_r_p_0_;
-  const Real t760 = t754 * c_r_p_0_;
-  const Real t761 = t759 + t760;
-
-  // rear_wheel: wrench
-  const Real t762 = t761 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t763 = t762 * s_r_p_0_;
-  const Real t764 = t758 + t763;
-  const Real t765 = t764 + t747;
-
-  // orthogonal basis
-  const Real t766 = t650 * t713;
-  const Real t767 = t689 - t766;
-
-  // reduced forces
-  const Real t768 = t765 * t767;
-
-  // fork: joint force
-  const Real t769 = s_r_p_1_ * t722;
-  const Real t770 = t729 * c_r_p_1_;
-  const Real t771 = t770 + t769;
-
-  // frame: wrench
-  const Real t772 = t442 * par.m_B;
-  const Real t773 = t444 * par.k16;
-  const Real t774 = t590 * par.k15;
-  const Real t775 = t773 + t774;
-  const Real t776 = t772 + t775;
-
-  // fork: joint force
-  const Real t777 = t776 + t771;
-
-  // rear_wheel: joint force
-  const Real t778 = t597 + t777;
-
-  // orthogonal basis
-  const Real t779 = t653 * t713;
-  const Real t780 = t692 - t779;
-
-  // reduced forces
-  const Real t781 = t778 * t780;
-  const Real t782 = t781 + t768;
-
-  // fork: joint force
-  const Real t783 = par.k1 * t731;
-  const Real t784 = t738 * par.k2;
-  const Real t785 = t784 - t783;
-
-  // frame: wrench
-  const Real t786 = t426 * par.m_B;
-  const Real t787 = t428 * par.k16;
-  const Real t788 = t752 * par.k15;
-  const Real t789 = t787 + t788;
-  const Real t790 = t786 - t789;
-
-  // fork: joint force
-  const Real t791 = t790 + t785;
-
-  // rear_wheel: joint force
-  const Real t792 = t762 * c_r_p_0_;
-  const Real t793 = t757 * s_r_p_0_;
-  const Real t794 = t792 - t793;
-  const Real t795 = t791 + t794;
-
-  // orthogonal basis
-  const Real t796 = t713 * t657;
-  const Real t797 = t696 - t796;
-
-  // reduced forces
-  const Real t798 = t795 * t797;
-  const Real t799 = t798 + t782;
-  const Real t800 = t716 + t799;
-
-  // fork: joint force
-  const Real t801 = c_r_p_1_ * t501;
-  const Real t802 = s_r_p_1_ * t569;
-  const Real t803 = t801 + t802;
-  const Real t804 = par.k13 * t785;
-  const Real t805 = t803 - t804;
-
-  // frame: wrench
-  const Real t806 = t412 * par.k15;
-  const Real t807 = t426 * par.k16;
-  const Real t808 = t806 - t807;
-  const Real t809 = par.k4 * t387;
-  const Real t810 = t427 * par.k27;
-  const Real t811 = t809 - t810;
-  const Real t812 = t413 - t751;
-  const Real t813 = par.k3 * t812;
-  const Real t814 = t813 + t811;
-  const Real t815 = t808 + t814;
-
-  // fork: joint force
-  const Real t816 = t805 + t815;
-
-  // rear_wheel: joint force
-  const Real t817 = t764 * par.r_R;
-
-  // rear_wheel: wrench
-  const Real t818 = par.I_Ryy * t387;
-
-  // rear_wheel: joint force
-  const Real t819 = t818 - t817;
-  const Real t820 = t816 + t819;
-
-  // orthogonal basis
-  const Real t821 = t713 * t663;
-  const Real t822 = t702 - t821;
-
-  // reduced forces
-  const Real t823 = t822 * t820;
-  const Real t824 = t800 + t823;
-
-  // fork: joint force
-  const Real t825 = par.k1 * t571;
-  const Real t826 = t585 * par.k2;
-  const Real t827 = t826 - t825;
-  const Real t828 = t771 * par.k13;
-  const Real t829 = t828 + t827;
-
-  // frame: wrench
-  const Real t830 = t442 * par.k16;
-  const Real t831 = t390 * par.k14;
-  const Real t832 = par.k25 * t443;
-  const Real t833 = t831 - t832;
-  const Real t834 = par.k3 * t590;
-  const Real t835 = t833 - t834;
-  const Real t836 = t830 + t835;
-
-  // fork: joint force
-  const Real t837 = t836 + t829;
-
-  // rear_wheel: joint force
-  const Real t838 = c_r_p_0_ * t608;
-  const Real t839 = t619 * s_r_p_0_;
-  const Real t840 = t838 - t839;
-  const Real t841 = t840 + t837;
-
-  // orthogonal basis
-  const Real t842 = t667 * t713;
-  const Real t843 = t706 - t842;
-
-  // reduced forces
-  const Real t844 = t843 * t841;
-  const Real t845 = t844 + t824;
-  const Real t846 = t845 + t818;
-  const Real t847 = t585 * t713;
-  const Real t848 = t847 - t846;
-
-  // orthogonal basis
-  const Real t849 = t713 * t672;
-  const Real t850 = t710 - t849;
-
-  // reduced forces
-  const Real t851 = t489 * t850;
-  const Real t852 = t848 - t851;
-
-  // reduced forces
-  const Real t853 = t765 * t298;
-  const Real t854 = t778 * t270;
-  const Real t855 = t854 + t853;
-  const Real t856 = t286 * t795;
-  const Real t857 = t856 - t855;
-  const Real t858 = t857 - t623;
-  const Real t859 = t143 * t820;
+  // accelerations
+  const Real t719 = t718 - t717;
+  const Real t720 = t719 * nu[2];
+  const Real t721 = t720 + t716;
+  const Real t722 = par.I_Rxx * t721;
+  const Real t723 = t401 * t719;
+  const Real t724 = t723 * par.k29;
+  const Real t725 = t724 - t722;
+  const Real t726 = t725 * c_r_p_0_;
+  const Real t727 = t715 + t726;
+  const Real t728 = t727 + t704;
+  const Real t729 = t728 + t700;
+  const Real t730 = t338 * t338;
+  const Real t731 = t373 * t373;
+  const Real t732 = t730 + t731;
+  const Real t733 = t352 * t352;
+  const Real t734 = t733 + t732;
+  const Real t735 = t734 + constant<Real>(1.0L);
+  const Real t736 = t208 * t206;
+  const Real t737 = t736 * constant<Real>(2.0L);
+  const Real t738 = t208 * t208;
+  const Real t739 = t737 + t738;
+  const Real t740 = t735 + t739;
+  const Real t741 = t214 * t214;
+  const Real t742 = t741 + t740;
+  const Real t743 = t199 * t199;
+  const Real t744 = t743 + t742;
+  const Real t745 = constant<Real>(1.0L) / t744;
+  const Real t746 = t338 * t340;
+  const Real t747 = t369 * t373;
+  const Real t748 = t746 + t747;
+  const Real t749 = t352 * t356;
+  const Real t750 = t749 + t748;
+  const Real t751 = t150 * t208;
+  const Real t752 = t152 * t206;
+  const Real t753 = t751 + t752;
+  const Real t754 = t152 * t208;
+  const Real t755 = t754 + t753;
+  const Real t756 = t750 + t755;
+  const Real t757 = t158 * t214;
+  const Real t758 = t756 + t757;
+  const Real t759 = t142 * t199;
+  const Real t760 = t759 + t758;
+  const Real t761 = t745 * t760;
+  const Real t762 = t761 * t373;
+  const Real t763 = t369 - t762;
+  const Real t764 = t763 * t763;
+  const Real t765 = t338 * t761;
+  const Real t766 = t340 - t765;
+  const Real t767 = t766 * t766;
+  const Real t768 = t764 + t767;
+  const Real t769 = t352 * t761;
+  const Real t770 = t769 - t356;
+  const Real t771 = t770 * t770;
+  const Real t772 = t771 + t768;
+  const Real t773 = t761 * t761;
+  const Real t774 = t772 + t773;
+  const Real t775 = t761 * t206;
+  const Real t776 = t761 * t208;
+  const Real t777 = t775 + t776;
+  const Real t778 = t777 - t152;
+  const Real t779 = t778 - t150;
+  const Real t780 = t779 * t779;
+  const Real t781 = t774 + t780;
+  const Real t782 = t761 * t214;
+  const Real t783 = t782 - t158;
+  const Real t784 = t783 * t783;
+  const Real t785 = t781 + t784;
+  const Real t786 = constant<Real>(1.0L) + t785;
+  const Real t787 = t761 * t199;
+  const Real t788 = t787 - t142;
+  const Real t789 = t788 * t788;
+  const Real t790 = t789 + t786;
+  const Real t791 = constant<Real>(1.0L) / t790;
+  const Real t792 = t343 * t338;
+  const Real t793 = t379 * t373;
+  const Real t794 = t793 + t792;
+  const Real t795 = t352 * t362;
+  const Real t796 = t794 - t795;
+  const Real t797 = t239 * t206;
+  const Real t798 = t237 * t208;
+  const Real t799 = t798 + t797;
+  const Real t800 = t239 * t208;
+  const Real t801 = t799 + t800;
+  const Real t802 = t796 + t801;
+  const Real t803 = t245 * t214;
+  const Real t804 = t802 + t803;
+  const Real t805 = t231 * t199;
+  const Real t806 = t805 + t804;
+  const Real t807 = t806 * t745;
+  const Real t808 = t807 * t338;
+  const Real t809 = t343 - t808;
+  const Real t810 = t766 * t809;
+  const Real t811 = t807 * t373;
+  const Real t812 = t379 - t811;
+  const Real t813 = t812 * t763;
+  const Real t814 = t810 + t813;
+  const Real t815 = t807 * t352;
+  const Real t816 = t362 + t815;
+  const Real t817 = t816 * t770;
+  const Real t818 = t814 + t817;
+  const Real t819 = t807 * t761;
+  const Real t820 = t818 + t819;
+  const Real t821 = t807 * t206;
+  const Real t822 = t807 * t208;
+  const Real t823 = t821 + t822;
+  const Real t824 = t823 - t239;
+  const Real t825 = t824 - t237;
+  const Real t826 = t825 * t779;
+  const Real t827 = t826 + t820;
+  const Real t828 = t807 * t214;
+  const Real t829 = t828 - t245;
+  const Real t830 = t829 * t783;
+  const Real t831 = t827 + t830;
+  const Real t832 = t807 * t199;
+  const Real t833 = t832 - t231;
+  const Real t834 = t788 * t833;
+  const Real t835 = t834 + t831;
+  const Real t836 = t791 * t835;
+  const Real t837 = t761 * t836;
+  const Real t838 = t837 - t807;
+  const Real t839 = t729 * t838;
+  const Real t840 = par.m_H * t556;
+  const Real t841 = t557 * par.k8;
+  const Real t842 = par.k10 * t560;
+  const Real t843 = t841 - t842;
+  const Real t844 = t843 + t840;
+  const Real t845 = t844 + t589;
+  const Real t846 = c_r_p_1_ * t845;
+  const Real t847 = par.m_H * t656;
+  const Real t848 = par.k8 * t658;
+  const Real t849 = t661 * par.k10;
+  const Real t850 = t849 - t848;
+  const Real t851 = t847 + t850;
+  const Real t852 = t665 + t851;
+  const Real t853 = s_r_p_1_ * t852;
+  const Real t854 = t846 - t853;
+  const Real t855 = par.k2 * t854;
+  const Real t856 = t497 * par.k10;
+  const Real t857 = par.k8 * t501;
+  const Real t858 = t856 - t857;
+  const Real t859 = t536 * par.m_H;
   const Real t860 = t859 + t858;
-  const Real t861 = t841 * t146;
-  const Real t862 = t860 + t861;
-  const Real t863 = t489 * t140;
-  const Real t864 = t863 + t862;
-
-  // fork: acceleration
-  const Real t865 = par.k1 * t146;
-  const Real t866 = t865 + par.k2;
-  const Real t867 = s_r_p_1_ * t866;
-  const Real t868 = c_r_p_1_ * t143;
-  const Real t869 = t867 + t868;
-
-  // front_wheel: acceleration
-  const Real t870 = par.k12 * t869;
-
-  // fork: acceleration
-  const Real t871 = t143 * par.k13;
-  const Real t872 = t871 - t286;
-  const Real t873 = t872 * par.k2;
-  const Real t874 = par.k1 * t298;
-  const Real t875 = t874 + t873;
-
-  // front_wheel: acceleration
-  const Real t876 = t875 + t870;
-  const Real t877 = par.k1 * t876;
-
-  // fork: acceleration
-  const Real t878 = par.k13 * t146;
-  const Real t879 = t270 - t878;
-  const Real t880 = s_r_p_1_ * t879;
-  const Real t881 = par.k1 * t872;
-  const Real t882 = par.k2 * t298;
-  const Real t883 = t882 - t881;
-  const Real t884 = t883 * c_r_p_1_;
-  const Real t885 = t884 + t880;
-
-  // front_wheel: acceleration
-  const Real t886 = par.k11 * t869;
-  const Real t887 = t885 + t886;
-  const Real t888 = t887 * par.k2;
-  const Real t889 = t877 + t888;
-  const Real t890 = c_r_p_2_ * t889;
-  const Real t891 = par.k2 * t876;
-  const Real t892 = par.k1 * t887;
-  const Real t893 = t891 - t892;
-  const Real t894 = t893 * s_r_p_2_;
-  const Real t895 = t890 - t894;
-
-  // front_wheel: wrench
-  const Real t896 = par.m_F * t895;
-
-  // front_wheel: joint force
-  const Real t897 = c_r_p_2_ * t896;
-
-  // front_wheel: acceleration
-  const Real t898 = t889 * s_r_p_2_;
-  const Real t899 = t893 * c_r_p_2_;
-  const Real t900 = t898 + t899;
-
-  // front_wheel: wrench
-  const Real t901 = par.m_F * t900;
-
-  // front_wheel: joint force
-  const Real t902 = t901 * s_r_p_2_;
-  const Real t903 = t897 + t902;
-  const Real t904 = t903 * par.k2;
-  const Real t905 = t901 * c_r_p_2_;
-  const Real t906 = t896 * s_r_p_2_;
-  const Real t907 = t905 - t906;
-  const Real t908 = t907 * par.k1;
-  const Real t909 = t904 - t908;
-
-  // fork: wrench
-  const Real t910 = par.m_H * t885;
-  const Real t911 = par.k8 * t869;
-  const Real t912 = t910 - t911;
-
-  // front_wheel: joint force
-  const Real t913 = t909 + t912;
-
-  // fork: joint force
-  const Real t914 = c_r_p_1_ * t913;
-
-  // fork: acceleration
-  const Real t915 = c_r_p_1_ * t866;
-  const Real t916 = s_r_p_1_ * t143;
-  const Real t917 = t916 - t915;
-
-  // front_wheel: acceleration
-  const Real t918 = t917 * par.k11;
-
-  // fork: acceleration
-  const Real t919 = par.k2 * t146;
-  const Real t920 = par.k1 - t919;
-
-  // front_wheel: acceleration
-  const Real t921 = t920 * par.k12;
-  const Real t922 = t921 - t918;
-
-  // fork: acceleration
-  const Real t923 = t879 * c_r_p_1_;
-  const Real t924 = s_r_p_1_ * t883;
-  const Real t925 = t923 - t924;
-
-  // front_wheel: acceleration
-  const Real t926 = t922 + t925;
-
-  // front_wheel: wrench
-  const Real t927 = t926 * par.m_F;
-
-  // fork: wrench
-  const Real t928 = t917 * par.k8;
-  const Real t929 = t920 * par.k10;
-  const Real t930 = t929 + t928;
-  const Real t931 = par.m_H * t925;
-  const Real t932 = t930 + t931;
-
-  // front_wheel: joint force
-  const Real t933 = t932 + t927;
-
-  // fork: joint force
-  const Real t934 = s_r_p_1_ * t933;
-  const Real t935 = t914 - t934;
-  const Real t936 = t935 * par.k2;
-
-  // front_wheel: joint force
-  const Real t937 = par.k1 * t903;
-  const Real t938 = t907 * par.k2;
-  const Real t939 = t937 + t938;
-
-  // fork: wrench
-  const Real t940 = par.k10 * t869;
-  const Real t941 = t875 * par.m_H;
-  const Real t942 = t941 + t940;
-
-  // front_wheel: joint force
-  const Real t943 = t942 + t939;
-
-  // fork: joint force
-  const Real t944 = par.k1 * t943;
-  const Real t945 = t944 + t936;
-
-  // frame: wrench
-  const Real t946 = t298 * par.m_B;
-  const Real t947 = t143 * par.k15;
-  const Real t948 = t946 - t947;
-
-  // fork: joint force
-  const Real t949 = t948 + t945;
-
-  // rear_wheel: acceleration
-  const Real t950 = t143 * par.r_R;
-  const Real t951 = t298 + t950;
-  const Real t952 = t951 * s_r_p_0_;
-  const Real t953 = t286 * c_r_p_0_;
-  const Real t954 = t952 - t953;
-
-  // rear_wheel: wrench
-  const Real t955 = t954 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t956 = t955 * s_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t957 = t951 * c_r_p_0_;
-  const Real t958 = t286 * s_r_p_0_;
-  const Real t959 = t958 + t957;
-
-  // rear_wheel: wrench
-  const Real t960 = t959 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t961 = t960 * c_r_p_0_;
-  const Real t962 = t956 + t961;
-  const Real t963 = t949 + t962;
-
-  // reduced mass matrix
-  const Real t964 = t963 * t767;
-
-  // fork: joint force
-  const Real t965 = s_r_p_1_ * t913;
-  const Real t966 = t933 * c_r_p_1_;
-  const Real t967 = t965 + t966;
-
-  // frame: wrench
-  const Real t968 = t270 * par.m_B;
-  const Real t969 = par.k16 * t146;
-  const Real t970 = par.k15 + t969;
-  const Real t971 = t968 - t970;
-
-  // fork: joint force
-  const Real t972 = t967 + t971;
-
-  // rear_wheel: acceleration
-  const Real t973 = t270 + par.r_R;
-
-  // rear_wheel: wrench
-  const Real t974 = t973 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t975 = t972 + t974;
-
-  // reduced mass matrix
-  const Real t976 = t975 * t780;
-  const Real t977 = t964 + t976;
-
-  // fork: joint force
-  const Real t978 = par.k1 * t935;
-  const Real t979 = par.k2 * t943;
-  const Real t980 = t979 - t978;
-
-  // frame: wrench
-  const Real t981 = t286 * par.m_B;
-  const Real t982 = t143 * par.k16;
-  const Real t983 = t982 - t981;
-
-  // fork: joint force
-  const Real t984 = t983 + t980;
-
-  // rear_wheel: joint force
-  const Real t985 = t955 * c_r_p_0_;
-  const Real t986 = t960 * s_r_p_0_;
-  const Real t987 = t985 - t986;
-  const Real t988 = t987 + t984;
-
-  // reduced mass matrix
-  const Real t989 = t988 * t797;
-  const Real t990 = t977 + t989;
-
-  // front_wheel: joint force
-  const Real t991 = t939 * par.k12;
-  const Real t992 = t909 * par.k11;
-  const Real t993 = t991 + t992;
-
-  // front_wheel: acceleration
-  const Real t994 = t140 + t869;
-
-  // front_wheel: wrench
-  const Real t995 = t994 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t996 = t993 + t995;
-
-  // fork: wrench
-  const Real t997 = par.k8 * t885;
-  const Real t998 = t875 * par.k10;
-  const Real t999 = t997 - t998;
-  const Real t1000 = par.k7 * t869;
-  const Real t1001 = t999 - t1000;
-
-  // front_wheel: joint force
-  const Real t1002 = t1001 - t996;
-
-  // fork: joint force
-  const Real t1003 = s_r_p_1_ * t1002;
-
-  // fork: acceleration
-  const Real t1004 = t915 - t916;
-
-  // front_wheel: acceleration
-  const Real t1005 = par.k2 * t1004;
-  const Real t1006 = t920 * par.k1;
-  const Real t1007 = t1006 + t1005;
-  const Real t1008 = c_r_p_2_ * t1007;
-  const Real t1009 = par.k1 * t1004;
-  const Real t1010 = t920 * par.k2;
-  const Real t1011 = t1010 - t1009;
-  const Real t1012 = t1011 * s_r_p_2_;
-  const Real t1013 = t1008 - t1012;
-
-  // front_wheel: wrench
-  const Real t1014 = t1013 * par.I_Fxx;
-
-  // front_wheel: joint force
-  const Real t1015 = t1014 * c_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1016 = t1007 * s_r_p_2_;
-  const Real t1017 = c_r_p_2_ * t1011;
-  const Real t1018 = t1016 + t1017;
-
-  // front_wheel: wrench
-  const Real t1019 = par.I_Fxx * t1018;
-
-  // front_wheel: joint force
-  const Real t1020 = t1019 * s_r_p_2_;
-  const Real t1021 = t1015 + t1020;
-  const Real t1022 = par.k2 * t1021;
-  const Real t1023 = c_r_p_2_ * t1019;
-  const Real t1024 = t1014 * s_r_p_2_;
-  const Real t1025 = t1023 - t1024;
-  const Real t1026 = t1025 * par.k1;
-  const Real t1027 = t1022 - t1026;
-  const Real t1028 = t927 * par.k11;
-  const Real t1029 = t1027 + t1028;
-
-  // fork: wrench
-  const Real t1030 = par.k17 * t1004;
-  const Real t1031 = t920 * par.k5;
-  const Real t1032 = t1031 + t1030;
-  const Real t1033 = par.k8 * t925;
+  const Real t861 = t860 + t585;
+  const Real t862 = par.k1 * t861;
+  const Real t863 = t855 + t862;
+  const Real t864 = t529 * par.m_B;
+  const Real t865 = t481 - t514;
+  const Real t866 = t479 + t865;
+  const Real t867 = par.k15 * t866;
+  const Real t868 = par.k16 * t532;
+  const Real t869 = t867 - t868;
+  const Real t870 = t864 + t869;
+  const Real t871 = t863 + t870;
+  const Real t872 = par.r_R * t866;
+  const Real t873 = t529 - t872;
+  const Real t874 = t873 * s_r_p_0_;
+
+  // frame: acceleration
+  const Real t875 = nu[0] * nu[0];
+
+  // accelerations
+  const Real t876 = t875 + t531;
+  const Real t877 = t876 * par.r_R;
+  const Real t878 = t877 + t513;
+  const Real t879 = t878 * c_r_p_0_;
+  const Real t880 = t874 + t879;
+  const Real t881 = t880 * par.m_R;
+  const Real t882 = t881 * s_r_p_0_;
+  const Real t883 = t873 * c_r_p_0_;
+  const Real t884 = t878 * s_r_p_0_;
+  const Real t885 = t883 - t884;
+  const Real t886 = t885 * par.m_R;
+  const Real t887 = t886 * c_r_p_0_;
+  const Real t888 = t882 + t887;
+  const Real t889 = t871 + t888;
+  const Real t890 = t763 * t836;
+  const Real t891 = t812 - t890;
+  const Real t892 = t889 * t891;
+  const Real t893 = s_r_p_1_ * t845;
+  const Real t894 = t852 * c_r_p_1_;
+  const Real t895 = t893 + t894;
+  const Real t896 = t546 * par.m_B;
+  const Real t897 = par.k16 * t548;
+  const Real t898 = t696 * par.k15;
+  const Real t899 = t898 + t897;
+  const Real t900 = t896 + t899;
+  const Real t901 = t900 + t895;
+  const Real t902 = t703 + t901;
+  const Real t903 = t766 * t836;
+  const Real t904 = t809 - t903;
+  const Real t905 = t902 * t904;
+  const Real t906 = t892 + t905;
+  const Real t907 = par.k1 * t854;
+  const Real t908 = par.k2 * t861;
+  const Real t909 = t908 - t907;
+  const Real t910 = t513 * par.m_B;
+  const Real t911 = t516 * par.k16;
+  const Real t912 = t876 * par.k15;
+  const Real t913 = t911 + t912;
+  const Real t914 = t910 - t913;
+  const Real t915 = t909 + t914;
+  const Real t916 = t881 * c_r_p_0_;
+  const Real t917 = t886 * s_r_p_0_;
+  const Real t918 = t916 - t917;
+  const Real t919 = t915 + t918;
+  const Real t920 = t836 * t770;
+  const Real t921 = t816 - t920;
+  const Real t922 = t919 * t921;
+  const Real t923 = t906 + t922;
+  const Real t924 = t923 + t839;
+  const Real t925 = c_r_p_1_ * t605;
+  const Real t926 = s_r_p_1_ * t675;
+  const Real t927 = t925 + t926;
+  const Real t928 = t909 * par.k13;
+  const Real t929 = t927 - t928;
+  const Real t930 = par.k15 * t529;
+  const Real t931 = t513 * par.k16;
+  const Real t932 = t930 - t931;
+  const Real t933 = par.k4 * t479;
+  const Real t934 = par.k4 * t481;
+  const Real t935 = t934 + t933;
+  const Real t936 = t514 * par.k27;
+  const Real t937 = t935 - t936;
+  const Real t938 = t530 - t875;
+  const Real t939 = par.k3 * t938;
+  const Real t940 = t939 + t937;
+  const Real t941 = t940 + t932;
+  const Real t942 = t941 + t929;
+  const Real t943 = t888 * par.r_R;
+  const Real t944 = par.I_Ryy * t479;
+  const Real t945 = par.I_Ryy * t481;
+  const Real t946 = t944 + t945;
+  const Real t947 = t946 - t943;
+  const Real t948 = t947 + t942;
+  const Real t949 = t779 * t836;
+  const Real t950 = t825 - t949;
+  const Real t951 = t950 * t948;
+  const Real t952 = t924 + t951;
+  const Real t953 = par.k1 * t677;
+  const Real t954 = par.k2 * t691;
+  const Real t955 = t954 - t953;
+  const Real t956 = t895 * par.k13;
+  const Real t957 = t956 + t955;
+  const Real t958 = t546 * par.k16;
+  const Real t959 = t487 * par.k14;
+  const Real t960 = par.k25 * t547;
+  const Real t961 = t959 - t960;
+  const Real t962 = par.k3 * t696;
+  const Real t963 = t961 - t962;
+  const Real t964 = t963 + t958;
+  const Real t965 = t964 + t957;
+  const Real t966 = t714 * c_r_p_0_;
+  const Real t967 = t725 * s_r_p_0_;
+  const Real t968 = t966 - t967;
+  const Real t969 = t965 + t968;
+  const Real t970 = t783 * t836;
+  const Real t971 = t829 - t970;
+  const Real t972 = t971 * t969;
+  const Real t973 = t952 + t972;
+  const Real t974 = t973 + t946;
+  const Real t975 = t691 * t836;
+  const Real t976 = t975 - t974;
+  const Real t977 = t788 * t836;
+  const Real t978 = t833 - t977;
+  const Real t979 = t978 * t593;
+  const Real t980 = t976 - t979;
+  const Real t981 = t214 * t969;
+  const Real t982 = t889 * t373;
+  const Real t983 = t902 * t338;
+  const Real t984 = t983 + t982;
+  const Real t985 = t919 * t352;
+  const Real t986 = t985 - t984;
+  const Real t987 = t986 - t729;
+  const Real t988 = t206 * t948;
+  const Real t989 = t208 * t948;
+  const Real t990 = t988 + t989;
+  const Real t991 = t987 + t990;
+  const Real t992 = t981 + t991;
+  const Real t993 = t593 * t199;
+  const Real t994 = t992 + t993;
+  const Real t995 = par.k1 * t214;
+  const Real t996 = par.k2 + t995;
+  const Real t997 = s_r_p_1_ * t996;
+  const Real t998 = c_r_p_1_ * t206;
+  const Real t999 = c_r_p_1_ * t208;
+  const Real t1000 = t998 + t999;
+  const Real t1001 = t997 + t1000;
+  const Real t1002 = t1001 * par.k12;
+  const Real t1003 = par.k13 * t206;
+  const Real t1004 = t208 * par.k13;
+  const Real t1005 = t1003 + t1004;
+  const Real t1006 = t1005 - t352;
+  const Real t1007 = par.k2 * t1006;
+  const Real t1008 = par.k1 * t373;
+  const Real t1009 = t1008 + t1007;
+  const Real t1010 = t1002 + t1009;
+  const Real t1011 = t1010 * par.k2;
+  const Real t1012 = t214 * par.k13;
+  const Real t1013 = t338 - t1012;
+  const Real t1014 = s_r_p_1_ * t1013;
+  const Real t1015 = par.k1 * t1006;
+  const Real t1016 = par.k2 * t373;
+  const Real t1017 = t1016 - t1015;
+  const Real t1018 = t1017 * c_r_p_1_;
+  const Real t1019 = t1018 + t1014;
+  const Real t1020 = t1001 * par.k11;
+  const Real t1021 = t1019 + t1020;
+  const Real t1022 = t1021 * par.k1;
+  const Real t1023 = t1011 - t1022;
+  const Real t1024 = c_r_p_2_ * t1023;
+  const Real t1025 = t1021 * par.k2;
+  const Real t1026 = t1010 * par.k1;
+  const Real t1027 = t1025 + t1026;
+  const Real t1028 = t1027 * s_r_p_2_;
+  const Real t1029 = t1024 + t1028;
+  const Real t1030 = t1029 * par.m_F;
+  const Real t1031 = t1030 * s_r_p_2_;
+  const Real t1032 = t1027 * c_r_p_2_;
+  const Real t1033 = t1023 * s_r_p_2_;
   const Real t1034 = t1032 - t1033;
-
-  // front_wheel: joint force
-  const Real t1035 = t1029 + t1034;
-
-  // fork: joint force
-  const Real t1036 = t1035 * c_r_p_1_;
-  const Real t1037 = t1036 - t1003;
+  const Real t1035 = t1034 * par.m_F;
+  const Real t1036 = c_r_p_2_ * t1035;
+  const Real t1037 = t1031 + t1036;
   const Real t1038 = t1037 * par.k2;
-
-  // front_wheel: joint force
-  const Real t1039 = par.k1 * t1021;
-  const Real t1040 = t1025 * par.k2;
-  const Real t1041 = t1039 + t1040;
-  const Real t1042 = t927 * par.k12;
-  const Real t1043 = t1042 + t1041;
-
-  // fork: wrench
-  const Real t1044 = t917 * par.k5;
-  const Real t1045 = t920 * par.k6;
-  const Real t1046 = t1045 - t1044;
-  const Real t1047 = par.k10 * t925;
-  const Real t1048 = t1046 + t1047;
-
-  // front_wheel: joint force
-  const Real t1049 = t1043 + t1048;
-
-  // fork: joint force
-  const Real t1050 = t1049 * par.k1;
-  const Real t1051 = t1038 + t1050;
-
-  // frame: wrench
-  const Real t1052 = t270 * par.k15;
-  const Real t1053 = par.k3 * t146;
-  const Real t1054 = par.k9 - t1053;
-  const Real t1055 = t1054 - t1052;
-
-  // fork: joint force
-  const Real t1056 = t1051 + t1055;
-
-  // rear_wheel: joint force
-  const Real t1057 = t974 * par.r_R;
-
-  // rear_wheel: acceleration
-  const Real t1058 = t146 * s_r_p_0_;
-  const Real t1059 = t1058 + c_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t1060 = par.I_Rxx * t1059;
-
-  // rear_wheel: joint force
-  const Real t1061 = t1060 * c_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1062 = t146 * c_r_p_0_;
-  const Real t1063 = s_r_p_0_ - t1062;
-
-  // rear_wheel: wrench
-  const Real t1064 = par.I_Rxx * t1063;
-
-  // rear_wheel: joint force
-  const Real t1065 = t1064 * s_r_p_0_;
-  const Real t1066 = t1061 + t1065;
-  const Real t1067 = t1057 + t1066;
-  const Real t1068 = t1056 + t1067;
-
-  // reduced mass matrix
-  const Real t1069 = t715 * t1068;
-  const Real t1070 = t1069 + t990;
-
-  // fork: joint force
-  const Real t1071 = t1002 * c_r_p_1_;
-  const Real t1072 = s_r_p_1_ * t1035;
-  const Real t1073 = t1072 + t1071;
-  const Real t1074 = t980 * par.k13;
-  const Real t1075 = t1073 - t1074;
-
-  // frame: wrench
-  const Real t1076 = t286 * par.k16;
-  const Real t1077 = t298 * par.k15;
-  const Real t1078 = t1076 + t1077;
-  const Real t1079 = par.k4 * t143;
-  const Real t1080 = t1078 - t1079;
-
-  // fork: joint force
-  const Real t1081 = t1075 + t1080;
-
-  // rear_wheel: joint force
-  const Real t1082 = t962 * par.r_R;
-
-  // rear_wheel: wrench
-  const Real t1083 = par.I_Ryy * t143;
-
-  // rear_wheel: joint force
-  const Real t1084 = t1082 + t1083;
-  const Real t1085 = t1081 - t1084;
-
-  // reduced mass matrix
-  const Real t1086 = t822 * t1085;
-  const Real t1087 = t1070 + t1086;
-
-  // fork: joint force
-  const Real t1088 = t1037 * par.k1;
-  const Real t1089 = t1049 * par.k2;
-  const Real t1090 = t1089 - t1088;
-  const Real t1091 = t967 * par.k13;
-  const Real t1092 = t1090 + t1091;
-
-  // frame: wrench
-  const Real t1093 = t270 * par.k16;
-  const Real t1094 = par.k14 * t146;
-  const Real t1095 = par.k41 + t1094;
-  const Real t1096 = t1093 - t1095;
-
-  // fork: joint force
-  const Real t1097 = t1096 + t1092;
-
-  // rear_wheel: joint force
-  const Real t1098 = t1064 * c_r_p_0_;
-  const Real t1099 = t1060 * s_r_p_0_;
-  const Real t1100 = t1098 - t1099;
-  const Real t1101 = t1100 + t1097;
-
-  // reduced mass matrix
-  const Real t1102 = t843 * t1101;
-  const Real t1103 = t1087 + t1102;
-  const Real t1104 = t1103 - t1083;
-  const Real t1105 = t1049 * t713;
-  const Real t1106 = t1104 - t1105;
-  const Real t1107 = t995 * t850;
-  const Real t1108 = t1106 - t1107;
-
-  // reduced mass matrix
-  const Real t1109 = t963 * t298;
-  const Real t1110 = t270 * t975;
-  const Real t1111 = t1110 + t1109;
-  const Real t1112 = t286 * t988;
-  const Real t1113 = t1111 - t1112;
-  const Real t1114 = t1113 + t1068;
-  const Real t1115 = t143 * t1085;
-  const Real t1116 = t1114 - t1115;
-  const Real t1117 = t146 * t1101;
-  const Real t1118 = t1116 - t1117;
-  const Real t1119 = t140 * t995;
-  const Real t1120 = t1118 + t1119;
-
-  // reduced accelerations
-  const Real t1121 = constant<Real>(1.0L) / t1120;
-
-  // reduced accelerations
-  const Real t1122 = t1108 * t1121;
-  const Real t1123 = t864 * t1122;
-  const Real t1124 = t852 - t1123;
-
-  // reduced forces
-  const Real t1125 = t648 * t623;
-  const Real t1126 = t765 * t650;
-  const Real t1127 = t778 * t653;
-  const Real t1128 = t1127 + t1126;
-  const Real t1129 = t795 * t657;
-  const Real t1130 = t1129 + t1128;
-  const Real t1131 = t1125 - t1130;
-  const Real t1132 = t820 * t663;
-  const Real t1133 = t1131 - t1132;
-  const Real t1134 = t667 * t841;
-  const Real t1135 = t1133 - t1134;
-  const Real t1136 = t1135 - t585;
-  const Real t1137 = t489 * t672;
-  const Real t1138 = t1136 - t1137;
-
-  // reduced mass matrix
-  const Real t1139 = t648 * t1068;
-  const Real t1140 = t963 * t650;
-  const Real t1141 = t653 * t975;
-  const Real t1142 = t1140 + t1141;
-  const Real t1143 = t988 * t657;
-  const Real t1144 = t1142 + t1143;
-  const Real t1145 = t1144 - t1139;
-  const Real t1146 = t663 * t1085;
-  const Real t1147 = t1145 + t1146;
-  const Real t1148 = t667 * t1101;
-  const Real t1149 = t1148 + t1147;
-  const Real t1150 = t1049 + t1149;
-  const Real t1151 = t995 * t672;
-  const Real t1152 = t1150 - t1151;
-
-  // reduced accelerations
-  const Real t1153 = t1121 * t1152;
-  const Real t1154 = t864 * t1153;
-  const Real t1155 = t1138 - t1154;
-
-  // frame: acceleration
-  const Real t1156 = t159 - t662;
-
-  // fork: acceleration
-  const Real t1157 = t1156 * par.k13;
-  const Real t1158 = t1157 + t657;
-  const Real t1159 = par.k1 * t1158;
-  const Real t1160 = t650 * par.k2;
-  const Real t1161 = t1160 - t1159;
-  const Real t1162 = c_r_p_1_ * t1161;
-  const Real t1163 = t667 * par.k13;
-  const Real t1164 = t1163 + t653;
-  const Real t1165 = s_r_p_1_ * t1164;
-  const Real t1166 = t1162 + t1165;
-  const Real t1167 = t667 * par.k1;
-  const Real t1168 = t648 * par.k2;
-  const Real t1169 = t1168 + t1167;
-  const Real t1170 = s_r_p_1_ * t1169;
-  const Real t1171 = c_r_p_1_ * t663;
-  const Real t1172 = t1170 + t1171;
-
-  // front_wheel: acceleration
-  const Real t1173 = t1172 * par.k11;
-  const Real t1174 = t1166 - t1173;
-  const Real t1175 = par.k2 * t1174;
-  const Real t1176 = t1172 * par.k12;
-
-  // fork: acceleration
-  const Real t1177 = par.k2 * t1158;
-  const Real t1178 = par.k1 * t650;
-  const Real t1179 = t1177 + t1178;
-
-  // front_wheel: acceleration
-  const Real t1180 = t1179 - t1176;
-  const Real t1181 = t1180 * par.k1;
-  const Real t1182 = t1181 + t1175;
-  const Real t1183 = c_r_p_2_ * t1182;
-  const Real t1184 = par.k1 * t1174;
-  const Real t1185 = t1180 * par.k2;
-  const Real t1186 = t1185 - t1184;
-  const Real t1187 = t1186 * s_r_p_2_;
-  const Real t1188 = t1183 - t1187;
-
-  // front_wheel: wrench
-  const Real t1189 = t1188 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1190 = t1189 * c_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1191 = t1186 * c_r_p_2_;
-  const Real t1192 = t1182 * s_r_p_2_;
-  const Real t1193 = t1191 + t1192;
-
-  // front_wheel: wrench
-  const Real t1194 = par.m_F * t1193;
-
-  // front_wheel: joint force
-  const Real t1195 = t1194 * s_r_p_2_;
-  const Real t1196 = t1190 + t1195;
-  const Real t1197 = par.k1 * t1196;
-  const Real t1198 = t1194 * c_r_p_2_;
-  const Real t1199 = t1189 * s_r_p_2_;
-  const Real t1200 = t1198 - t1199;
-  const Real t1201 = t1200 * par.k2;
-  const Real t1202 = t1197 + t1201;
-  const Real t1203 = t1202 * par.k12;
-  const Real t1204 = t1196 * par.k2;
-  const Real t1205 = par.k1 * t1200;
-  const Real t1206 = t1204 - t1205;
-  const Real t1207 = par.k11 * t1206;
+  const Real t1039 = t1030 * c_r_p_2_;
+  const Real t1040 = t1035 * s_r_p_2_;
+  const Real t1041 = t1039 - t1040;
+  const Real t1042 = t1041 * par.k1;
+  const Real t1043 = t1038 - t1042;
+  const Real t1044 = t1019 * par.m_H;
+  const Real t1045 = par.k8 * t1001;
+  const Real t1046 = t1044 - t1045;
+  const Real t1047 = t1043 + t1046;
+  const Real t1048 = t1047 * c_r_p_1_;
+  const Real t1049 = c_r_p_1_ * t996;
+  const Real t1050 = s_r_p_1_ * t206;
+  const Real t1051 = s_r_p_1_ * t208;
+  const Real t1052 = t1051 + t1050;
+  const Real t1053 = t1052 - t1049;
+  const Real t1054 = t1053 * par.k11;
+  const Real t1055 = par.k2 * t214;
+  const Real t1056 = par.k1 - t1055;
+  const Real t1057 = t1056 * par.k12;
+  const Real t1058 = t1057 - t1054;
+  const Real t1059 = c_r_p_1_ * t1013;
+  const Real t1060 = s_r_p_1_ * t1017;
+  const Real t1061 = t1059 - t1060;
+  const Real t1062 = t1061 + t1058;
+  const Real t1063 = t1062 * par.m_F;
+  const Real t1064 = t1053 * par.k8;
+  const Real t1065 = t1056 * par.k10;
+  const Real t1066 = t1065 + t1064;
+  const Real t1067 = t1061 * par.m_H;
+  const Real t1068 = t1066 + t1067;
+  const Real t1069 = t1068 + t1063;
+  const Real t1070 = s_r_p_1_ * t1069;
+  const Real t1071 = t1048 - t1070;
+  const Real t1072 = t1071 * par.k2;
+  const Real t1073 = par.k1 * t1037;
+  const Real t1074 = t1041 * par.k2;
+  const Real t1075 = t1073 + t1074;
+  const Real t1076 = par.k10 * t1001;
+  const Real t1077 = t1009 * par.m_H;
+  const Real t1078 = t1077 + t1076;
+  const Real t1079 = t1078 + t1075;
+  const Real t1080 = par.k1 * t1079;
+  const Real t1081 = t1072 + t1080;
+  const Real t1082 = t373 * par.m_B;
+  const Real t1083 = par.k15 * t206;
+  const Real t1084 = t208 * par.k15;
+  const Real t1085 = t1083 + t1084;
+  const Real t1086 = t1082 - t1085;
+  const Real t1087 = t1086 + t1081;
+  const Real t1088 = t206 * par.r_R;
+  const Real t1089 = t208 * par.r_R;
+  const Real t1090 = t1089 + t1088;
+  const Real t1091 = t1090 + t373;
+  const Real t1092 = t1091 * c_r_p_0_;
+  const Real t1093 = t352 * s_r_p_0_;
+  const Real t1094 = t1093 + t1092;
+  const Real t1095 = t1094 * par.m_R;
+  const Real t1096 = t1095 * c_r_p_0_;
+  const Real t1097 = t1091 * s_r_p_0_;
+  const Real t1098 = t352 * c_r_p_0_;
+  const Real t1099 = t1097 - t1098;
+  const Real t1100 = t1099 * par.m_R;
+  const Real t1101 = t1100 * s_r_p_0_;
+  const Real t1102 = t1096 + t1101;
+  const Real t1103 = t1102 + t1087;
+  const Real t1104 = t1103 * t891;
+  const Real t1105 = s_r_p_1_ * t1047;
+  const Real t1106 = t1069 * c_r_p_1_;
+  const Real t1107 = t1106 + t1105;
+  const Real t1108 = t338 * par.m_B;
+  const Real t1109 = t214 * par.k16;
+  const Real t1110 = t1109 + par.k15;
+  const Real t1111 = t1108 - t1110;
+  const Real t1112 = t1107 + t1111;
+  const Real t1113 = t338 + par.r_R;
+  const Real t1114 = par.m_R * t1113;
+  const Real t1115 = t1114 + t1112;
+  const Real t1116 = t1115 * t904;
+  const Real t1117 = t1104 + t1116;
+  const Real t1118 = par.k1 * t1071;
+  const Real t1119 = par.k2 * t1079;
+  const Real t1120 = t1119 - t1118;
+  const Real t1121 = t352 * par.m_B;
+  const Real t1122 = t206 * par.k16;
+  const Real t1123 = t208 * par.k16;
+  const Real t1124 = t1122 + t1123;
+  const Real t1125 = t1124 - t1121;
+  const Real t1126 = t1125 + t1120;
+  const Real t1127 = t1100 * c_r_p_0_;
+  const Real t1128 = t1095 * s_r_p_0_;
+  const Real t1129 = t1127 - t1128;
+  const Real t1130 = t1126 + t1129;
+  const Real t1131 = t1130 * t921;
+  const Real t1132 = t1131 + t1117;
+  const Real t1133 = par.k12 * t1075;
+  const Real t1134 = t1043 * par.k11;
+  const Real t1135 = t1133 + t1134;
+  const Real t1136 = t1001 + t199;
+  const Real t1137 = t1136 * par.I_Fyy;
+  const Real t1138 = t1135 + t1137;
+  const Real t1139 = t1019 * par.k8;
+  const Real t1140 = t1009 * par.k10;
+  const Real t1141 = t1139 - t1140;
+  const Real t1142 = par.k7 * t1001;
+  const Real t1143 = t1141 - t1142;
+  const Real t1144 = t1143 - t1138;
+  const Real t1145 = s_r_p_1_ * t1144;
+  const Real t1146 = t1049 - t1052;
+  const Real t1147 = par.k1 * t1146;
+  const Real t1148 = t1056 * par.k2;
+  const Real t1149 = t1148 - t1147;
+  const Real t1150 = t1149 * c_r_p_2_;
+  const Real t1151 = par.k2 * t1146;
+  const Real t1152 = par.k1 * t1056;
+  const Real t1153 = t1152 + t1151;
+  const Real t1154 = t1153 * s_r_p_2_;
+  const Real t1155 = t1150 + t1154;
+  const Real t1156 = par.I_Fxx * t1155;
+  const Real t1157 = t1156 * s_r_p_2_;
+  const Real t1158 = c_r_p_2_ * t1153;
+  const Real t1159 = t1149 * s_r_p_2_;
+  const Real t1160 = t1158 - t1159;
+  const Real t1161 = t1160 * par.I_Fxx;
+  const Real t1162 = c_r_p_2_ * t1161;
+  const Real t1163 = t1157 + t1162;
+  const Real t1164 = par.k2 * t1163;
+  const Real t1165 = t1156 * c_r_p_2_;
+  const Real t1166 = t1161 * s_r_p_2_;
+  const Real t1167 = t1165 - t1166;
+  const Real t1168 = par.k1 * t1167;
+  const Real t1169 = t1164 - t1168;
+  const Real t1170 = par.k11 * t1063;
+  const Real t1171 = t1169 + t1170;
+  const Real t1172 = par.k17 * t1146;
+  const Real t1173 = par.k5 * t1056;
+  const Real t1174 = t1172 + t1173;
+  const Real t1175 = t1061 * par.k8;
+  const Real t1176 = t1174 - t1175;
+  const Real t1177 = t1171 + t1176;
+  const Real t1178 = t1177 * c_r_p_1_;
+  const Real t1179 = t1178 - t1145;
+  const Real t1180 = par.k2 * t1179;
+  const Real t1181 = par.k1 * t1163;
+  const Real t1182 = par.k2 * t1167;
+  const Real t1183 = t1181 + t1182;
+  const Real t1184 = par.k12 * t1063;
+  const Real t1185 = t1183 + t1184;
+  const Real t1186 = t1061 * par.k10;
+  const Real t1187 = t1053 * par.k5;
+  const Real t1188 = par.k6 * t1056;
+  const Real t1189 = t1188 - t1187;
+  const Real t1190 = t1186 + t1189;
+  const Real t1191 = t1190 + t1185;
+  const Real t1192 = t1191 * par.k1;
+  const Real t1193 = t1192 + t1180;
+  const Real t1194 = t338 * par.k15;
+  const Real t1195 = par.k3 * t214;
+  const Real t1196 = par.k9 - t1195;
+  const Real t1197 = t1196 - t1194;
+  const Real t1198 = t1193 + t1197;
+  const Real t1199 = t1114 * par.r_R;
+  const Real t1200 = t214 * s_r_p_0_;
+  const Real t1201 = t1200 + c_r_p_0_;
+  const Real t1202 = par.I_Rxx * t1201;
+  const Real t1203 = t1202 * c_r_p_0_;
+  const Real t1204 = t214 * c_r_p_0_;
+  const Real t1205 = s_r_p_0_ - t1204;
+  const Real t1206 = t1205 * par.I_Rxx;
+  const Real t1207 = t1206 * s_r_p_0_;
   const Real t1208 = t1203 + t1207;
-
-  // front_wheel: acceleration
-  const Real t1209 = t1172 + t672;
-
-  // front_wheel: wrench
-  const Real t1210 = par.I_Fyy * t1209;
-
-  // front_wheel: joint force
-  const Real t1211 = t1210 - t1208;
-
-  // fork: wrench
-  const Real t1212 = par.k8 * t1166;
-  const Real t1213 = par.k10 * t1179;
-  const Real t1214 = t1212 - t1213;
-  const Real t1215 = t1172 * par.k7;
-  const Real t1216 = t1215 + t1214;
-
-  // front_wheel: joint force
-  const Real t1217 = t1216 + t1211;
-
-  // fork: joint force
-  const Real t1218 = s_r_p_1_ * t1217;
-
-  // fork: acceleration
-  const Real t1219 = c_r_p_1_ * t1169;
-  const Real t1220 = s_r_p_1_ * t663;
-  const Real t1221 = t1220 - t1219;
-
-  // front_wheel: acceleration
-  const Real t1222 = t1221 * par.k2;
-
-  // fork: acceleration
-  const Real t1223 = t667 * par.k2;
-  const Real t1224 = t648 * par.k1;
-  const Real t1225 = t1223 - t1224;
-  const Real t1226 = t1225 + constant<Real>(1.0L);
-
-  // front_wheel: acceleration
-  const Real t1227 = par.k1 * t1226;
-  const Real t1228 = t1222 + t1227;
-  const Real t1229 = c_r_p_2_ * t1228;
-  const Real t1230 = t1221 * par.k1;
-  const Real t1231 = par.k2 * t1226;
-  const Real t1232 = t1231 - t1230;
-  const Real t1233 = t1232 * s_r_p_2_;
-  const Real t1234 = t1229 - t1233;
-
-  // front_wheel: wrench
-  const Real t1235 = par.I_Fxx * t1234;
-
-  // front_wheel: joint force
-  const Real t1236 = t1235 * c_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1237 = c_r_p_2_ * t1232;
-  const Real t1238 = t1228 * s_r_p_2_;
-  const Real t1239 = t1237 + t1238;
-
-  // front_wheel: wrench
-  const Real t1240 = par.I_Fxx * t1239;
-
-  // front_wheel: joint force
-  const Real t1241 = t1240 * s_r_p_2_;
-  const Real t1242 = t1236 + t1241;
-  const Real t1243 = par.k2 * t1242;
-  const Real t1244 = c_r_p_2_ * t1240;
-  const Real t1245 = t1235 * s_r_p_2_;
+  const Real t1209 = t1199 + t1208;
+  const Real t1210 = t1198 + t1209;
+  const Real t1211 = t1210 * t838;
+  const Real t1212 = t1132 + t1211;
+  const Real t1213 = c_r_p_1_ * t1144;
+  const Real t1214 = s_r_p_1_ * t1177;
+  const Real t1215 = t1213 + t1214;
+  const Real t1216 = t1120 * par.k13;
+  const Real t1217 = t1215 - t1216;
+  const Real t1218 = par.k15 * t373;
+  const Real t1219 = t352 * par.k16;
+  const Real t1220 = t1218 + t1219;
+  const Real t1221 = par.k4 * t206;
+  const Real t1222 = par.k4 * t208;
+  const Real t1223 = t1221 + t1222;
+  const Real t1224 = t1220 - t1223;
+  const Real t1225 = t1217 + t1224;
+  const Real t1226 = par.r_R * t1102;
+  const Real t1227 = par.I_Ryy * t206;
+  const Real t1228 = par.I_Ryy * t208;
+  const Real t1229 = t1227 + t1228;
+  const Real t1230 = t1229 + t1226;
+  const Real t1231 = t1225 - t1230;
+  const Real t1232 = t950 * t1231;
+  const Real t1233 = t1232 + t1212;
+  const Real t1234 = par.k1 * t1179;
+  const Real t1235 = t1191 * par.k2;
+  const Real t1236 = t1235 - t1234;
+  const Real t1237 = t1107 * par.k13;
+  const Real t1238 = t1237 + t1236;
+  const Real t1239 = t338 * par.k16;
+  const Real t1240 = t214 * par.k14;
+  const Real t1241 = par.k41 + t1240;
+  const Real t1242 = t1239 - t1241;
+  const Real t1243 = t1238 + t1242;
+  const Real t1244 = t1206 * c_r_p_0_;
+  const Real t1245 = t1202 * s_r_p_0_;
   const Real t1246 = t1244 - t1245;
-  const Real t1247 = par.k1 * t1246;
-  const Real t1248 = t1243 - t1247;
-
-  // fork: acceleration
-  const Real t1249 = s_r_p_1_ * t1161;
-  const Real t1250 = c_r_p_1_ * t1164;
-  const Real t1251 = t1250 - t1249;
-  const Real t1252 = t1219 - t1220;
-
-  // front_wheel: acceleration
-  const Real t1253 = t1252 * par.k11;
-  const Real t1254 = par.k12 * t1226;
-  const Real t1255 = t1254 - t1253;
-  const Real t1256 = t1251 + t1255;
-
-  // front_wheel: wrench
-  const Real t1257 = par.m_F * t1256;
-
-  // front_wheel: joint force
-  const Real t1258 = t1257 * par.k11;
-  const Real t1259 = t1258 + t1248;
-
-  // fork: wrench
-  const Real t1260 = par.k8 * t1251;
-  const Real t1261 = t1221 * par.k17;
-  const Real t1262 = par.k5 * t1226;
+  const Real t1247 = t1246 + t1243;
+  const Real t1248 = t971 * t1247;
+  const Real t1249 = t1233 + t1248;
+  const Real t1250 = t1249 - t1229;
+  const Real t1251 = t1191 * t836;
+  const Real t1252 = t1250 - t1251;
+  const Real t1253 = t978 * t1137;
+  const Real t1254 = t1252 - t1253;
+  const Real t1255 = t1103 * t373;
+  const Real t1256 = t1115 * t338;
+  const Real t1257 = t1255 + t1256;
+  const Real t1258 = t352 * t1130;
+  const Real t1259 = t1257 - t1258;
+  const Real t1260 = t1210 + t1259;
+  const Real t1261 = t1231 * t208;
+  const Real t1262 = t1231 * t206;
   const Real t1263 = t1261 + t1262;
-  const Real t1264 = t1263 - t1260;
-
-  // front_wheel: joint force
-  const Real t1265 = t1259 + t1264;
-
-  // fork: joint force
-  const Real t1266 = c_r_p_1_ * t1265;
-  const Real t1267 = t1266 - t1218;
-  const Real t1268 = t1267 * par.k2;
-
-  // front_wheel: joint force
-  const Real t1269 = par.k2 * t1246;
-  const Real t1270 = par.k1 * t1242;
-  const Real t1271 = t1269 + t1270;
-  const Real t1272 = t1257 * par.k12;
-  const Real t1273 = t1271 + t1272;
-
-  // fork: wrench
-  const Real t1274 = par.k10 * t1251;
-  const Real t1275 = t1252 * par.k5;
-  const Real t1276 = par.k6 * t1226;
-  const Real t1277 = t1276 - t1275;
-  const Real t1278 = t1274 + t1277;
-
-  // front_wheel: joint force
-  const Real t1279 = t1278 + t1273;
-
-  // fork: joint force
-  const Real t1280 = t1279 * par.k1;
-  const Real t1281 = t1280 + t1268;
-
-  // frame: wrench
-  const Real t1282 = t667 * par.k3;
-  const Real t1283 = t648 * par.k9;
-  const Real t1284 = t1282 - t1283;
-  const Real t1285 = t653 * par.k15;
+  const Real t1264 = t1260 - t1263;
+  const Real t1265 = t1247 * t214;
+  const Real t1266 = t1264 - t1265;
+  const Real t1267 = t1137 * t199;
+  const Real t1268 = t1266 + t1267;
+  const Real t1269 = constant<Real>(1.0L) / t1268;
+  const Real t1270 = t1269 * t1254;
+  const Real t1271 = t994 * t1270;
+  const Real t1272 = t980 - t1271;
+  const Real t1273 = t729 * t761;
+  const Real t1274 = t889 * t763;
+  const Real t1275 = t766 * t902;
+  const Real t1276 = t1275 + t1274;
+  const Real t1277 = t919 * t770;
+  const Real t1278 = t1277 + t1276;
+  const Real t1279 = t1273 - t1278;
+  const Real t1280 = t779 * t948;
+  const Real t1281 = t1279 - t1280;
+  const Real t1282 = t783 * t969;
+  const Real t1283 = t1281 - t1282;
+  const Real t1284 = t1283 - t691;
+  const Real t1285 = t788 * t593;
   const Real t1286 = t1284 - t1285;
-
-  // fork: joint force
-  const Real t1287 = t1286 + t1281;
-
-  // rear_wheel: acceleration
-  const Real t1288 = t667 * c_r_p_0_;
-  const Real t1289 = t648 * s_r_p_0_;
-  const Real t1290 = t1288 - t1289;
-
-  // rear_wheel: wrench
-  const Real t1291 = par.I_Rxx * t1290;
-
-  // rear_wheel: joint force
-  const Real t1292 = t1291 * s_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1293 = t667 * s_r_p_0_;
-  const Real t1294 = t648 * c_r_p_0_;
-  const Real t1295 = t1293 + t1294;
-
-  // rear_wheel: wrench
-  const Real t1296 = par.I_Rxx * t1295;
-
-  // rear_wheel: joint force
-  const Real t1297 = t1296 * c_r_p_0_;
-  const Real t1298 = t1292 - t1297;
-
-  // rear_wheel: acceleration
-  const Real t1299 = t648 * par.r_R;
-  const Real t1300 = t653 - t1299;
-
-  // rear_wheel: wrench
-  const Real t1301 = t1300 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t1302 = t1301 * par.r_R;
-  const Real t1303 = t1302 + t1298;
-  const Real t1304 = t1303 + t1287;
-
-  // reduced mass matrix
-  const Real t1305 = t648 * t1304;
-
-  // fork: wrench
-  const Real t1306 = par.m_H * t1166;
-  const Real t1307 = t1172 * par.k8;
-  const Real t1308 = t1307 + t1306;
-
-  // front_wheel: joint force
-  const Real t1309 = t1206 + t1308;
-
-  // fork: joint force
-  const Real t1310 = c_r_p_1_ * t1309;
-
-  // fork: wrench
-  const Real t1311 = par.m_H * t1251;
-  const Real t1312 = t1252 * par.k8;
-  const Real t1313 = par.k10 * t1226;
-  const Real t1314 = t1312 + t1313;
-  const Real t1315 = t1314 + t1311;
-
-  // front_wheel: joint force
-  const Real t1316 = t1257 + t1315;
-
-  // fork: joint force
-  const Real t1317 = s_r_p_1_ * t1316;
-  const Real t1318 = t1310 - t1317;
-  const Real t1319 = t1318 * par.k2;
-
-  // fork: wrench
-  const Real t1320 = par.m_H * t1179;
-  const Real t1321 = t1172 * par.k10;
-  const Real t1322 = t1320 - t1321;
-
-  // front_wheel: joint force
-  const Real t1323 = t1322 + t1202;
-
-  // fork: joint force
+  const Real t1287 = t761 * t1210;
+  const Real t1288 = t1103 * t763;
+  const Real t1289 = t1115 * t766;
+  const Real t1290 = t1289 + t1288;
+  const Real t1291 = t1130 * t770;
+  const Real t1292 = t1291 + t1290;
+  const Real t1293 = t1292 - t1287;
+  const Real t1294 = t1231 * t779;
+  const Real t1295 = t1294 + t1293;
+  const Real t1296 = t1247 * t783;
+  const Real t1297 = t1295 + t1296;
+  const Real t1298 = t1191 + t1297;
+  const Real t1299 = t788 * t1137;
+  const Real t1300 = t1298 - t1299;
+  const Real t1301 = t1269 * t1300;
+  const Real t1302 = t994 * t1301;
+  const Real t1303 = t1286 - t1302;
+  const Real t1304 = t152 - t777;
+  const Real t1305 = t1304 + t150;
+  const Real t1306 = par.k13 * t1305;
+  const Real t1307 = t1306 + t770;
+  const Real t1308 = par.k1 * t1307;
+  const Real t1309 = par.k2 * t763;
+  const Real t1310 = t1309 - t1308;
+  const Real t1311 = t1310 * c_r_p_1_;
+  const Real t1312 = t783 * par.k13;
+  const Real t1313 = t766 + t1312;
+  const Real t1314 = s_r_p_1_ * t1313;
+  const Real t1315 = t1311 + t1314;
+  const Real t1316 = par.k1 * t783;
+  const Real t1317 = t761 * par.k2;
+  const Real t1318 = t1317 + t1316;
+  const Real t1319 = s_r_p_1_ * t1318;
+  const Real t1320 = c_r_p_1_ * t779;
+  const Real t1321 = t1319 + t1320;
+  const Real t1322 = t1321 * par.k11;
+  const Real t1323 = t1315 - t1322;
   const Real t1324 = par.k1 * t1323;
-  const Real t1325 = t1324 + t1319;
-
-  // frame: wrench
-  const Real t1326 = t650 * par.m_B;
-  const Real t1327 = par.k15 * t663;
-  const Real t1328 = t1326 + t1327;
-
-  // fork: joint force
-  const Real t1329 = t1325 + t1328;
-
-  // rear_wheel: acceleration
-  const Real t1330 = par.r_R * t663;
-  const Real t1331 = t650 - t1330;
-  const Real t1332 = t1331 * s_r_p_0_;
-  const Real t1333 = c_r_p_0_ * t657;
-  const Real t1334 = t1333 + t1332;
-
-  // rear_wheel: wrench
-  const Real t1335 = par.m_R * t1334;
-
-  // rear_wheel: joint force
-  const Real t1336 = t1335 * s_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1337 = t1331 * c_r_p_0_;
-  const Real t1338 = s_r_p_0_ * t657;
-  const Real t1339 = t1337 - t1338;
-
-  // rear_wheel: wrench
-  const Real t1340 = t1339 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t1341 = t1340 * c_r_p_0_;
-  const Real t1342 = t1336 + t1341;
-  const Real t1343 = t1329 + t1342;
-
-  // reduced mass matrix
-  const Real t1344 = t1343 * t650;
-
-  // fork: joint force
-  const Real t1345 = s_r_p_1_ * t1309;
-  const Real t1346 = t1316 * c_r_p_1_;
-  const Real t1347 = t1345 + t1346;
-
-  // frame: wrench
-  const Real t1348 = t667 * par.k16;
-  const Real t1349 = t648 * par.k15;
-  const Real t1350 = t1349 + t1348;
-  const Real t1351 = t653 * par.m_B;
-  const Real t1352 = t1350 + t1351;
-
-  // fork: joint force
-  const Real t1353 = t1352 + t1347;
-
-  // rear_wheel: joint force
-  const Real t1354 = t1301 + t1353;
-
-  // reduced mass matrix
-  const Real t1355 = t653 * t1354;
-  const Real t1356 = t1344 + t1355;
-
-  // fork: joint force
-  const Real t1357 = t1318 * par.k1;
-  const Real t1358 = par.k2 * t1323;
-  const Real t1359 = t1358 - t1357;
-
-  // frame: wrench
-  const Real t1360 = t1156 * par.k16;
-  const Real t1361 = par.m_B * t657;
-  const Real t1362 = t1360 + t1361;
-
-  // fork: joint force
-  const Real t1363 = t1359 + t1362;
-
-  // rear_wheel: joint force
-  const Real t1364 = t1335 * c_r_p_0_;
-  const Real t1365 = t1340 * s_r_p_0_;
-  const Real t1366 = t1364 - t1365;
-  const Real t1367 = t1366 + t1363;
-
-  // reduced mass matrix
-  const Real t1368 = t1367 * t657;
-  const Real t1369 = t1368 + t1356;
-  const Real t1370 = t1369 - t1305;
-
-  // fork: joint force
-  const Real t1371 = t1217 * c_r_p_1_;
-  const Real t1372 = s_r_p_1_ * t1265;
-  const Real t1373 = t1371 + t1372;
-  const Real t1374 = t1359 * par.k13;
-  const Real t1375 = t1373 - t1374;
-
-  // frame: wrench
-  const Real t1376 = t650 * par.k15;
-  const Real t1377 = par.k16 * t657;
-  const Real t1378 = t1376 - t1377;
-  const Real t1379 = par.k4 * t663;
-  const Real t1380 = t1379 + t1378;
-
-  // fork: joint force
-  const Real t1381 = t1375 + t1380;
-
-  // rear_wheel: joint force
-  const Real t1382 = t1342 * par.r_R;
-
-  // rear_wheel: wrench
-  const Real t1383 = par.I_Ryy * t663;
-
-  // rear_wheel: joint force
-  const Real t1384 = t1383 - t1382;
-  const Real t1385 = t1381 + t1384;
-
-  // reduced mass matrix
-  const Real t1386 = t1385 * t663;
-  const Real t1387 = t1386 + t1370;
-
-  // fork: joint force
-  const Real t1388 = par.k1 * t1267;
-  const Real t1389 = t1279 * par.k2;
-  const Real t1390 = t1389 - t1388;
-  const Real t1391 = par.k13 * t1347;
-  const Real t1392 = t1391 + t1390;
-
-  // frame: wrench
-  const Real t1393 = t667 * par.k14;
-  const Real t1394 = t648 * par.k3;
+  const Real t1325 = t1307 * par.k2;
+  const Real t1326 = par.k1 * t763;
+  const Real t1327 = t1325 + t1326;
+  const Real t1328 = t1321 * par.k12;
+  const Real t1329 = t1327 - t1328;
+  const Real t1330 = t1329 * par.k2;
+  const Real t1331 = t1330 - t1324;
+  const Real t1332 = c_r_p_2_ * t1331;
+  const Real t1333 = par.k2 * t1323;
+  const Real t1334 = t1329 * par.k1;
+  const Real t1335 = t1334 + t1333;
+  const Real t1336 = t1335 * s_r_p_2_;
+  const Real t1337 = t1332 + t1336;
+  const Real t1338 = t1337 * par.m_F;
+  const Real t1339 = t1338 * c_r_p_2_;
+  const Real t1340 = c_r_p_2_ * t1335;
+  const Real t1341 = t1331 * s_r_p_2_;
+  const Real t1342 = t1340 - t1341;
+  const Real t1343 = t1342 * par.m_F;
+  const Real t1344 = t1343 * s_r_p_2_;
+  const Real t1345 = t1339 - t1344;
+  const Real t1346 = par.k2 * t1345;
+  const Real t1347 = t1338 * s_r_p_2_;
+  const Real t1348 = c_r_p_2_ * t1343;
+  const Real t1349 = t1347 + t1348;
+  const Real t1350 = t1349 * par.k1;
+  const Real t1351 = t1346 + t1350;
+  const Real t1352 = t1351 * par.k12;
+  const Real t1353 = t1349 * par.k2;
+  const Real t1354 = par.k1 * t1345;
+  const Real t1355 = t1353 - t1354;
+  const Real t1356 = t1355 * par.k11;
+  const Real t1357 = t1352 + t1356;
+  const Real t1358 = t788 + t1321;
+  const Real t1359 = t1358 * par.I_Fyy;
+  const Real t1360 = t1359 - t1357;
+  const Real t1361 = par.k8 * t1315;
+  const Real t1362 = par.k10 * t1327;
+  const Real t1363 = t1361 - t1362;
+  const Real t1364 = t1321 * par.k7;
+  const Real t1365 = t1364 + t1363;
+  const Real t1366 = t1365 + t1360;
+  const Real t1367 = s_r_p_1_ * t1366;
+  const Real t1368 = s_r_p_1_ * t779;
+  const Real t1369 = t1318 * c_r_p_1_;
+  const Real t1370 = t1368 - t1369;
+  const Real t1371 = par.k1 * t1370;
+  const Real t1372 = t783 * par.k2;
+  const Real t1373 = par.k1 * t761;
+  const Real t1374 = t1372 - t1373;
+  const Real t1375 = constant<Real>(1.0L) + t1374;
+  const Real t1376 = par.k2 * t1375;
+  const Real t1377 = t1376 - t1371;
+  const Real t1378 = c_r_p_2_ * t1377;
+  const Real t1379 = par.k2 * t1370;
+  const Real t1380 = par.k1 * t1375;
+  const Real t1381 = t1380 + t1379;
+  const Real t1382 = t1381 * s_r_p_2_;
+  const Real t1383 = t1378 + t1382;
+  const Real t1384 = par.I_Fxx * t1383;
+  const Real t1385 = t1384 * s_r_p_2_;
+  const Real t1386 = c_r_p_2_ * t1381;
+  const Real t1387 = t1377 * s_r_p_2_;
+  const Real t1388 = t1386 - t1387;
+  const Real t1389 = par.I_Fxx * t1388;
+  const Real t1390 = t1389 * c_r_p_2_;
+  const Real t1391 = t1385 + t1390;
+  const Real t1392 = t1391 * par.k2;
+  const Real t1393 = t1384 * c_r_p_2_;
+  const Real t1394 = t1389 * s_r_p_2_;
   const Real t1395 = t1393 - t1394;
-  const Real t1396 = t653 * par.k16;
-  const Real t1397 = t1396 + t1395;
-
-  // fork: joint force
-  const Real t1398 = t1397 + t1392;
-
-  // rear_wheel: joint force
-  const Real t1399 = t1296 * s_r_p_0_;
-  const Real t1400 = t1291 * c_r_p_0_;
-  const Real t1401 = t1399 + t1400;
-  const Real t1402 = t1398 + t1401;
-
-  // reduced mass matrix
-  const Real t1403 = t667 * t1402;
-  const Real t1404 = t1403 + t1387;
-  const Real t1405 = t1279 + t1404;
-  const Real t1406 = t1210 * t672;
-  const Real t1407 = t1405 + t1406;
-
-  // reduced accelerations
-  const Real t1408 = t1153 * t1152;
-  const Real t1409 = t1407 - t1408;
-  const Real t1410 = constant<Real>(1.0L) / t1409;
-
-  // reduced mass matrix
-  const Real t1411 = t715 * t1304;
-  const Real t1412 = t1343 * t767;
-  const Real t1413 = t1354 * t780;
-  const Real t1414 = t1412 + t1413;
-  const Real t1415 = t1367 * t797;
-  const Real t1416 = t1414 + t1415;
-  const Real t1417 = t1411 + t1416;
-  const Real t1418 = t822 * t1385;
-  const Real t1419 = t1418 + t1417;
-  const Real t1420 = t843 * t1402;
-  const Real t1421 = t1419 + t1420;
-  const Real t1422 = t1383 + t1421;
-  const Real t1423 = t1279 * t713;
-  const Real t1424 = t1422 - t1423;
-  const Real t1425 = t1210 * t850;
-  const Real t1426 = t1425 + t1424;
-
-  // reduced accelerations
-  const Real t1427 = t1108 * t1153;
-  const Real t1428 = t1426 - t1427;
-  const Real t1429 = t1410 * t1428;
-  const Real t1430 = t1429 * t1155;
-  const Real t1431 = t1124 - t1430;
-
-  // frame: acceleration
-  const Real t1432 = t821 - t702;
-
-  // fork: acceleration
-  const Real t1433 = par.k13 * t1432;
-  const Real t1434 = t1433 + t797;
-  const Real t1435 = par.k1 * t1434;
-  const Real t1436 = par.k2 * t767;
-  const Real t1437 = t1436 - t1435;
-  const Real t1438 = t1437 * c_r_p_1_;
-  const Real t1439 = t843 * par.k13;
-  const Real t1440 = t780 + t1439;
-  const Real t1441 = s_r_p_1_ * t1440;
-  const Real t1442 = t1441 + t1438;
-  const Real t1443 = t715 * par.k2;
-  const Real t1444 = t843 * par.k1;
-  const Real t1445 = t1443 - t1444;
-  const Real t1446 = s_r_p_1_ * t1445;
-  const Real t1447 = t822 * c_r_p_1_;
-  const Real t1448 = t1447 - t1446;
-
-  // front_wheel: acceleration
-  const Real t1449 = t1448 * par.k11;
-  const Real t1450 = t1442 - t1449;
-  const Real t1451 = t1450 * par.k2;
-
-  // fork: acceleration
-  const Real t1452 = t1446 - t1447;
-
-  // front_wheel: acceleration
-  const Real t1453 = t1452 * par.k12;
-
-  // fork: acceleration
-  const Real t1454 = t1434 * par.k2;
-  const Real t1455 = par.k1 * t767;
-  const Real t1456 = t1455 + t1454;
-
-  // front_wheel: acceleration
-  const Real t1457 = t1456 + t1453;
-  const Real t1458 = par.k1 * t1457;
-  const Real t1459 = t1458 + t1451;
-  const Real t1460 = t1459 * s_r_p_2_;
-  const Real t1461 = t1450 * par.k1;
-  const Real t1462 = par.k2 * t1457;
-  const Real t1463 = t1462 - t1461;
-  const Real t1464 = t1463 * c_r_p_2_;
-  const Real t1465 = t1460 + t1464;
-
-  // front_wheel: wrench
-  const Real t1466 = t1465 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1467 = t1466 * s_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1468 = t1459 * c_r_p_2_;
-  const Real t1469 = t1463 * s_r_p_2_;
-  const Real t1470 = t1468 - t1469;
-
-  // front_wheel: wrench
-  const Real t1471 = t1470 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1472 = c_r_p_2_ * t1471;
-  const Real t1473 = t1467 + t1472;
-  const Real t1474 = par.k2 * t1473;
-  const Real t1475 = c_r_p_2_ * t1466;
-  const Real t1476 = t1471 * s_r_p_2_;
-  const Real t1477 = t1475 - t1476;
-  const Real t1478 = par.k1 * t1477;
-  const Real t1479 = t1474 - t1478;
-  const Real t1480 = t1479 * par.k11;
-  const Real t1481 = par.k1 * t1473;
-  const Real t1482 = t1477 * par.k2;
-  const Real t1483 = t1481 + t1482;
-  const Real t1484 = t1483 * par.k12;
-  const Real t1485 = t1480 + t1484;
-
-  // front_wheel: acceleration
-  const Real t1486 = t1448 + t850;
-
-  // front_wheel: wrench
-  const Real t1487 = par.I_Fyy * t1486;
-
-  // front_wheel: joint force
-  const Real t1488 = t1487 - t1485;
-
-  // fork: wrench
-  const Real t1489 = par.k8 * t1442;
-  const Real t1490 = par.k10 * t1456;
-  const Real t1491 = t1489 - t1490;
-  const Real t1492 = t1448 * par.k7;
-  const Real t1493 = t1491 + t1492;
-
-  // front_wheel: joint force
-  const Real t1494 = t1488 + t1493;
-
-  // fork: joint force
-  const Real t1495 = s_r_p_1_ * t1494;
-
-  // fork: acceleration
-  const Real t1496 = c_r_p_1_ * t1445;
-  const Real t1497 = t822 * s_r_p_1_;
-  const Real t1498 = t1496 + t1497;
-
-  // front_wheel: acceleration
-  const Real t1499 = par.k2 * t1498;
-
-  // fork: acceleration
-  const Real t1500 = t843 * par.k2;
-  const Real t1501 = t715 * par.k1;
-  const Real t1502 = t1500 + t1501;
-  const Real t1503 = t1502 - t713;
-
-  // front_wheel: acceleration
-  const Real t1504 = par.k1 * t1503;
-  const Real t1505 = t1504 + t1499;
-  const Real t1506 = t1505 * c_r_p_2_;
-  const Real t1507 = par.k1 * t1498;
-  const Real t1508 = t1503 * par.k2;
-  const Real t1509 = t1508 - t1507;
-  const Real t1510 = t1509 * s_r_p_2_;
-  const Real t1511 = t1506 - t1510;
-
-  // front_wheel: wrench
-  const Real t1512 = t1511 * par.I_Fxx;
-
-  // front_wheel: joint force
-  const Real t1513 = t1512 * c_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1514 = t1509 * c_r_p_2_;
-  const Real t1515 = t1505 * s_r_p_2_;
-  const Real t1516 = t1514 + t1515;
-
-  // front_wheel: wrench
-  const Real t1517 = par.I_Fxx * t1516;
-
-  // front_wheel: joint force
-  const Real t1518 = t1517 * s_r_p_2_;
-  const Real t1519 = t1513 + t1518;
-  const Real t1520 = t1519 * par.k2;
-  const Real t1521 = t1517 * c_r_p_2_;
-  const Real t1522 = t1512 * s_r_p_2_;
-  const Real t1523 = t1521 - t1522;
-  const Real t1524 = par.k1 * t1523;
-  const Real t1525 = t1520 - t1524;
-
-  // front_wheel: acceleration
-  const Real t1526 = par.k11 * t1498;
-  const Real t1527 = t1503 * par.k12;
-  const Real t1528 = t1527 + t1526;
-
-  // fork: acceleration
-  const Real t1529 = t1437 * s_r_p_1_;
-  const Real t1530 = t1440 * c_r_p_1_;
-  const Real t1531 = t1530 - t1529;
-
-  // front_wheel: acceleration
-  const Real t1532 = t1528 + t1531;
-
-  // front_wheel: wrench
-  const Real t1533 = par.m_F * t1532;
-
-  // front_wheel: joint force
-  const Real t1534 = par.k11 * t1533;
-  const Real t1535 = t1525 + t1534;
-
-  // fork: wrench
-  const Real t1536 = par.k8 * t1531;
-  const Real t1537 = par.k17 * t1498;
-  const Real t1538 = par.k5 * t1503;
-  const Real t1539 = t1538 + t1537;
-  const Real t1540 = t1539 - t1536;
-
-  // front_wheel: joint force
-  const Real t1541 = t1540 + t1535;
-
-  // fork: joint force
-  const Real t1542 = t1541 * c_r_p_1_;
-  const Real t1543 = t1542 - t1495;
-  const Real t1544 = t1543 * par.k2;
-
-  // front_wheel: joint force
-  const Real t1545 = t1519 * par.k1;
-  const Real t1546 = par.k2 * t1523;
-  const Real t1547 = t1545 + t1546;
-  const Real t1548 = par.k12 * t1533;
-  const Real t1549 = t1548 + t1547;
-
-  // fork: wrench
-  const Real t1550 = par.k10 * t1531;
-  const Real t1551 = par.k5 * t1498;
-  const Real t1552 = par.k6 * t1503;
-  const Real t1553 = t1552 + t1551;
-  const Real t1554 = t1553 + t1550;
-
-  // front_wheel: joint force
-  const Real t1555 = t1554 + t1549;
-
-  // fork: joint force
-  const Real t1556 = par.k1 * t1555;
-  const Real t1557 = t1556 + t1544;
-
-  // frame: wrench
-  const Real t1558 = t715 * par.k9;
-  const Real t1559 = t843 * par.k3;
-  const Real t1560 = t1558 + t1559;
-  const Real t1561 = par.k15 * t780;
-  const Real t1562 = t1560 - t1561;
-
-  // fork: joint force
-  const Real t1563 = t1557 + t1562;
-
-  // rear_wheel: acceleration
-  const Real t1564 = t715 * s_r_p_0_;
-  const Real t1565 = t843 * c_r_p_0_;
-  const Real t1566 = t1564 + t1565;
-
-  // rear_wheel: wrench
-  const Real t1567 = par.I_Rxx * t1566;
-
-  // rear_wheel: joint force
-  const Real t1568 = t1567 * s_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1569 = t715 * c_r_p_0_;
-  const Real t1570 = t843 * s_r_p_0_;
-  const Real t1571 = t1569 - t1570;
-
-  // rear_wheel: wrench
-  const Real t1572 = t1571 * par.I_Rxx;
-
-  // rear_wheel: joint force
-  const Real t1573 = t1572 * c_r_p_0_;
-  const Real t1574 = t1568 + t1573;
-
-  // frame: acceleration
-  const Real t1575 = t687 - t714;
-
-  // rear_wheel: acceleration
-  const Real t1576 = par.r_R * t1575;
-  const Real t1577 = t780 - t1576;
-
-  // rear_wheel: wrench
-  const Real t1578 = t1577 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t1579 = t1578 * par.r_R;
-  const Real t1580 = t1579 + t1574;
-  const Real t1581 = t1563 + t1580;
-
-  // reduced mass matrix
-  const Real t1582 = t715 * t1581;
-
-  // fork: wrench
-  const Real t1583 = par.m_H * t1442;
-  const Real t1584 = t1448 * par.k8;
-  const Real t1585 = t1584 + t1583;
-
-  // front_wheel: joint force
-  const Real t1586 = t1585 + t1479;
-
-  // fork: joint force
-  const Real t1587 = t1586 * c_r_p_1_;
-
-  // fork: wrench
-  const Real t1588 = par.m_H * t1531;
-  const Real t1589 = par.k8 * t1498;
-  const Real t1590 = t1503 * par.k10;
-  const Real t1591 = t1590 - t1589;
-  const Real t1592 = t1591 + t1588;
-
-  // front_wheel: joint force
-  const Real t1593 = t1592 + t1533;
-
-  // fork: joint force
-  const Real t1594 = s_r_p_1_ * t1593;
-  const Real t1595 = t1587 - t1594;
-  const Real t1596 = t1595 * par.k2;
-
-  // fork: wrench
-  const Real t1597 = t1452 * par.k10;
-  const Real t1598 = par.m_H * t1456;
-  const Real t1599 = t1597 + t1598;
-
-  // front_wheel: joint force
-  const Real t1600 = t1483 + t1599;
-
-  // fork: joint force
-  const Real t1601 = par.k1 * t1600;
-  const Real t1602 = t1601 + t1596;
-
-  // frame: wrench
-  const Real t1603 = par.m_B * t767;
-  const Real t1604 = t822 * par.k15;
+  const Real t1396 = t1395 * par.k1;
+  const Real t1397 = t1392 - t1396;
+  const Real t1398 = s_r_p_1_ * t1310;
+  const Real t1399 = c_r_p_1_ * t1313;
+  const Real t1400 = t1399 - t1398;
+  const Real t1401 = t1369 - t1368;
+  const Real t1402 = t1401 * par.k11;
+  const Real t1403 = t1375 * par.k12;
+  const Real t1404 = t1403 - t1402;
+  const Real t1405 = t1404 + t1400;
+  const Real t1406 = t1405 * par.m_F;
+  const Real t1407 = par.k11 * t1406;
+  const Real t1408 = t1397 + t1407;
+  const Real t1409 = par.k8 * t1400;
+  const Real t1410 = par.k17 * t1370;
+  const Real t1411 = par.k5 * t1375;
+  const Real t1412 = t1411 + t1410;
+  const Real t1413 = t1412 - t1409;
+  const Real t1414 = t1408 + t1413;
+  const Real t1415 = t1414 * c_r_p_1_;
+  const Real t1416 = t1415 - t1367;
+  const Real t1417 = t1416 * par.k2;
+  const Real t1418 = t1395 * par.k2;
+  const Real t1419 = t1391 * par.k1;
+  const Real t1420 = t1418 + t1419;
+  const Real t1421 = par.k12 * t1406;
+  const Real t1422 = t1420 + t1421;
+  const Real t1423 = par.k10 * t1400;
+  const Real t1424 = par.k5 * t1401;
+  const Real t1425 = par.k6 * t1375;
+  const Real t1426 = t1425 - t1424;
+  const Real t1427 = t1426 + t1423;
+  const Real t1428 = t1422 + t1427;
+  const Real t1429 = par.k1 * t1428;
+  const Real t1430 = t1429 + t1417;
+  const Real t1431 = par.k3 * t783;
+  const Real t1432 = t761 * par.k9;
+  const Real t1433 = t1431 - t1432;
+  const Real t1434 = t766 * par.k15;
+  const Real t1435 = t1433 - t1434;
+  const Real t1436 = t1430 + t1435;
+  const Real t1437 = t783 * c_r_p_0_;
+  const Real t1438 = t761 * s_r_p_0_;
+  const Real t1439 = t1437 - t1438;
+  const Real t1440 = par.I_Rxx * t1439;
+  const Real t1441 = t1440 * s_r_p_0_;
+  const Real t1442 = t783 * s_r_p_0_;
+  const Real t1443 = t761 * c_r_p_0_;
+  const Real t1444 = t1442 + t1443;
+  const Real t1445 = t1444 * par.I_Rxx;
+  const Real t1446 = t1445 * c_r_p_0_;
+  const Real t1447 = t1441 - t1446;
+  const Real t1448 = t761 * par.r_R;
+  const Real t1449 = t766 - t1448;
+  const Real t1450 = t1449 * par.m_R;
+  const Real t1451 = t1450 * par.r_R;
+  const Real t1452 = t1451 + t1447;
+  const Real t1453 = t1452 + t1436;
+  const Real t1454 = t1453 * t761;
+  const Real t1455 = par.m_H * t1315;
+  const Real t1456 = t1321 * par.k8;
+  const Real t1457 = t1456 + t1455;
+  const Real t1458 = t1457 + t1355;
+  const Real t1459 = t1458 * c_r_p_1_;
+  const Real t1460 = par.m_H * t1400;
+  const Real t1461 = t1401 * par.k8;
+  const Real t1462 = par.k10 * t1375;
+  const Real t1463 = t1461 + t1462;
+  const Real t1464 = t1460 + t1463;
+  const Real t1465 = t1464 + t1406;
+  const Real t1466 = s_r_p_1_ * t1465;
+  const Real t1467 = t1459 - t1466;
+  const Real t1468 = t1467 * par.k2;
+  const Real t1469 = par.m_H * t1327;
+  const Real t1470 = t1321 * par.k10;
+  const Real t1471 = t1469 - t1470;
+  const Real t1472 = t1351 + t1471;
+  const Real t1473 = par.k1 * t1472;
+  const Real t1474 = t1468 + t1473;
+  const Real t1475 = t779 * par.k15;
+  const Real t1476 = t763 * par.m_B;
+  const Real t1477 = t1475 + t1476;
+  const Real t1478 = t1474 + t1477;
+  const Real t1479 = t779 * par.r_R;
+  const Real t1480 = t763 - t1479;
+  const Real t1481 = c_r_p_0_ * t1480;
+  const Real t1482 = t770 * s_r_p_0_;
+  const Real t1483 = t1481 - t1482;
+  const Real t1484 = par.m_R * t1483;
+  const Real t1485 = t1484 * c_r_p_0_;
+  const Real t1486 = s_r_p_0_ * t1480;
+  const Real t1487 = t770 * c_r_p_0_;
+  const Real t1488 = t1486 + t1487;
+  const Real t1489 = t1488 * par.m_R;
+  const Real t1490 = s_r_p_0_ * t1489;
+  const Real t1491 = t1485 + t1490;
+  const Real t1492 = t1491 + t1478;
+  const Real t1493 = t763 * t1492;
+  const Real t1494 = t1458 * s_r_p_1_;
+  const Real t1495 = t1465 * c_r_p_1_;
+  const Real t1496 = t1495 + t1494;
+  const Real t1497 = t783 * par.k16;
+  const Real t1498 = t761 * par.k15;
+  const Real t1499 = t1497 + t1498;
+  const Real t1500 = t766 * par.m_B;
+  const Real t1501 = t1499 + t1500;
+  const Real t1502 = t1496 + t1501;
+  const Real t1503 = t1450 + t1502;
+  const Real t1504 = t766 * t1503;
+  const Real t1505 = t1493 + t1504;
+  const Real t1506 = par.k1 * t1467;
+  const Real t1507 = t1472 * par.k2;
+  const Real t1508 = t1507 - t1506;
+  const Real t1509 = t1305 * par.k16;
+  const Real t1510 = par.m_B * t770;
+  const Real t1511 = t1510 + t1509;
+  const Real t1512 = t1508 + t1511;
+  const Real t1513 = c_r_p_0_ * t1489;
+  const Real t1514 = t1484 * s_r_p_0_;
+  const Real t1515 = t1513 - t1514;
+  const Real t1516 = t1515 + t1512;
+  const Real t1517 = t1516 * t770;
+  const Real t1518 = t1517 + t1505;
+  const Real t1519 = t1518 - t1454;
+  const Real t1520 = t1366 * c_r_p_1_;
+  const Real t1521 = s_r_p_1_ * t1414;
+  const Real t1522 = t1520 + t1521;
+  const Real t1523 = t1508 * par.k13;
+  const Real t1524 = t1522 - t1523;
+  const Real t1525 = par.k4 * t779;
+  const Real t1526 = t763 * par.k15;
+  const Real t1527 = par.k16 * t770;
+  const Real t1528 = t1526 - t1527;
+  const Real t1529 = t1528 + t1525;
+  const Real t1530 = t1524 + t1529;
+  const Real t1531 = t1491 * par.r_R;
+  const Real t1532 = par.I_Ryy * t779;
+  const Real t1533 = t1532 - t1531;
+  const Real t1534 = t1533 + t1530;
+  const Real t1535 = t779 * t1534;
+  const Real t1536 = t1519 + t1535;
+  const Real t1537 = par.k1 * t1416;
+  const Real t1538 = t1428 * par.k2;
+  const Real t1539 = t1538 - t1537;
+  const Real t1540 = par.k13 * t1496;
+  const Real t1541 = t1540 + t1539;
+  const Real t1542 = t783 * par.k14;
+  const Real t1543 = par.k3 * t761;
+  const Real t1544 = t1542 - t1543;
+  const Real t1545 = t766 * par.k16;
+  const Real t1546 = t1544 + t1545;
+  const Real t1547 = t1541 + t1546;
+  const Real t1548 = t1445 * s_r_p_0_;
+  const Real t1549 = t1440 * c_r_p_0_;
+  const Real t1550 = t1548 + t1549;
+  const Real t1551 = t1547 + t1550;
+  const Real t1552 = t783 * t1551;
+  const Real t1553 = t1536 + t1552;
+  const Real t1554 = t1553 + t1428;
+  const Real t1555 = t1359 * t788;
+  const Real t1556 = t1554 + t1555;
+  const Real t1557 = t1301 * t1300;
+  const Real t1558 = t1556 - t1557;
+  const Real t1559 = constant<Real>(1.0L) / t1558;
+  const Real t1560 = t1453 * t838;
+  const Real t1561 = t1492 * t891;
+  const Real t1562 = t904 * t1503;
+  const Real t1563 = t1562 + t1561;
+  const Real t1564 = t1516 * t921;
+  const Real t1565 = t1563 + t1564;
+  const Real t1566 = t1560 + t1565;
+  const Real t1567 = t950 * t1534;
+  const Real t1568 = t1566 + t1567;
+  const Real t1569 = t971 * t1551;
+  const Real t1570 = t1568 + t1569;
+  const Real t1571 = t1570 + t1532;
+  const Real t1572 = t1428 * t836;
+  const Real t1573 = t1571 - t1572;
+  const Real t1574 = t978 * t1359;
+  const Real t1575 = t1574 + t1573;
+  const Real t1576 = t1301 * t1254;
+  const Real t1577 = t1575 - t1576;
+  const Real t1578 = t1559 * t1577;
+  const Real t1579 = t1303 * t1578;
+  const Real t1580 = t1272 - t1579;
+  const Real t1581 = t949 - t825;
+  const Real t1582 = t1581 * par.k13;
+  const Real t1583 = t1582 + t921;
+  const Real t1584 = t1583 * par.k1;
+  const Real t1585 = par.k2 * t891;
+  const Real t1586 = t1585 - t1584;
+  const Real t1587 = c_r_p_1_ * t1586;
+  const Real t1588 = t971 * par.k13;
+  const Real t1589 = t904 + t1588;
+  const Real t1590 = s_r_p_1_ * t1589;
+  const Real t1591 = t1587 + t1590;
+  const Real t1592 = par.k2 * t838;
+  const Real t1593 = t971 * par.k1;
+  const Real t1594 = t1592 - t1593;
+  const Real t1595 = s_r_p_1_ * t1594;
+  const Real t1596 = t950 * c_r_p_1_;
+  const Real t1597 = t1596 - t1595;
+  const Real t1598 = t1597 * par.k11;
+  const Real t1599 = t1591 - t1598;
+  const Real t1600 = t1599 * par.k2;
+  const Real t1601 = t1595 - t1596;
+  const Real t1602 = t1601 * par.k12;
+  const Real t1603 = t1583 * par.k2;
+  const Real t1604 = par.k1 * t891;
   const Real t1605 = t1603 + t1604;
-
-  // fork: joint force
   const Real t1606 = t1602 + t1605;
-
-  // rear_wheel: acceleration
-  const Real t1607 = t822 * par.r_R;
-  const Real t1608 = t767 - t1607;
-  const Real t1609 = t1608 * c_r_p_0_;
-  const Real t1610 = t797 * s_r_p_0_;
-  const Real t1611 = t1609 - t1610;
-
-  // rear_wheel: wrench
-  const Real t1612 = t1611 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t1613 = t1612 * c_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1614 = t1608 * s_r_p_0_;
-  const Real t1615 = t797 * c_r_p_0_;
-  const Real t1616 = t1615 + t1614;
-
-  // rear_wheel: wrench
-  const Real t1617 = t1616 * par.m_R;
-
-  // rear_wheel: joint force
-  const Real t1618 = t1617 * s_r_p_0_;
-  const Real t1619 = t1613 + t1618;
-  const Real t1620 = t1606 + t1619;
-
-  // reduced mass matrix
-  const Real t1621 = t1620 * t767;
-
-  // fork: joint force
-  const Real t1622 = s_r_p_1_ * t1586;
-  const Real t1623 = c_r_p_1_ * t1593;
-  const Real t1624 = t1622 + t1623;
-
-  // frame: wrench
-  const Real t1625 = t843 * par.k16;
-  const Real t1626 = par.k15 * t1575;
-  const Real t1627 = t1625 + t1626;
-  const Real t1628 = t780 * par.m_B;
-  const Real t1629 = t1627 + t1628;
-
-  // fork: joint force
-  const Real t1630 = t1629 + t1624;
-
-  // rear_wheel: joint force
-  const Real t1631 = t1578 + t1630;
-
-  // reduced mass matrix
-  const Real t1632 = t1631 * t780;
-  const Real t1633 = t1621 + t1632;
-
-  // fork: joint force
-  const Real t1634 = par.k1 * t1595;
-  const Real t1635 = t1600 * par.k2;
-  const Real t1636 = t1635 - t1634;
-
-  // frame: wrench
-  const Real t1637 = t797 * par.m_B;
-  const Real t1638 = t1432 * par.k16;
-  const Real t1639 = t1637 + t1638;
-
-  // fork: joint force
-  const Real t1640 = t1639 + t1636;
-
-  // rear_wheel: joint force
-  const Real t1641 = t1617 * c_r_p_0_;
-  const Real t1642 = t1612 * s_r_p_0_;
-  const Real t1643 = t1641 - t1642;
-  const Real t1644 = t1640 + t1643;
-
-  // reduced mass matrix
-  const Real t1645 = t1644 * t797;
-  const Real t1646 = t1645 + t1633;
-  const Real t1647 = t1582 + t1646;
-
-  // fork: joint force
-  const Real t1648 = c_r_p_1_ * t1494;
-  const Real t1649 = s_r_p_1_ * t1541;
-  const Real t1650 = t1649 + t1648;
-  const Real t1651 = par.k13 * t1636;
-  const Real t1652 = t1650 - t1651;
-
-  // frame: wrench
-  const Real t1653 = par.k15 * t767;
-  const Real t1654 = t797 * par.k16;
-  const Real t1655 = t1653 - t1654;
-  const Real t1656 = par.k4 * t822;
-  const Real t1657 = t1656 + t1655;
-
-  // fork: joint force
-  const Real t1658 = t1657 + t1652;
-
-  // rear_wheel: joint force
-  const Real t1659 = t1619 * par.r_R;
-
-  // rear_wheel: acceleration
-  const Real t1660 = t822 + constant<Real>(1.0L);
-
-  // rear_wheel: wrench
-  const Real t1661 = par.I_Ryy * t1660;
-
-  // rear_wheel: joint force
-  const Real t1662 = t1661 - t1659;
-  const Real t1663 = t1658 + t1662;
-
-  // reduced mass matrix
-  const Real t1664 = t822 * t1663;
-  const Real t1665 = t1647 + t1664;
-
-  // fork: joint force
-  const Real t1666 = par.k1 * t1543;
-  const Real t1667 = par.k2 * t1555;
-  const Real t1668 = t1667 - t1666;
-  const Real t1669 = t1624 * par.k13;
-  const Real t1670 = t1669 + t1668;
-
-  // frame: wrench
-  const Real t1671 = t843 * par.k14;
-  const Real t1672 = par.k3 * t1575;
-  const Real t1673 = t1671 - t1672;
-  const Real t1674 = par.k16 * t780;
-  const Real t1675 = t1674 + t1673;
-
-  // fork: joint force
-  const Real t1676 = t1675 + t1670;
-
-  // rear_wheel: joint force
-  const Real t1677 = t1567 * c_r_p_0_;
-  const Real t1678 = t1572 * s_r_p_0_;
-  const Real t1679 = t1677 - t1678;
-  const Real t1680 = t1679 + t1676;
-
-  // reduced mass matrix
-  const Real t1681 = t843 * t1680;
-  const Real t1682 = t1681 + t1665;
-  const Real t1683 = t1682 + t1661;
-  const Real t1684 = t713 * t1555;
-  const Real t1685 = t1683 - t1684;
-  const Real t1686 = t1487 * t850;
-  const Real t1687 = t1685 + t1686;
-
-  // reduced accelerations
-  const Real t1688 = t1108 * t1122;
-  const Real t1689 = t1687 - t1688;
-  const Real t1690 = t1429 * t1428;
-  const Real t1691 = t1689 - t1690;
-  const Real t1692 = constant<Real>(1.0L) / t1691;
-  const Real t1693 = t1692 * t1431;
-  const Real t1694 = t1429 * t1693;
-  const Real t1695 = t1410 * t1155;
-  const Real t1696 = t1695 - t1694;
-  const Real t1697 = t1696 * t1153;
-
-  // reduced accelerations
-  const Real t1698 = t1121 * t864;
-
-  // reduced accelerations
-  const Real t1699 = t1698 - t1697;
-  const Real t1700 = t1693 * t1122;
-  const Real t1701 = t1699 - t1700;
-
-  // accelerations
-  const Real t1702 = t140 * t1701;
-  const Real t1703 = t1696 * t672;
-  const Real t1704 = t1703 - t1702;
-  const Real t1705 = t1693 * t850;
-  const Real t1706 = t1704 + t1705;
-  const Real t1707 = t1706 - t384;
-
-  // reduced accelerations
-  const Real t1708 = t1693 * t713;
-  const Real t1709 = t1696 - t1708;
-
-  // accelerations
-  const Real t1710 = t1701 * t146;
-  const Real t1711 = t667 * t1696;
-  const Real t1712 = t1711 - t1710;
-  const Real t1713 = t843 * t1693;
-  const Real t1714 = t1713 + t1712;
-  const Real t1715 = t390 + t1714;
-  const Real t1716 = t143 * t1701;
-  const Real t1717 = t1696 * t663;
-  const Real t1718 = t1717 - t1716;
-  const Real t1719 = t822 * t1693;
-  const Real t1720 = t1719 + t1718;
-  const Real t1721 = t387 + t1720;
-  const Real t1722 = t648 * t1696;
-  const Real t1723 = t1701 - t1722;
-  const Real t1724 = t715 * t1693;
-  const Real t1725 = t1724 + t1723;
-  const Real t1726 = t286 * t1701;
-  const Real t1727 = t1696 * t657;
-  const Real t1728 = t1727 - t1726;
-  const Real t1729 = t1693 * t797;
-  const Real t1730 = t1728 + t1729;
-  const Real t1731 = t1730 + t420;
-  const Real t1732 = t270 * t1701;
-  const Real t1733 = t1696 * t653;
+  const Real t1607 = par.k1 * t1606;
+  const Real t1608 = t1600 + t1607;
+  const Real t1609 = t1608 * s_r_p_2_;
+  const Real t1610 = t1599 * par.k1;
+  const Real t1611 = t1606 * par.k2;
+  const Real t1612 = t1611 - t1610;
+  const Real t1613 = t1612 * c_r_p_2_;
+  const Real t1614 = t1609 + t1613;
+  const Real t1615 = par.m_F * t1614;
+  const Real t1616 = t1615 * c_r_p_2_;
+  const Real t1617 = c_r_p_2_ * t1608;
+  const Real t1618 = t1612 * s_r_p_2_;
+  const Real t1619 = t1617 - t1618;
+  const Real t1620 = t1619 * par.m_F;
+  const Real t1621 = t1620 * s_r_p_2_;
+  const Real t1622 = t1616 - t1621;
+  const Real t1623 = t1622 * par.k2;
+  const Real t1624 = t1615 * s_r_p_2_;
+  const Real t1625 = t1620 * c_r_p_2_;
+  const Real t1626 = t1624 + t1625;
+  const Real t1627 = par.k1 * t1626;
+  const Real t1628 = t1623 + t1627;
+  const Real t1629 = t1628 * par.k12;
+  const Real t1630 = par.k2 * t1626;
+  const Real t1631 = par.k1 * t1622;
+  const Real t1632 = t1630 - t1631;
+  const Real t1633 = t1632 * par.k11;
+  const Real t1634 = t1629 + t1633;
+  const Real t1635 = t978 + t1597;
+  const Real t1636 = t1635 * par.I_Fyy;
+  const Real t1637 = t1636 - t1634;
+  const Real t1638 = par.k8 * t1591;
+  const Real t1639 = par.k10 * t1605;
+  const Real t1640 = t1638 - t1639;
+  const Real t1641 = t1597 * par.k7;
+  const Real t1642 = t1640 + t1641;
+  const Real t1643 = t1637 + t1642;
+  const Real t1644 = s_r_p_1_ * t1643;
+  const Real t1645 = t1594 * c_r_p_1_;
+  const Real t1646 = t950 * s_r_p_1_;
+  const Real t1647 = t1646 + t1645;
+  const Real t1648 = par.k2 * t1647;
+  const Real t1649 = par.k1 * t838;
+  const Real t1650 = t971 * par.k2;
+  const Real t1651 = t1649 + t1650;
+  const Real t1652 = t1651 - t836;
+  const Real t1653 = par.k1 * t1652;
+  const Real t1654 = t1653 + t1648;
+  const Real t1655 = t1654 * c_r_p_2_;
+  const Real t1656 = par.k1 * t1647;
+  const Real t1657 = par.k2 * t1652;
+  const Real t1658 = t1657 - t1656;
+  const Real t1659 = t1658 * s_r_p_2_;
+  const Real t1660 = t1655 - t1659;
+  const Real t1661 = par.I_Fxx * t1660;
+  const Real t1662 = t1661 * c_r_p_2_;
+  const Real t1663 = t1654 * s_r_p_2_;
+  const Real t1664 = t1658 * c_r_p_2_;
+  const Real t1665 = t1663 + t1664;
+  const Real t1666 = par.I_Fxx * t1665;
+  const Real t1667 = t1666 * s_r_p_2_;
+  const Real t1668 = t1662 + t1667;
+  const Real t1669 = t1668 * par.k2;
+  const Real t1670 = t1666 * c_r_p_2_;
+  const Real t1671 = t1661 * s_r_p_2_;
+  const Real t1672 = t1670 - t1671;
+  const Real t1673 = par.k1 * t1672;
+  const Real t1674 = t1669 - t1673;
+  const Real t1675 = par.k11 * t1647;
+  const Real t1676 = par.k12 * t1652;
+  const Real t1677 = t1675 + t1676;
+  const Real t1678 = s_r_p_1_ * t1586;
+  const Real t1679 = c_r_p_1_ * t1589;
+  const Real t1680 = t1679 - t1678;
+  const Real t1681 = t1677 + t1680;
+  const Real t1682 = par.m_F * t1681;
+  const Real t1683 = t1682 * par.k11;
+  const Real t1684 = t1683 + t1674;
+  const Real t1685 = par.k8 * t1680;
+  const Real t1686 = t1647 * par.k17;
+  const Real t1687 = par.k5 * t1652;
+  const Real t1688 = t1686 + t1687;
+  const Real t1689 = t1688 - t1685;
+  const Real t1690 = t1684 + t1689;
+  const Real t1691 = c_r_p_1_ * t1690;
+  const Real t1692 = t1691 - t1644;
+  const Real t1693 = t1692 * par.k2;
+  const Real t1694 = t1668 * par.k1;
+  const Real t1695 = par.k2 * t1672;
+  const Real t1696 = t1694 + t1695;
+  const Real t1697 = t1682 * par.k12;
+  const Real t1698 = t1696 + t1697;
+  const Real t1699 = par.k10 * t1680;
+  const Real t1700 = par.k5 * t1647;
+  const Real t1701 = par.k6 * t1652;
+  const Real t1702 = t1701 + t1700;
+  const Real t1703 = t1702 + t1699;
+  const Real t1704 = t1698 + t1703;
+  const Real t1705 = t1704 * par.k1;
+  const Real t1706 = t1693 + t1705;
+  const Real t1707 = par.k9 * t838;
+  const Real t1708 = par.k3 * t971;
+  const Real t1709 = t1707 + t1708;
+  const Real t1710 = t904 * par.k15;
+  const Real t1711 = t1709 - t1710;
+  const Real t1712 = t1706 + t1711;
+  const Real t1713 = t838 * c_r_p_0_;
+  const Real t1714 = t971 * s_r_p_0_;
+  const Real t1715 = t1713 - t1714;
+  const Real t1716 = t1715 * par.I_Rxx;
+  const Real t1717 = t1716 * c_r_p_0_;
+  const Real t1718 = t971 * c_r_p_0_;
+  const Real t1719 = t838 * s_r_p_0_;
+  const Real t1720 = t1718 + t1719;
+  const Real t1721 = par.I_Rxx * t1720;
+  const Real t1722 = t1721 * s_r_p_0_;
+  const Real t1723 = t1717 + t1722;
+  const Real t1724 = t807 - t837;
+  const Real t1725 = par.r_R * t1724;
+  const Real t1726 = t904 - t1725;
+  const Real t1727 = t1726 * par.m_R;
+  const Real t1728 = t1727 * par.r_R;
+  const Real t1729 = t1723 + t1728;
+  const Real t1730 = t1712 + t1729;
+  const Real t1731 = t838 * t1730;
+  const Real t1732 = par.m_H * t1591;
+  const Real t1733 = t1597 * par.k8;
   const Real t1734 = t1732 + t1733;
-  const Real t1735 = t1693 * t780;
-  const Real t1736 = t1734 + t1735;
-  const Real t1737 = t436 + t1736;
-  const Real t1738 = t298 * t1701;
-  const Real t1739 = t650 * t1696;
-  const Real t1740 = t1738 + t1739;
-  const Real t1741 = t1693 * t767;
-  const Real t1742 = t1740 + t1741;
-  const Real t1743 = t406 + t1742;
+  const Real t1735 = t1632 + t1734;
+  const Real t1736 = t1735 * c_r_p_1_;
+  const Real t1737 = par.m_H * t1680;
+  const Real t1738 = par.k8 * t1647;
+  const Real t1739 = par.k10 * t1652;
+  const Real t1740 = t1739 - t1738;
+  const Real t1741 = t1740 + t1737;
+  const Real t1742 = t1741 + t1682;
+  const Real t1743 = s_r_p_1_ * t1742;
+  const Real t1744 = t1736 - t1743;
+  const Real t1745 = par.k2 * t1744;
+  const Real t1746 = t1601 * par.k10;
+  const Real t1747 = par.m_H * t1605;
+  const Real t1748 = t1746 + t1747;
+  const Real t1749 = t1628 + t1748;
+  const Real t1750 = par.k1 * t1749;
+  const Real t1751 = t1745 + t1750;
+  const Real t1752 = par.m_B * t891;
+  const Real t1753 = t950 * par.k15;
+  const Real t1754 = t1752 + t1753;
+  const Real t1755 = t1751 + t1754;
+  const Real t1756 = t950 * par.r_R;
+  const Real t1757 = t891 - t1756;
+  const Real t1758 = t1757 * s_r_p_0_;
+  const Real t1759 = t921 * c_r_p_0_;
+  const Real t1760 = t1758 + t1759;
+  const Real t1761 = par.m_R * t1760;
+  const Real t1762 = t1761 * s_r_p_0_;
+  const Real t1763 = t1757 * c_r_p_0_;
+  const Real t1764 = t921 * s_r_p_0_;
+  const Real t1765 = t1763 - t1764;
+  const Real t1766 = par.m_R * t1765;
+  const Real t1767 = t1766 * c_r_p_0_;
+  const Real t1768 = t1762 + t1767;
+  const Real t1769 = t1755 + t1768;
+  const Real t1770 = t1769 * t891;
+  const Real t1771 = t1735 * s_r_p_1_;
+  const Real t1772 = c_r_p_1_ * t1742;
+  const Real t1773 = t1771 + t1772;
+  const Real t1774 = par.k15 * t1724;
+  const Real t1775 = t971 * par.k16;
+  const Real t1776 = t1774 + t1775;
+  const Real t1777 = t904 * par.m_B;
+  const Real t1778 = t1776 + t1777;
+  const Real t1779 = t1773 + t1778;
+  const Real t1780 = t1727 + t1779;
+  const Real t1781 = t904 * t1780;
+  const Real t1782 = t1781 + t1770;
+  const Real t1783 = par.k1 * t1744;
+  const Real t1784 = t1749 * par.k2;
+  const Real t1785 = t1784 - t1783;
+  const Real t1786 = t1581 * par.k16;
+  const Real t1787 = t921 * par.m_B;
+  const Real t1788 = t1786 + t1787;
+  const Real t1789 = t1788 + t1785;
+  const Real t1790 = t1761 * c_r_p_0_;
+  const Real t1791 = t1766 * s_r_p_0_;
+  const Real t1792 = t1790 - t1791;
+  const Real t1793 = t1792 + t1789;
+  const Real t1794 = t1793 * t921;
+  const Real t1795 = t1782 + t1794;
+  const Real t1796 = t1731 + t1795;
+  const Real t1797 = c_r_p_1_ * t1643;
+  const Real t1798 = s_r_p_1_ * t1690;
+  const Real t1799 = t1798 + t1797;
+  const Real t1800 = t1785 * par.k13;
+  const Real t1801 = t1799 - t1800;
+  const Real t1802 = par.k15 * t891;
+  const Real t1803 = par.k16 * t921;
+  const Real t1804 = t1802 - t1803;
+  const Real t1805 = par.k4 * t950;
+  const Real t1806 = t1804 + t1805;
+  const Real t1807 = t1806 + t1801;
+  const Real t1808 = par.r_R * t1768;
+  const Real t1809 = t950 + constant<Real>(1.0L);
+  const Real t1810 = par.I_Ryy * t1809;
+  const Real t1811 = t1810 - t1808;
+  const Real t1812 = t1811 + t1807;
+  const Real t1813 = t950 * t1812;
+  const Real t1814 = t1796 + t1813;
+  const Real t1815 = par.k1 * t1692;
+  const Real t1816 = t1704 * par.k2;
+  const Real t1817 = t1816 - t1815;
+  const Real t1818 = t1773 * par.k13;
+  const Real t1819 = t1817 + t1818;
+  const Real t1820 = t971 * par.k14;
+  const Real t1821 = par.k3 * t1724;
+  const Real t1822 = t1820 - t1821;
+  const Real t1823 = t904 * par.k16;
+  const Real t1824 = t1823 + t1822;
+  const Real t1825 = t1819 + t1824;
+  const Real t1826 = t1721 * c_r_p_0_;
+  const Real t1827 = t1716 * s_r_p_0_;
+  const Real t1828 = t1826 - t1827;
+  const Real t1829 = t1828 + t1825;
+  const Real t1830 = t971 * t1829;
+  const Real t1831 = t1814 + t1830;
+  const Real t1832 = t1831 + t1810;
+  const Real t1833 = t1704 * t836;
+  const Real t1834 = t1832 - t1833;
+  const Real t1835 = t978 * t1636;
+  const Real t1836 = t1834 + t1835;
+  const Real t1837 = t1270 * t1254;
+  const Real t1838 = t1836 - t1837;
+  const Real t1839 = t1577 * t1578;
+  const Real t1840 = t1838 - t1839;
+  const Real t1841 = constant<Real>(1.0L) / t1840;
+  const Real t1842 = t1580 * t1841;
+  const Real t1843 = t1842 * t1578;
+  const Real t1844 = t1559 * t1303;
+  const Real t1845 = t1844 - t1843;
+  const Real t1846 = t1301 * t1845;
+  const Real t1847 = t1269 * t994;
+  const Real t1848 = t1847 - t1846;
+  const Real t1849 = t1842 * t1270;
+  const Real t1850 = t1848 - t1849;
+  const Real t1851 = t1850 * t199;
+  const Real t1852 = t788 * t1845;
+  const Real t1853 = t1852 - t1851;
+  const Real t1854 = t978 * t1842;
+  const Real t1855 = t1854 + t1853;
+  const Real t1856 = t1855 - t472;
+  const Real t1857 = t1842 * t836;
+  const Real t1858 = t1845 - t1857;
+  const Real t1859 = t1850 * t214;
+  const Real t1860 = t783 * t1845;
+  const Real t1861 = t1860 - t1859;
+  const Real t1862 = t1842 * t971;
+  const Real t1863 = t1862 + t1861;
+  const Real t1864 = t1863 + t487;
+  const Real t1865 = t1850 * t208;
+  const Real t1866 = t1850 * t206;
+  const Real t1867 = t1865 + t1866;
+  const Real t1868 = t779 * t1845;
+  const Real t1869 = t1868 - t1867;
+  const Real t1870 = t1842 * t950;
+  const Real t1871 = t1870 + t1869;
+  const Real t1872 = t481 + t1871;
+  const Real t1873 = t1872 + t479;
+  const Real t1874 = t761 * t1845;
+  const Real t1875 = t1850 - t1874;
+  const Real t1876 = t1842 * t838;
+  const Real t1877 = t1876 + t1875;
+  const Real t1878 = t352 * t1850;
+  const Real t1879 = t1845 * t770;
+  const Real t1880 = t1879 - t1878;
+  const Real t1881 = t1842 * t921;
+  const Real t1882 = t1881 + t1880;
+  const Real t1883 = t507 + t1882;
+  const Real t1884 = t1850 * t338;
+  const Real t1885 = t766 * t1845;
+  const Real t1886 = t1885 + t1884;
+  const Real t1887 = t1842 * t904;
+  const Real t1888 = t1886 + t1887;
+  const Real t1889 = t1888 + t540;
+  const Real t1890 = t1850 * t373;
+  const Real t1891 = t763 * t1845;
+  const Real t1892 = t1891 + t1890;
+  const Real t1893 = t1842 * t891;
+  const Real t1894 = t1893 + t1892;
+  const Real t1895 = t523 + t1894;
+  const Real t1896 = t1858 * t761;
+  const Real t1897 = t1850 - t1896;
+  const Real t1898 = t807 * t1842;
+  const Real t1899 = t1897 - t1898;
 
-  // reduced accelerations
-  const Real t1744 = t648 * t1709;
-  const Real t1745 = t1701 - t1744;
-  const Real t1746 = t1693 * t687;
-  const Real t1747 = t1745 - t1746;
-
-  nu_dot_out[0] = t1747;
-  nu_dot_out[1] = t1709;
-  nu_dot_out[2] = t1693;
-  eta_dot[0] = t1743;
-  eta_dot[1] = t1737;
-  eta_dot[2] = t1731;
-  eta_dot[3] = t1725;
-  eta_dot[4] = t1721;
-  eta_dot[5] = t1715;
-  r_p_ddot[0] = t1693;
-  r_p_ddot[1] = t1709;
-  r_p_ddot[2] = t1707;
+  nu_dot_out[0] = t1899;
+  nu_dot_out[1] = t1858;
+  nu_dot_out[2] = t1842;
+  eta_dot[0] = t1895;
+  eta_dot[1] = t1889;
+  eta_dot[2] = t1883;
+  eta_dot[3] = t1877;
+  eta_dot[4] = t1873;
+  eta_dot[5] = t1864;
+  r_p_ddot[0] = t1842;
+  r_p_ddot[1] = t1858;
+  r_p_ddot[2] = t1856;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion
-/// operations: 323 add, 467 mul, 9 div, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, compensated beyond 25 ulps
+/// operations: 470 add, 546 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p     (3) rad or m: rear_spin, steer, front_spin
@@ -6563,6 +6100,8 @@ inline void multipliers(const Prepared<Real>& par,
   using std::sin;
   using std::sqrt;
   using detail::constant;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
   const Real s_r_p_1_ = sin(r_p[1]);
@@ -6677,762 +6216,789 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t104 = t103 - t81;
 
   // kernel
-  const Real t105 = t31 * t101;
-  const Real t106 = t93 * t57;
-  const Real t107 = t105 - t106;
-  const Real t108 = t45 * t101;
-  const Real t109 = t108 + t104;
-  const Real t110 = c_r_p_1_ * t101;
-  const Real t111 = t42 - t110;
-  const Real t112 = constant<Real>(1.0L) / t111;
-  const Real t113 = t109 * t112;
-  const Real t114 = t59 * t57;
-  const Real t115 = t108 + t114;
-  const Real t116 = t113 * t115;
-  const Real t117 = t107 - t116;
-  const Real t118 = t34 * t101;
-  const Real t119 = t57 * t90;
-  const Real t120 = t118 - t119;
-  const Real t121 = t59 * t101;
-  const Real t122 = t49 - t121;
-  const Real t123 = t112 * t122;
-  const Real t124 = t115 * t123;
-  const Real t125 = t120 - t124;
-  const Real t126 = t58 * t90;
-  const Real t127 = t80 - t126;
-  const Real t128 = t127 + t118;
-  const Real t129 = t58 * t59;
-  const Real t130 = t129 + t87;
-  const Real t131 = t130 + t108;
-  const Real t132 = t131 * t123;
-  const Real t133 = t128 - t132;
-  const Real t134 = t58 * t93;
-  const Real t135 = t70 - t134;
-  const Real t136 = t105 + t135;
-  const Real t137 = t113 * t131;
-  const Real t138 = t136 - t137;
-  const Real t139 = constant<Real>(1.0L) / t138;
-  const Real t140 = t133 * t139;
-  const Real t141 = t117 * t140;
-  const Real t142 = t125 - t141;
-  const Real t143 = t25 * t140;
-  const Real t144 = t143 - t22;
-  const Real t145 = constant<Real>(1.0L) / t144;
-  const Real t146 = t142 * t145;
-  const Real t147 = t25 * t146;
-  const Real t148 = t117 + t147;
-  const Real t149 = t148 * t139;
-  const Real t150 = t149 * t101;
-  const Real t151 = t101 - t150;
-  const Real t152 = nu[2] * t151;
-  const Real t153 = t113 * t28;
-  const Real t154 = t153 * t140;
-  const Real t155 = t28 * t123;
-  const Real t156 = t154 - t155;
-  const Real t157 = t156 * t145;
-  const Real t158 = t157 * t25;
-  const Real t159 = t158 - t153;
-  const Real t160 = t159 * t139;
-  const Real t161 = t160 * t101;
-  const Real t162 = t161 * nu[1];
-  const Real t163 = t63 * t45;
-  const Real t164 = t62 + t163;
-  const Real t165 = c_r_p_1_ * t63;
-  const Real t166 = t99 - t165;
-  const Real t167 = t113 * t166;
-  const Real t168 = t164 - t167;
-  const Real t169 = t59 * t63;
-  const Real t170 = t74 - t169;
-  const Real t171 = t166 * t123;
-  const Real t172 = t170 - t171;
-  const Real t173 = t168 * t140;
-  const Real t174 = t172 - t173;
-  const Real t175 = t174 * t145;
-  const Real t176 = t25 * t175;
-  const Real t177 = t168 + t176;
-  const Real t178 = t139 * t177;
-  const Real t179 = t178 * t101;
-  const Real t180 = t179 * nu[0];
-  const Real t181 = t162 + t180;
-  const Real t182 = t152 - t181;
-  const Real t183 = t131 * t178;
-  const Real t184 = t166 - t183;
-  const Real t185 = t184 * t112;
-  const Real t186 = t185 * nu[0];
-  const Real t187 = t160 * t131;
-  const Real t188 = t28 - t187;
-  const Real t189 = t112 * t188;
-  const Real t190 = t189 * nu[1];
-  const Real t191 = t186 + t190;
-  const Real t192 = t149 * t131;
-  const Real t193 = t115 - t192;
-  const Real t194 = t193 * t112;
-  const Real t195 = t194 * nu[2];
-  const Real t196 = t191 + t195;
-  const Real t197 = t149 * nu[2];
-  const Real t198 = t160 * nu[1];
-  const Real t199 = t178 * nu[0];
-  const Real t200 = t198 + t199;
-  const Real t201 = t197 + t200;
-  const Real t202 = t149 * t58;
-  const Real t203 = t202 - t57;
-  const Real t204 = t203 * nu[2];
-  const Real t205 = t58 * t160;
-  const Real t206 = t205 * nu[1];
-  const Real t207 = t58 * t178;
-  const Real t208 = t207 * nu[0];
-  const Real t209 = t206 + t208;
-  const Real t210 = t204 + t209;
-  const Real t211 = t175 * nu[0];
-  const Real t212 = t157 * nu[1];
-  const Real t213 = t211 + t212;
-  const Real t214 = t146 * nu[2];
-  const Real t215 = t213 + t214;
-  const Real t216 = t194 * t101;
-  const Real t217 = t216 * nu[2];
-  const Real t218 = t189 * t101;
-  const Real t219 = t218 * nu[1];
-  const Real t220 = t101 * t185;
-  const Real t221 = t220 - t63;
-  const Real t222 = t221 * nu[0];
-  const Real t223 = t219 + t222;
-  const Real t224 = t217 + t223;
+  const Real t105 = t45 * t101;
+  const Real t106 = t105 + t104;
+  const Real t107 = c_r_p_1_ * t101;
+  const Real t108 = t42 - t107;
+  const Real t109 = constant<Real>(1.0L) / t108;
+  const Real t110 = t106 * t109;
+  const Real t111 = t110 * t28;
+  const Real t112 = t58 * t90;
+  const Real t113 = t80 - t112;
+  const Real t114 = t34 * t101;
+  const Real t115 = t113 + t114;
+  const Real t116 = t58 * t59;
+  const Real t117 = t116 + t87;
+  const Real t118 = t117 + t105;
+  const Real t119 = t59 * t101;
+  const Real t120 = t49 - t119;
+  const Real t121 = t109 * t120;
+  const Real t122 = t118 * t121;
+  const Real t123 = t115 - t122;
+  const Real t124 = t31 * t101;
+  const Real t125 = t58 * t93;
+  const Real t126 = t70 - t125;
+  const Real t127 = t124 + t126;
+  const Real t128 = t110 * t118;
+  const Real t129 = t127 - t128;
+  const Real t130 = constant<Real>(1.0L) / t129;
+  const Real t131 = t123 * t130;
+  const Real t132 = t111 * t131;
+  const Real t133 = t28 * t121;
+  const Real t134 = t132 - t133;
+  const Real t135 = -t111;
+  const Real t136 = t59 * t63;
+  const Real t137 = t74 - t136;
+  const Real t138 = c_r_p_1_ * t63;
+  const Real t139 = t99 - t138;
+  const Real t140 = t139 * t121;
+  const Real t141 = t137 - t140;
+  const Real t142 = t63 * t45;
+  const Real t143 = t62 + t142;
+  const Real t144 = t110 * t139;
+  const Real t145 = t143 - t144;
+  const Real t146 = t145 * t131;
+  const Real t147 = t93 * t57;
+  const Real t148 = t124 - t147;
+  const Real t149 = t59 * t57;
+  const Real t150 = t105 + t149;
+  const Real t151 = t110 * t150;
+  const Real t152 = t148 - t151;
+  const Real t153 = product_error(t152, t131);
+  const Real t154 = t25 * t131;
+  const Real t155 = t57 * t90;
+  const Real t156 = t114 - t155;
+  const Real t157 = t150 * t121;
+  const Real t158 = t156 - t157;
+  const Real t159 = t152 * t131;
+  const Real t160 = t158 - t159;
+  const Real t161 = product_error(t28, t121);
+  const Real t162 = product_error(t111, t131);
+  const Real t163 = product_error(t123, t130);
+  const Real t164 = -t157;
+  const Real t165 = sum_error(t156, t164);
+  const Real t166 = product_error(t150, t121);
+  const Real t167 = t165 - t166;
+  const Real t168 = -t122;
+  const Real t169 = sum_error(t115, t168);
+  const Real t170 = product_error(t118, t121);
+  const Real t171 = t169 - t170;
+  const Real t172 = t171 * t130;
 
   // frame: acceleration
-  const Real t225 = par.g * R[7];
-  const Real t226 = par.g * R[8];
-  const Real t227 = par.g * R[6];
+  const Real t173 = par.g * R[7];
+  const Real t174 = par.g * R[8];
+  const Real t175 = par.g * R[6];
 
   // joint angles
-  const Real t228 = nu[2] - t201;
-  const Real t229 = R[8] * t201;
-  const Real t230 = t196 * R[7];
-  const Real t231 = t229 - t230;
-  const Real t232 = R[6] * t231;
-  const Real t233 = t232 * constant<Real>(2.0L);
-  const Real t234 = t201 * R[6];
-  const Real t235 = nu[0] * R[7];
-  const Real t236 = t234 + t235;
-  const Real t237 = t236 * R[8];
-  const Real t238 = t237 * constant<Real>(2.0L);
-  const Real t239 = t233 - t238;
-  const Real t240 = t239 / t54;
-  const Real t241 = t240 * t55;
-  const Real t242 = t241 / t53;
-  const Real t243 = R[8] * t242;
-  const Real t244 = t236 * t55;
-  const Real t245 = t243 + t244;
-  const Real t246 = t245 * par.r_R;
-  const Real t247 = t228 * t246;
-  const Real t248 = par.k1 * nu[0];
-  const Real t249 = t196 * par.k2;
-  const Real t250 = t248 - t249;
-  const Real t251 = t250 + nu[1];
-  const Real t252 = t251 * par.k2;
-  const Real t253 = par.k2 * nu[0];
-  const Real t254 = par.k1 * t196;
-  const Real t255 = t253 + t254;
-  const Real t256 = t255 * c_r_p_1_;
-  const Real t257 = s_r_p_1_ * t201;
-  const Real t258 = t256 - t257;
-  const Real t259 = t258 * par.k1;
-  const Real t260 = t252 - t259;
-  const Real t261 = par.k1 * t231;
-  const Real t262 = t236 * par.k2;
-  const Real t263 = t261 - t262;
-  const Real t264 = t263 * par.k1;
-  const Real t265 = par.k2 * t231;
-  const Real t266 = t236 * par.k1;
-  const Real t267 = t265 + t266;
-  const Real t268 = c_r_p_1_ * t267;
-  const Real t269 = s_r_p_1_ * nu[1];
-  const Real t270 = t269 * t3;
-  const Real t271 = t268 - t270;
-  const Real t272 = R[8] * nu[0];
-  const Real t273 = t196 * R[6];
-  const Real t274 = t272 + t273;
-  const Real t275 = s_r_p_1_ * t274;
-  const Real t276 = c_r_p_1_ * nu[1];
-  const Real t277 = t276 * R[7];
-  const Real t278 = t275 + t277;
-  const Real t279 = t271 + t278;
-  const Real t280 = t279 * par.k2;
-  const Real t281 = t264 + t280;
-  const Real t282 = t281 * t20;
-  const Real t283 = t281 * t16;
-  const Real t284 = t283 * constant<Real>(2.0L);
-  const Real t285 = t279 * par.k1;
-  const Real t286 = t263 * par.k2;
-  const Real t287 = t285 - t286;
-  const Real t288 = t287 * t12;
-  const Real t289 = t288 * constant<Real>(2.0L);
-  const Real t290 = t284 + t289;
-  const Real t291 = t290 / t71;
-  const Real t292 = t291 * t20;
-  const Real t293 = t292 / t19;
-  const Real t294 = t293 * t16;
-  const Real t295 = t282 - t294;
-  const Real t296 = t295 * par.r_F;
-  const Real t297 = t260 * t296;
-  const Real t298 = t201 * t276;
-  const Real t299 = t255 * t269;
-  const Real t300 = t298 + t299;
-  const Real t301 = par.k1 * t300;
-  const Real t302 = t25 * t301;
-  const Real t303 = t297 + t302;
-  const Real t304 = t251 * par.k1;
-  const Real t305 = t258 * par.k2;
-  const Real t306 = t304 + t305;
-  const Real t307 = t287 * t20;
-  const Real t308 = t293 * t12;
-  const Real t309 = t307 - t308;
-  const Real t310 = par.r_F * t309;
-  const Real t311 = t306 * t310;
-  const Real t312 = par.k2 * t300;
-  const Real t313 = t22 * t312;
-  const Real t314 = t311 - t313;
-  const Real t315 = t303 + t314;
-  const Real t316 = t55 * t231;
-  const Real t317 = t242 * R[6];
-  const Real t318 = t316 - t317;
-  const Real t319 = t318 * par.r_R;
-  const Real t320 = t196 * t319;
-  const Real t321 = par.c * t301;
-  const Real t322 = par.r_F * t312;
-  const Real t323 = t321 + t322;
-  const Real t324 = par.k2 * t210;
-  const Real t325 = t201 * par.k13;
-  const Real t326 = t182 + t325;
-  const Real t327 = t326 * par.k1;
-  const Real t328 = t324 - t327;
-  const Real t329 = t328 * t276;
-  const Real t330 = t196 * par.k13;
-  const Real t331 = t224 - t330;
-  const Real t332 = t269 * t331;
-  const Real t333 = t329 + t332;
-  const Real t334 = t323 + t333;
-  const Real t335 = t228 * t319;
-  const Real t336 = t255 * t276;
-  const Real t337 = t201 * t269;
-  const Real t338 = t336 - t337;
-  const Real t339 = t338 * par.c;
-  const Real t340 = t276 * t331;
-  const Real t341 = t328 * t269;
-  const Real t342 = t340 - t341;
-  const Real t343 = t342 * par.k1;
-  const Real t344 = t339 + t343;
-  const Real t345 = t201 * c_r_p_1_;
-  const Real t346 = t255 * s_r_p_1_;
-  const Real t347 = t345 + t346;
-  const Real t348 = t215 + t347;
-  const Real t349 = t348 * t296;
-  const Real t350 = t25 * t338;
-  const Real t351 = t349 + t350;
-  const Real t352 = t344 - t351;
-  const Real t353 = t342 * par.k2;
-  const Real t354 = t338 * par.r_F;
-  const Real t355 = t353 + t354;
-  const Real t356 = t22 * t338;
-  const Real t357 = t348 * t310;
-  const Real t358 = t356 + t357;
-  const Real t359 = t355 + t358;
-  const Real t360 = t246 * nu[0];
-
-  // drift of the kernel
-  const Real t361 = t320 - t360;
-  const Real t362 = t247 * t59;
-  const Real t363 = t334 - t315;
-  const Real t364 = t362 + t363;
-  const Real t365 = c_r_p_1_ * t361;
-  const Real t366 = t364 - t365;
-  const Real t367 = t335 * t45;
-  const Real t368 = t366 - t367;
-  const Real t369 = t361 * t45;
-  const Real t370 = t247 * t93;
-  const Real t371 = t352 - t370;
-  const Real t372 = t369 + t371;
-  const Real t373 = t31 * t335;
-  const Real t374 = t372 - t373;
-  const Real t375 = t113 * t368;
-  const Real t376 = t374 - t375;
-  const Real t377 = t376 * t140;
-  const Real t378 = t368 * t123;
-  const Real t379 = t59 * t361;
-  const Real t380 = t247 * t90;
-  const Real t381 = t380 + t359;
-  const Real t382 = t379 + t381;
-  const Real t383 = t34 * t335;
-  const Real t384 = t382 + t383;
-  const Real t385 = t378 + t384;
-  const Real t386 = t377 + t385;
-  const Real t387 = t386 * t145;
-  const Real t388 = t25 * t387;
-  const Real t389 = t376 - t388;
-  const Real t390 = t389 * t139;
-  const Real t391 = t131 * t390;
-  const Real t392 = t368 - t391;
-  const Real t393 = t112 * t392;
-  const Real t394 = t393 * t101;
-  const Real t395 = t361 - t394;
-  const Real t396 = t390 * t101;
-  const Real t397 = t396 + t335;
-  const Real t398 = t58 * t390;
-  const Real t399 = t247 - t398;
+  const Real t176 = R[8] * nu[0];
+  const Real t177 = par.k2 * nu[0];
+  const Real t178 = par.k1 * nu[0];
+  const Real t179 = s_r_p_1_ * nu[1];
+  const Real t180 = t179 * t3;
+  const Real t181 = c_r_p_1_ * nu[1];
+  const Real t182 = t181 * R[7];
+  const Real t183 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t400 = nu[0] * s_r_p_0_;
-  const Real t401 = t196 * c_r_p_0_;
-  const Real t402 = t400 - t401;
-  const Real t403 = nu[0] * c_r_p_0_;
-  const Real t404 = t196 * s_r_p_0_;
-  const Real t405 = t403 + t404;
-
-  // front_wheel: twist
-  const Real t406 = t306 * s_r_p_2_;
-  const Real t407 = t260 * c_r_p_2_;
-  const Real t408 = t406 + t407;
-  const Real t409 = t306 * c_r_p_2_;
-  const Real t410 = t260 * s_r_p_2_;
-  const Real t411 = t409 - t410;
+  const Real t184 = nu[0] * c_r_p_0_;
+  const Real t185 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t412 = t196 * t224;
-  const Real t413 = t182 * t201;
-  const Real t414 = t412 - t413;
-  const Real t415 = t196 * nu[0];
-  const Real t416 = nu[0] * nu[0];
-  const Real t417 = t201 * t201;
-  const Real t418 = t416 + t417;
-  const Real t419 = t196 * t201;
-  const Real t420 = t201 * nu[0];
-  const Real t421 = t201 * t210;
-  const Real t422 = nu[0] * t224;
-  const Real t423 = t421 + t422;
-  const Real t424 = t196 * t210;
-  const Real t425 = t182 * nu[0];
-  const Real t426 = t424 + t425;
-  const Real t427 = t196 * t196;
-  const Real t428 = t427 + t417;
-
-  // rear_wheel: acceleration
-  const Real t429 = t402 * nu[2];
-  const Real t430 = t418 * par.r_R;
-  const Real t431 = t405 * t228;
-  const Real t432 = t402 * t228;
-  const Real t433 = t405 * nu[2];
-
-  // fork: acceleration
-  const Real t434 = t258 * t347;
-  const Real t435 = par.k13 * t428;
-  const Real t436 = t251 * t347;
-  const Real t437 = t347 * nu[1];
-  const Real t438 = t251 * t251;
-  const Real t439 = t347 * t347;
-  const Real t440 = t438 + t439;
-  const Real t441 = t258 * nu[1];
-  const Real t442 = t258 * t258;
-  const Real t443 = t439 + t442;
-  const Real t444 = t251 * t258;
-
-  // front_wheel: acceleration
-  const Real t445 = t411 * t215;
-  const Real t446 = par.k11 * t443;
-  const Real t447 = t440 * par.k12;
-  const Real t448 = t408 * t215;
-  const Real t449 = t348 * t411;
-  const Real t450 = t348 * t408;
-
-  // frame: wrench
-  const Real t451 = par.k25 * t420;
-  const Real t452 = t427 - t416;
-  const Real t453 = par.k3 * t452;
-  const Real t454 = t418 * par.k15;
-  const Real t455 = t415 * par.k27;
-  const Real t456 = par.k16 * t428;
-
-  // rear_wheel: wrench
-  const Real t457 = t432 * par.k29;
-  const Real t458 = par.k28 * t431;
-
-  // fork: wrench
-  const Real t459 = t434 * par.k32;
-  const Real t460 = par.k8 * t443;
-  const Real t461 = t440 * par.k10;
-  const Real t462 = par.k31 * t444;
-  const Real t463 = t438 - t442;
-  const Real t464 = par.k5 * t463;
-  const Real t465 = t436 * par.k30;
-
-  // front_wheel: wrench
-  const Real t466 = par.k35 * t450;
-  const Real t467 = par.k36 * t449;
+  const Real t186 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t468 = nu_dot[2] * t151;
-  const Real t469 = nu_dot[1] * t161;
-  const Real t470 = t179 * nu_dot[0];
-  const Real t471 = t469 + t470;
-  const Real t472 = t468 - t471;
-  const Real t473 = t397 + t472;
-  const Real t474 = nu_dot[2] * t146;
-  const Real t475 = nu_dot[1] * t157;
-  const Real t476 = nu_dot[0] * t175;
-  const Real t477 = t475 + t476;
-  const Real t478 = t474 + t477;
-  const Real t479 = t387 + t478;
-  const Real t480 = t194 * nu_dot[2];
-  const Real t481 = nu_dot[0] * t185;
-  const Real t482 = t189 * nu_dot[1];
-  const Real t483 = t481 + t482;
-  const Real t484 = t480 + t483;
-  const Real t485 = t393 - t484;
-  const Real t486 = nu_dot[0] * t178;
-  const Real t487 = nu_dot[1] * t160;
-  const Real t488 = t486 + t487;
-  const Real t489 = t149 * nu_dot[2];
-  const Real t490 = t488 + t489;
-  const Real t491 = t390 - t490;
-  const Real t492 = nu_dot[1] * t205;
-  const Real t493 = nu_dot[0] * t207;
-  const Real t494 = t492 + t493;
-  const Real t495 = nu_dot[2] * t203;
-  const Real t496 = t494 + t495;
-  const Real t497 = t496 + t399;
-  const Real t498 = t218 * nu_dot[1];
-  const Real t499 = nu_dot[0] * t221;
-  const Real t500 = t498 + t499;
-  const Real t501 = nu_dot[2] * t216;
-  const Real t502 = t500 + t501;
-  const Real t503 = t502 + t395;
-
-  // frame: acceleration
-  const Real t504 = t473 + t423;
-  const Real t505 = t504 - t226;
-  const Real t506 = t503 - t426;
-  const Real t507 = t506 - t225;
-  const Real t508 = t415 + t491;
-  const Real t509 = t485 - t420;
-  const Real t510 = t414 + t497;
-  const Real t511 = t510 - t227;
-  const Real t512 = t419 - nu_dot[0];
-  const Real t513 = t491 - t415;
+  const Real t187 = t163 + t172;
+  const Real t188 = t187 * t152;
+  const Real t189 = t188 + t153;
+  const Real t190 = t167 - t189;
+  const Real t191 = t160 + t190;
+  const Real t192 = t187 * t25;
+  const Real t193 = t154 + t192;
+  const Real t194 = t193 - t22;
+  const Real t195 = constant<Real>(1.0L) / t194;
+  const Real t196 = t191 * t195;
+  const Real t197 = t25 * t196;
+  const Real t198 = t152 + t197;
+  const Real t199 = t198 * t130;
+  const Real t200 = t199 * t118;
+  const Real t201 = t150 - t200;
+  const Real t202 = product_error(t199, t118);
+  const Real t203 = sum_error(t152, t197);
+  const Real t204 = t203 * t130;
+  const Real t205 = product_error(t198, t130);
+  const Real t206 = t204 + t205;
+  const Real t207 = t118 * t206;
+  const Real t208 = t202 + t207;
+  const Real t209 = t201 - t208;
+  const Real t210 = t209 * t109;
+  const Real t211 = t210 * t101;
+  const Real t212 = nu[2] * t211;
+  const Real t213 = t187 * t145;
+  const Real t214 = t213 + t146;
+  const Real t215 = t141 - t214;
+  const Real t216 = t215 * t195;
+  const Real t217 = t25 * t216;
+  const Real t218 = t145 + t217;
+  const Real t219 = t218 * t130;
+  const Real t220 = t219 * nu[0];
+  const Real t221 = t187 * t111;
+  const Real t222 = t118 * t219;
+  const Real t223 = t139 - t222;
+  const Real t224 = t109 * t223;
+  const Real t225 = nu[0] * t224;
+  const Real t226 = t199 * t101;
+  const Real t227 = t206 * t101;
+  const Real t228 = t226 + t227;
+  const Real t229 = t101 - t228;
+  const Real t230 = t229 * nu[2];
+  const Real t231 = t58 * t219;
+  const Real t232 = nu[0] * t231;
+  const Real t233 = t101 * t224;
+  const Real t234 = t233 - t63;
+  const Real t235 = t234 * nu[0];
+  const Real t236 = t196 * nu[2];
+  const Real t237 = t210 * nu[2];
+  const Real t238 = t199 * t58;
+  const Real t239 = t58 * t206;
+  const Real t240 = t238 + t239;
+  const Real t241 = t240 - t57;
+  const Real t242 = t241 * nu[2];
+  const Real t243 = t216 * nu[0];
+  const Real t244 = t206 * nu[2];
+  const Real t245 = t199 * nu[2];
+  const Real t246 = t244 + t245;
+  const Real t247 = t219 * t101;
+  const Real t248 = t247 * nu[0];
 
   // rear_wheel: acceleration
-  const Real t514 = t512 * par.r_R;
-  const Real t515 = t507 - t514;
-  const Real t516 = t505 + t430;
-  const Real t517 = t516 * c_r_p_0_;
-  const Real t518 = par.r_R * t513;
-  const Real t519 = t511 - t518;
-  const Real t520 = t519 * s_r_p_0_;
-  const Real t521 = t517 + t520;
-  const Real t522 = nu_dot[0] * s_r_p_0_;
-  const Real t523 = t485 * c_r_p_0_;
-  const Real t524 = t522 + t523;
-  const Real t525 = t433 + t524;
-  const Real t526 = t519 * c_r_p_0_;
-  const Real t527 = t516 * s_r_p_0_;
-  const Real t528 = t526 - t527;
-  const Real t529 = nu_dot[0] * c_r_p_0_;
-  const Real t530 = t485 * s_r_p_0_;
-  const Real t531 = t529 - t530;
-  const Real t532 = t531 - t429;
-  const Real t533 = nu_dot[2] + t491;
+  const Real t249 = nu_dot[0] * c_r_p_0_;
+  const Real t250 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t534 = t509 * par.k13;
-  const Real t535 = t507 + t534;
-  const Real t536 = t535 * c_r_p_1_;
-  const Real t537 = t511 - t435;
-  const Real t538 = t537 * par.k2;
-  const Real t539 = t508 * par.k13;
-  const Real t540 = t505 - t539;
-  const Real t541 = par.k1 * t540;
-  const Real t542 = t538 - t541;
-  const Real t543 = s_r_p_1_ * t542;
-  const Real t544 = t536 - t543;
-  const Real t545 = par.k1 * nu_dot[0];
-  const Real t546 = t485 * par.k2;
-  const Real t547 = t545 + t546;
-  const Real t548 = t547 + nu_dot[1];
-  const Real t549 = t548 - t434;
-  const Real t550 = s_r_p_1_ * t491;
-  const Real t551 = nu_dot[0] * par.k2;
-  const Real t552 = t485 * par.k1;
-  const Real t553 = t551 - t552;
-  const Real t554 = t553 * c_r_p_1_;
-  const Real t555 = t550 + t554;
-  const Real t556 = t555 - t437;
-  const Real t557 = t436 + t556;
-  const Real t558 = c_r_p_1_ * t542;
-  const Real t559 = s_r_p_1_ * t535;
-  const Real t560 = t558 + t559;
-  const Real t561 = t491 * c_r_p_1_;
-  const Real t562 = s_r_p_1_ * t553;
-  const Real t563 = t561 - t562;
-  const Real t564 = t563 - t441;
-  const Real t565 = t564 + t444;
-  const Real t566 = t444 - t564;
-  const Real t567 = par.k1 * t537;
-  const Real t568 = t540 * par.k2;
-  const Real t569 = t567 + t568;
-
-  // front_wheel: acceleration
-  const Real t570 = t564 - t479;
-  const Real t571 = par.k12 * t566;
-  const Real t572 = t571 + t446;
-  const Real t573 = t569 + t572;
-  const Real t574 = t573 * par.k1;
-  const Real t575 = t565 * par.k11;
-  const Real t576 = t575 + t447;
-  const Real t577 = t560 - t576;
-  const Real t578 = t577 * par.k2;
-  const Real t579 = t574 + t578;
-  const Real t580 = t579 * s_r_p_2_;
-  const Real t581 = t573 * par.k2;
-  const Real t582 = par.k1 * t577;
-  const Real t583 = t581 - t582;
-  const Real t584 = c_r_p_2_ * t583;
-  const Real t585 = t580 + t584;
-  const Real t586 = t579 * c_r_p_2_;
-  const Real t587 = t583 * s_r_p_2_;
-  const Real t588 = t586 - t587;
-  const Real t589 = par.k1 * t548;
-  const Real t590 = t556 * par.k2;
-  const Real t591 = t589 + t590;
-  const Real t592 = t591 * s_r_p_2_;
-  const Real t593 = par.k2 * t548;
-  const Real t594 = par.k1 * t556;
-  const Real t595 = t593 - t594;
-  const Real t596 = c_r_p_2_ * t595;
-  const Real t597 = t592 + t596;
-  const Real t598 = t597 - t445;
-  const Real t599 = t549 * par.k12;
-  const Real t600 = t557 * par.k11;
-  const Real t601 = t599 + t600;
-  const Real t602 = t544 + t601;
-  const Real t603 = t591 * c_r_p_2_;
-  const Real t604 = t595 * s_r_p_2_;
-  const Real t605 = t603 - t604;
-  const Real t606 = t448 + t605;
-
-  // frame: wrench
-  const Real t607 = t509 * par.k16;
-  const Real t608 = t512 * par.k15;
-  const Real t609 = t607 + t608;
-  const Real t610 = t507 * par.m_B;
-  const Real t611 = t609 + t610;
-  const Real t612 = t511 * par.k15;
-  const Real t613 = t505 * par.k16;
-  const Real t614 = t612 - t613;
-  const Real t615 = par.k4 * t491;
-  const Real t616 = t615 - t455;
-  const Real t617 = t616 + t453;
-  const Real t618 = t614 + t617;
-  const Real t619 = par.k15 * t513;
-  const Real t620 = t619 - t456;
-  const Real t621 = t511 * par.m_B;
-  const Real t622 = t620 + t621;
-  const Real t623 = t505 * par.m_B;
-  const Real t624 = t508 * par.k16;
-  const Real t625 = t624 + t454;
-  const Real t626 = t623 - t625;
-  const Real t627 = t485 * par.k14;
-  const Real t628 = t627 - t451;
-  const Real t629 = par.k3 * t512;
-  const Real t630 = t628 - t629;
-  const Real t631 = t507 * par.k16;
-  const Real t632 = t630 + t631;
-
-  // rear_wheel: wrench
-  const Real t633 = par.I_Rxx * t532;
-  const Real t634 = t457 + t633;
-  const Real t635 = t525 * par.I_Rxx;
-  const Real t636 = t635 + t458;
-  const Real t637 = t515 * par.m_R;
-  const Real t638 = par.I_Ryy * t533;
-  const Real t639 = t521 * par.m_R;
-  const Real t640 = t528 * par.m_R;
-
-  // fork: wrench
-  const Real t641 = par.m_H * t569;
-  const Real t642 = par.k10 * t566;
-  const Real t643 = t642 - t460;
-  const Real t644 = t641 + t643;
-  const Real t645 = t544 * par.m_H;
-  const Real t646 = t549 * par.k10;
-  const Real t647 = par.k8 * t557;
-  const Real t648 = t646 - t647;
-  const Real t649 = t645 + t648;
-  const Real t650 = t556 * par.k17;
-  const Real t651 = t650 - t465;
-  const Real t652 = par.k5 * t549;
-  const Real t653 = t651 + t652;
-  const Real t654 = t544 * par.k8;
-  const Real t655 = t653 - t654;
-  const Real t656 = par.k5 * t557;
-  const Real t657 = par.k6 * t548;
-  const Real t658 = t657 - t459;
-  const Real t659 = t656 + t658;
-  const Real t660 = t544 * par.k10;
-  const Real t661 = t659 + t660;
-  const Real t662 = par.k8 * t560;
-  const Real t663 = par.k10 * t569;
-  const Real t664 = t662 - t663;
-  const Real t665 = par.k7 * t564;
-  const Real t666 = t665 + t462;
-  const Real t667 = t666 + t464;
-  const Real t668 = t664 + t667;
-  const Real t669 = par.m_H * t560;
-  const Real t670 = par.k8 * t565;
-  const Real t671 = t670 - t461;
-  const Real t672 = t669 + t671;
-
-  // front_wheel: wrench
-  const Real t673 = par.I_Fxx * t606;
-  const Real t674 = t673 - t466;
-  const Real t675 = par.m_F * t602;
-  const Real t676 = t588 * par.m_F;
-  const Real t677 = par.I_Fxx * t598;
-  const Real t678 = t677 - t467;
-  const Real t679 = t585 * par.m_F;
-  const Real t680 = t570 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t681 = t675 * par.k12;
-  const Real t682 = t678 * s_r_p_2_;
-  const Real t683 = t674 * c_r_p_2_;
-  const Real t684 = t682 + t683;
-  const Real t685 = par.k1 * t684;
-  const Real t686 = t678 * c_r_p_2_;
-  const Real t687 = t674 * s_r_p_2_;
-  const Real t688 = t686 - t687;
-  const Real t689 = par.k2 * t688;
-  const Real t690 = t685 + t689;
-  const Real t691 = t681 + t690;
-  const Real t692 = t691 + t661;
-  const Real t693 = t679 * s_r_p_2_;
-  const Real t694 = t676 * c_r_p_2_;
-  const Real t695 = t693 + t694;
-  const Real t696 = t695 * par.k2;
-  const Real t697 = c_r_p_2_ * t679;
-  const Real t698 = t676 * s_r_p_2_;
-  const Real t699 = t697 - t698;
-  const Real t700 = par.k1 * t699;
-  const Real t701 = t696 - t700;
-  const Real t702 = t701 + t672;
-  const Real t703 = par.k1 * t695;
-  const Real t704 = par.k2 * t699;
-  const Real t705 = t703 + t704;
-  const Real t706 = t644 + t705;
-  const Real t707 = t675 + t649;
-  const Real t708 = t701 * par.k11;
-  const Real t709 = par.k12 * t705;
-  const Real t710 = t708 + t709;
-  const Real t711 = t680 - t710;
-  const Real t712 = t711 + t668;
-  const Real t713 = t675 * par.k11;
-  const Real t714 = t684 * par.k2;
-  const Real t715 = par.k1 * t688;
-  const Real t716 = t714 - t715;
-  const Real t717 = t713 + t716;
-  const Real t718 = t717 + t655;
-
-  // fork: joint force
-  const Real t719 = c_r_p_1_ * t707;
-  const Real t720 = t702 * s_r_p_1_;
-  const Real t721 = t719 + t720;
-  const Real t722 = t721 + t611;
-  const Real t723 = par.k2 * t706;
-  const Real t724 = t702 * c_r_p_1_;
-  const Real t725 = s_r_p_1_ * t707;
-  const Real t726 = t724 - t725;
-  const Real t727 = t726 * par.k1;
-  const Real t728 = t723 - t727;
-  const Real t729 = t728 + t626;
-  const Real t730 = t692 * par.k2;
-  const Real t731 = c_r_p_1_ * t718;
-  const Real t732 = s_r_p_1_ * t712;
-  const Real t733 = t731 - t732;
-  const Real t734 = par.k1 * t733;
-  const Real t735 = t730 - t734;
-  const Real t736 = t721 * par.k13;
-  const Real t737 = t735 + t736;
-  const Real t738 = t737 + t632;
-  const Real t739 = s_r_p_1_ * t718;
-  const Real t740 = c_r_p_1_ * t712;
-  const Real t741 = t739 + t740;
-  const Real t742 = t728 * par.k13;
-  const Real t743 = t741 - t742;
-  const Real t744 = t618 + t743;
-  const Real t745 = t726 * par.k2;
-  const Real t746 = par.k1 * t706;
-  const Real t747 = t745 + t746;
-  const Real t748 = t747 + t622;
-
-  // rear_wheel: joint force
-  const Real t749 = t639 * s_r_p_0_;
-  const Real t750 = t640 * c_r_p_0_;
-  const Real t751 = t749 + t750;
-  const Real t752 = t751 + t748;
-  const Real t753 = t722 + t637;
-  const Real t754 = t639 * c_r_p_0_;
-  const Real t755 = t640 * s_r_p_0_;
-  const Real t756 = t754 - t755;
-  const Real t757 = t729 + t756;
-  const Real t758 = t751 * par.r_R;
-  const Real t759 = t638 - t758;
-  const Real t760 = t759 + t744;
-  const Real t761 = t636 * c_r_p_0_;
-  const Real t762 = t634 * s_r_p_0_;
-  const Real t763 = t761 - t762;
-  const Real t764 = t763 + t738;
+  const Real t251 = nu_dot[0] * par.k2;
+  const Real t252 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t765 = t58 * t752;
-  const Real t766 = t760 - t765;
-  const Real t767 = t757 * t101;
-  const Real t768 = t766 + t767;
-  const Real t769 = t753 * t101;
-  const Real t770 = t764 - t769;
-  const Real t771 = t112 * t770;
-  const Real t772 = t131 * t771;
-  const Real t773 = t768 - t772;
-  const Real t774 = t773 * t139;
-  const Real t775 = t25 * t774;
-  const Real t776 = t775 + t680;
-  const Real t777 = t776 * t145;
-  const Real t778 = t777 * t140;
-  const Real t779 = t774 - t778;
-  const Real t780 = t31 * t779;
-  const Real t781 = t757 - t780;
-  const Real t782 = t113 * t779;
-  const Real t783 = t771 - t782;
-  const Real t784 = t777 * t123;
-  const Real t785 = t783 - t784;
-  const Real t786 = t785 * t45;
-  const Real t787 = t781 - t786;
-  const Real t788 = t777 * t34;
-  const Real t789 = t787 - t788;
-  const Real t790 = t779 * t45;
-  const Real t791 = t753 + t790;
-  const Real t792 = t785 * c_r_p_1_;
+  const Real t253 = t221 + t162;
+  const Real t254 = t253 - t161;
+  const Real t255 = t134 + t254;
+  const Real t256 = t255 * t195;
+  const Real t257 = t25 * t256;
+  const Real t258 = t257 - t111;
+  const Real t259 = t258 * t130;
+  const Real t260 = t259 * t118;
+  const Real t261 = t28 - t260;
+  const Real t262 = product_error(t259, t118);
+  const Real t263 = sum_error(t257, t135);
+  const Real t264 = t263 * t130;
+  const Real t265 = product_error(t258, t130);
+  const Real t266 = t264 + t265;
+  const Real t267 = t118 * t266;
+  const Real t268 = t262 + t267;
+  const Real t269 = t261 - t268;
+  const Real t270 = t109 * t269;
+  const Real t271 = t270 * t101;
+  const Real t272 = t271 * nu[1];
+  const Real t273 = t235 + t272;
+  const Real t274 = t212 + t273;
+  const Real t275 = t274 * nu[0];
+  const Real t276 = t266 * nu[1];
+  const Real t277 = t259 * nu[1];
+  const Real t278 = t276 + t277;
+  const Real t279 = t220 + t278;
+  const Real t280 = t279 + t246;
+  const Real t281 = t259 * t58;
+  const Real t282 = t58 * t266;
+  const Real t283 = t281 + t282;
+  const Real t284 = t283 * nu[1];
+  const Real t285 = t232 + t284;
+  const Real t286 = t285 + t242;
+  const Real t287 = t280 * t286;
+  const Real t288 = t275 + t287;
+  const Real t289 = nu[2] - t280;
+  const Real t290 = R[8] * t280;
+  const Real t291 = t270 * nu[1];
+  const Real t292 = t225 + t291;
+  const Real t293 = t292 + t237;
+  const Real t294 = t293 * R[7];
+  const Real t295 = t290 - t294;
+  const Real t296 = t295 * t55;
+  const Real t297 = t295 * R[6];
+  const Real t298 = t297 * constant<Real>(2.0L);
+  const Real t299 = t280 * R[6];
+  const Real t300 = t299 + t183;
+  const Real t301 = R[8] * t300;
+  const Real t302 = t301 * constant<Real>(2.0L);
+  const Real t303 = t298 - t302;
+  const Real t304 = t303 / t54;
+  const Real t305 = t304 * t55;
+  const Real t306 = t305 / t53;
+  const Real t307 = t306 * R[6];
+  const Real t308 = t296 - t307;
+  const Real t309 = t308 * par.r_R;
+  const Real t310 = t289 * t309;
+  const Real t311 = t293 * par.k13;
+  const Real t312 = t274 - t311;
+  const Real t313 = t181 * t312;
+  const Real t314 = par.k2 * t286;
+  const Real t315 = t280 * par.k13;
+  const Real t316 = t259 * t101;
+  const Real t317 = t266 * t101;
+  const Real t318 = t316 + t317;
+  const Real t319 = t318 * nu[1];
+  const Real t320 = t319 + t248;
+  const Real t321 = t230 - t320;
+  const Real t322 = t315 + t321;
+  const Real t323 = par.k1 * t322;
+  const Real t324 = t314 - t323;
+  const Real t325 = t324 * t179;
+  const Real t326 = t313 - t325;
+  const Real t327 = par.k1 * t326;
+  const Real t328 = par.k1 * t293;
+  const Real t329 = t177 + t328;
+  const Real t330 = t181 * t329;
+  const Real t331 = t280 * t179;
+  const Real t332 = t330 - t331;
+  const Real t333 = t332 * par.c;
+  const Real t334 = t327 + t333;
+  const Real t335 = t295 * par.k1;
+  const Real t336 = par.k2 * t300;
+  const Real t337 = t335 - t336;
+  const Real t338 = par.k1 * t337;
+  const Real t339 = t293 * R[6];
+  const Real t340 = t176 + t339;
+  const Real t341 = s_r_p_1_ * t340;
+  const Real t342 = t341 + t182;
+  const Real t343 = t295 * par.k2;
+  const Real t344 = par.k1 * t300;
+  const Real t345 = t343 + t344;
+  const Real t346 = t345 * c_r_p_1_;
+  const Real t347 = t346 - t180;
+  const Real t348 = t342 + t347;
+  const Real t349 = par.k2 * t348;
+  const Real t350 = t338 + t349;
+  const Real t351 = t350 * t20;
+  const Real t352 = t350 * t16;
+  const Real t353 = t352 * constant<Real>(2.0L);
+  const Real t354 = par.k1 * t348;
+  const Real t355 = par.k2 * t337;
+  const Real t356 = t354 - t355;
+  const Real t357 = t356 * t12;
+  const Real t358 = t357 * constant<Real>(2.0L);
+  const Real t359 = t353 + t358;
+  const Real t360 = t359 / t71;
+  const Real t361 = t360 * t20;
+  const Real t362 = t361 / t19;
+  const Real t363 = t362 * t16;
+  const Real t364 = t351 - t363;
+  const Real t365 = par.r_F * t364;
+  const Real t366 = s_r_p_1_ * t329;
+  const Real t367 = t280 * c_r_p_1_;
+  const Real t368 = t366 + t367;
+  const Real t369 = t256 * nu[1];
+  const Real t370 = t369 + t243;
+  const Real t371 = t236 + t370;
+  const Real t372 = t368 + t371;
+  const Real t373 = t365 * t372;
+  const Real t374 = t332 * t25;
+  const Real t375 = t373 + t374;
+  const Real t376 = t334 - t375;
+  const Real t377 = R[8] * t306;
+  const Real t378 = t55 * t300;
+  const Real t379 = t377 + t378;
+  const Real t380 = t379 * par.r_R;
+  const Real t381 = t289 * t380;
+  const Real t382 = t93 * t381;
+  const Real t383 = t376 - t382;
+  const Real t384 = t309 * t293;
+  const Real t385 = t380 * nu[0];
+  const Real t386 = t384 - t385;
+  const Real t387 = t386 * t45;
+  const Real t388 = t383 + t387;
+  const Real t389 = t31 * t310;
+  const Real t390 = t388 - t389;
+  const Real t391 = t324 * t181;
+  const Real t392 = t179 * t312;
+  const Real t393 = t391 + t392;
+  const Real t394 = t179 * t329;
+  const Real t395 = t280 * t181;
+  const Real t396 = t394 + t395;
+  const Real t397 = par.k1 * t396;
+  const Real t398 = t397 * par.c;
+  const Real t399 = t396 * par.k2;
+  const Real t400 = t399 * par.r_F;
+  const Real t401 = t398 + t400;
+  const Real t402 = t393 + t401;
+  const Real t403 = t356 * t20;
+  const Real t404 = t362 * t12;
+  const Real t405 = t403 - t404;
+  const Real t406 = t405 * par.r_F;
+  const Real t407 = c_r_p_1_ * t329;
+  const Real t408 = s_r_p_1_ * t280;
+  const Real t409 = t407 - t408;
+  const Real t410 = t409 * par.k2;
+  const Real t411 = par.k2 * t293;
+  const Real t412 = t178 - t411;
+  const Real t413 = t412 + nu[1];
+  const Real t414 = par.k1 * t413;
+  const Real t415 = t410 + t414;
+  const Real t416 = t406 * t415;
+  const Real t417 = t399 * t22;
+  const Real t418 = t416 - t417;
+  const Real t419 = t413 * par.k2;
+  const Real t420 = par.k1 * t409;
+  const Real t421 = t419 - t420;
+  const Real t422 = t365 * t421;
+  const Real t423 = t397 * t25;
+  const Real t424 = t422 + t423;
+  const Real t425 = t418 + t424;
+  const Real t426 = t402 - t425;
+  const Real t427 = t59 * t381;
+  const Real t428 = t426 + t427;
+  const Real t429 = t386 * c_r_p_1_;
+  const Real t430 = t428 - t429;
+  const Real t431 = t310 * t45;
+  const Real t432 = t430 - t431;
+  const Real t433 = t110 * t432;
+  const Real t434 = t390 - t433;
+  const Real t435 = t432 * t121;
+  const Real t436 = t386 * t59;
+  const Real t437 = t381 * t90;
+  const Real t438 = t332 * t22;
+  const Real t439 = t406 * t372;
+  const Real t440 = t438 + t439;
+  const Real t441 = t326 * par.k2;
+  const Real t442 = t332 * par.r_F;
+  const Real t443 = t441 + t442;
+  const Real t444 = t440 + t443;
+  const Real t445 = t437 + t444;
+  const Real t446 = t436 + t445;
+  const Real t447 = t34 * t310;
+  const Real t448 = t446 + t447;
+  const Real t449 = t435 + t448;
+  const Real t450 = t434 * t131;
+  const Real t451 = t187 * t434;
+  const Real t452 = t450 + t451;
+  const Real t453 = t449 + t452;
+  const Real t454 = t453 * t195;
+  const Real t455 = t25 * t454;
+  const Real t456 = t434 - t455;
+  const Real t457 = t456 * t130;
+  const Real t458 = t457 * t101;
+  const Real t459 = t310 + t458;
+  const Real t460 = t229 * nu_dot[2];
+  const Real t461 = t247 * nu_dot[0];
+  const Real t462 = nu_dot[1] * t318;
+  const Real t463 = t461 + t462;
+  const Real t464 = t460 - t463;
+  const Real t465 = t459 + t464;
+  const Real t466 = t288 + t465;
+  const Real t467 = t466 - t174;
+  const Real t468 = t467 * par.m_B;
+  const Real t469 = t280 * t280;
+  const Real t470 = t186 + t469;
+  const Real t471 = t470 * par.k15;
+  const Real t472 = nu_dot[1] * t266;
+  const Real t473 = nu_dot[1] * t259;
+  const Real t474 = t472 + t473;
+  const Real t475 = nu_dot[0] * t219;
+  const Real t476 = t474 + t475;
+  const Real t477 = nu_dot[2] * t206;
+  const Real t478 = nu_dot[2] * t199;
+  const Real t479 = t477 + t478;
+  const Real t480 = t476 + t479;
+  const Real t481 = t457 - t480;
+  const Real t482 = t293 * nu[0];
+  const Real t483 = t481 + t482;
+  const Real t484 = t483 * par.k16;
+  const Real t485 = t471 + t484;
+  const Real t486 = t468 - t485;
+  const Real t487 = t409 * t413;
+  const Real t488 = t481 * c_r_p_1_;
+  const Real t489 = t118 * t457;
+  const Real t490 = t432 - t489;
+  const Real t491 = t490 * t109;
+  const Real t492 = nu_dot[2] * t210;
+  const Real t493 = nu_dot[0] * t224;
+  const Real t494 = t270 * nu_dot[1];
+  const Real t495 = t493 + t494;
+  const Real t496 = t492 + t495;
+  const Real t497 = t491 - t496;
+  const Real t498 = t497 * par.k1;
+  const Real t499 = t251 - t498;
+  const Real t500 = s_r_p_1_ * t499;
+  const Real t501 = t488 - t500;
+  const Real t502 = t409 * nu[1];
+  const Real t503 = t501 - t502;
+  const Real t504 = t487 - t503;
+  const Real t505 = par.k10 * t504;
+  const Real t506 = t368 * t368;
+  const Real t507 = t409 * t409;
+  const Real t508 = t506 + t507;
+  const Real t509 = par.k8 * t508;
+  const Real t510 = t505 - t509;
+  const Real t511 = par.k13 * t483;
+  const Real t512 = t467 - t511;
+  const Real t513 = par.k2 * t512;
+  const Real t514 = nu_dot[0] * t231;
+  const Real t515 = t283 * nu_dot[1];
+  const Real t516 = t514 + t515;
+  const Real t517 = nu_dot[2] * t241;
+  const Real t518 = t516 + t517;
+  const Real t519 = t58 * t457;
+  const Real t520 = t381 - t519;
+  const Real t521 = t518 + t520;
+  const Real t522 = t274 * t293;
+  const Real t523 = t280 * t321;
+  const Real t524 = t522 - t523;
+  const Real t525 = t521 + t524;
+  const Real t526 = t525 - t175;
+  const Real t527 = t293 * t293;
+  const Real t528 = t469 + t527;
+  const Real t529 = par.k13 * t528;
+  const Real t530 = t526 - t529;
+  const Real t531 = t530 * par.k1;
+  const Real t532 = t513 + t531;
+  const Real t533 = t532 * par.m_H;
+  const Real t534 = t510 + t533;
+  const Real t535 = t508 * par.k11;
+  const Real t536 = par.k12 * t504;
+  const Real t537 = t535 + t536;
+  const Real t538 = t532 + t537;
+  const Real t539 = par.k2 * t538;
+  const Real t540 = t530 * par.k2;
+  const Real t541 = par.k1 * t512;
+  const Real t542 = t540 - t541;
+  const Real t543 = t542 * c_r_p_1_;
+  const Real t544 = t491 * t101;
+  const Real t545 = t386 - t544;
+  const Real t546 = nu_dot[2] * t211;
+  const Real t547 = t234 * nu_dot[0];
+  const Real t548 = nu_dot[1] * t271;
+  const Real t549 = t547 + t548;
+  const Real t550 = t546 + t549;
+  const Real t551 = t545 + t550;
+  const Real t552 = t293 * t286;
+  const Real t553 = t321 * nu[0];
+  const Real t554 = t552 + t553;
+  const Real t555 = t551 - t554;
+  const Real t556 = t555 - t173;
+  const Real t557 = t280 * nu[0];
+  const Real t558 = t497 - t557;
+  const Real t559 = par.k13 * t558;
+  const Real t560 = t556 + t559;
+  const Real t561 = s_r_p_1_ * t560;
+  const Real t562 = t543 + t561;
+  const Real t563 = t503 + t487;
+  const Real t564 = par.k11 * t563;
+  const Real t565 = t413 * t413;
+  const Real t566 = t506 + t565;
+  const Real t567 = t566 * par.k12;
+  const Real t568 = t564 + t567;
+  const Real t569 = t562 - t568;
+  const Real t570 = t569 * par.k1;
+  const Real t571 = t539 - t570;
+  const Real t572 = t571 * c_r_p_2_;
+  const Real t573 = t569 * par.k2;
+  const Real t574 = par.k1 * t538;
+  const Real t575 = t573 + t574;
+  const Real t576 = t575 * s_r_p_2_;
+  const Real t577 = t572 + t576;
+  const Real t578 = par.m_F * t577;
+  const Real t579 = t578 * c_r_p_2_;
+  const Real t580 = c_r_p_2_ * t575;
+  const Real t581 = t571 * s_r_p_2_;
+  const Real t582 = t580 - t581;
+  const Real t583 = par.m_F * t582;
+  const Real t584 = t583 * s_r_p_2_;
+  const Real t585 = t579 - t584;
+  const Real t586 = t585 * par.k2;
+  const Real t587 = t578 * s_r_p_2_;
+  const Real t588 = c_r_p_2_ * t583;
+  const Real t589 = t587 + t588;
+  const Real t590 = par.k1 * t589;
+  const Real t591 = t586 + t590;
+  const Real t592 = t534 + t591;
+  const Real t593 = par.k2 * t592;
+  const Real t594 = par.k2 * t589;
+  const Real t595 = t585 * par.k1;
+  const Real t596 = t594 - t595;
+  const Real t597 = t562 * par.m_H;
+  const Real t598 = par.k8 * t563;
+  const Real t599 = t566 * par.k10;
+  const Real t600 = t598 - t599;
+  const Real t601 = t597 + t600;
+  const Real t602 = t596 + t601;
+  const Real t603 = t602 * c_r_p_1_;
+  const Real t604 = c_r_p_1_ * t560;
+  const Real t605 = s_r_p_1_ * t542;
+  const Real t606 = t604 - t605;
+  const Real t607 = t497 * par.k2;
+  const Real t608 = t252 + t607;
+  const Real t609 = nu_dot[1] + t608;
+  const Real t610 = t368 * t409;
+  const Real t611 = t609 - t610;
+  const Real t612 = par.k12 * t611;
+  const Real t613 = s_r_p_1_ * t481;
+  const Real t614 = c_r_p_1_ * t499;
+  const Real t615 = t613 + t614;
+  const Real t616 = t368 * nu[1];
+  const Real t617 = t615 - t616;
+  const Real t618 = t368 * t413;
+  const Real t619 = t617 + t618;
+  const Real t620 = par.k11 * t619;
+  const Real t621 = t612 + t620;
+  const Real t622 = t606 + t621;
+  const Real t623 = t622 * par.m_F;
+  const Real t624 = par.k10 * t611;
+  const Real t625 = par.k8 * t619;
+  const Real t626 = t624 - t625;
+  const Real t627 = t606 * par.m_H;
+  const Real t628 = t626 + t627;
+  const Real t629 = t623 + t628;
+  const Real t630 = s_r_p_1_ * t629;
+  const Real t631 = t603 - t630;
+  const Real t632 = par.k1 * t631;
+  const Real t633 = t593 - t632;
+  const Real t634 = t486 + t633;
+  const Real t635 = t470 * par.r_R;
+  const Real t636 = t467 + t635;
+  const Real t637 = t636 * c_r_p_0_;
+  const Real t638 = t481 - t482;
+  const Real t639 = t638 * par.r_R;
+  const Real t640 = t526 - t639;
+  const Real t641 = t640 * s_r_p_0_;
+  const Real t642 = t637 + t641;
+  const Real t643 = t642 * par.m_R;
+  const Real t644 = t643 * c_r_p_0_;
+  const Real t645 = t640 * c_r_p_0_;
+  const Real t646 = t636 * s_r_p_0_;
+  const Real t647 = t645 - t646;
+  const Real t648 = par.m_R * t647;
+  const Real t649 = s_r_p_0_ * t648;
+  const Real t650 = t644 - t649;
+  const Real t651 = t634 + t650;
+  const Real t652 = t651 * t101;
+  const Real t653 = nu_dot[0] * t216;
+  const Real t654 = nu_dot[1] * t256;
+  const Real t655 = t653 + t654;
+  const Real t656 = nu_dot[2] * t196;
+  const Real t657 = t655 + t656;
+  const Real t658 = t454 + t657;
+  const Real t659 = t503 - t658;
+  const Real t660 = t659 * par.I_Fyy;
+  const Real t661 = t591 * par.k12;
+  const Real t662 = t596 * par.k11;
+  const Real t663 = t661 + t662;
+  const Real t664 = t660 - t663;
+  const Real t665 = t562 * par.k8;
+  const Real t666 = t532 * par.k10;
+  const Real t667 = t665 - t666;
+  const Real t668 = t565 - t507;
+  const Real t669 = par.k5 * t668;
+  const Real t670 = t487 * par.k31;
+  const Real t671 = t503 * par.k7;
+  const Real t672 = t670 + t671;
+  const Real t673 = t669 + t672;
+  const Real t674 = t667 + t673;
+  const Real t675 = t664 + t674;
+  const Real t676 = t675 * c_r_p_1_;
+  const Real t677 = t623 * par.k11;
+  const Real t678 = par.k1 * t609;
+  const Real t679 = t617 * par.k2;
+  const Real t680 = t678 + t679;
+  const Real t681 = c_r_p_2_ * t680;
+  const Real t682 = t609 * par.k2;
+  const Real t683 = par.k1 * t617;
+  const Real t684 = t682 - t683;
+  const Real t685 = t684 * s_r_p_2_;
+  const Real t686 = t681 - t685;
+  const Real t687 = t415 * s_r_p_2_;
+  const Real t688 = t421 * c_r_p_2_;
+  const Real t689 = t687 + t688;
+  const Real t690 = t371 * t689;
+  const Real t691 = t686 + t690;
+  const Real t692 = par.I_Fxx * t691;
+  const Real t693 = t372 * t689;
+  const Real t694 = par.k35 * t693;
+  const Real t695 = t692 - t694;
+  const Real t696 = t695 * c_r_p_2_;
+  const Real t697 = c_r_p_2_ * t684;
+  const Real t698 = t680 * s_r_p_2_;
+  const Real t699 = t697 + t698;
+  const Real t700 = c_r_p_2_ * t415;
+  const Real t701 = t421 * s_r_p_2_;
+  const Real t702 = t700 - t701;
+  const Real t703 = t702 * t371;
+  const Real t704 = t699 - t703;
+  const Real t705 = par.I_Fxx * t704;
+  const Real t706 = t702 * t372;
+  const Real t707 = t706 * par.k36;
+  const Real t708 = t705 - t707;
+  const Real t709 = t708 * s_r_p_2_;
+  const Real t710 = t696 + t709;
+  const Real t711 = t710 * par.k2;
+  const Real t712 = t708 * c_r_p_2_;
+  const Real t713 = t695 * s_r_p_2_;
+  const Real t714 = t712 - t713;
+  const Real t715 = par.k1 * t714;
+  const Real t716 = t711 - t715;
+  const Real t717 = t677 + t716;
+  const Real t718 = t617 * par.k17;
+  const Real t719 = par.k30 * t618;
+  const Real t720 = t718 - t719;
+  const Real t721 = par.k5 * t611;
+  const Real t722 = t720 + t721;
+  const Real t723 = par.k8 * t606;
+  const Real t724 = t722 - t723;
+  const Real t725 = t717 + t724;
+  const Real t726 = s_r_p_1_ * t725;
+  const Real t727 = t676 + t726;
+  const Real t728 = par.k13 * t633;
+  const Real t729 = t727 - t728;
+  const Real t730 = t526 * par.k15;
+  const Real t731 = t467 * par.k16;
+  const Real t732 = t730 - t731;
+  const Real t733 = par.k4 * t481;
+  const Real t734 = par.k27 * t482;
+  const Real t735 = t733 - t734;
+  const Real t736 = t527 - t186;
+  const Real t737 = par.k3 * t736;
+  const Real t738 = t735 + t737;
+  const Real t739 = t732 + t738;
+  const Real t740 = t729 + t739;
+  const Real t741 = nu_dot[2] + t481;
+  const Real t742 = t741 * par.I_Ryy;
+  const Real t743 = c_r_p_0_ * t648;
+  const Real t744 = t643 * s_r_p_0_;
+  const Real t745 = t743 + t744;
+  const Real t746 = t745 * par.r_R;
+  const Real t747 = t742 - t746;
+  const Real t748 = t740 + t747;
+  const Real t749 = t526 * par.m_B;
+  const Real t750 = t638 * par.k15;
+  const Real t751 = t528 * par.k16;
+  const Real t752 = t750 - t751;
+  const Real t753 = t749 + t752;
+  const Real t754 = par.k2 * t631;
+  const Real t755 = par.k1 * t592;
+  const Real t756 = t754 + t755;
+  const Real t757 = t753 + t756;
+  const Real t758 = t745 + t757;
+  const Real t759 = t758 * t58;
+  const Real t760 = t748 - t759;
+  const Real t761 = t652 + t760;
+  const Real t762 = t293 * s_r_p_0_;
+  const Real t763 = t184 + t762;
+  const Real t764 = t289 * t763;
+  const Real t765 = par.k28 * t764;
+  const Real t766 = t497 * c_r_p_0_;
+  const Real t767 = t766 + t250;
+  const Real t768 = t763 * nu[2];
+  const Real t769 = t767 + t768;
+  const Real t770 = t769 * par.I_Rxx;
+  const Real t771 = t765 + t770;
+  const Real t772 = t771 * c_r_p_0_;
+  const Real t773 = t293 * c_r_p_0_;
+  const Real t774 = t185 - t773;
+  const Real t775 = t289 * t774;
+  const Real t776 = t775 * par.k29;
+  const Real t777 = t497 * s_r_p_0_;
+  const Real t778 = t249 - t777;
+  const Real t779 = t774 * nu[2];
+  const Real t780 = t778 - t779;
+  const Real t781 = par.I_Rxx * t780;
+  const Real t782 = t776 + t781;
+  const Real t783 = t782 * s_r_p_0_;
+  const Real t784 = t772 - t783;
+  const Real t785 = par.k2 * t714;
+  const Real t786 = par.k1 * t710;
+  const Real t787 = t785 + t786;
+  const Real t788 = t623 * par.k12;
+  const Real t789 = t787 + t788;
+  const Real t790 = par.k5 * t619;
+  const Real t791 = par.k6 * t609;
+  const Real t792 = t610 * par.k32;
   const Real t793 = t791 - t792;
-  const Real t794 = t777 * t59;
-  const Real t795 = t793 - t794;
-  const Real t796 = t785 * t59;
-  const Real t797 = t93 * t779;
-  const Real t798 = t752 - t797;
-  const Real t799 = t796 + t798;
-  const Real t800 = t777 * t90;
+  const Real t794 = t790 + t793;
+  const Real t795 = t606 * par.k10;
+  const Real t796 = t794 + t795;
+  const Real t797 = t789 + t796;
+  const Real t798 = par.k2 * t797;
+  const Real t799 = t725 * c_r_p_1_;
+  const Real t800 = s_r_p_1_ * t675;
   const Real t801 = t799 - t800;
+  const Real t802 = t801 * par.k1;
+  const Real t803 = t798 - t802;
+  const Real t804 = s_r_p_1_ * t602;
+  const Real t805 = c_r_p_1_ * t629;
+  const Real t806 = t804 + t805;
+  const Real t807 = par.k13 * t806;
+  const Real t808 = t803 + t807;
+  const Real t809 = t497 * par.k14;
+  const Real t810 = t557 * par.k25;
+  const Real t811 = t809 - t810;
+  const Real t812 = t280 * t293;
+  const Real t813 = t812 - nu_dot[0];
+  const Real t814 = par.k3 * t813;
+  const Real t815 = t811 - t814;
+  const Real t816 = t556 * par.k16;
+  const Real t817 = t815 + t816;
+  const Real t818 = t808 + t817;
+  const Real t819 = t784 + t818;
+  const Real t820 = t813 * par.r_R;
+  const Real t821 = t556 - t820;
+  const Real t822 = t821 * par.m_R;
+  const Real t823 = t813 * par.k15;
+  const Real t824 = par.k16 * t558;
+  const Real t825 = t823 + t824;
+  const Real t826 = t556 * par.m_B;
+  const Real t827 = t825 + t826;
+  const Real t828 = t827 + t806;
+  const Real t829 = t822 + t828;
+  const Real t830 = t829 * t101;
+  const Real t831 = t819 - t830;
+  const Real t832 = t831 * t109;
+  const Real t833 = t118 * t832;
+  const Real t834 = t761 - t833;
+  const Real t835 = t834 * t130;
+  const Real t836 = t25 * t835;
+  const Real t837 = t660 + t836;
+  const Real t838 = t195 * t837;
+  const Real t839 = t131 * t838;
+  const Real t840 = t187 * t838;
+  const Real t841 = t839 + t840;
+  const Real t842 = t835 - t841;
+  const Real t843 = t31 * t842;
+  const Real t844 = t651 - t843;
+  const Real t845 = t110 * t842;
+  const Real t846 = t832 - t845;
+  const Real t847 = t121 * t838;
+  const Real t848 = t846 - t847;
+  const Real t849 = t848 * t45;
+  const Real t850 = t844 - t849;
+  const Real t851 = t34 * t838;
+  const Real t852 = t850 - t851;
+  const Real t853 = t842 * t93;
+  const Real t854 = t758 - t853;
+  const Real t855 = t848 * t59;
+  const Real t856 = t854 + t855;
+  const Real t857 = t90 * t838;
+  const Real t858 = t856 - t857;
+  const Real t859 = t842 * t45;
+  const Real t860 = t859 + t829;
+  const Real t861 = t848 * c_r_p_1_;
+  const Real t862 = t860 - t861;
+  const Real t863 = t59 * t838;
+  const Real t864 = t862 - t863;
 
-  lambda[0] = t801;
-  lambda[1] = t795;
-  lambda[2] = t789;
-  lambda[3] = t777;
-  lambda[4] = t785;
-  lambda[5] = t779;
+  lambda[0] = t858;
+  lambda[1] = t864;
+  lambda[2] = t852;
+  lambda[3] = t838;
+  lambda[4] = t848;
+  lambda[5] = t842;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.

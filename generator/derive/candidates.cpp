@@ -5,7 +5,6 @@
 #include "algebra/closed_form.hpp"
 #include "anholon/charts.hpp"
 #include "derive/deriver.hpp"
-#include "derive/sampled_inputs.hpp"
 #include "optimise/tape/passes.hpp"
 
 namespace anholon {
@@ -45,16 +44,18 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
     if (const auto closed = closed_form(tape_, roots_of(base))) add("closed form", with_roots(base, *closed));
   }
   if (request_.optimise == OptimiseFor::speed) add_after_passes(candidates);
+  const auto states = [this](int count) { return states_of(atlas_, chart_, count); };
   const std::size_t best = choose(
-      tape_, candidates, request_.optimise, [this] { return measured_states_of(atlas_, chart_); },
-      [&] {
+      tape_, candidates, request_.optimise, states,
+      [&](const MeasuredStates& at) {
         if (accurate) {
           for (const Route& r : accurate()) add(r.name, without_empty_blocks(r).outputs);
         }
         add_stable_forms(candidates);
         if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
+        add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at);
       },
-      accurate ? measured_states : 8);
+      Estimates::hard_states);
   const std::string full_name = prefix_ + name;
   const std::size_t first_report = result_->candidates.size();
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -84,17 +85,17 @@ void Deriver::add_after_passes(std::vector<Candidate>& candidates) {
   }
 }
 
-std::vector<std::vector<double>> Deriver::measured_states_of(const KernelAtlas* atlas, std::size_t chart) {
+std::vector<std::vector<double>> Deriver::states_of(const KernelAtlas* atlas, std::size_t chart, int count) {
   const std::size_t charts = atlas == nullptr ? 1 : atlas->charts.size();
   const int times = static_cast<int>(std::min<std::size_t>(charts, 8));
-  std::vector<std::vector<double>> states = sampled_inputs(model_, program_, measured_states * times);
+  std::vector<std::vector<double>> states = sampled_inputs_(program_, count * times);
   if (charts < 2) return states;
   std::vector<NodeId> quality;
   for (const Expr& e : atlas->quality) quality.push_back(e.id(tape_));
   std::erase_if(states, [&](const std::vector<double>& inputs) {
     return best_chart(std::span<const double>(reproducible_values(tape_, quality, inputs))) != chart;
   });
-  if (states.size() > measured_states) states.resize(measured_states);
+  if (states.size() > static_cast<std::size_t>(count)) states.resize(static_cast<std::size_t>(count));
   return states;
 }
 
@@ -107,10 +108,10 @@ void Deriver::trace() {
     if (auto stable = in_stable_form(tape_, route, parameter_nodes_)) steps.push_back(std::move(*stable));
     for (const AfterPass& step : run_passes(tape_, roots_of(route.outputs), parameter_nodes_))
       steps.push_back({step.pass, with_roots(route.outputs, step.roots), step.operations});
-    const auto states = measured_states_of(t.atlas, t.chart);
-    const auto given = [&] { return states; };
-    measure(tape_, t.candidates, given);
-    measure(tape_, steps, given);
+    const MeasuredStates at{states_of(t.atlas, t.chart, measured_states), {}, tolerated_ulps};
+    for (Candidate& c : t.candidates) c.error = {};
+    measure(tape_, t.candidates, at);
+    measure(tape_, steps, at);
     for (std::size_t i = 0; i < t.candidates.size(); ++i)
       result_->candidates[t.first_report + i].error = t.candidates[i].error;
     for (const Candidate& c : steps) result_->trace.push_back({t.function, c.name, c.operations, c.error});

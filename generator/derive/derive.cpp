@@ -44,7 +44,8 @@ Deriver::Deriver(const Model& model, const DeriveRequest& request)
       mechanism_(merged(described_)),
       dynamics_(mechanism_),
       samples_(sample_states(model, random_samples)),
-      names_(velocity_names(model)) {
+      names_(velocity_names(model)),
+      sampled_inputs_(model) {
   described_.open_section =
       mechanism_.open_section = [this](const std::string& title) { tape_.section(title); };
   for (const Parameter& p : model.parameters) defaults_.push_back(p.value);

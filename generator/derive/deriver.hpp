@@ -12,6 +12,7 @@
 #include "anholon/free_dynamics.hpp"
 #include "derive/charts.hpp"
 #include "derive/derive.hpp"
+#include "derive/sampled_inputs.hpp"
 #include "derive/symbols.hpp"
 #include "describe/mechanise.hpp"
 #include "optimise/accuracy/variants.hpp"
@@ -53,6 +54,10 @@ class Deriver {
     Matrix<Expr> M_r;
     std::vector<Expr> f_r;
   };
+  /// A column of the kernel with a single entry, 1 at `row`.
+  struct UnitColumn {
+    int row, column;
+  };
   struct Traced {
     std::string function;
     std::vector<Candidate> candidates;
@@ -89,6 +94,11 @@ class Deriver {
     return r;
   }
   std::vector<Expr> full_velocity() { return merged(motion_partition_, full_passive(), r_a_dot_); }
+  static std::vector<Expr> column_of(const Matrix<Expr>& m, int column) {
+    std::vector<Expr> entries;
+    for (int i = 0; i < m.rows(); ++i) entries.push_back(m(i, column));
+    return entries;
+  }
   std::vector<Expr> no_force(const Partition& p) const {
     return std::vector<Expr>(p.passive.size(), Expr(0));
   }
@@ -115,7 +125,7 @@ class Deriver {
   void add_stable_forms(std::vector<Candidate>& candidates);
   void add_after_passes(std::vector<Candidate>& candidates);
   /// Random states; where there are several charts, those at which this one is the best.
-  std::vector<std::vector<double>> measured_states_of(const KernelAtlas* atlas, std::size_t chart);
+  std::vector<std::vector<double>> states_of(const KernelAtlas* atlas, std::size_t chart, int count);
   /// What all candidates lose, and what stable forms and each pass make of the route that was kept.
   void trace();
 
@@ -143,19 +153,13 @@ class Deriver {
                                    const std::vector<Expr>& input_force, bool project);
   /// nu_dot, then all accelerations (n + s), from M_r and f_r on the kernel's own basis.
   std::pair<std::vector<Expr>, std::vector<Expr>> solved(const Reduced& of, const ReducedDynamics& d);
-  /// The same on an orthogonal basis: the route that keeps digits where the kernel's own is almost singular.
-  std::pair<std::vector<Expr>, std::vector<Expr>> solved_on_orthogonal_basis(
-      const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
-      const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project);
   /// What `solved` found, as blocks: the derivative of nu, then eta_dot, r_p_ddot and so on.
   std::vector<OutputBlock> acceleration_blocks(
       const Reduced& of, const std::string& nu,
       const std::pair<std::vector<Expr>, std::vector<Expr>>& solution);
-  /// The routes over an orthogonal basis, where that can differ from the kernel's own.
-  std::vector<Route> orthogonal_routes(const Reduced& of, const std::string& name,
-                                       const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
-                                       const std::vector<Expr>& r_a_ddot,
-                                       const std::vector<Expr>& input_force);
+  /// Forces on the passive velocities that an acceleration of these alone needs.
+  std::vector<Expr> mass_times(const Partition& p, const State<Expr>& state,
+                               const std::vector<Expr>& passive);
   /// Torques on the coordinates of a partition that are torque-driven, as forces on its passive velocities.
   std::vector<Expr> driving_force(const Partition& p);
   static std::vector<Expr> accelerations(const Reduced& of, const Matrix<Expr>& H, const ReducedDynamics& d,
@@ -167,6 +171,25 @@ class Deriver {
   /// (4)-(5), where H is block triangular with both an external and an internal part.
   std::vector<OutputBlock> split_blocks(const ReducedDynamics& d);
   void derive_energies();
+
+  // accurate_routes.cpp
+  /// What `solved` finds, on an orthogonal basis: keeps digits where the kernel's own is almost singular.
+  std::pair<std::vector<Expr>, std::vector<Expr>> solved_on_orthogonal_basis(
+      const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+      const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project);
+  /// The same with the modes eliminated body by body: what is left of a beam's inertia when its modes give
+  /// way is a small difference, and so it comes about in the beam's own axes, before it is carried to others.
+  std::pair<std::vector<Expr>, std::vector<Expr>> solved_modes_first(const Reduced& of,
+                                                                     const std::vector<Expr>& nu,
+                                                                     const std::vector<Expr>& r_a_dot,
+                                                                     const std::vector<Expr>& r_a_ddot,
+                                                                     const std::vector<Expr>& input_force);
+  /// Columns of the kernel that are the rate of one mode, which is in no other.
+  [[nodiscard]] std::vector<UnitColumn> modal_columns(const Reduced& of) const;
+  /// All of these that may differ from `solved`.
+  std::vector<Route> accurate_routes(const Reduced& of, const std::string& name, const std::vector<Expr>& nu,
+                                     const std::vector<Expr>& r_a_dot, const std::vector<Expr>& r_a_ddot,
+                                     const std::vector<Expr>& input_force);
 
   // torque_functions.cpp
   void derive_torques_and_multipliers();
@@ -202,6 +225,7 @@ class Deriver {
   const KernelAtlas* atlas_ = nullptr;  // that chart_ belongs to; null before there is one
   std::size_t chart_ = 0;
   std::vector<NodeId> parameter_nodes_;
+  SampledInputs sampled_inputs_;
   std::vector<Traced> traced_;
   std::vector<Expr> nu_, r_a_dot_, r_a_ddot_;
 };

@@ -59,10 +59,7 @@ Deriver::ReducedDynamics Deriver::reduced_dynamics(const Reduced& of, const Matr
     for (std::size_t i = 0; i < force.size(); ++i) force[i] -= residual[i];
     d.f_r = Ht * force;
     for (int c = 0; c < H.cols(); ++c) {
-      std::vector<Expr> h;
-      for (int i = 0; i < H.rows(); ++i) h.push_back(H(i, c));
-      const std::vector<Expr> Mh = picked(
-          dynamics_.mass_times(state, merged(p, h, std::vector<Expr>(p.active.size(), Expr(0)))), p.passive);
+      const std::vector<Expr> Mh = mass_times(p, state, column_of(H, c));
       tape_.section("reduced mass matrix");
       const std::vector<Expr> column = Ht * Mh;
       for (int i = c; i < H.cols(); ++i) d.M_r(i, c) = d.M_r(c, i) = column[static_cast<std::size_t>(i)];
@@ -84,6 +81,12 @@ Deriver::ReducedDynamics Deriver::reduced_dynamics(const Reduced& of, const Matr
     d.f_r = Ht * force;  // (67)
   }
   return d;
+}
+
+std::vector<Expr> Deriver::mass_times(const Partition& p, const State<Expr>& state,
+                                      const std::vector<Expr>& passive) {
+  const std::vector<Expr> at_rest(p.active.size(), Expr(0));
+  return picked(dynamics_.mass_times(state, merged(p, passive, at_rest)), p.passive);
 }
 
 std::vector<Expr> Deriver::driving_force(const Partition& p) {
@@ -118,19 +121,6 @@ std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved(const Reduced& o
   return {std::move(nu_dot), std::move(v_dot)};
 }
 
-std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved_on_orthogonal_basis(
-    const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
-    const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force, bool project) {
-  tape_.section("orthogonal basis");
-  const OrthogonalBasis basis = orthogonal_basis(of.reduction->kernel().H);
-  const ReducedDynamics d = reduced_dynamics(of, basis.Q, nu, r_a_dot, r_a_ddot, input_force, project);
-  tape_.section("reduced accelerations");
-  const std::vector<Expr> along = solve_symmetric(d.M_r, {d.f_r}).front();
-  std::vector<Expr> nu_dot = basis.solve(along);
-  tape_.section("accelerations");
-  return {std::move(nu_dot), accelerations(of, basis.Q, d, along)};
-}
-
 std::vector<OutputBlock> Deriver::acceleration_blocks(
     const Reduced& of, const std::string& nu,
     const std::pair<std::vector<Expr>, std::vector<Expr>>& solution) {
@@ -139,21 +129,6 @@ std::vector<OutputBlock> Deriver::acceleration_blocks(
   for (OutputBlock& b : split_passive(of.partition, picked(v_dot, of.partition.passive), "dot"))
     outputs.push_back(std::move(b));
   return outputs;
-}
-
-std::vector<Route> Deriver::orthogonal_routes(const Reduced& of, const std::string& name,
-                                              const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
-                                              const std::vector<Expr>& r_a_ddot,
-                                              const std::vector<Expr>& input_force) {
-  std::vector<Route> routes;
-  if (of.k() < 2) return routes;  // one column is orthogonal
-  for (const bool project : {true, false}) {
-    routes.push_back(
-        {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
-         acceleration_blocks(of, name,
-                             solved_on_orthogonal_basis(of, nu, r_a_dot, r_a_ddot, input_force, project))});
-  }
-  return routes;
 }
 
 void Deriver::derive_reduced_dynamics() {
@@ -181,13 +156,12 @@ void Deriver::derive_reduced_dynamics() {
          split_routes);
   if (!forward) return;
   const bool replaced = replace_by_articulated_bodies(force, forward_routes);
-  const auto on_orthogonal_basis = [&] {
-    return replaced ? std::vector<Route>()
-                    : orthogonal_routes(motion_, "nu", nu_, r_a_dot_, r_a_ddot_, force);
+  const auto accurate = [&] {
+    return replaced ? std::vector<Route>() : accurate_routes(motion_, "nu", nu_, r_a_dot_, r_a_ddot_, force);
   };
   emit("forward_dynamics", "Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).",
        forward_routes, replaced ? "the mass matrix would lose the digits of its small bodies" : "", !replaced,
-       on_orthogonal_basis);
+       accurate);
 }
 
 bool Deriver::replace_by_articulated_bodies(const std::vector<Expr>& force, std::vector<Route>& routes) {

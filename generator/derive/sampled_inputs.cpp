@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "derive/sampled_inputs.hpp"
 
-#include <map>
-#include <string>
 #include <string_view>
 
 #include "reduce/partition.hpp"
-#include "reduce/samples.hpp"
 
 namespace anholon {
 namespace {
@@ -18,13 +15,15 @@ std::uint64_t hash_of(std::string_view text) {
   return hash;
 }
 
+}  // namespace
+
 /// Blocks of inputs that say where the robot is, those of the reduction and those of a tree.
-std::map<std::string, std::vector<double>> position_blocks(const Model& model, SampleSource& source) {
-  const State<Exact> s = random_state(model, source);
-  const Partition partition = partition_of(model);
-  std::map<std::string, std::vector<double>> blocks;
-  blocks["t"] = {source.uniform()};
-  const double theta = 6 * source.uniform() - 3;
+SampledInputs::PositionBlocks SampledInputs::next_position() {
+  const State<Exact> s = random_state(model_, source_);
+  const Partition partition = partition_of(model_);
+  PositionBlocks blocks;
+  blocks["t"] = {source_.uniform()};
+  const double theta = 6 * source_.uniform() - 3;
   blocks["g"] = {s.p.x.to_double(), s.p.y.to_double(), theta};
   for (const Exact& x : s.R.m) blocks["R"].push_back(x.to_double());
   for (const Exact& x : s.r) blocks["r"].push_back(x.to_double());
@@ -38,16 +37,15 @@ std::map<std::string, std::vector<double>> position_blocks(const Model& model, S
   return blocks;
 }
 
-}  // namespace
-
-std::vector<std::vector<double>> sampled_inputs(const Model& model, const Program& program, int states) {
+std::vector<std::vector<double>> SampledInputs::operator()(const Program& program, int states) {
   std::vector<std::vector<double>> result;
-  SampleSource positions;
+  std::vector<double> at_defaults(program.tape.inputs().size(), 0.0);
+  for (const ParameterInfo& p : program.parameters)
+    at_defaults[program.tape.node(p.node).a] = p.value.to_double();
   for (int s = 0; s < states; ++s) {
-    const auto known = position_blocks(model, positions);
-    std::vector<double> inputs(program.tape.inputs().size(), 0.0);
-    for (const ParameterInfo& p : program.parameters)
-      inputs[program.tape.node(p.node).a] = p.value.to_double();
+    if (positions_.size() <= static_cast<std::size_t>(s)) positions_.push_back(next_position());
+    const PositionBlocks& known = positions_[static_cast<std::size_t>(s)];
+    std::vector<double> inputs = at_defaults;
     for (const InputBlock& block : program.inputs) {
       SampleSource source(hash_of(block.name) + static_cast<std::uint64_t>(s));
       const auto found = known.find(block.name);

@@ -100,7 +100,7 @@ void Deriver::derive_torque_driven(const Reduced& all, const std::vector<Expr>& 
     }
     emit(family[0],
          "Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.",
-         routes, "", true, [&] { return orthogonal_routes(all, "w", w, {}, {}, force); });
+         routes, "", true, [&] { return accurate_routes(all, "w", w, {}, {}, force); });
   }
   if (wanted(family[3]) && !mechanism_.rows.empty()) {
     const auto w_dot = symbols_.block("w_dot", all.k(), "mixed", "derivative of w");

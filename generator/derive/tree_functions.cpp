@@ -60,7 +60,8 @@ class TreeDeriver {
         result_(std::make_unique<TreeDerivation>()),
         program_(result_->program),
         tape_(program_.tape),
-        in_(model, program_) {
+        in_(model, program_),
+        sampled_inputs_(model) {
     for (const ParameterInfo& p : program_.parameters) parameters_.push_back(p.node);
   }
 
@@ -168,16 +169,17 @@ class TreeDeriver {
         passes.push_back({stage.name, std::move(outputs), operations});
       }
       passes.insert(passes.end(), kept.passes.begin(), kept.passes.end());
-      measure(tape_, passes, states());
-      measure(tape_, kept.candidates, states());
+      measure(tape_, passes, {states(), {}, tolerated_ulps});
+      for (Candidate& c : kept.candidates) c.error = {};
+      measure(tape_, kept.candidates, {states(), {}, tolerated_ulps});
       for (const Candidate& c : passes) result_->trace.push_back({f.name, c.name, c.operations, c.error});
       for (std::size_t i = 0; i < kept.candidates.size(); ++i)
         result_->candidates[kept.first_report + i].error = kept.candidates[i].error;
     }
   }
 
-  [[nodiscard]] MeasuredStates states() const {
-    return [this] { return sampled_inputs(model_, program_, measured_states); };
+  [[nodiscard]] std::vector<std::vector<double>> states(int count = measured_states) {
+    return sampled_inputs_(program_, count);
   }
 
   // ---- routes
@@ -286,20 +288,23 @@ class TreeDeriver {
       candidates[i].operations = steps.back().operations;
       passes[i] = std::move(steps);
     }
-    const std::size_t best = choose(tape_, candidates, request_.optimise, states(), [&] {
-      for (const std::size_t i : order) {
-        if (!passes[i].empty()) {
-          candidates.push_back(derived[i]);
-          candidates.back().name += ", without passes";
-          candidates.insert(candidates.end(), passes[i].begin(), passes[i].end() - 1);
-        }
-        if (const auto stable = in_stable_form(tape_, derived[i], parameters_)) {
-          candidates.push_back(*stable);
-          const std::vector<Candidate> steps = after_passes(tape_, *stable, parameters_);
-          candidates.insert(candidates.end(), steps.begin(), steps.end());
-        }
-      }
-    });
+    const std::size_t best = choose(
+        tape_, candidates, request_.optimise, [this](int count) { return states(count); },
+        [&](const MeasuredStates&) {
+          for (const std::size_t i : order) {
+            if (!passes[i].empty()) {
+              candidates.push_back(derived[i]);
+              candidates.back().name += ", without passes";
+              candidates.insert(candidates.end(), passes[i].begin(), passes[i].end() - 1);
+            }
+            if (const auto stable = in_stable_form(tape_, derived[i], parameters_)) {
+              candidates.push_back(*stable);
+              const std::vector<Candidate> steps = after_passes(tape_, *stable, parameters_);
+              candidates.insert(candidates.end(), steps.begin(), steps.end());
+            }
+          }
+        },
+        Estimates::none);
     const std::size_t first_report = result_->candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& c = candidates[i];
@@ -668,6 +673,7 @@ class TreeDeriver {
   Program& program_;
   Tape& tape_;
   TreeInputs in_;
+  SampledInputs sampled_inputs_;
   std::vector<NodeId> parameters_;
   Mechanism<Expr> described_;  // every link a body
   Mechanism<Expr> merged_;     // without fixed joints, in the described frames

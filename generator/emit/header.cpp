@@ -118,10 +118,12 @@ class HeaderWriter {
     for (const PlannedFunction& function : plan_.functions)
       data["functions"].push_back(function_data(function));
     write_charts(data);
-    data["uses_sign"] = uses_sign();
+    data["uses_sign"] = uses([](Op op) { return op == Op::sign; });
+    data["uses_rounding_errors"] = uses([](Op op) { return info(op).cost == CostClass::compensation; });
     data["uses_batch"] = uses_batch_;
     data["uses_loops"] = std::ranges::any_of(
         plan_.functions, [](const PlannedFunction& f) { return f.function->loops.has_value(); });
+    data["rounding_errors"] = without_last_newline(std::string(embedded::rounding_errors));
     data["tree_loops"] = without_last_newline(std::string(embedded::tree_loops));
     data["sines_cosines"] = without_last_newline(std::string(embedded::sines_cosines));
     return fill_template(embedded::header_template, data);
@@ -437,7 +439,8 @@ class HeaderWriter {
     });
   }
 
-  [[nodiscard]] bool uses_sign() const {
+  template <class Condition>
+  [[nodiscard]] bool uses(const Condition& condition) const {
     std::vector<NodeId> roots;
     for (const PlannedFunction& function : plan_.functions) {
       if (function.function->loops) continue;
@@ -447,7 +450,7 @@ class HeaderWriter {
     }
     const std::vector<NodeId> nodes = program_.tape.reachable(roots);
     return std::any_of(nodes.begin(), nodes.end(),
-                       [&](NodeId id) { return program_.tape.node(id).op == Op::sign; });
+                       [&](NodeId id) { return condition(program_.tape.node(id).op); });
   }
 
   const Program& program_;

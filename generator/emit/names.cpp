@@ -28,9 +28,11 @@ constexpr std::array keywords = {
     "xor",         "xor_eq"};
 
 // what generated code says itself
-constexpr std::array own_names = {"Parameters", "Prepared", "Real", "constant", "detail", "par", "prepare",
-                                  "std",        "abs",      "acos", "asin",     "atan2",  "cos", "exp",
-                                  "log",        "sign",     "sin",  "sqrt",     "tan",    "tanh"};
+constexpr std::array own_names = {
+    "Parameters", "Prepared", "Real",          "constant",       "detail",   "par",
+    "prepare",    "std",      "abs",           "acos",           "asin",     "atan2",
+    "cos",        "exp",      "log",           "sign",           "sin",      "sqrt",
+    "tan",        "tanh",     "product_error", "quotient_error", "sum_error"};
 
 // macros of <cmath>, of compilers and of the headers that <cmath> may bring along
 constexpr std::array macros = {"DOMAIN",

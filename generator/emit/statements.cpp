@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <functional>
 #include <queue>
 #include <set>
@@ -16,6 +17,9 @@ namespace {
 constexpr auto nowhere = static_cast<std::size_t>(-1);
 constexpr std::size_t shortest_run =
     8;  // equal constants side by side that a split function fills in by a loop
+
+constexpr std::array<std::string_view, 4> own_functions = {"product_error", "quotient_error", "sign",
+                                                           "sum_error"};
 
 /// Writes one function; knows for each node in which block it is made and where it is kept.
 class StatementWriter {
@@ -246,10 +250,13 @@ class StatementWriter {
   std::string finish_text() {
     std::string head;
     for (const std::string& name : functions_) {
-      if (name != "sign") head += fmt::format("  using std::{};\n", name);
+      if (std::ranges::find(own_functions, name) == own_functions.end())
+        head += fmt::format("  using std::{};\n", name);
     }
     if (uses_constant_) head += "  using detail::constant;\n";
-    if (functions_.contains("sign")) head += "  using detail::sign;\n";
+    for (const std::string_view name : own_functions) {
+      if (functions_.contains(std::string(name))) head += fmt::format("  using detail::{};\n", name);
+    }
     return head + lines_;
   }
 

@@ -143,6 +143,9 @@ Exact Exact::as_float() const {
 }
 
 double Exact::to_double() const {
+  // most numbers that are asked for come from doubles
+  if (const double near = cln::double_approx(value_); std::isnormal(near) && from_double(near) == *this)
+    return near;
   // through 25 correct decimal digits: rounds to nearest for all but one value in 1e8, and keeps subnormals
   return std::strtod(decimal(25).c_str(), nullptr);
 }

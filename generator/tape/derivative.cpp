@@ -4,53 +4,6 @@
 #include <unordered_map>
 
 namespace anholon {
-namespace {
-
-/// Tangent of y = op(a, b) from the operands' tangents.
-Expr tangent(Op op, const Expr& y, const Expr& a, const Expr& b, const Expr& da, const Expr& db) {
-  switch (op) {
-    case Op::add:
-      return da + db;
-    case Op::sub:
-      return da - db;
-    case Op::mul:
-      return da * b + a * db;
-    case Op::div:
-      return (da - y * db) / b;
-    case Op::neg:
-      return -da;
-    case Op::sqrt:
-      return da / (Expr(2) * y);
-    case Op::sin:
-      return cos(a) * da;
-    case Op::cos:
-      return -(sin(a) * da);
-    case Op::tan:
-      return (Expr(1) + y * y) * da;
-    case Op::asin:
-      return da / sqrt(Expr(1) - a * a);
-    case Op::acos:
-      return -(da / sqrt(Expr(1) - a * a));
-    case Op::atan2:
-      return (b * da - a * db) / (a * a + b * b);
-    case Op::exp:
-      return y * da;
-    case Op::log:
-      return da / a;
-    case Op::tanh:
-      return (Expr(1) - y * y) * da;
-    case Op::abs:
-      return sign(a) * da;
-    case Op::sign:
-    case Op::constant:
-    case Op::input:
-      break;
-  }
-  return 0;
-}
-
-}  // namespace
-
 std::vector<NodeId> directional_derivative(Tape& tape, const std::vector<NodeId>& roots,
                                            const std::vector<std::pair<NodeId, NodeId>>& direction) {
   std::unordered_map<NodeId, NodeId> tangents;  // nonzero ones only

@@ -48,6 +48,9 @@ class Expr {
   friend Expr tanh(const Expr& x) { return unary(Op::tanh, x); }
   friend Expr abs(const Expr& x) { return unary(Op::abs, x); }
   friend Expr sign(const Expr& x) { return unary(Op::sign, x); }
+  friend Expr sum_error(const Expr& x, const Expr& y) { return binary(Op::sum_error, x, y); }
+  friend Expr product_error(const Expr& x, const Expr& y) { return binary(Op::product_error, x, y); }
+  friend Expr quotient_error(const Expr& x, const Expr& y) { return binary(Op::quotient_error, x, y); }
 
  private:
   static Expr binary(Op op, const Expr& x, const Expr& y);

@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "tape/rounding_errors.hpp"
+
 namespace anholon {
 
 enum class Op : std::uint8_t {
@@ -30,7 +32,10 @@ enum class Op : std::uint8_t {
   log,
   tanh,
   abs,
-  sign
+  sign,
+  sum_error,  // what rounding leaves of a + b, a b and a / b: zero over exact scalars
+  product_error,
+  quotient_error
 };
 
 /// How an operation is counted in reports: additions and multiplications apart from everything else.
@@ -42,7 +47,8 @@ enum class CostClass : std::uint8_t {
   negation,
   root,
   trigonometric,
-  other
+  other,
+  compensation  // several additions and multiplications each
 };
 
 struct OpInfo {
@@ -73,6 +79,9 @@ inline constexpr std::array op_table = {
     OpInfo{Op::tanh, "tanh", 1, "tanh({0})", CostClass::other},
     OpInfo{Op::abs, "abs", 1, "abs({0})", CostClass::other},
     OpInfo{Op::sign, "sign", 1, "sign({0})", CostClass::other},
+    OpInfo{Op::sum_error, "sum_error", 2, "sum_error({0}, {1})", CostClass::compensation},
+    OpInfo{Op::product_error, "product_error", 2, "product_error({0}, {1})", CostClass::compensation},
+    OpInfo{Op::quotient_error, "quotient_error", 2, "quotient_error({0}, {1})", CostClass::compensation},
 };
 
 constexpr const OpInfo& info(Op op) { return op_table[static_cast<std::size_t>(op)]; }
@@ -122,6 +131,12 @@ S apply(Op op, const S& a, const S& b) {
       return abs(a);
     case Op::sign:
       return sign(a);
+    case Op::sum_error:
+      return sum_error(a, b);
+    case Op::product_error:
+      return product_error(a, b);
+    case Op::quotient_error:
+      return quotient_error(a, b);
     case Op::constant:
     case Op::input:
       break;

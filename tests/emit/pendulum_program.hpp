@@ -129,6 +129,10 @@ inline Program every_operation() {
                                      sqrt(p),
                                      a + (Expr(-3) / 7),
                                      sin(2 * a + p),
+                                     sum_error(a, b),
+                                     product_error(a, p),
+                                     quotient_error(b, a),
+                                     product_error(p, p),
                                      p,
                                      p + a};
   OutputBlock out{"class", "", "each operation", static_cast<int>(results.size()), 1, {}};

@@ -134,8 +134,10 @@ class Choice : public ::testing::Test {
                   {"long", {output({(Expr(2) * half * half).id(tape)})}, 3, 1}};
   }
   std::size_t chosen(OptimiseFor mode, double x) {
+    for (Candidate& c : candidates) c.error = {};
     return choose(
-        tape, candidates, mode, [x] { return std::vector<std::vector<double>>{{x}}; }, [] {});
+        tape, candidates, mode, [x](int) { return std::vector<std::vector<double>>{{x}}; },
+        [](const MeasuredStates&) {}, Estimates::none);
   }
   Tape tape;
   std::vector<Candidate> candidates;
@@ -164,7 +166,8 @@ TEST_F(Choice, AsksForMoreOnlyWhereItIsNeeded) {
   const auto asked = [&](OptimiseFor mode, double x) {
     bool more = false;
     choose(
-        tape, candidates, mode, [x] { return std::vector<std::vector<double>>{{x}}; }, [&] { more = true; });
+        tape, candidates, mode, [x](int) { return std::vector<std::vector<double>>{{x}}; },
+        [&](const MeasuredStates&) { more = true; }, Estimates::none);
     return more;
   };
   EXPECT_FALSE(asked(OptimiseFor::speed, 1e-4));

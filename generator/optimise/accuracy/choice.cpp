@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
+#include <optional>
 #include <stdexcept>
+
+#include "optimise/accuracy/rounding_shares.hpp"
 
 namespace anholon {
 namespace {
@@ -17,6 +21,30 @@ constexpr std::array names = {std::pair{OptimiseFor::accuracy, std::string_view(
 
 /// Errors that the choice of the states may have turned round: within half an ulp or a quarter of the error.
 bool is_as_small(double error, double least) { return error <= std::max(least + 0.5, 1.25 * least); }
+
+/// The random states again, those of more where most is to be expected of a program, and what is allowed at
+/// each.
+/// @return nothing where not even there much is to be expected
+std::optional<MeasuredStates> with_hard_states(const Tape& tape, const std::vector<OutputBlock>& program,
+                                               const StateSource& states) {
+  constexpr std::size_t most_steps = 100'000'000;  // half a second or so
+  const std::size_t steps =
+      std::max<std::size_t>(1, program.size() * tape.reachable(roots_of(program)).size());
+  const std::size_t count = std::clamp<std::size_t>(most_steps / steps, measured_states, estimated_states);
+  const std::vector<std::vector<double>> many = states(static_cast<int>(count));
+  const std::vector<double> errors = expected_errors(tape, program, many);
+  if (errors.empty() || *std::ranges::max_element(errors) <= tolerated_ulps / 2) return std::nullopt;
+  std::vector<std::size_t> order(many.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto random = std::min<std::ptrdiff_t>(measured_states, std::ssize(order));
+  std::stable_sort(order.begin() + random, order.end(),
+                   [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
+  order.resize(std::min<std::size_t>(order.size(), measured_states + hard_states));
+  MeasuredStates at{{}, {}, tolerated_excess};
+  for (const std::size_t s : order) at.states.push_back(many[s]);
+  at.allowance = rounding_shares(tape, program, at.states).allowance;
+  return at;
+}
 
 }  // namespace
 
@@ -45,47 +73,70 @@ std::vector<OutputBlock> with_roots(std::vector<OutputBlock> outputs, const std:
   return outputs;
 }
 
-void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& states) {
+void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at) {
   std::vector<std::vector<OutputBlock>> programs;
-  programs.reserve(candidates.size());
-  for (const Candidate& c : candidates) programs.push_back(c.outputs);
-  const std::vector<RoundingError> errors = rounding_errors(tape, programs, states());
-  for (std::size_t i = 0; i < candidates.size(); ++i) candidates[i].error = errors[i];
+  std::vector<Candidate*> measured;
+  for (Candidate& c : candidates) {
+    if (c.error.is_measured()) continue;
+    programs.push_back(c.outputs);
+    measured.push_back(&c);
+  }
+  if (measured.empty()) return;
+  const std::vector<RoundingError> errors = rounding_errors(tape, programs, at.states, at.allowance);
+  for (std::size_t i = 0; i < measured.size(); ++i) measured[i]->error = errors[i];
 }
 
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
-                   const MeasuredStates& states, const std::function<void()>& more, std::size_t first_look) {
+                   const StateSource& states, const std::function<void(const MeasuredStates&)>& more,
+                   Estimates estimates) {
   const auto shortest = [&](const auto& acceptable) {
     std::size_t best = candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (acceptable(candidates[i].error.worst) &&
+      if (acceptable(candidates[i].error) &&
           (best == candidates.size() || candidates[i].operations < candidates[best].operations))
         best = i;
     }
     return best;
   };
-  const std::size_t fast = shortest([](double) { return true; });
+  const std::size_t fast = shortest([](const RoundingError&) { return true; });
   if (mode == OptimiseFor::nothing) return 0;
   if (mode == OptimiseFor::speed) return fast;
-  const std::vector<std::vector<double>> all = states();
+  MeasuredStates at{states(measured_states), {}, tolerated_ulps};
+  bool is_fine = false;
   if (mode == OptimiseFor::balanced) {
-    const std::size_t few = std::min(all.size(), first_look);
+    // the worst of all is seldom more than twice the worst of so many
+    const auto few = static_cast<std::ptrdiff_t>(std::min<std::size_t>(at.states.size(), 8));
     std::vector<Candidate> one = {candidates[fast]};
-    measure(tape, one,
-            [&] { return std::vector(all.begin(), all.begin() + static_cast<std::ptrdiff_t>(few)); });
-    candidates[fast].error = one[0].error;
-    if (!one[0].error.is_measured() || one[0].error.worst <= tolerated_ulps / 2) return fast;
+    measure(tape, one, {{at.states.begin(), at.states.begin() + few}, {}, tolerated_ulps});
+    if (!one[0].error.is_measured()) return fast;
+    is_fine = one[0].error.worst <= tolerated_ulps / 2;
+    if (is_fine && estimates == Estimates::none) return fast;
   }
-  more();
-  measure(tape, candidates, [&] { return all; });
-  const auto least =
-      std::ranges::min_element(candidates, {}, [](const Candidate& c) { return c.error.worst; });
-  if (!least->error.is_measured()) return fast;
-  const double worst = least->error.worst;
-  if (mode == OptimiseFor::accuracy) return shortest([&](double e) { return is_as_small(e, worst); });
-  const double bound = std::max(tolerated_ulps, tolerated_growth * worst);
-  if (candidates[fast].error.worst <= bound) return fast;  // nothing that is added needs to be considered
-  return shortest([&](double e) { return e <= bound; });
+  if (estimates == Estimates::hard_states) {
+    if (auto with_hard = with_hard_states(tape, candidates[fast].outputs, states)) {
+      at = std::move(*with_hard);
+      std::vector<Candidate> one = {candidates[fast]};
+      if (is_fine) measure(tape, one, at);
+      is_fine = is_fine && one[0].error.excess <= tolerated_excess;
+    }
+    if (is_fine) return fast;
+  }
+  more(at);
+  measure(tape, candidates, at);
+  std::vector<double> worst, excess;
+  for (const Candidate& c : candidates) {
+    if (!c.error.is_measured()) continue;
+    worst.push_back(c.error.worst);
+    excess.push_back(c.error.excess);
+  }
+  if (worst.empty()) return fast;
+  if (mode == OptimiseFor::accuracy) {
+    const double least = *std::ranges::min_element(worst);
+    return shortest([&](const RoundingError& e) { return is_as_small(e.worst, least); });
+  }
+  const double least = *std::ranges::min_element(excess);
+  const double bound = least <= at.tolerated ? at.tolerated : tolerated_growth * least;
+  return shortest([&](const RoundingError& e) { return e.excess <= bound; });
 }
 
 }  // namespace anholon

@@ -22,13 +22,21 @@ OptimiseFor optimise_for(std::string_view name);
 
 /// Random states at which errors are measured.
 inline constexpr int measured_states = 32;
+/// Random states at which they are estimated, and how many of these, where the most is to be expected, are
+/// measured as well: what nearly vanishes does so seldom.
+inline constexpr int estimated_states = 2048, hard_states = 16;
 
 /// Balanced: ulps that the worst of the measured states may show without further question. Generated code is
 /// to stay below 50 ulps at 1e5 states; the worst of so many is seldom more than three times the worst of 32.
 inline constexpr double tolerated_ulps = 16;
-/// Balanced: beyond that, this many times the least error that any candidate shows. Inputs rounded to double
-/// lose as much at an ill-conditioned state whatever the program; single digits are chance.
+/// The same where the worst of all estimated states are among them, and in units of what is allowed there.
+inline constexpr double tolerated_excess = 25;
+/// Balanced, where no candidate is within that: this many times the least error that any candidate shows;
+/// single digits are chance.
 inline constexpr double tolerated_growth = 4;
+
+/// Whether estimates at more states (estimated_states) add to what is measured at a few.
+enum class Estimates { none, hard_states };
 
 struct Candidate {
   std::string name;
@@ -42,19 +50,26 @@ struct Candidate {
 std::vector<NodeId> roots_of(const std::vector<OutputBlock>& outputs);
 std::vector<OutputBlock> with_roots(std::vector<OutputBlock> outputs, const std::vector<NodeId>& roots);
 
-/// States at which the candidates are measured, asked for only where something is measured.
-using MeasuredStates = std::function<std::vector<std::vector<double>>()>;
-void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& states);
+/// The first so many of a series of random states, as rounding_errors takes them; asked for where something
+/// is measured.
+using StateSource = std::function<std::vector<std::vector<double>>(int count)>;
+
+/// States at which candidates are measured, and what is allowed there (rounding_errors).
+struct MeasuredStates {
+  std::vector<std::vector<double>> states, allowance;
+  double tolerated = tolerated_ulps;  // excess
+};
+/// Measures the candidates that are not yet.
+void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at);
 
 /// @param candidates  at least one; errors are filled in where they were measured
-/// @param more  adds candidates; called where accuracy is wanted, or balance and the shortest one shows more
-/// than tolerated_ulps
-/// @param first_look  states of the first look at the shortest candidate, which is all that most functions
-/// get: the worst of all of them is seldom more than twice the worst of eight, unless something nearly
-/// vanishes now and then
+/// @param more  adds candidates; called where accuracy is wanted, or balance and the shortest one loses
+/// digits
+/// @param estimates  of the shortest candidate, which is the only one that most functions look at; they take
+/// longer than the measurement where there are many outputs
 /// @return index of the one to be kept: of equals the first
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
-                   const MeasuredStates& states, const std::function<void()>& more,
-                   std::size_t first_look = 8);
+                   const StateSource& states, const std::function<void(const MeasuredStates&)>& more,
+                   Estimates estimates);
 
 }  // namespace anholon

@@ -10,6 +10,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "optimise/accuracy/natural_scale.hpp"
+#include "optimise/accuracy/rounded.hpp"
 #include "tape/interpret.hpp"
 
 namespace anholon {
@@ -17,41 +19,6 @@ namespace {
 
 constexpr double ulp = std::numeric_limits<double>::epsilon();
 constexpr double infinite = std::numeric_limits<double>::infinity();
-constexpr unsigned digits = 40;
-
-/// A double whose every operation is rounded correctly.
-struct Rounded {
-  double x;
-  explicit Rounded(double value = 0) : x(value) {}
-
-  friend Rounded operator+(Rounded a, Rounded b) { return Rounded(a.x + b.x); }
-  friend Rounded operator-(Rounded a, Rounded b) { return Rounded(a.x - b.x); }
-  friend Rounded operator*(Rounded a, Rounded b) { return Rounded(a.x * b.x); }
-  friend Rounded operator/(Rounded a, Rounded b) { return Rounded(a.x / b.x); }
-  friend Rounded operator-(Rounded a) { return Rounded(-a.x); }
-  friend Rounded sqrt(Rounded a) { return Rounded(std::sqrt(a.x)); }
-  friend Rounded abs(Rounded a) { return Rounded(std::abs(a.x)); }
-  friend Rounded sign(Rounded a) { return Rounded(a.x > 0 ? 1 : a.x < 0 ? -1 : 0); }
-  friend Rounded sin(Rounded a) { return from_exact(Op::sin, a); }
-  friend Rounded cos(Rounded a) { return from_exact(Op::cos, a); }
-  friend Rounded tan(Rounded a) { return from_exact(Op::tan, a); }
-  friend Rounded asin(Rounded a) { return from_exact(Op::asin, a); }
-  friend Rounded acos(Rounded a) { return from_exact(Op::acos, a); }
-  friend Rounded atan2(Rounded a, Rounded b) { return from_exact(Op::atan2, a, b); }
-  friend Rounded exp(Rounded a) { return from_exact(Op::exp, a); }
-  friend Rounded log(Rounded a) { return from_exact(Op::log, a); }
-  friend Rounded tanh(Rounded a) { return from_exact(Op::tanh, a); }
-
- private:
-  static Rounded from_exact(Op op, Rounded a, Rounded b = Rounded()) {
-    if (!std::isfinite(a.x) || !std::isfinite(b.x)) return Rounded(infinite - infinite);
-    try {
-      return Rounded(apply(op, Exact::from_double(a.x), Exact::from_double(b.x)).to_double());
-    } catch (const std::domain_error&) {
-      return Rounded(infinite - infinite);
-    }
-  }
-};
 
 /// Near enough for an error or a scale, and quicker than the correct rounding of Exact::to_double().
 double about(const Exact& x) { return cln::double_approx(x.value()); }
@@ -61,13 +28,10 @@ Exact as_float(double x) { return Exact::from_double(x).as_float(); }
 struct FloatConstant {
   Exact operator()(const Exact& value) const { return value.as_float(); }
 };
-struct RoundedConstant {
-  Rounded operator()(const Exact& value) const { return Rounded(value.to_double()); }
-};
 
-/// Largest error of a block and largest value, at one state.
+/// Largest error of a block, largest value, and what is allowed, at one state.
 struct BlockError {
-  double error = 0, scale = 0;
+  double error = 0, scale = 0, allowance = 1;
 };
 
 double median_of(std::vector<double> x) {
@@ -85,17 +49,19 @@ std::string RoundingError::text() const {
 
 std::vector<RoundingError> rounding_errors(const Tape& tape,
                                            const std::vector<std::vector<OutputBlock>>& programs,
-                                           const std::vector<std::vector<double>>& states) {
-  const WorkingDigits precision(digits);
+                                           const std::vector<std::vector<double>>& states,
+                                           const std::vector<std::vector<double>>& allowance) {
+  const WorkingDigits precision(rounded_digits);
   std::vector<NodeId> roots;
   for (const auto& program : programs) {
     for (const OutputBlock& b : program) roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
   }
   Interpreter<Exact> exactly(tape, roots, FloatConstant{});
-  Interpreter<Rounded> in_double(tape, roots, RoundedConstant{});
+  Interpreter<Rounded> in_double(tape, roots, FromExact<Rounded>{});
 
   std::vector<std::vector<BlockError>> blocks;  // one for each block of each program, over the states
-  for (const std::vector<double>& state : states) {
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    const std::vector<double>& state = states[s];
     std::vector<Exact> expected;
     try {
       std::vector<Exact> inputs;
@@ -110,8 +76,10 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
     in_double(inputs, got);
     std::size_t root = 0, block = 0;
     for (const auto& program : programs) {
-      for (const OutputBlock& b : program) {
+      for (std::size_t i_block = 0; i_block < program.size(); ++i_block) {
+        const OutputBlock& b = program[i_block];
         BlockError e;
+        if (!allowance.empty()) e.allowance = allowance[s][i_block];
         for (std::size_t i = 0; i < b.nodes.size(); ++i, ++root) {
           e.scale = std::max(e.scale, std::abs(about(expected[root])));
           e.error = std::max(e.error, std::isfinite(got[root].x)
@@ -127,18 +95,20 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
   std::size_t block = 0;
   for (const auto& program : programs) {
     std::vector<double> of_state;
+    double excess = 0;
     for (std::size_t b = 0; b < program.size() && block < blocks.size(); ++b, ++block) {
       std::vector<double> scales;
       for (const BlockError& e : blocks[block]) scales.push_back(e.scale);
-      const double typical = median_of(scales);
+      scales = natural_scales(scales);
       of_state.resize(scales.size(), 0.0);
       for (std::size_t s = 0; s < scales.size(); ++s) {
-        const double scale = std::max({scales[s], typical, std::numeric_limits<double>::min()});
-        of_state[s] = std::max(of_state[s], blocks[block][s].error / scale / ulp);
+        const double error = blocks[block][s].error / scales[s] / ulp;
+        of_state[s] = std::max(of_state[s], error);
+        excess = std::max(excess, error / blocks[block][s].allowance);
       }
     }
     RoundingError e;
-    if (!of_state.empty()) e = {median_of(of_state), *std::ranges::max_element(of_state)};
+    if (!of_state.empty()) e = {median_of(of_state), *std::ranges::max_element(of_state), excess};
     result.push_back(e);
   }
   return result;
@@ -146,10 +116,10 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
 
 std::vector<double> reproducible_values(const Tape& tape, const std::vector<NodeId>& nodes,
                                         const std::vector<double>& inputs) {
-  const WorkingDigits precision(digits);
+  const WorkingDigits precision(rounded_digits);
   std::vector<Rounded> in, out(nodes.size());
   for (const double x : inputs) in.emplace_back(x);
-  Interpreter<Rounded>(tape, nodes, RoundedConstant{})(in, out);
+  Interpreter<Rounded>(tape, nodes, FromExact<Rounded>{})(in, out);
   std::vector<double> result;
   for (const Rounded& x : out) result.push_back(x.x);
   return result;

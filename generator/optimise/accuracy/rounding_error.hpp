@@ -20,6 +20,7 @@ namespace anholon {
 struct RoundingError {
   double median = std::numeric_limits<double>::quiet_NaN();  // of the states
   double worst = std::numeric_limits<double>::quiet_NaN();   // not a number: not measured
+  double excess = std::numeric_limits<double>::quiet_NaN();  // worst in units of what is allowed there
 
   [[nodiscard]] bool is_measured() const { return worst >= 0; }
   /// "0.52  3.1", or dashes.
@@ -30,10 +31,13 @@ struct RoundingError {
 /// @param programs  output blocks of each; of empty blocks nothing is said
 /// @param states  one value for each input of the tape, in order of their making; states where exact
 /// evaluation of some program divides by zero or leaves a domain are left out
+/// @param allowance  at each state, for each block of a program: the ulps there that are worth one; 1 where
+/// empty
 /// @return one error for each program; not measured where no state is left
 std::vector<RoundingError> rounding_errors(const Tape& tape,
                                            const std::vector<std::vector<OutputBlock>>& programs,
-                                           const std::vector<std::vector<double>>& states);
+                                           const std::vector<std::vector<double>>& states,
+                                           const std::vector<std::vector<double>>& allowance = {});
 
 /// Values of nodes in double, the same on every machine.
 std::vector<double> reproducible_values(const Tape& tape, const std::vector<NodeId>& nodes,

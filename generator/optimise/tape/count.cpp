@@ -35,6 +35,11 @@ void OperationCount::add(Op op) {
     case CostClass::other:
       ++other;
       break;
+    case CostClass::compensation:  // without fused multiplications; what is rounded is there already
+      additions += op == Op::sum_error ? 5 : op == Op::product_error ? 10 : 12;
+      multiplications += op == Op::sum_error ? 0 : op == Op::product_error ? 6 : 7;
+      divisions += op == Op::quotient_error ? 1 : 0;
+      break;
   }
 }
 
