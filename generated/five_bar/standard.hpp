@@ -13,7 +13,7 @@
 //   constraints                       20 add, 43 mul, 6 neg, 4 sin, 4 cos
 //   free_dynamics                     26 add, 50 mul, 4 neg, 4 sin, 4 cos
 //   forward_dynamics                  39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
-//   inverse_torques                   70 add, 125 mul, 2 div, 4 sin, 4 cos
+//   inverse_torques                   69 add, 121 mul, 2 div, 6 sin, 4 cos
 //   multipliers                       126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
 //   torque_driven_kinematics          15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
 //   torque_driven_velocities          none
@@ -772,8 +772,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
-/// route: projected recursion
-/// operations: 70 add, 125 mul, 2 div, 4 sin, 4 cos
+/// route: projected recursion, stable forms
+/// operations: 69 add, 121 mul, 2 div, 6 sin, 4 cos
 /// @param[in]  par        made by prepare()
 /// @param[in]  r_p        (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a        (2) rad or m: left, right
@@ -798,252 +798,241 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
+  const Real t1 = r_a[0] - r_a[1];
+  const Real t2 = sin(t1);
+  const Real t3 = r_a[1] - r_a[0];
+  const Real t4 = sin(t3);
 
   // kernel
-  const Real t1 = s_r_p_1_ * par.l_1;
-  const Real t2 = s_r_a_0_ * s_r_a_1_;
-  const Real t3 = c_r_a_1_ * c_r_a_0_;
-  const Real t4 = t2 + t3;
-  const Real t5 = s_r_p_1_ * t4;
-  const Real t6 = s_r_a_1_ * c_r_a_0_;
-  const Real t7 = c_r_a_1_ * s_r_a_0_;
-  const Real t8 = t6 - t7;
-  const Real t9 = c_r_p_1_ * t8;
-  const Real t10 = t5 + t9;
-  const Real t11 = c_r_p_0_ * t10;
-  const Real t12 = c_r_p_1_ * t4;
-  const Real t13 = s_r_p_1_ * t8;
-  const Real t14 = t12 - t13;
-  const Real t15 = s_r_p_0_ * t14;
-  const Real t16 = t11 - t15;
-  const Real t17 = t16 * par.l_2;
-  const Real t18 = constant<Real>(1.0L) / t17;
-  const Real t19 = t1 * t18;
-  const Real t20 = r_a_dot[1] * t19;
-  const Real t21 = par.l_1 * t10;
-  const Real t22 = t21 + t17;
-  const Real t23 = t22 * t18;
-  const Real t24 = r_a_dot[0] * t23;
-  const Real t25 = t20 - t24;
-  const Real t26 = c_r_p_0_ * t8;
-  const Real t27 = s_r_p_0_ * t4;
-  const Real t28 = t26 - t27;
-  const Real t29 = par.l_1 * t28;
-  const Real t30 = t29 + t17;
-  const Real t31 = t30 * t18;
-  const Real t32 = t31 * r_a_dot[1];
-  const Real t33 = s_r_p_0_ * par.l_1;
-  const Real t34 = t18 * t33;
-  const Real t35 = r_a_dot[0] * t34;
-  const Real t36 = t32 + t35;
+  const Real t5 = s_r_a_0_ * s_r_a_1_;
+  const Real t6 = c_r_a_1_ * c_r_a_0_;
+  const Real t7 = t5 + t6;
+  const Real t8 = c_r_p_1_ * t7;
+  const Real t9 = s_r_p_1_ * t7;
+  const Real t10 = s_r_p_0_ * t7;
+  const Real t11 = s_r_p_1_ * par.l_1;
+  const Real t12 = s_r_p_0_ * par.l_1;
 
   // joint angles
-  const Real t37 = r_a_dot[1] * r_a_dot[1];
-  const Real t38 = r_a_dot[0] * c_r_a_0_;
-  const Real t39 = r_a_dot[0] * r_a_dot[0];
-  const Real t40 = c_r_a_1_ * r_a_dot[1];
-  const Real t41 = s_r_a_1_ * r_a_dot[1];
-  const Real t42 = r_a_dot[0] * s_r_a_0_;
+  const Real t13 = r_a_dot[1] * r_a_dot[1];
+  const Real t14 = r_a_dot[0] * c_r_a_0_;
+  const Real t15 = r_a_dot[0] * r_a_dot[0];
+  const Real t16 = c_r_a_1_ * r_a_dot[1];
+  const Real t17 = s_r_a_1_ * r_a_dot[1];
+  const Real t18 = r_a_dot[0] * s_r_a_0_;
 
   // left_crank: acceleration
-  const Real t43 = par.g * c_r_a_0_;
-  const Real t44 = par.g * s_r_a_0_;
+  const Real t19 = par.g * c_r_a_0_;
+  const Real t20 = par.g * s_r_a_0_;
 
   // left_rod: acceleration
-  const Real t45 = par.l_1 * t39;
-  const Real t46 = t44 - t45;
-  const Real t47 = c_r_p_0_ * t46;
-  const Real t48 = s_r_p_0_ * t46;
+  const Real t21 = par.l_1 * t15;
+  const Real t22 = t20 - t21;
+  const Real t23 = c_r_p_0_ * t22;
+  const Real t24 = s_r_p_0_ * t22;
 
   // right_crank: acceleration
-  const Real t49 = par.g * s_r_a_1_;
-  const Real t50 = c_r_a_1_ * par.g;
+  const Real t25 = par.g * s_r_a_1_;
+  const Real t26 = c_r_a_1_ * par.g;
 
   // right_rod: acceleration
-  const Real t51 = t37 * par.l_1;
-  const Real t52 = t49 - t51;
-  const Real t53 = c_r_p_1_ * t52;
-  const Real t54 = s_r_p_1_ * t52;
+  const Real t27 = t13 * par.l_1;
+  const Real t28 = t25 - t27;
+  const Real t29 = c_r_p_1_ * t28;
+  const Real t30 = s_r_p_1_ * t28;
 
   // left_crank: wrench
-  const Real t55 = t43 * par.k5;
+  const Real t31 = t19 * par.k5;
 
   // right_crank: wrench
-  const Real t56 = t50 * par.k5;
-
-  // joint angles
-  const Real t57 = s_r_p_0_ * t25;
-  const Real t58 = t25 * c_r_p_0_;
-  const Real t59 = t36 * c_r_p_1_;
-  const Real t60 = s_r_p_1_ * t36;
+  const Real t32 = t26 * par.k5;
 
   // drift of the kernel
-  const Real t61 = t58 * par.l_1;
-  const Real t62 = t18 * t61;
-  const Real t63 = t8 * t60;
-  const Real t64 = c_r_a_0_ * t40;
-  const Real t65 = s_r_a_1_ * t42;
-  const Real t66 = t64 - t65;
-  const Real t67 = c_r_a_1_ * t38;
-  const Real t68 = s_r_a_0_ * t41;
-  const Real t69 = t67 - t68;
-  const Real t70 = t66 - t69;
-  const Real t71 = c_r_p_1_ * t70;
-  const Real t72 = t63 + t71;
-  const Real t73 = s_r_a_0_ * t40;
-  const Real t74 = s_r_a_1_ * t38;
-  const Real t75 = t73 + t74;
-  const Real t76 = c_r_a_1_ * t42;
-  const Real t77 = c_r_a_0_ * t41;
-  const Real t78 = t76 + t77;
-  const Real t79 = t75 - t78;
-  const Real t80 = s_r_p_1_ * t79;
-  const Real t81 = t59 * t4;
-  const Real t82 = t80 - t81;
-  const Real t83 = t72 + t82;
-  const Real t84 = c_r_p_0_ * t83;
-  const Real t85 = t57 * t10;
-  const Real t86 = t84 - t85;
-  const Real t87 = t58 * t14;
-  const Real t88 = t60 * t4;
-  const Real t89 = t79 * c_r_p_1_;
-  const Real t90 = t88 + t89;
-  const Real t91 = s_r_p_1_ * t70;
-  const Real t92 = t59 * t8;
-  const Real t93 = t91 - t92;
-  const Real t94 = t90 - t93;
-  const Real t95 = s_r_p_0_ * t94;
-  const Real t96 = t87 + t95;
-  const Real t97 = t86 - t96;
-  const Real t98 = par.l_2 * t97;
-  const Real t99 = t98 * t18;
-  const Real t100 = t99 / t17;
-  const Real t101 = t100 * t33;
-  const Real t102 = t62 - t101;
-  const Real t103 = r_a_dot[0] * t102;
-  const Real t104 = c_r_p_0_ * t70;
-  const Real t105 = t57 * t8;
-  const Real t106 = t104 - t105;
-  const Real t107 = t58 * t4;
-  const Real t108 = s_r_p_0_ * t79;
-  const Real t109 = t107 + t108;
-  const Real t110 = t106 - t109;
-  const Real t111 = t110 * par.l_1;
-  const Real t112 = t98 + t111;
-  const Real t113 = t112 * t18;
-  const Real t114 = t30 * t100;
-  const Real t115 = t113 - t114;
-  const Real t116 = t115 * r_a_dot[1];
-  const Real t117 = t103 + t116;
-  const Real t118 = t31 * r_a_ddot[1];
-  const Real t119 = r_a_ddot[0] * t34;
-  const Real t120 = t118 + t119;
-  const Real t121 = t117 + t120;
-  const Real t122 = r_a_ddot[1] * t19;
-  const Real t123 = r_a_ddot[0] * t23;
-  const Real t124 = t122 - t123;
-  const Real t125 = t100 * t1;
-  const Real t126 = t59 * par.l_1;
-  const Real t127 = t18 * t126;
-  const Real t128 = t125 + t127;
-  const Real t129 = r_a_dot[1] * t128;
-  const Real t130 = t83 * par.l_1;
-  const Real t131 = t98 + t130;
-  const Real t132 = t131 * t18;
-  const Real t133 = t100 * t22;
-  const Real t134 = t132 - t133;
-  const Real t135 = r_a_dot[0] * t134;
-  const Real t136 = t129 + t135;
-  const Real t137 = t124 - t136;
-
-  // left_rod: twist
-  const Real t138 = r_a_dot[0] + t25;
-
-  // right_rod: twist
-  const Real t139 = r_a_dot[1] - t36;
+  const Real t33 = c_r_a_0_ * t16;
+  const Real t34 = s_r_a_1_ * t18;
+  const Real t35 = t33 - t34;
+  const Real t36 = c_r_a_1_ * t14;
+  const Real t37 = s_r_a_0_ * t17;
+  const Real t38 = t36 - t37;
+  const Real t39 = t35 - t38;
+  const Real t40 = s_r_p_1_ * t39;
+  const Real t41 = c_r_p_1_ * t39;
+  const Real t42 = c_r_p_0_ * t39;
 
   // left_rod: acceleration
-  const Real t140 = r_a_ddot[0] * par.l_1;
-  const Real t141 = t43 + t140;
-  const Real t142 = c_r_p_0_ * t141;
-  const Real t143 = t142 - t48;
-  const Real t144 = s_r_p_0_ * t141;
-  const Real t145 = t144 + t47;
-  const Real t146 = r_a_ddot[0] + t137;
-  const Real t147 = t138 * t138;
+  const Real t43 = r_a_ddot[0] * par.l_1;
+  const Real t44 = t19 + t43;
+  const Real t45 = c_r_p_0_ * t44;
+  const Real t46 = t45 - t24;
+  const Real t47 = s_r_p_0_ * t44;
+  const Real t48 = t47 + t23;
 
   // right_rod: acceleration
-  const Real t148 = r_a_ddot[1] * par.l_1;
-  const Real t149 = t50 + t148;
-  const Real t150 = t149 * s_r_p_1_;
-  const Real t151 = t53 + t150;
-  const Real t152 = r_a_ddot[1] - t121;
-  const Real t153 = t149 * c_r_p_1_;
-  const Real t154 = t153 - t54;
-  const Real t155 = t139 * t139;
+  const Real t49 = r_a_ddot[1] * par.l_1;
+  const Real t50 = t26 + t49;
+  const Real t51 = t50 * s_r_p_1_;
+  const Real t52 = t29 + t51;
+  const Real t53 = t50 * c_r_p_1_;
+  const Real t54 = t53 - t30;
 
   // left_crank: wrench
-  const Real t156 = r_a_ddot[0] * par.k1;
-  const Real t157 = t55 + t156;
+  const Real t55 = r_a_ddot[0] * par.k1;
+  const Real t56 = t31 + t55;
 
   // left_rod: wrench
-  const Real t158 = t143 * par.k3;
-  const Real t159 = t146 * par.k4;
-  const Real t160 = t158 + t159;
-  const Real t161 = t146 * par.k3;
-  const Real t162 = t143 * par.m_2;
-  const Real t163 = t161 + t162;
-  const Real t164 = t145 * par.m_2;
-  const Real t165 = par.k3 * t147;
-  const Real t166 = t164 - t165;
+  const Real t57 = t48 * par.m_2;
+  const Real t58 = t46 * par.k3;
+  const Real t59 = t46 * par.m_2;
 
   // right_crank: wrench
-  const Real t167 = par.k1 * r_a_ddot[1];
-  const Real t168 = t56 + t167;
+  const Real t60 = par.k1 * r_a_ddot[1];
+  const Real t61 = t32 + t60;
 
   // right_rod: wrench
-  const Real t169 = t151 * par.m_2;
-  const Real t170 = par.k3 * t155;
-  const Real t171 = t169 - t170;
-  const Real t172 = par.m_2 * t154;
-  const Real t173 = par.k3 * t152;
-  const Real t174 = t172 + t173;
-  const Real t175 = par.k3 * t154;
-  const Real t176 = t152 * par.k4;
-  const Real t177 = t175 + t176;
+  const Real t62 = par.m_2 * t54;
+  const Real t63 = par.k3 * t54;
+  const Real t64 = t52 * par.m_2;
 
-  // right_rod: joint force
-  const Real t178 = s_r_p_1_ * t171;
-  const Real t179 = t174 * c_r_p_1_;
-  const Real t180 = t178 + t179;
-  const Real t181 = par.l_1 * t180;
-  const Real t182 = t181 + t177;
-  const Real t183 = t182 + t168;
-
-  // left_rod: joint force
-  const Real t184 = s_r_p_0_ * t166;
-  const Real t185 = c_r_p_0_ * t163;
-  const Real t186 = t184 + t185;
-  const Real t187 = par.l_1 * t186;
-  const Real t188 = t160 + t187;
-  const Real t189 = t188 + t157;
+  // passive accelerations
+  const Real t65 = c_r_p_1_ * t4;
+  const Real t66 = t9 + t65;
+  const Real t67 = t66 * c_r_p_0_;
+  const Real t68 = s_r_p_1_ * t4;
+  const Real t69 = t8 - t68;
+  const Real t70 = s_r_p_0_ * t69;
+  const Real t71 = t67 - t70;
+  const Real t72 = t71 * par.l_2;
+  const Real t73 = constant<Real>(1.0L) / t72;
+  const Real t74 = t73 * t11;
+  const Real t75 = r_a_dot[1] * t74;
+  const Real t76 = t66 * par.l_1;
+  const Real t77 = t76 + t72;
+  const Real t78 = t73 * t77;
+  const Real t79 = r_a_dot[0] * t78;
+  const Real t80 = t75 - t79;
+  const Real t81 = c_r_p_0_ * t80;
+  const Real t82 = par.l_1 * t81;
+  const Real t83 = t73 * t82;
+  const Real t84 = t73 * t12;
+  const Real t85 = t84 * r_a_dot[0];
+  const Real t86 = c_r_p_0_ * t4;
+  const Real t87 = t86 - t10;
+  const Real t88 = t87 * par.l_1;
+  const Real t89 = t88 + t72;
+  const Real t90 = t73 * t89;
+  const Real t91 = r_a_dot[1] * t90;
+  const Real t92 = t85 + t91;
+  const Real t93 = s_r_p_1_ * t92;
+  const Real t94 = t93 * t4;
+  const Real t95 = t41 + t94;
+  const Real t96 = r_a_dot[1] * t2;
+  const Real t97 = r_a_dot[0] * t4;
+  const Real t98 = t96 + t97;
+  const Real t99 = s_r_p_1_ * t98;
+  const Real t100 = c_r_p_1_ * t92;
+  const Real t101 = t100 * t7;
+  const Real t102 = t99 - t101;
+  const Real t103 = t95 + t102;
+  const Real t104 = c_r_p_0_ * t103;
+  const Real t105 = s_r_p_0_ * t80;
+  const Real t106 = t66 * t105;
+  const Real t107 = t104 - t106;
+  const Real t108 = c_r_p_1_ * t98;
+  const Real t109 = t93 * t7;
+  const Real t110 = t108 + t109;
+  const Real t111 = t100 * t4;
+  const Real t112 = t40 - t111;
+  const Real t113 = t110 - t112;
+  const Real t114 = t113 * s_r_p_0_;
+  const Real t115 = t69 * t81;
+  const Real t116 = t114 + t115;
+  const Real t117 = t107 - t116;
+  const Real t118 = t117 * par.l_2;
+  const Real t119 = t118 * t73;
+  const Real t120 = t119 / t72;
+  const Real t121 = t120 * t12;
+  const Real t122 = t83 - t121;
+  const Real t123 = t122 * r_a_dot[0];
+  const Real t124 = t105 * t4;
+  const Real t125 = t42 - t124;
+  const Real t126 = t81 * t7;
+  const Real t127 = s_r_p_0_ * t98;
+  const Real t128 = t126 + t127;
+  const Real t129 = t125 - t128;
+  const Real t130 = par.l_1 * t129;
+  const Real t131 = t118 + t130;
+  const Real t132 = t73 * t131;
+  const Real t133 = t120 * t89;
+  const Real t134 = t132 - t133;
+  const Real t135 = r_a_dot[1] * t134;
+  const Real t136 = t123 + t135;
+  const Real t137 = t84 * r_a_ddot[0];
+  const Real t138 = r_a_ddot[1] * t90;
+  const Real t139 = t137 + t138;
+  const Real t140 = t136 + t139;
+  const Real t141 = r_a_ddot[1] * t74;
+  const Real t142 = r_a_ddot[0] * t78;
+  const Real t143 = t141 - t142;
+  const Real t144 = t103 * par.l_1;
+  const Real t145 = t118 + t144;
+  const Real t146 = t73 * t145;
+  const Real t147 = t120 * t77;
+  const Real t148 = t146 - t147;
+  const Real t149 = t148 * r_a_dot[0];
+  const Real t150 = par.l_1 * t100;
+  const Real t151 = t150 * t73;
+  const Real t152 = t120 * t11;
+  const Real t153 = t151 + t152;
+  const Real t154 = t153 * r_a_dot[1];
+  const Real t155 = t149 + t154;
+  const Real t156 = t143 - t155;
 
   // torques
-  const Real t190 = t160 * t19;
-  const Real t191 = t31 * t177;
-  const Real t192 = t190 - t191;
-  const Real t193 = t192 + t183;
-  const Real t194 = t177 * t34;
-  const Real t195 = t160 * t23;
-  const Real t196 = t194 + t195;
-  const Real t197 = t189 - t196;
+  const Real t157 = t156 + r_a_ddot[0];
+  const Real t158 = par.k4 * t157;
+  const Real t159 = t58 + t158;
+  const Real t160 = par.k3 * t157;
+  const Real t161 = t160 + t59;
+  const Real t162 = c_r_p_0_ * t161;
+  const Real t163 = r_a_dot[0] + t80;
+  const Real t164 = t163 * t163;
+  const Real t165 = t164 * par.k3;
+  const Real t166 = t57 - t165;
+  const Real t167 = s_r_p_0_ * t166;
+  const Real t168 = t162 + t167;
+  const Real t169 = t168 * par.l_1;
+  const Real t170 = t159 + t169;
+  const Real t171 = t170 + t56;
+  const Real t172 = t159 * t78;
+  const Real t173 = r_a_ddot[1] - t140;
+  const Real t174 = t173 * par.k4;
+  const Real t175 = t174 + t63;
+  const Real t176 = t84 * t175;
+  const Real t177 = t172 + t176;
+  const Real t178 = t171 - t177;
+  const Real t179 = r_a_dot[1] - t92;
+  const Real t180 = t179 * t179;
+  const Real t181 = par.k3 * t180;
+  const Real t182 = t64 - t181;
+  const Real t183 = s_r_p_1_ * t182;
+  const Real t184 = t173 * par.k3;
+  const Real t185 = t62 + t184;
+  const Real t186 = c_r_p_1_ * t185;
+  const Real t187 = t183 + t186;
+  const Real t188 = t187 * par.l_1;
+  const Real t189 = t188 + t175;
+  const Real t190 = t61 + t189;
+  const Real t191 = t159 * t74;
+  const Real t192 = t90 * t175;
+  const Real t193 = t191 - t192;
+  const Real t194 = t190 + t193;
 
-  tau_a_out[0] = t197;
-  tau_a_out[1] = t193;
+  tau_a_out[0] = t178;
+  tau_a_out[1] = t194;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, stable forms, compensated beyond 25 ulps
+/// route: projected recursion, stable forms, compensated beyond 2 ulps
 /// operations: 126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
@@ -1261,19 +1250,21 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t161 = t155 + t160;
   const Real t162 = t149 - t161;
 
-  // multipliers
+  // torques
   const Real t163 = t162 + r_a_ddot[0];
   const Real t164 = par.k4 * t163;
   const Real t165 = t69 + t164;
-  const Real t166 = t165 * t26;
-  const Real t167 = t166 * t16;
-  const Real t168 = r_a_ddot[1] - t146;
-  const Real t169 = t168 * par.k4;
-  const Real t170 = t169 + t70;
-  const Real t171 = t167 + t170;
+  const Real t166 = r_a_ddot[1] - t146;
+  const Real t167 = t166 * par.k4;
+  const Real t168 = t167 + t70;
+
+  // multipliers
+  const Real t169 = t165 * t26;
+  const Real t170 = t169 * t16;
+  const Real t171 = t170 + t168;
   const Real t172 = t30 * t171;
-  const Real t173 = product_error(t166, t16);
-  const Real t174 = sum_error(t167, t170);
+  const Real t173 = product_error(t169, t16);
+  const Real t174 = sum_error(t170, t168);
   const Real t175 = t173 + t174;
   const Real t176 = t30 * t175;
   const Real t177 = quotient_error(constant<Real>(1.0L), t29);
@@ -1292,7 +1283,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t190 = product_error(t172, t27);
   const Real t191 = t189 + t190;
   const Real t192 = t172 * t27;
-  const Real t193 = t192 - t166;
+  const Real t193 = t192 - t169;
   const Real t194 = t191 + t193;
 
   lambda[0] = t194;

@@ -9,17 +9,17 @@
 //   kernel: pivoted basis, nu = (Omega_X, steer, rear_spin)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           334 add, 260 mul, 7 div, 19 neg, 2 sqrt, 1 sin, 1 cos
+//   kinematics           598 add, 393 mul, 9 div, 25 neg, 2 sqrt, 2 sin, 1 cos
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
-//   reduced_dynamics     783 add, 974 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
-//   forward_dynamics     1019 add, 1161 mul, 14 div, 5 neg, 2 sqrt, 3 sin, 3 cos
-//   multipliers          470 add, 546 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
+//   reduced_dynamics     1518 add, 1335 mul, 15 div, 22 neg, 2 sqrt, 4 sin, 3 cos
+//   forward_dynamics     3468 add, 2121 mul, 25 div, 86 neg, 2 sqrt, 6 sin, 3 cos
+//   multipliers          1009 add, 810 mul, 13 div, 17 neg, 2 sqrt, 4 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
-//   prepare              35 add, 61 mul, 1 sin, 1 cos, once per set of parameters
+//   prepare              187 add, 137 mul, 3 neg, 1 sin, 1 cos, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -182,6 +182,7 @@ template <class Real>
 struct Prepared {
   Real g;
   Real c;
+  Real tilt;
   Real r_R;
   Real m_R;
   Real I_Rxx;
@@ -197,60 +198,81 @@ struct Prepared {
   Real k3;  // I_Bxz - z_B * x_B * m_B
   Real k4;  // (z_B * z_B + x_B * x_B) * m_B + I_Byy
   Real k5;
-  Real k6;
-  Real k7;  // m_H * ((x_H - w - c) * (x_H - w - c) + z_H * z_H) + I_Hyy
-  Real k8;  // m_H * z_H * k2 + k1 * (x_H - w - c) * m_H
-  Real k9;  // z_B * z_B * m_B + I_Bxx
-  Real k10;  // k2 * (x_H - w - c) * m_H - k1 * m_H * z_H
-  Real k11;  // k1 * c + r_F * k2
-  Real k12;  // k1 * r_F - k2 * c
-  Real k13;  // w + c
-  Real k14;  // I_Bzz + x_B * x_B * m_B
-  Real k15;  // z_B * m_B
-  Real k16;  // x_B * m_B
-  Real k17;
-  Real k18;  // k2 * k2
-  Real k19;  // k1 * k1
-  Real k20;  // k2 * k13
-  Real k21;  // k2 * k20
-  Real k22;  // k1 * k2
-  Real k23;  // k1 * k13
-  Real k24;  // k1 * k20
-  Real k25;  // k4 - k9
-  Real k26;  // k14 - k4
-  Real k27;  // k9 - k14
-  Real k28;  // I_Ryy - I_Rxx
-  Real k29;  // I_Rxx - I_Ryy
-  Real k30;  // k6 - k7
-  Real k31;  // k17 - k6
-  Real k32;  // k7 - k17
-  Real k33;  // k1 * k10
-  Real k34;  // k1 * m_H
-  Real k35;  // I_Fxx - I_Fyy
-  Real k36;  // I_Fyy - I_Fxx
-  Real k37;  // m_R * r_R
-  Real k38;  // m_H * k2
-  Real k39;  // k2 * k10
-  Real k40;  // k1 * k12
-  Real k41;  // z_B * x_B * m_B - I_Bxz
-  Real k42;  // k1 * k6
-  Real k43;  // k5 * k1
-  Real k44;  // k37 * r_R
-  Real k45;  // m_H * k20
-  Real k46;  // k10 * k20
-  Real k47;  // k2 * k12
-  Real k48;  // k5 * k2
-  Real k49;  // k6 * k2
-  Real k50;  // m_F * k12 * k12
+  Real k6;  // -r_R
+  Real k7;
+  Real k8;  // m_H * ((x_H - w - c) * (x_H - w - c) + z_H * z_H) + I_Hyy
+  Real k9;  // m_H * z_H * k2 + k1 * (x_H - w - c) * m_H
+  Real k10;  // z_B * z_B * m_B + I_Bxx
+  Real k11;  // k2 * (x_H - w - c) * m_H - k1 * m_H * z_H
+  Real k12;  // k1 * c + r_F * k2
+  Real k13;  // k1 * r_F - k2 * c
+  Real k14;  // w + c
+  Real k15;  // I_Bzz + x_B * x_B * m_B
+  Real k16;  // z_B * m_B
+  Real k17;  // x_B * m_B
+  Real k18;
+  Real k19;  // k2 * k2
+  Real k20;  // k1 * k1
+  Real k21;  // k2 * k14
+  Real k22;  // k2 * k21
+  Real k23;  // k1 * k2
+  Real k24;  // k1 * k14
+  Real k25;  // k1 * k21
+  Real k26;  // product_error(k2, k2)
+  Real k27;  // k23 * k14
+  Real k28;  // sum_error(w, c)
+  Real k29;  // product_error(k1, k14) + k1 * k28
+  Real k30;  // k28 * k2 + product_error(k2, k14)
+  Real k31;  // product_error(k2, k21) + k30 * k2
+  Real k32;  // k4 - k10
+  Real k33;  // k15 - k4
+  Real k34;  // k10 - k15
+  Real k35;  // I_Ryy - I_Rxx
+  Real k36;  // I_Rxx - I_Ryy
+  Real k37;  // k7 - k8
+  Real k38;  // k18 - k7
+  Real k39;  // k8 - k18
+  Real k40;  // k1 * k11
+  Real k41;  // k1 * m_H
+  Real k42;  // I_Fxx - I_Fyy
+  Real k43;  // I_Fyy - I_Fxx
+  Real k44;  // -k16
+  Real k45;  // m_R * r_R
+  Real k46;  // m_H * k2
+  Real k47;  // k2 * k11
+  Real k48;  // k1 * k13
+  Real k49;  // z_B * x_B * m_B - I_Bxz
+  Real k50;  // k1 * k7
+  Real k51;  // k5 * k1
+  Real k52;  // k45 * r_R
+  Real k53;  // m_H * k21
+  Real k54;  // k11 * k21
+  Real k55;  // k2 * k13
+  Real k56;  // k5 * k2
+  Real k57;  // k7 * k2
+  Real k58;  // m_F * k13 * k13
+  Real k59;  // product_error(z_B, m_B)
+  Real k60;
+  Real k61;  // k60 + k34
+  Real k62;  // product_error(x_B, m_B)
+  Real k63;  // k27 + k28 * k23
+  Real k64;
+  Real k65;  // k64 - k60 + k32
+  Real k66;  // k53 + k30 * m_H
+  Real k67;  // k33 - k64
+  Real k68;  // k30 * k11 + k54
+  Real k69;
 };
 
 /// To be called once per set of parameter values.
-/// operations: 35 add, 61 mul, 1 sin, 1 cos
+/// operations: 187 add, 137 mul, 3 neg, 1 sin, 1 cos
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using std::cos;
   using std::sin;
+  using detail::product_error;
+  using detail::sum_error;
   const Real s_tilt = sin(par.tilt);
   const Real c_tilt = cos(par.tilt);
   const Real t1 = par.z_B * par.x_B;
@@ -281,109 +303,164 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t26 = t24 - t25;
   const Real t27 = s_tilt * t26;
   const Real t28 = t20 + t27;
-  const Real t29 = t23 * s_tilt;
-  const Real t30 = t29 + t14;
-  const Real t31 = t30 * s_tilt;
-  const Real t32 = t17 * c_tilt;
-  const Real t33 = t25 + t32;
-  const Real t34 = c_tilt * t33;
-  const Real t35 = t31 + t34;
-  const Real t36 = t15 + t21;
-  const Real t37 = par.m_H * t36;
-  const Real t38 = t37 + par.I_Hyy;
-  const Real t39 = par.m_H * par.z_H;
-  const Real t40 = t39 * c_tilt;
-  const Real t41 = t10 * par.m_H;
-  const Real t42 = s_tilt * t41;
-  const Real t43 = t40 + t42;
-  const Real t44 = t4 * par.m_B;
-  const Real t45 = t44 + par.I_Bxx;
-  const Real t46 = c_tilt * t41;
-  const Real t47 = s_tilt * t39;
-  const Real t48 = t46 - t47;
-  const Real t49 = s_tilt * par.c;
-  const Real t50 = par.r_F * c_tilt;
-  const Real t51 = t49 + t50;
-  const Real t52 = s_tilt * par.r_F;
-  const Real t53 = c_tilt * par.c;
-  const Real t54 = t52 - t53;
-  const Real t55 = par.w + par.c;
-  const Real t56 = t5 * par.m_B;
-  const Real t57 = par.I_Bzz + t56;
-  const Real t58 = par.z_B * par.m_B;
-  const Real t59 = par.x_B * par.m_B;
-  const Real t60 = c_tilt * t26;
-  const Real t61 = s_tilt * t19;
-  const Real t62 = t60 - t61;
+  const Real t29 = -par.r_R;
+  const Real t30 = t23 * s_tilt;
+  const Real t31 = t30 + t14;
+  const Real t32 = t31 * s_tilt;
+  const Real t33 = t17 * c_tilt;
+  const Real t34 = t25 + t33;
+  const Real t35 = c_tilt * t34;
+  const Real t36 = t32 + t35;
+  const Real t37 = t15 + t21;
+  const Real t38 = par.m_H * t37;
+  const Real t39 = t38 + par.I_Hyy;
+  const Real t40 = par.m_H * par.z_H;
+  const Real t41 = t40 * c_tilt;
+  const Real t42 = t10 * par.m_H;
+  const Real t43 = s_tilt * t42;
+  const Real t44 = t41 + t43;
+  const Real t45 = t4 * par.m_B;
+  const Real t46 = t45 + par.I_Bxx;
+  const Real t47 = c_tilt * t42;
+  const Real t48 = s_tilt * t40;
+  const Real t49 = t47 - t48;
+  const Real t50 = s_tilt * par.c;
+  const Real t51 = par.r_F * c_tilt;
+  const Real t52 = t50 + t51;
+  const Real t53 = s_tilt * par.r_F;
+  const Real t54 = c_tilt * par.c;
+  const Real t55 = t53 - t54;
+  const Real t56 = par.w + par.c;
+  const Real t57 = t5 * par.m_B;
+  const Real t58 = par.I_Bzz + t57;
+  const Real t59 = par.z_B * par.m_B;
+  const Real t60 = par.x_B * par.m_B;
+  const Real t61 = c_tilt * t26;
+  const Real t62 = s_tilt * t19;
+  const Real t63 = t61 - t62;
 
   // joint angles
-  const Real t63 = c_tilt * c_tilt;
-  const Real t64 = s_tilt * s_tilt;
-  const Real t65 = c_tilt * t55;
-  const Real t66 = c_tilt * t65;
-  const Real t67 = s_tilt * c_tilt;
-  const Real t68 = s_tilt * t55;
-  const Real t69 = s_tilt * t65;
+  const Real t64 = c_tilt * c_tilt;
+  const Real t65 = s_tilt * s_tilt;
+  const Real t66 = c_tilt * t56;
+  const Real t67 = c_tilt * t66;
+  const Real t68 = s_tilt * c_tilt;
+  const Real t69 = s_tilt * t56;
+  const Real t70 = s_tilt * t66;
+
+  // kernel
+  const Real t71 = product_error(c_tilt, c_tilt);
+  const Real t72 = t68 * t56;
+  const Real t73 = sum_error(par.w, par.c);
+  const Real t74 = t73 * t68;
+  const Real t75 = product_error(s_tilt, t56);
+  const Real t76 = s_tilt * t73;
+  const Real t77 = t75 + t76;
+  const Real t78 = product_error(c_tilt, t66);
+  const Real t79 = t73 * c_tilt;
+  const Real t80 = product_error(c_tilt, t56);
+  const Real t81 = t79 + t80;
+  const Real t82 = t81 * c_tilt;
+  const Real t83 = t78 + t82;
 
   // frame: wrench
-  const Real t70 = t8 - t45;
-  const Real t71 = t57 - t8;
-  const Real t72 = t45 - t57;
+  const Real t84 = t8 - t46;
+  const Real t85 = t58 - t8;
+  const Real t86 = t46 - t58;
 
   // rear_wheel: wrench
-  const Real t73 = par.I_Ryy - par.I_Rxx;
-  const Real t74 = par.I_Rxx - par.I_Ryy;
+  const Real t87 = par.I_Ryy - par.I_Rxx;
+  const Real t88 = par.I_Rxx - par.I_Ryy;
 
   // fork: wrench
-  const Real t75 = t35 - t38;
-  const Real t76 = t62 - t35;
-  const Real t77 = t38 - t62;
-  const Real t78 = s_tilt * t48;
-  const Real t79 = s_tilt * par.m_H;
+  const Real t89 = t36 - t39;
+  const Real t90 = t63 - t36;
+  const Real t91 = t39 - t63;
+  const Real t92 = s_tilt * t49;
+  const Real t93 = s_tilt * par.m_H;
 
   // front_wheel: wrench
-  const Real t80 = par.I_Fxx - par.I_Fyy;
-  const Real t81 = par.I_Fyy - par.I_Fxx;
-
-  // rear_wheel: joint force
-  const Real t82 = par.m_R * par.r_R;
-
-  // fork: wrench
-  const Real t83 = par.m_H * c_tilt;
-  const Real t84 = c_tilt * t48;
-
-  // front_wheel: acceleration
-  const Real t85 = s_tilt * t54;
+  const Real t94 = par.I_Fxx - par.I_Fyy;
+  const Real t95 = par.I_Fyy - par.I_Fxx;
 
   // frame: wrench
-  const Real t86 = t2 - par.I_Bxz;
-
-  // fork: wrench
-  const Real t87 = s_tilt * t35;
-  const Real t88 = t28 * s_tilt;
+  const Real t96 = -t59;
 
   // rear_wheel: joint force
-  const Real t89 = t82 * par.r_R;
+  const Real t97 = par.m_R * par.r_R;
 
   // fork: wrench
-  const Real t90 = par.m_H * t65;
-  const Real t91 = t48 * t65;
+  const Real t98 = par.m_H * c_tilt;
+  const Real t99 = c_tilt * t49;
 
   // front_wheel: acceleration
-  const Real t92 = c_tilt * t54;
+  const Real t100 = s_tilt * t55;
+
+  // frame: wrench
+  const Real t101 = t2 - par.I_Bxz;
 
   // fork: wrench
-  const Real t93 = t28 * c_tilt;
-  const Real t94 = t35 * c_tilt;
+  const Real t102 = s_tilt * t36;
+  const Real t103 = t28 * s_tilt;
+
+  // rear_wheel: joint force
+  const Real t104 = t97 * par.r_R;
+
+  // fork: wrench
+  const Real t105 = par.m_H * t66;
+  const Real t106 = t49 * t66;
+
+  // front_wheel: acceleration
+  const Real t107 = c_tilt * t55;
+
+  // fork: wrench
+  const Real t108 = t28 * c_tilt;
+  const Real t109 = t36 * c_tilt;
 
   // front_wheel: wrench
-  const Real t95 = par.m_F * t54;
+  const Real t110 = par.m_F * t55;
 
   // front_wheel: joint force
-  const Real t96 = t95 * t54;
+  const Real t111 = t110 * t55;
+
+  // passive accelerations
+  const Real t112 = product_error(par.z_B, par.m_B);
+  const Real t113 = sum_error(t45, par.I_Bxx);
+  const Real t114 = product_error(t4, par.m_B);
+  const Real t115 = product_error(par.z_B, par.z_B);
+  const Real t116 = t115 * par.m_B;
+  const Real t117 = t114 + t116;
+  const Real t118 = t113 + t117;
+  const Real t119 = t118 + t86;
+
+  // accelerations
+  const Real t120 = product_error(par.x_B, par.m_B);
+  const Real t121 = t72 + t74;
+  const Real t122 = sum_error(t7, par.I_Byy);
+  const Real t123 = sum_error(t4, t5);
+  const Real t124 = t115 + t123;
+  const Real t125 = par.m_B * t124;
+  const Real t126 = product_error(t6, par.m_B);
+  const Real t127 = t125 + t126;
+  const Real t128 = t122 + t127;
+  const Real t129 = t128 - t118;
+  const Real t130 = t129 + t84;
+  const Real t131 = t81 * par.m_H;
+  const Real t132 = t105 + t131;
+  const Real t133 = t85 - t128;
+  const Real t134 = t81 * t49;
+  const Real t135 = t134 + t106;
+  const Real t136 = -t2;
+  const Real t137 = sum_error(par.I_Bxz, t136);
+  const Real t138 = product_error(par.z_B, par.x_B);
+  const Real t139 = t138 * par.m_B;
+  const Real t140 = product_error(t1, par.m_B);
+  const Real t141 = t139 + t140;
+  const Real t142 = t137 - t141;
 
   result.g = par.g;
   result.c = par.c;
+  result.tilt = par.tilt;
   result.r_R = par.r_R;
   result.m_R = par.m_R;
   result.I_Rxx = par.I_Rxx;
@@ -399,18 +476,18 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k3 = t3;
   result.k4 = t8;
   result.k5 = t28;
-  result.k6 = t35;
-  result.k7 = t38;
-  result.k8 = t43;
-  result.k9 = t45;
-  result.k10 = t48;
-  result.k11 = t51;
-  result.k12 = t54;
+  result.k6 = t29;
+  result.k7 = t36;
+  result.k8 = t39;
+  result.k9 = t44;
+  result.k10 = t46;
+  result.k11 = t49;
+  result.k12 = t52;
   result.k13 = t55;
-  result.k14 = t57;
+  result.k14 = t56;
   result.k15 = t58;
   result.k16 = t59;
-  result.k17 = t62;
+  result.k17 = t60;
   result.k18 = t63;
   result.k19 = t64;
   result.k20 = t65;
@@ -422,34 +499,53 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k26 = t71;
   result.k27 = t72;
   result.k28 = t73;
-  result.k29 = t74;
-  result.k30 = t75;
-  result.k31 = t76;
-  result.k32 = t77;
-  result.k33 = t78;
-  result.k34 = t79;
-  result.k35 = t80;
-  result.k36 = t81;
-  result.k37 = t82;
-  result.k38 = t83;
-  result.k39 = t84;
-  result.k40 = t85;
-  result.k41 = t86;
-  result.k42 = t87;
-  result.k43 = t88;
-  result.k44 = t89;
-  result.k45 = t90;
-  result.k46 = t91;
-  result.k47 = t92;
-  result.k48 = t93;
-  result.k49 = t94;
-  result.k50 = t96;
+  result.k29 = t77;
+  result.k30 = t81;
+  result.k31 = t83;
+  result.k32 = t84;
+  result.k33 = t85;
+  result.k34 = t86;
+  result.k35 = t87;
+  result.k36 = t88;
+  result.k37 = t89;
+  result.k38 = t90;
+  result.k39 = t91;
+  result.k40 = t92;
+  result.k41 = t93;
+  result.k42 = t94;
+  result.k43 = t95;
+  result.k44 = t96;
+  result.k45 = t97;
+  result.k46 = t98;
+  result.k47 = t99;
+  result.k48 = t100;
+  result.k49 = t101;
+  result.k50 = t102;
+  result.k51 = t103;
+  result.k52 = t104;
+  result.k53 = t105;
+  result.k54 = t106;
+  result.k55 = t107;
+  result.k56 = t108;
+  result.k57 = t109;
+  result.k58 = t111;
+  result.k59 = t112;
+  result.k60 = t118;
+  result.k61 = t119;
+  result.k62 = t120;
+  result.k63 = t121;
+  result.k64 = t128;
+  result.k65 = t130;
+  result.k66 = t132;
+  result.k67 = t133;
+  result.k68 = t135;
+  result.k69 = t142;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
-/// route: kernel, compensated beyond 25 ulps
-/// operations: 334 add, 260 mul, 7 div, 19 neg, 2 sqrt, 1 sin, 1 cos
+/// route: kernel, stable forms, compensated beyond 2 ulps
+/// operations: 598 add, 393 mul, 9 div, 25 neg, 2 sqrt, 2 sin, 1 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p          (3) rad or m: rear_spin, steer, front_spin
@@ -474,382 +570,485 @@ inline void kinematics(const Prepared<Real>& par,
   using detail::sum_error;
   const Real s_r_p_1_ = sin(r_p[1]);
   const Real c_r_p_1_ = cos(r_p[1]);
+  const Real t1 = constant<Real>(0.5L) * r_p[1];
+  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
-  const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t12 * t20;
-  const Real t22 = par.r_F * t21;
-  const Real t23 = par.k1 * t22;
-  const Real t24 = t20 * t16;
-  const Real t25 = t24 * par.r_F;
-  const Real t26 = t25 * par.k2;
-  const Real t27 = t23 + t26;
-  const Real t28 = t27 + par.k12;
-  const Real t29 = par.k1 * c_r_p_1_;
-  const Real t30 = par.k1 * t29;
-  const Real t31 = par.k18 + t30;
-  const Real t32 = t31 * t25;
-  const Real t33 = t29 * par.k2;
-  const Real t34 = par.k22 - t33;
-  const Real t35 = t22 * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = c_r_p_1_ * par.k13;
-  const Real t38 = t34 * par.r_F;
-  const Real t39 = t31 * par.c;
-  const Real t40 = t38 - t39;
-  const Real t41 = t37 + t40;
-  const Real t42 = t36 + t41;
-  const Real t43 = s_r_p_1_ * par.k13;
-  const Real t44 = par.k2 * t43;
-  const Real t45 = s_r_p_1_ * par.k1;
-  const Real t46 = par.r_F * t45;
-  const Real t47 = t44 - t46;
-  const Real t48 = t22 * t45;
-  const Real t49 = t47 - t48;
-  const Real t50 = R[6] * R[6];
-  const Real t51 = R[8] * R[8];
-  const Real t52 = t50 + t51;
-  const Real t53 = sqrt(t52);
-  const Real t54 = constant<Real>(1.0L) / t53;
-  const Real t55 = R[8] * t54;
-  const Real t56 = t55 * par.r_R;
-  const Real t57 = t56 - par.r_R;
-  const Real t58 = s_r_p_1_ * par.k2;
-  const Real t59 = t25 * t58;
-  const Real t60 = t58 * par.c;
-  const Real t61 = t59 - t60;
-  const Real t62 = par.r_R - t56;
-  const Real t63 = c_r_p_1_ * par.c;
-  const Real t64 = c_r_p_1_ * par.k23;
-  const Real t65 = t64 * par.k1;
-  const Real t66 = t65 + par.k21;
-  const Real t67 = t63 - t66;
-  const Real t68 = t25 * c_r_p_1_;
-  const Real t69 = t67 - t68;
-  const Real t70 = t58 * par.r_F;
-  const Real t71 = t22 * t58;
-  const Real t72 = t70 + t71;
-  const Real t73 = t64 * par.k2;
-  const Real t74 = t73 - par.k24;
-  const Real t75 = c_r_p_1_ * par.r_F;
-  const Real t76 = t74 - t75;
-  const Real t77 = t22 * c_r_p_1_;
-  const Real t78 = t76 - t77;
-  const Real t79 = t25 * t45;
-  const Real t80 = t71 - t79;
-  const Real t81 = par.c * t45;
-  const Real t82 = t70 + t81;
-  const Real t83 = s_r_p_1_ * par.k23;
-  const Real t84 = t82 - t83;
-  const Real t85 = t80 + t84;
-  const Real t86 = c_r_p_1_ * par.k2;
-  const Real t87 = par.k2 * t86;
-  const Real t88 = par.k19 + t87;
-  const Real t89 = par.r_F * t88;
-  const Real t90 = par.k1 * t86;
-  const Real t91 = par.k22 - t90;
-  const Real t92 = t91 * par.c;
-  const Real t93 = t89 - t92;
-  const Real t94 = t25 * t91;
-  const Real t95 = t22 * t88;
-  const Real t96 = t94 + t95;
-  const Real t97 = t93 + t96;
-  const Real t98 = t54 * R[6];
-  const Real t99 = t98 * par.r_R;
-  const Real t100 = par.k1 * t43;
-  const Real t101 = t81 - t100;
-  const Real t102 = t101 - t79;
+  const Real t3 = s_r_p_1_ * par.k2;
+  const Real t4 = t3 * par.r_F;
+  const Real t5 = s_r_p_1_ * par.k1;
+  const Real t6 = par.c * t5;
+  const Real t7 = t4 + t6;
+  const Real t8 = s_r_p_1_ * par.k14;
+  const Real t9 = par.k1 * t8;
+  const Real t10 = t6 - t9;
+  const Real t11 = R[6] * R[6];
+  const Real t12 = R[8] * R[8];
+  const Real t13 = t11 + t12;
+  const Real t14 = sqrt(t13);
+  const Real t15 = constant<Real>(1.0L) / t14;
+  const Real t16 = R[8] * t15;
+  const Real t17 = t16 * par.r_R;
+  const Real t18 = t17 - par.r_R;
+  const Real t19 = par.k2 * R[6];
+  const Real t20 = R[8] * par.k1;
+  const Real t21 = t19 - t20;
+  const Real t22 = c_r_p_1_ * t21;
+  const Real t23 = s_r_p_1_ * R[7];
+  const Real t24 = t22 + t23;
+  const Real t25 = par.k2 * t24;
+  const Real t26 = par.k1 * t24;
+  const Real t27 = par.k1 * R[6];
+  const Real t28 = R[8] * par.k2;
+  const Real t29 = t27 + t28;
+  const Real t30 = t29 * par.k2;
+  const Real t31 = t26 - t30;
+  const Real t32 = par.r_R - t17;
+  const Real t33 = c_r_p_1_ * par.k14;
+  const Real t34 = c_r_p_1_ * par.k2;
+  const Real t35 = par.k2 * t34;
+  const Real t36 = par.k20 + t35;
+  const Real t37 = par.r_F * t36;
+  const Real t38 = t3 * par.c;
+  const Real t39 = par.k1 * c_r_p_1_;
+  const Real t40 = par.k1 * t39;
+  const Real t41 = par.k19 + t40;
+  const Real t42 = t41 * par.c;
+  const Real t43 = c_r_p_1_ * par.c;
+  const Real t44 = c_r_p_1_ * par.k24;
+  const Real t45 = t44 * par.k1;
+  const Real t46 = t45 + par.k22;
+  const Real t47 = t43 - t46;
+  const Real t48 = par.k1 * t29;
+  const Real t49 = c_r_p_1_ * par.r_F;
+  const Real t50 = s_r_p_1_ * par.k24;
+  const Real t51 = t15 * R[6];
+  const Real t52 = t51 * par.r_R;
+  const Real t53 = par.k2 * t8;
+  const Real t54 = par.r_F * t5;
+  const Real t55 = t53 - t54;
 
   // kernel
-  const Real t103 = t31 * t99;
-  const Real t104 = t57 * t91;
-  const Real t105 = t69 - t104;
-  const Real t106 = t103 + t105;
-  const Real t107 = t45 * t99;
-  const Real t108 = t107 + t102;
-  const Real t109 = c_r_p_1_ * t99;
-  const Real t110 = t42 - t109;
-  const Real t111 = constant<Real>(1.0L) / t110;
-  const Real t112 = t108 * t111;
-  const Real t113 = t57 * t58;
-  const Real t114 = t113 + t85;
-  const Real t115 = t114 + t107;
-  const Real t116 = t112 * t115;
-  const Real t117 = t106 - t116;
-  const Real t118 = quotient_error(constant<Real>(1.0L), t117);
-  const Real t119 = -t116;
-  const Real t120 = sum_error(t106, t119);
-  const Real t121 = product_error(t112, t115);
-  const Real t122 = t120 - t121;
-  const Real t123 = constant<Real>(1.0L) / t117;
-  const Real t124 = t122 * t123;
-  const Real t125 = t124 / t117;
-  const Real t126 = t118 - t125;
-  const Real t127 = t62 * t45;
-  const Real t128 = t61 + t127;
-  const Real t129 = c_r_p_1_ * t62;
-  const Real t130 = t97 - t129;
-  const Real t131 = t112 * t130;
-  const Real t132 = t128 - t131;
-  const Real t133 = t57 * t88;
-  const Real t134 = t78 - t133;
-  const Real t135 = t34 * t99;
-  const Real t136 = t134 + t135;
-  const Real t137 = t58 * t99;
-  const Real t138 = t49 - t137;
-  const Real t139 = t111 * t138;
-  const Real t140 = t115 * t139;
-  const Real t141 = t136 - t140;
-  const Real t142 = t141 * t123;
-  const Real t143 = t25 * t142;
-  const Real t144 = product_error(t141, t123);
-  const Real t145 = t126 * t141;
-  const Real t146 = -t140;
-  const Real t147 = sum_error(t136, t146);
-  const Real t148 = product_error(t115, t139);
-  const Real t149 = t147 - t148;
-  const Real t150 = t149 * t123;
-  const Real t151 = t145 + t150;
-  const Real t152 = t144 + t151;
-  const Real t153 = t152 * t25;
-  const Real t154 = t143 + t153;
-  const Real t155 = t154 - t22;
-  const Real t156 = constant<Real>(1.0L) / t155;
-  const Real t157 = t58 * t62;
-  const Real t158 = t72 - t157;
-  const Real t159 = t130 * t139;
-  const Real t160 = -t159;
-  const Real t161 = sum_error(t158, t160);
-  const Real t162 = product_error(t130, t139);
-  const Real t163 = t161 - t162;
-  const Real t164 = product_error(t132, t142);
-  const Real t165 = t152 * t132;
-  const Real t166 = t164 + t165;
-  const Real t167 = t163 - t166;
-  const Real t168 = t158 - t159;
-  const Real t169 = t132 * t142;
-  const Real t170 = t168 - t169;
-  const Real t171 = t167 + t170;
-  const Real t172 = t156 * t171;
-  const Real t173 = t25 * t172;
-  const Real t174 = t132 + t173;
-  const Real t175 = t126 * t174;
-  const Real t176 = sum_error(t132, t173);
-  const Real t177 = t176 * t123;
-  const Real t178 = t175 + t177;
-  const Real t179 = product_error(t123, t174);
-  const Real t180 = t178 + t179;
-  const Real t181 = t174 * t123;
-  const Real t182 = t180 + t181;
-  const Real t183 = -t182;
-  const Real t184 = t112 * t28;
-  const Real t185 = t184 * t142;
-  const Real t186 = t28 * t139;
-  const Real t187 = t185 - t186;
-  const Real t188 = product_error(t112, t28);
-  const Real t189 = t188 * t142;
-  const Real t190 = t152 * t184;
-  const Real t191 = t189 + t190;
-  const Real t192 = product_error(t184, t142);
-  const Real t193 = t191 + t192;
-  const Real t194 = product_error(t28, t139);
-  const Real t195 = t193 - t194;
-  const Real t196 = t187 + t195;
-  const Real t197 = t156 * t196;
-  const Real t198 = -t197;
-  const Real t199 = t25 * t197;
-  const Real t200 = t199 - t184;
-  const Real t201 = t200 * t123;
-  const Real t202 = -t184;
-  const Real t203 = sum_error(t199, t202);
-  const Real t204 = t203 - t188;
-  const Real t205 = t204 * t123;
-  const Real t206 = t126 * t200;
-  const Real t207 = t205 + t206;
-  const Real t208 = product_error(t200, t123);
-  const Real t209 = t207 + t208;
-  const Real t210 = t201 + t209;
-  const Real t211 = -t210;
-  const Real t212 = t91 * t56;
-  const Real t213 = t103 - t212;
-  const Real t214 = t58 * t56;
-  const Real t215 = t107 + t214;
-  const Real t216 = t112 * t215;
-  const Real t217 = t213 - t216;
-  const Real t218 = t56 * t88;
-  const Real t219 = t135 - t218;
-  const Real t220 = t215 * t139;
-  const Real t221 = -t220;
-  const Real t222 = sum_error(t219, t221);
-  const Real t223 = product_error(t215, t139);
+  const Real t56 = product_error(par.k1, R[6]);
+  const Real t57 = sum_error(t27, t28);
+  const Real t58 = t56 + t57;
+  const Real t59 = par.k1 * t58;
+  const Real t60 = t59 + t48;
+  const Real t61 = sum_error(t22, t23);
+  const Real t62 = product_error(c_r_p_1_, t21);
+  const Real t63 = -t20;
+  const Real t64 = sum_error(t19, t63);
+  const Real t65 = product_error(par.k2, R[6]);
+  const Real t66 = t64 + t65;
+  const Real t67 = t66 * c_r_p_1_;
+  const Real t68 = t62 + t67;
+  const Real t69 = t61 + t68;
+  const Real t70 = par.k2 * t69;
+  const Real t71 = t25 + t70;
+  const Real t72 = t60 + t71;
+  const Real t73 = product_error(par.k1, t24);
+  const Real t74 = par.k1 * t69;
+  const Real t75 = t73 + t74;
+  const Real t76 = product_error(t29, par.k2);
+  const Real t77 = par.k2 * t58;
+  const Real t78 = t76 + t77;
+  const Real t79 = t75 - t78;
+  const Real t80 = t31 + t79;
+  const Real t81 = t80 * t80;
+  const Real t82 = t72 * t72;
+  const Real t83 = t81 + t82;
+  const Real t84 = sqrt(t83);
+  const Real t85 = constant<Real>(1.0L) / t84;
+  const Real t86 = t72 * t85;
+  const Real t87 = par.r_F * t86;
+  const Real t88 = t87 * c_r_p_1_;
+  const Real t89 = t47 - t88;
+  const Real t90 = t2 * t2;
+  const Real t91 = constant<Real>(2.0L) * t90;
+  const Real t92 = t91 * par.k23;
+  const Real t93 = t18 * t92;
+  const Real t94 = t89 - t93;
+  const Real t95 = t41 * t52;
+  const Real t96 = t94 + t95;
+  const Real t97 = par.r_F * t92;
+  const Real t98 = t97 - t42;
+  const Real t99 = t98 + t33;
+  const Real t100 = t80 * t85;
+  const Real t101 = t100 * par.r_F;
+  const Real t102 = t101 * t92;
+  const Real t103 = t41 * t87;
+  const Real t104 = t102 + t103;
+  const Real t105 = t99 + t104;
+  const Real t106 = c_r_p_1_ * t52;
+  const Real t107 = t105 - t106;
+  const Real t108 = constant<Real>(1.0L) / t107;
+  const Real t109 = t5 * t52;
+  const Real t110 = t87 * t5;
+  const Real t111 = t10 - t110;
+  const Real t112 = t109 + t111;
+  const Real t113 = t108 * t112;
+  const Real t114 = t3 * t101;
+  const Real t115 = t114 - t110;
+  const Real t116 = product_error(t3, par.r_F);
+  const Real t117 = t7 + t116;
+  const Real t118 = t117 - t50;
+  const Real t119 = t115 + t118;
+  const Real t120 = t18 * t3;
+  const Real t121 = t119 + t120;
+  const Real t122 = t109 + t121;
+  const Real t123 = t113 * t122;
+  const Real t124 = t96 - t123;
+  const Real t125 = constant<Real>(1.0L) / t124;
+  const Real t126 = par.k1 * t15;
+  const Real t127 = par.k2 * t126;
+  const Real t128 = t127 * t2;
+  const Real t129 = t128 * t2;
+  const Real t130 = t129 * R[6];
+  const Real t131 = t130 * par.r_R;
+  const Real t132 = t131 * constant<Real>(2.0L);
+  const Real t133 = par.k27 * t91;
+  const Real t134 = t133 + t49;
+  const Real t135 = t80 * c_r_p_1_;
+  const Real t136 = t135 * par.r_F;
+  const Real t137 = t136 * t85;
+  const Real t138 = t134 + t137;
+  const Real t139 = t18 * t36;
+  const Real t140 = sum_error(par.k20, t35);
+  const Real t141 = product_error(c_r_p_1_, par.k2);
+  const Real t142 = t141 * par.k2;
+  const Real t143 = product_error(par.k2, t34);
+  const Real t144 = t142 + t143;
+  const Real t145 = t140 + t144;
+  const Real t146 = t18 * t145;
+  const Real t147 = t139 + t146;
+  const Real t148 = t138 + t147;
+  const Real t149 = t132 - t148;
+  const Real t150 = t101 * t5;
+  const Real t151 = t55 - t150;
+  const Real t152 = t3 * t52;
+  const Real t153 = t151 - t152;
+  const Real t154 = t108 * t153;
+  const Real t155 = t154 * t122;
+  const Real t156 = t149 - t155;
+  const Real t157 = t125 * t156;
+  const Real t158 = t87 * t157;
+  const Real t159 = t158 - t101;
+  const Real t160 = constant<Real>(1.0L) / t159;
+  const Real t161 = t87 * par.k2;
+  const Real t162 = par.k1 * t101;
+  const Real t163 = t161 + t162;
+  const Real t164 = t163 + par.k13;
+  const Real t165 = t164 * t113;
+  const Real t166 = t165 * t157;
+  const Real t167 = t154 * t164;
+  const Real t168 = t166 - t167;
+  const Real t169 = product_error(t160, t168);
+  const Real t170 = product_error(t156, t125);
+  const Real t171 = -t155;
+  const Real t172 = sum_error(t149, t171);
+  const Real t173 = product_error(t154, t122);
+  const Real t174 = t172 - t173;
+  const Real t175 = t174 * t125;
+  const Real t176 = quotient_error(constant<Real>(1.0L), t124);
+  const Real t177 = -t123;
+  const Real t178 = sum_error(t96, t177);
+  const Real t179 = product_error(t113, t122);
+  const Real t180 = t178 - t179;
+  const Real t181 = t125 * t180;
+  const Real t182 = t181 / t124;
+  const Real t183 = t176 - t182;
+  const Real t184 = t183 * t156;
+  const Real t185 = t175 + t184;
+  const Real t186 = t170 + t185;
+  const Real t187 = t165 * t186;
+  const Real t188 = product_error(t113, t164);
+  const Real t189 = t188 * t157;
+  const Real t190 = t187 + t189;
+  const Real t191 = product_error(t165, t157);
+  const Real t192 = t190 + t191;
+  const Real t193 = product_error(t164, t154);
+  const Real t194 = t192 - t193;
+  const Real t195 = -t167;
+  const Real t196 = sum_error(t166, t195);
+  const Real t197 = t194 + t196;
+  const Real t198 = t160 * t197;
+  const Real t199 = quotient_error(constant<Real>(1.0L), t159);
+  const Real t200 = product_error(t87, t157);
+  const Real t201 = t87 * t186;
+  const Real t202 = t200 + t201;
+  const Real t203 = -t101;
+  const Real t204 = sum_error(t158, t203);
+  const Real t205 = t202 + t204;
+  const Real t206 = t160 * t205;
+  const Real t207 = t206 / t159;
+  const Real t208 = t199 - t207;
+  const Real t209 = t208 * t168;
+  const Real t210 = t198 + t209;
+  const Real t211 = t169 + t210;
+  const Real t212 = t160 * t168;
+  const Real t213 = t211 + t212;
+  const Real t214 = -t213;
+  const Real t215 = t92 * par.c;
+  const Real t216 = t37 - t215;
+  const Real t217 = t87 * t92;
+  const Real t218 = t101 * t145;
+  const Real t219 = t101 * t36;
+  const Real t220 = t218 + t219;
+  const Real t221 = t217 + t220;
+  const Real t222 = t216 + t221;
+  const Real t223 = c_r_p_1_ * t32;
   const Real t224 = t222 - t223;
-  const Real t225 = product_error(t217, t142);
-  const Real t226 = t152 * t217;
-  const Real t227 = t225 + t226;
-  const Real t228 = t224 - t227;
-  const Real t229 = t219 - t220;
-  const Real t230 = t217 * t142;
-  const Real t231 = t229 - t230;
-  const Real t232 = t228 + t231;
-  const Real t233 = t232 * t156;
-  const Real t234 = t233 * t25;
-  const Real t235 = t217 + t234;
-  const Real t236 = t235 * t123;
-  const Real t237 = t236 * nu[2];
-  const Real t238 = product_error(t235, t123);
-  const Real t239 = sum_error(t217, t234);
-  const Real t240 = t239 * t123;
-  const Real t241 = t235 * t126;
-  const Real t242 = t240 + t241;
-  const Real t243 = t238 + t242;
-  const Real t244 = nu[2] * t243;
-  const Real t245 = t237 + t244;
-  const Real t246 = t201 * nu[1];
-  const Real t247 = nu[1] * t209;
-  const Real t248 = t246 + t247;
-  const Real t249 = t181 * nu[0];
-  const Real t250 = t180 * nu[0];
-  const Real t251 = t249 + t250;
-  const Real t252 = t248 + t251;
-  const Real t253 = t245 + t252;
-  const Real t254 = -t253;
-  const Real t255 = t180 * t99;
-  const Real t256 = t181 * t99;
-  const Real t257 = t255 + t256;
-  const Real t258 = -t257;
-  const Real t259 = t115 * t181;
-  const Real t260 = t130 - t259;
-  const Real t261 = product_error(t115, t181);
-  const Real t262 = t180 * t115;
-  const Real t263 = t261 + t262;
-  const Real t264 = t260 - t263;
-  const Real t265 = t264 * t111;
-  const Real t266 = t265 * t99;
-  const Real t267 = t266 - t62;
-  const Real t268 = t267 * nu[0];
-  const Real t269 = t201 * t115;
-  const Real t270 = t28 - t269;
-  const Real t271 = product_error(t201, t115);
-  const Real t272 = t115 * t209;
-  const Real t273 = t271 + t272;
-  const Real t274 = t270 - t273;
-  const Real t275 = t274 * t111;
-  const Real t276 = t275 * t99;
-  const Real t277 = t276 * nu[1];
-  const Real t278 = t268 + t277;
-  const Real t279 = t236 * t115;
-  const Real t280 = t215 - t279;
-  const Real t281 = product_error(t236, t115);
-  const Real t282 = t115 * t243;
+  const Real t225 = -t215;
+  const Real t226 = sum_error(t37, t225);
+  const Real t227 = product_error(par.r_F, t36);
+  const Real t228 = par.r_F * t145;
+  const Real t229 = t227 + t228;
+  const Real t230 = t226 + t229;
+  const Real t231 = sum_error(t216, t221);
+  const Real t232 = t230 + t231;
+  const Real t233 = product_error(c_r_p_1_, t32);
+  const Real t234 = t232 - t233;
+  const Real t235 = t224 + t234;
+  const Real t236 = t3 * t87;
+  const Real t237 = t236 - t38;
+  const Real t238 = t32 * t5;
+  const Real t239 = t237 + t238;
+  const Real t240 = t235 * t113;
+  const Real t241 = t239 - t240;
+  const Real t242 = sum_error(t4, t114);
+  const Real t243 = t116 + t242;
+  const Real t244 = product_error(t3, t32);
+  const Real t245 = t243 - t244;
+  const Real t246 = t4 + t114;
+  const Real t247 = t3 * t32;
+  const Real t248 = t246 - t247;
+  const Real t249 = t245 + t248;
+  const Real t250 = t154 * t235;
+  const Real t251 = -t250;
+  const Real t252 = sum_error(t249, t251);
+  const Real t253 = product_error(t235, t154);
+  const Real t254 = t252 - t253;
+  const Real t255 = product_error(t157, t241);
+  const Real t256 = -t240;
+  const Real t257 = sum_error(t239, t256);
+  const Real t258 = product_error(t113, t235);
+  const Real t259 = t257 - t258;
+  const Real t260 = t259 * t157;
+  const Real t261 = t241 * t186;
+  const Real t262 = t260 + t261;
+  const Real t263 = t255 + t262;
+  const Real t264 = t254 - t263;
+  const Real t265 = t249 - t250;
+  const Real t266 = t241 * t157;
+  const Real t267 = t265 - t266;
+  const Real t268 = t264 + t267;
+  const Real t269 = t268 * t208;
+  const Real t270 = t160 * t268;
+  const Real t271 = t269 + t270;
+  const Real t272 = t87 * t271;
+  const Real t273 = t241 + t272;
+  const Real t274 = t273 * t125;
+  const Real t275 = t274 * t122;
+  const Real t276 = t235 - t275;
+  const Real t277 = product_error(t274, t122);
+  const Real t278 = product_error(t125, t273);
+  const Real t279 = sum_error(t272, t241);
+  const Real t280 = t279 + t259;
+  const Real t281 = t125 * t280;
+  const Real t282 = t183 * t273;
   const Real t283 = t281 + t282;
-  const Real t284 = t280 - t283;
-  const Real t285 = t284 * t111;
-  const Real t286 = t285 * t99;
-  const Real t287 = t286 * nu[2];
-  const Real t288 = t278 + t287;
-  const Real t289 = -t265;
-  const Real t290 = t236 + t243;
-  const Real t291 = -t290;
-  const Real t292 = t265 * nu[0];
-  const Real t293 = t275 * nu[1];
-  const Real t294 = t292 + t293;
-  const Real t295 = t285 * nu[2];
-  const Real t296 = t294 + t295;
-  const Real t297 = -t296;
-  const Real t298 = t197 * nu[1];
-  const Real t299 = t172 * nu[0];
-  const Real t300 = t298 + t299;
-  const Real t301 = t233 * nu[2];
+  const Real t284 = t278 + t283;
+  const Real t285 = t284 * t122;
+  const Real t286 = t277 + t285;
+  const Real t287 = t276 - t286;
+  const Real t288 = t108 * t287;
+  const Real t289 = -t288;
+  const Real t290 = t87 * t212;
+  const Real t291 = t290 - t165;
+  const Real t292 = product_error(t125, t291);
+  const Real t293 = -t165;
+  const Real t294 = sum_error(t290, t293);
+  const Real t295 = t211 * t87;
+  const Real t296 = product_error(t87, t212);
+  const Real t297 = t295 + t296;
+  const Real t298 = t297 - t188;
+  const Real t299 = t294 + t298;
+  const Real t300 = t125 * t299;
+  const Real t301 = t183 * t291;
   const Real t302 = t300 + t301;
-  const Real t303 = -t302;
-  const Real t304 = -t285;
-  const Real t305 = t236 * t57;
-  const Real t306 = t57 * t243;
-  const Real t307 = t305 + t306;
-  const Real t308 = t307 - t56;
-  const Real t309 = nu[2] * t308;
-  const Real t310 = t57 * t180;
-  const Real t311 = t57 * t181;
-  const Real t312 = t310 + t311;
-  const Real t313 = t312 * nu[0];
-  const Real t314 = t57 * t209;
-  const Real t315 = t201 * t57;
-  const Real t316 = t314 + t315;
-  const Real t317 = t316 * nu[1];
-  const Real t318 = t313 + t317;
-  const Real t319 = t309 + t318;
-  const Real t320 = t236 * t99;
-  const Real t321 = t99 * t243;
-  const Real t322 = t320 + t321;
-  const Real t323 = t99 - t322;
-  const Real t324 = nu[2] * t323;
-  const Real t325 = t201 * t99;
-  const Real t326 = t99 * t209;
-  const Real t327 = t325 + t326;
-  const Real t328 = t327 * nu[1];
-  const Real t329 = t257 * nu[0];
-  const Real t330 = t328 + t329;
-  const Real t331 = t324 - t330;
-  const Real t332 = -t327;
-  const Real t333 = -t275;
-  const Real t334 = -t233;
-  const Real t335 = -t172;
+  const Real t303 = t292 + t302;
+  const Real t304 = t303 * nu[1];
+  const Real t305 = t125 * t291;
+  const Real t306 = t305 * nu[1];
+  const Real t307 = t304 + t306;
+  const Real t308 = t284 * nu[0];
+  const Real t309 = t274 * nu[0];
+  const Real t310 = t308 + t309;
+  const Real t311 = t307 + t310;
+  const Real t312 = t17 * t92;
+  const Real t313 = t95 - t312;
+  const Real t314 = t3 * t17;
+  const Real t315 = t109 + t314;
+  const Real t316 = t315 * t113;
+  const Real t317 = t313 - t316;
+  const Real t318 = t92 * t52;
+  const Real t319 = t17 * t145;
+  const Real t320 = t17 * t36;
+  const Real t321 = t319 + t320;
+  const Real t322 = t318 - t321;
+  const Real t323 = t154 * t315;
+  const Real t324 = t322 - t323;
+  const Real t325 = t317 * t157;
+  const Real t326 = t324 - t325;
+  const Real t327 = -t323;
+  const Real t328 = sum_error(t322, t327);
+  const Real t329 = product_error(t154, t315);
+  const Real t330 = t328 - t329;
+  const Real t331 = product_error(t317, t157);
+  const Real t332 = t317 * t186;
+  const Real t333 = -t316;
+  const Real t334 = sum_error(t313, t333);
+  const Real t335 = product_error(t113, t315);
+  const Real t336 = t334 - t335;
+  const Real t337 = t336 * t157;
+  const Real t338 = t332 + t337;
+  const Real t339 = t331 + t338;
+  const Real t340 = t330 - t339;
+  const Real t341 = t326 + t340;
+  const Real t342 = t341 * t208;
+  const Real t343 = t341 * t160;
+  const Real t344 = t342 + t343;
+  const Real t345 = t344 * t87;
+  const Real t346 = t317 + t345;
+  const Real t347 = t346 * t125;
+  const Real t348 = t347 * nu[2];
+  const Real t349 = t346 * t183;
+  const Real t350 = sum_error(t317, t345);
+  const Real t351 = t336 + t350;
+  const Real t352 = t351 * t125;
+  const Real t353 = t349 + t352;
+  const Real t354 = product_error(t125, t346);
+  const Real t355 = t353 + t354;
+  const Real t356 = nu[2] * t355;
+  const Real t357 = t348 + t356;
+  const Real t358 = t311 + t357;
+  const Real t359 = -t358;
+  const Real t360 = t344 * nu[2];
+  const Real t361 = t211 * nu[1];
+  const Real t362 = t212 * nu[1];
+  const Real t363 = t361 + t362;
+  const Real t364 = t271 * nu[0];
+  const Real t365 = t363 + t364;
+  const Real t366 = t360 + t365;
+  const Real t367 = -t366;
+  const Real t368 = t305 + t303;
+  const Real t369 = -t368;
+  const Real t370 = t347 + t355;
+  const Real t371 = -t370;
+  const Real t372 = t274 * t52;
+  const Real t373 = t284 * t52;
+  const Real t374 = t372 + t373;
+  const Real t375 = -t374;
+  const Real t376 = t288 * t52;
+  const Real t377 = t376 - t32;
+  const Real t378 = t377 * nu[0];
+  const Real t379 = t305 * t122;
+  const Real t380 = t164 - t379;
+  const Real t381 = product_error(t305, t122);
+  const Real t382 = t303 * t122;
+  const Real t383 = t381 + t382;
+  const Real t384 = t380 - t383;
+  const Real t385 = t108 * t384;
+  const Real t386 = t52 * t385;
+  const Real t387 = nu[1] * t386;
+  const Real t388 = t378 + t387;
+  const Real t389 = t347 * t122;
+  const Real t390 = t315 - t389;
+  const Real t391 = t355 * t122;
+  const Real t392 = product_error(t122, t347);
+  const Real t393 = t391 + t392;
+  const Real t394 = t390 - t393;
+  const Real t395 = t108 * t394;
+  const Real t396 = t395 * t52;
+  const Real t397 = t396 * nu[2];
+  const Real t398 = t388 + t397;
+  const Real t399 = t395 * nu[2];
+  const Real t400 = nu[1] * t385;
+  const Real t401 = t288 * nu[0];
+  const Real t402 = t400 + t401;
+  const Real t403 = t399 + t402;
+  const Real t404 = -t403;
+  const Real t405 = t52 * t303;
+  const Real t406 = t52 * t305;
+  const Real t407 = t405 + t406;
+  const Real t408 = -t407;
+  const Real t409 = -t395;
+  const Real t410 = t18 * t355;
+  const Real t411 = t18 * t347;
+  const Real t412 = t410 + t411;
+  const Real t413 = t412 - t17;
+  const Real t414 = t413 * nu[2];
+  const Real t415 = t18 * t284;
+  const Real t416 = t274 * t18;
+  const Real t417 = t415 + t416;
+  const Real t418 = t417 * nu[0];
+  const Real t419 = t18 * t305;
+  const Real t420 = t18 * t303;
+  const Real t421 = t419 + t420;
+  const Real t422 = t421 * nu[1];
+  const Real t423 = t418 + t422;
+  const Real t424 = t414 + t423;
+  const Real t425 = t347 * t52;
+  const Real t426 = t52 * t355;
+  const Real t427 = t425 + t426;
+  const Real t428 = t52 - t427;
+  const Real t429 = t428 * nu[2];
+  const Real t430 = t374 * nu[0];
+  const Real t431 = t407 * nu[1];
+  const Real t432 = t430 + t431;
+  const Real t433 = t429 - t432;
+  const Real t434 = t274 + t284;
+  const Real t435 = -t434;
+  const Real t436 = -t271;
+  const Real t437 = -t344;
+  const Real t438 = -t385;
 
-  eta_out[0] = t319;
-  eta_out[1] = t288;
-  eta_out[2] = t331;
+  eta_out[0] = t424;
+  eta_out[1] = t398;
+  eta_out[2] = t433;
   eta_out[3] = nu[0];
-  eta_out[4] = t254;
-  eta_out[5] = t297;
+  eta_out[4] = t359;
+  eta_out[5] = t404;
   r_p_dot_out[0] = nu[2];
   r_p_dot_out[1] = nu[1];
-  r_p_dot_out[2] = t303;
-  H[0] = t312;
-  H[1] = t316;
-  H[2] = t308;
-  H[3] = t267;
-  H[4] = t276;
-  H[5] = t286;
-  H[6] = t258;
-  H[7] = t332;
-  H[8] = t323;
+  r_p_dot_out[2] = t367;
+  H[0] = t417;
+  H[1] = t421;
+  H[2] = t413;
+  H[3] = t377;
+  H[4] = t386;
+  H[5] = t396;
+  H[6] = t375;
+  H[7] = t408;
+  H[8] = t428;
   H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
-  H[12] = t183;
-  H[13] = t211;
-  H[14] = t291;
+  H[12] = t435;
+  H[13] = t369;
+  H[14] = t371;
   H[15] = t289;
-  H[16] = t333;
-  H[17] = t304;
+  H[16] = t438;
+  H[17] = t409;
   H[18] = constant<Real>(0.0L);
   H[19] = constant<Real>(0.0L);
   H[20] = constant<Real>(1.0L);
   H[21] = constant<Real>(0.0L);
   H[22] = constant<Real>(1.0L);
   H[23] = constant<Real>(0.0L);
-  H[24] = t335;
-  H[25] = t198;
-  H[26] = t334;
+  H[24] = t436;
+  H[25] = t214;
+  H[26] = t437;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
@@ -934,22 +1133,22 @@ inline void constraints(const Prepared<Real>& par,
   const Real t34 = par.k1 * t33;
   const Real t35 = t22 * par.k2;
   const Real t36 = t34 + t35;
-  const Real t37 = t36 + par.k12;
+  const Real t37 = t36 + par.k13;
   const Real t38 = par.k1 * c_r_p_1_;
   const Real t39 = par.k1 * t38;
-  const Real t40 = par.k18 + t39;
+  const Real t40 = par.k19 + t39;
   const Real t41 = t40 * t22;
   const Real t42 = t38 * par.k2;
-  const Real t43 = par.k22 - t42;
+  const Real t43 = par.k23 - t42;
   const Real t44 = t33 * t43;
   const Real t45 = t41 + t44;
-  const Real t46 = c_r_p_1_ * par.k13;
+  const Real t46 = c_r_p_1_ * par.k14;
   const Real t47 = t43 * par.r_F;
   const Real t48 = t40 * par.c;
   const Real t49 = t47 - t48;
   const Real t50 = t46 + t49;
   const Real t51 = t45 + t50;
-  const Real t52 = s_r_p_1_ * par.k13;
+  const Real t52 = s_r_p_1_ * par.k14;
   const Real t53 = par.k2 * t52;
   const Real t54 = s_r_p_1_ * par.k1;
   const Real t55 = par.r_F * t54;
@@ -967,9 +1166,9 @@ inline void constraints(const Prepared<Real>& par,
   const Real t67 = par.r_R - t61;
   const Real t68 = -t63;
   const Real t69 = c_r_p_1_ * par.c;
-  const Real t70 = c_r_p_1_ * par.k23;
+  const Real t70 = c_r_p_1_ * par.k24;
   const Real t71 = t70 * par.k1;
-  const Real t72 = t71 + par.k21;
+  const Real t72 = t71 + par.k22;
   const Real t73 = t69 - t72;
   const Real t74 = t22 * c_r_p_1_;
   const Real t75 = t73 - t74;
@@ -978,7 +1177,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t78 = t33 * t63;
   const Real t79 = t77 + t78;
   const Real t80 = t70 * par.k2;
-  const Real t81 = t80 - par.k24;
+  const Real t81 = t80 - par.k25;
   const Real t82 = c_r_p_1_ * par.r_F;
   const Real t83 = t81 - t82;
   const Real t84 = t33 * c_r_p_1_;
@@ -987,15 +1186,15 @@ inline void constraints(const Prepared<Real>& par,
   const Real t87 = t78 - t86;
   const Real t88 = par.c * t54;
   const Real t89 = t77 + t88;
-  const Real t90 = s_r_p_1_ * par.k23;
+  const Real t90 = s_r_p_1_ * par.k24;
   const Real t91 = t89 - t90;
   const Real t92 = t87 + t91;
   const Real t93 = c_r_p_1_ * par.k2;
   const Real t94 = par.k2 * t93;
-  const Real t95 = par.k19 + t94;
+  const Real t95 = par.k20 + t94;
   const Real t96 = par.r_F * t95;
   const Real t97 = par.k1 * t93;
-  const Real t98 = par.k22 - t97;
+  const Real t98 = par.k23 - t97;
   const Real t99 = t98 * par.c;
   const Real t100 = t96 - t99;
   const Real t101 = t22 * t98;
@@ -1037,13 +1236,13 @@ inline void constraints(const Prepared<Real>& par,
   const Real t135 = r_p_dot[0] + eta[4];
   const Real t136 = t127 * t135;
   const Real t137 = -t136;
-  const Real t138 = eta[5] * par.k13;
+  const Real t138 = eta[5] * par.k14;
   const Real t139 = eta[1] + t138;
   const Real t140 = c_r_p_1_ * r_p_dot[1];
   const Real t141 = t139 * t140;
   const Real t142 = s_r_p_1_ * r_p_dot[1];
   const Real t143 = par.k2 * eta[0];
-  const Real t144 = par.k13 * eta[4];
+  const Real t144 = par.k14 * eta[4];
   const Real t145 = eta[2] - t144;
   const Real t146 = par.k1 * t145;
   const Real t147 = t143 - t146;
@@ -1246,20 +1445,20 @@ inline void free_dynamics(const Prepared<Real>& par,
   // joint angles
   const Real t1 = par.k1 * c_r_p_1_;
   const Real t2 = par.k1 * t1;
-  const Real t3 = par.k18 + t2;
-  const Real t4 = c_r_p_1_ * par.k23;
+  const Real t3 = par.k19 + t2;
+  const Real t4 = c_r_p_1_ * par.k24;
   const Real t5 = t1 * par.k2;
-  const Real t6 = par.k22 - t5;
+  const Real t6 = par.k23 - t5;
   const Real t7 = s_r_p_1_ * par.k2;
   const Real t8 = c_r_p_1_ * par.k2;
   const Real t9 = par.k1 * t8;
-  const Real t10 = par.k22 - t9;
-  const Real t11 = c_r_p_1_ * par.k13;
-  const Real t12 = s_r_p_1_ * par.k13;
-  const Real t13 = s_r_p_1_ * par.k23;
+  const Real t10 = par.k23 - t9;
+  const Real t11 = c_r_p_1_ * par.k14;
+  const Real t12 = s_r_p_1_ * par.k14;
+  const Real t13 = s_r_p_1_ * par.k24;
   const Real t14 = s_r_p_1_ * par.k1;
   const Real t15 = par.k2 * t8;
-  const Real t16 = par.k19 + t15;
+  const Real t16 = par.k20 + t15;
 
   // joint angles
   const Real t17 = c_r_p_1_ * eta[4];
@@ -1298,10 +1497,10 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t46 = t7 * par.m_H;
-  const Real t47 = t7 * par.k10;
-  const Real t48 = par.k8 * t7;
-  const Real t49 = par.k8 * t8;
-  const Real t50 = t49 - par.k33;
+  const Real t47 = t7 * par.k11;
+  const Real t48 = par.k9 * t7;
+  const Real t49 = par.k9 * t8;
+  const Real t50 = t49 - par.k40;
   const Real t51 = par.m_H * t8;
 
   // front_wheel: wrench
@@ -1310,9 +1509,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t54 = t40 * par.m_F;
 
   // front_wheel: joint force
-  const Real t55 = t53 * par.k11;
+  const Real t55 = t53 * par.k12;
   const Real t56 = t48 - t55;
-  const Real t57 = t53 * par.k12;
+  const Real t57 = t53 * par.k13;
   const Real t58 = t47 + t57;
   const Real t59 = -t58;
   const Real t60 = t52 * c_r_p_2_;
@@ -1324,14 +1523,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t66 = t64 - t65;
   const Real t67 = par.k1 * t66;
   const Real t68 = t63 - t67;
-  const Real t69 = t68 * par.k11;
+  const Real t69 = t68 * par.k12;
   const Real t70 = t66 * par.k2;
   const Real t71 = par.k1 * t62;
   const Real t72 = t70 + t71;
-  const Real t73 = par.k12 * t72;
+  const Real t73 = par.k13 * t72;
   const Real t74 = t69 + t73;
   const Real t75 = t50 - t74;
-  const Real t76 = t72 + par.k34;
+  const Real t76 = t72 + par.k41;
   const Real t77 = t46 + t53;
   const Real t78 = t68 + t51;
 
@@ -1346,7 +1545,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t86 = s_r_p_1_ * t78;
   const Real t87 = c_r_p_1_ * t77;
   const Real t88 = t86 - t87;
-  const Real t89 = par.k13 * t88;
+  const Real t89 = par.k14 * t88;
   const Real t90 = par.k2 * t58;
   const Real t91 = t56 * c_r_p_1_;
   const Real t92 = s_r_p_1_ * t75;
@@ -1360,9 +1559,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t100 = par.k2 * t76;
   const Real t101 = par.k1 * t81;
   const Real t102 = t100 - t101;
-  const Real t103 = t102 * par.k13;
+  const Real t103 = t102 * par.k14;
   const Real t104 = t99 - t103;
-  const Real t105 = t104 + par.k15;
+  const Real t105 = t104 + par.k16;
   const Real t106 = par.k2 * t93;
   const Real t107 = par.k1 * t58;
   const Real t108 = t106 - t107;
@@ -1388,11 +1587,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t124 = t122 + t123;
 
   // fork: wrench
-  const Real t125 = s_r_p_1_ * par.k8;
+  const Real t125 = s_r_p_1_ * par.k9;
   const Real t126 = par.m_H * c_r_p_1_;
-  const Real t127 = par.k8 * c_r_p_1_;
+  const Real t127 = par.k9 * c_r_p_1_;
   const Real t128 = s_r_p_1_ * par.m_H;
-  const Real t129 = c_r_p_1_ * par.k10;
+  const Real t129 = c_r_p_1_ * par.k11;
 
   // front_wheel: wrench
   const Real t130 = t121 * par.m_F;
@@ -1401,7 +1600,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // front_wheel: joint force
   const Real t133 = t126 + t132;
-  const Real t134 = par.k11 * t132;
+  const Real t134 = par.k12 * t132;
   const Real t135 = t134 - t127;
   const Real t136 = t130 * c_r_p_2_;
   const Real t137 = t131 * s_r_p_2_;
@@ -1412,14 +1611,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t142 = t140 + t141;
   const Real t143 = par.k1 * t142;
   const Real t144 = t139 + t143;
-  const Real t145 = t144 * par.k12;
+  const Real t145 = t144 * par.k13;
   const Real t146 = par.k2 * t142;
   const Real t147 = par.k1 * t138;
   const Real t148 = t146 - t147;
-  const Real t149 = t148 * par.k11;
+  const Real t149 = t148 * par.k12;
   const Real t150 = t145 + t149;
   const Real t151 = t125 - t150;
-  const Real t152 = par.k12 * t132;
+  const Real t152 = par.k13 * t132;
   const Real t153 = t129 + t152;
   const Real t154 = t128 + t148;
 
@@ -1434,13 +1633,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t162 = t161 * par.k2;
   const Real t163 = par.k1 * t153;
   const Real t164 = t162 + t163;
-  const Real t165 = t164 - par.k15;
+  const Real t165 = t164 - par.k16;
   const Real t166 = par.k2 * t153;
   const Real t167 = par.k1 * t161;
   const Real t168 = t166 - t167;
-  const Real t169 = t157 * par.k13;
+  const Real t169 = t157 * par.k14;
   const Real t170 = t168 + t169;
-  const Real t171 = t170 + par.k16;
+  const Real t171 = t170 + par.k17;
   const Real t172 = s_r_p_1_ * t135;
   const Real t173 = c_r_p_1_ * t151;
   const Real t174 = t172 + t173;
@@ -1450,11 +1649,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t178 = t176 - t177;
   const Real t179 = par.k1 * t178;
   const Real t180 = t175 - t179;
-  const Real t181 = t180 * par.k13;
+  const Real t181 = t180 * par.k14;
   const Real t182 = t174 - t181;
 
   // rear_wheel: joint force
-  const Real t183 = par.k37 + t165;
+  const Real t183 = par.k45 + t165;
   const Real t184 = t158 + par.m_R;
 
   // front_wheel: acceleration
@@ -1466,10 +1665,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t190 = t188 - t189;
 
   // fork: wrench
-  const Real t191 = par.k8 * t14;
-  const Real t192 = par.k10 * t14;
-  const Real t193 = par.k8 * t1;
-  const Real t194 = par.k39 + t193;
+  const Real t191 = par.k9 * t14;
+  const Real t192 = par.k11 * t14;
+  const Real t193 = par.k9 * t1;
+  const Real t194 = par.k47 + t193;
   const Real t195 = par.m_H * t1;
   const Real t196 = par.m_H * t14;
 
@@ -1488,19 +1687,19 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t206 = t204 - t205;
   const Real t207 = t206 * par.k2;
   const Real t208 = t203 + t207;
-  const Real t209 = par.k38 + t208;
+  const Real t209 = par.k46 + t208;
   const Real t210 = t202 * par.k2;
   const Real t211 = par.k1 * t206;
   const Real t212 = t210 - t211;
   const Real t213 = t212 - t195;
-  const Real t214 = par.k11 * t212;
-  const Real t215 = par.k12 * t208;
+  const Real t214 = par.k12 * t212;
+  const Real t215 = par.k13 * t208;
   const Real t216 = t214 + t215;
   const Real t217 = t216 + t194;
-  const Real t218 = par.k12 * t199;
+  const Real t218 = par.k13 * t199;
   const Real t219 = t192 + t218;
   const Real t220 = t196 + t199;
-  const Real t221 = par.k11 * t199;
+  const Real t221 = par.k12 * t199;
   const Real t222 = t221 - t191;
 
   // fork: joint force
@@ -1513,9 +1712,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t229 = t227 - t228;
   const Real t230 = par.k1 * t229;
   const Real t231 = t226 - t230;
-  const Real t232 = t231 * par.k13;
+  const Real t232 = t231 * par.k14;
   const Real t233 = t225 - t232;
-  const Real t234 = t233 - par.k16;
+  const Real t234 = t233 - par.k17;
   const Real t235 = t231 + par.m_B;
   const Real t236 = par.k1 * t219;
   const Real t237 = s_r_p_1_ * t217;
@@ -1529,7 +1728,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t245 = s_r_p_1_ * t213;
   const Real t246 = c_r_p_1_ * t220;
   const Real t247 = t245 + t246;
-  const Real t248 = t247 * par.k13;
+  const Real t248 = t247 * par.k14;
   const Real t249 = t244 + t248;
 
   // rear_wheel: joint force
@@ -1539,9 +1738,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t253 = t234 - t252;
 
   // front_wheel: acceleration
-  const Real t254 = t7 * par.k12;
+  const Real t254 = t7 * par.k13;
   const Real t255 = t254 * par.k2;
-  const Real t256 = t7 * par.k11;
+  const Real t256 = t7 * par.k12;
   const Real t257 = par.k1 * t256;
   const Real t258 = t255 - t257;
   const Real t259 = c_r_p_2_ * t258;
@@ -1550,8 +1749,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t262 = t260 + t261;
   const Real t263 = t262 * s_r_p_2_;
   const Real t264 = t259 + t263;
-  const Real t265 = par.k11 * t8;
-  const Real t266 = par.k40 + t265;
+  const Real t265 = par.k12 * t8;
+  const Real t266 = par.k48 + t265;
   const Real t267 = c_r_p_2_ * t262;
   const Real t268 = s_r_p_2_ * t258;
   const Real t269 = t267 - t268;
@@ -1561,12 +1760,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t271 = par.I_Rxx * c_r_p_0_;
 
   // fork: wrench
-  const Real t272 = par.k33 - t49;
-  const Real t273 = t8 * par.k17;
-  const Real t274 = t273 + par.k43;
+  const Real t272 = par.k40 - t49;
+  const Real t273 = t8 * par.k18;
+  const Real t274 = t273 + par.k51;
   const Real t275 = par.k5 * t8;
-  const Real t276 = par.k42 + t275;
-  const Real t277 = par.k7 * t7;
+  const Real t276 = par.k50 + t275;
+  const Real t277 = par.k8 * t7;
 
   // front_wheel: wrench
   const Real t278 = t269 * par.m_F;
@@ -1588,11 +1787,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t292 = par.k1 * t291;
   const Real t293 = t288 - t292;
   const Real t294 = t293 - t48;
-  const Real t295 = par.k11 * t293;
+  const Real t295 = par.k12 * t293;
   const Real t296 = par.k2 * t291;
   const Real t297 = t287 * par.k1;
   const Real t298 = t296 + t297;
-  const Real t299 = t298 * par.k12;
+  const Real t299 = t298 * par.k13;
   const Real t300 = t295 + t299;
   const Real t301 = t283 + t300;
   const Real t302 = t277 + t301;
@@ -1606,14 +1805,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t310 = t308 - t309;
   const Real t311 = t310 * par.k1;
   const Real t312 = t307 - t311;
-  const Real t313 = par.k11 * t282;
+  const Real t313 = par.k12 * t282;
   const Real t314 = t312 + t313;
   const Real t315 = t314 + t274;
   const Real t316 = t298 + t47;
   const Real t317 = t310 * par.k2;
   const Real t318 = t306 * par.k1;
   const Real t319 = t317 + t318;
-  const Real t320 = par.k12 * t282;
+  const Real t320 = par.k13 * t282;
   const Real t321 = t319 + t320;
   const Real t322 = t276 + t321;
 
@@ -1624,14 +1823,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t326 = t325 * par.k2;
   const Real t327 = par.k1 * t322;
   const Real t328 = t326 + t327;
-  const Real t329 = par.k9 + t328;
+  const Real t329 = par.k10 + t328;
   const Real t330 = par.k2 * t322;
   const Real t331 = par.k1 * t325;
   const Real t332 = t330 - t331;
   const Real t333 = t294 * s_r_p_1_;
   const Real t334 = t303 * c_r_p_1_;
   const Real t335 = t333 + t334;
-  const Real t336 = t335 * par.k13;
+  const Real t336 = t335 * par.k14;
   const Real t337 = t332 + t336;
   const Real t338 = par.k3 + t337;
   const Real t339 = s_r_p_1_ * t315;
@@ -1643,14 +1842,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t345 = t343 - t344;
   const Real t346 = t345 * par.k1;
   const Real t347 = t342 - t346;
-  const Real t348 = t347 * par.k13;
+  const Real t348 = t347 * par.k14;
   const Real t349 = t341 - t348;
 
   // rear_wheel: joint force
   const Real t350 = t270 * s_r_p_0_;
   const Real t351 = t271 * c_r_p_0_;
   const Real t352 = t350 + t351;
-  const Real t353 = par.k44 + t352;
+  const Real t353 = par.k52 + t352;
   const Real t354 = t329 + t353;
   const Real t355 = t270 * c_r_p_0_;
   const Real t356 = t271 * s_r_p_0_;
@@ -1662,11 +1861,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t360 = par.r_R * s_r_p_0_;
 
   // front_wheel: acceleration
-  const Real t361 = c_r_p_1_ * par.k11;
+  const Real t361 = c_r_p_1_ * par.k12;
   const Real t362 = t4 - t361;
   const Real t363 = par.k2 * t362;
-  const Real t364 = c_r_p_1_ * par.k12;
-  const Real t365 = t364 + par.k20;
+  const Real t364 = c_r_p_1_ * par.k13;
+  const Real t365 = t364 + par.k21;
   const Real t366 = par.k1 * t365;
   const Real t367 = t363 - t366;
   const Real t368 = t367 * c_r_p_2_;
@@ -1678,7 +1877,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t374 = t367 * s_r_p_2_;
   const Real t375 = t371 * c_r_p_2_;
   const Real t376 = t374 - t375;
-  const Real t377 = s_r_p_1_ * par.k11;
+  const Real t377 = s_r_p_1_ * par.k12;
   const Real t378 = t377 - t13;
 
   // rear_wheel: wrench
@@ -1687,20 +1886,20 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t381 = s_r_p_1_ * par.k5;
-  const Real t382 = par.k10 * t13;
+  const Real t382 = par.k11 * t13;
   const Real t383 = t381 - t382;
   const Real t384 = par.m_H * t13;
   const Real t385 = t125 + t384;
   const Real t386 = t4 * par.m_H;
   const Real t387 = t127 + t386;
-  const Real t388 = par.k7 * c_r_p_1_;
-  const Real t389 = t4 * par.k8;
-  const Real t390 = t389 + par.k46;
+  const Real t388 = par.k8 * c_r_p_1_;
+  const Real t389 = t4 * par.k9;
+  const Real t390 = t389 + par.k54;
   const Real t391 = t388 + t390;
-  const Real t392 = par.k8 * t13;
-  const Real t393 = s_r_p_1_ * par.k17;
+  const Real t392 = par.k9 * t13;
+  const Real t393 = s_r_p_1_ * par.k18;
   const Real t394 = t392 + t393;
-  const Real t395 = par.k45 + t129;
+  const Real t395 = par.k53 + t129;
 
   // front_wheel: wrench
   const Real t396 = c_r_p_1_ * par.I_Fyy;
@@ -1731,21 +1930,21 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t419 = t417 - t418;
   const Real t420 = par.k1 * t419;
   const Real t421 = t416 - t420;
-  const Real t422 = t400 * par.k11;
+  const Real t422 = t400 * par.k12;
   const Real t423 = t421 + t422;
   const Real t424 = t423 + t394;
   const Real t425 = par.k2 * t419;
   const Real t426 = par.k1 * t415;
   const Real t427 = t425 + t426;
-  const Real t428 = t400 * par.k12;
+  const Real t428 = t400 * par.k13;
   const Real t429 = t427 + t428;
   const Real t430 = t383 + t429;
   const Real t431 = par.k2 * t404;
   const Real t432 = t408 * par.k1;
   const Real t433 = t431 - t432;
   const Real t434 = t433 + t387;
-  const Real t435 = t433 * par.k11;
-  const Real t436 = t410 * par.k12;
+  const Real t435 = t433 * par.k12;
+  const Real t436 = t410 * par.k13;
   const Real t437 = t435 + t436;
   const Real t438 = t396 - t437;
   const Real t439 = t391 + t438;
@@ -1760,7 +1959,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t446 = t444 - t445;
   const Real t447 = t446 * par.k1;
   const Real t448 = t443 - t447;
-  const Real t449 = par.k13 * t448;
+  const Real t449 = par.k14 * t448;
   const Real t450 = t442 - t449;
   const Real t451 = par.k4 + t450;
   const Real t452 = t430 * par.k2;
@@ -1772,7 +1971,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t458 = t412 * c_r_p_1_;
   const Real t459 = s_r_p_1_ * t434;
   const Real t460 = t458 + t459;
-  const Real t461 = t460 * par.k13;
+  const Real t461 = t460 * par.k14;
   const Real t462 = t457 + t461;
 
   // rear_wheel: joint force
@@ -1784,13 +1983,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t468 = t451 + t467;
 
   // front_wheel: acceleration
-  const Real t469 = t1 * par.k11;
-  const Real t470 = par.k47 - t469;
+  const Real t469 = t1 * par.k12;
+  const Real t470 = par.k55 - t469;
   const Real t471 = t11 + t470;
-  const Real t472 = par.k11 * t14;
+  const Real t472 = par.k12 * t14;
   const Real t473 = t12 - t472;
   const Real t474 = par.k1 * t473;
-  const Real t475 = par.k12 * t14;
+  const Real t475 = par.k13 * t14;
   const Real t476 = t475 * par.k2;
   const Real t477 = t474 + t476;
   const Real t478 = t477 * s_r_p_2_;
@@ -1804,18 +2003,18 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t486 = t484 - t485;
 
   // fork: wrench
-  const Real t487 = t1 * par.k17;
-  const Real t488 = par.k48 - t487;
-  const Real t489 = par.k8 * t11;
+  const Real t487 = t1 * par.k18;
+  const Real t488 = par.k56 - t487;
+  const Real t489 = par.k9 * t11;
   const Real t490 = t488 - t489;
   const Real t491 = par.m_H * t12;
   const Real t492 = t191 + t491;
-  const Real t493 = t11 * par.k10;
+  const Real t493 = t11 * par.k11;
   const Real t494 = par.k5 * t1;
-  const Real t495 = par.k49 - t494;
+  const Real t495 = par.k57 - t494;
   const Real t496 = t493 + t495;
-  const Real t497 = par.k7 * t14;
-  const Real t498 = par.k8 * t12;
+  const Real t497 = par.k8 * t14;
+  const Real t498 = par.k9 * t12;
   const Real t499 = t497 + t498;
   const Real t500 = par.m_H * t11;
   const Real t501 = t500 + t194;
@@ -1838,17 +2037,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t514 = t512 + t513;
   const Real t515 = par.k1 * t514;
   const Real t516 = t511 + t515;
-  const Real t517 = t516 * par.k12;
+  const Real t517 = t516 * par.k13;
   const Real t518 = par.k2 * t514;
   const Real t519 = par.k1 * t510;
   const Real t520 = t518 - t519;
-  const Real t521 = t520 * par.k11;
+  const Real t521 = t520 * par.k12;
   const Real t522 = t517 + t521;
   const Real t523 = t503 - t522;
   const Real t524 = t499 + t523;
   const Real t525 = t492 + t520;
   const Real t526 = t504 + t501;
-  const Real t527 = t504 * par.k12;
+  const Real t527 = t504 * par.k13;
   const Real t528 = c_r_p_2_ * t505;
   const Real t529 = t506 * s_r_p_2_;
   const Real t530 = t528 - t529;
@@ -1860,7 +2059,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t536 = t531 + t535;
   const Real t537 = t527 + t536;
   const Real t538 = t496 + t537;
-  const Real t539 = t504 * par.k11;
+  const Real t539 = t504 * par.k12;
   const Real t540 = t534 * par.k2;
   const Real t541 = par.k1 * t530;
   const Real t542 = t540 - t541;
@@ -1877,9 +2076,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t551 = c_r_p_1_ * t526;
   const Real t552 = s_r_p_1_ * t525;
   const Real t553 = t551 + t552;
-  const Real t554 = t553 * par.k13;
+  const Real t554 = t553 * par.k14;
   const Real t555 = t550 + t554;
-  const Real t556 = t555 + par.k14;
+  const Real t556 = t555 + par.k15;
 
   // rear_wheel: joint force
   const Real t557 = t352 + t556;
@@ -1906,8 +2105,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t572 = t570 - t571;
   const Real t573 = par.k2 * t572;
   const Real t574 = t569 + t573;
-  const Real t575 = par.k50 + t574;
-  const Real t576 = par.k6 + t575;
+  const Real t575 = par.k58 + t574;
+  const Real t576 = par.k7 + t575;
 
   // rear_wheel: twist
   const Real t577 = eta[3] * s_r_p_0_;
@@ -1975,13 +2174,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t631 = t27 * t31;
   const Real t632 = t31 * r_p_dot[1];
   const Real t633 = t631 - t632;
-  const Real t634 = par.k13 * t608;
+  const Real t634 = par.k14 * t608;
   const Real t635 = t604 + t634;
   const Real t636 = s_r_p_1_ * t635;
-  const Real t637 = t607 * par.k13;
+  const Real t637 = t607 * par.k14;
   const Real t638 = t594 - t637;
   const Real t639 = t638 * par.k2;
-  const Real t640 = t589 * par.k13;
+  const Real t640 = t589 * par.k14;
   const Real t641 = t599 + t640;
   const Real t642 = par.k1 * t641;
   const Real t643 = t639 - t642;
@@ -2011,17 +2210,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t665 = t588 * r_p_dot[2];
   const Real t666 = t664 - t665;
   const Real t667 = t23 * t585;
-  const Real t668 = t646 * par.k12;
-  const Real t669 = t630 * par.k11;
+  const Real t668 = t646 * par.k13;
+  const Real t669 = t630 * par.k12;
   const Real t670 = t668 - t669;
   const Real t671 = t670 + t656;
-  const Real t672 = par.k12 * t658;
-  const Real t673 = t633 * par.k11;
+  const Real t672 = par.k13 * t658;
+  const Real t673 = t633 * par.k12;
   const Real t674 = t672 + t673;
   const Real t675 = t645 - t674;
   const Real t676 = t675 * par.k2;
-  const Real t677 = t649 * par.k11;
-  const Real t678 = par.k12 * t653;
+  const Real t677 = t649 * par.k12;
+  const Real t678 = par.k13 * t653;
   const Real t679 = t677 + t678;
   const Real t680 = t652 + t679;
   const Real t681 = par.k1 * t680;
@@ -2043,85 +2242,85 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // frame: wrench
   const Real t697 = t599 * par.m_B;
-  const Real t698 = t589 * par.k16;
-  const Real t699 = par.k15 * t611;
+  const Real t698 = t589 * par.k17;
+  const Real t699 = par.k16 * t611;
   const Real t700 = t698 - t699;
   const Real t701 = t697 + t700;
-  const Real t702 = par.k25 * t608;
+  const Real t702 = par.k32 * t608;
   const Real t703 = par.k3 * t609;
   const Real t704 = t702 - t703;
-  const Real t705 = t604 * par.k16;
+  const Real t705 = t604 * par.k17;
   const Real t706 = t704 + t705;
   const Real t707 = t594 * par.m_B;
-  const Real t708 = t589 * par.k15;
-  const Real t709 = t607 * par.k16;
+  const Real t708 = t589 * par.k16;
+  const Real t709 = t607 * par.k17;
   const Real t710 = t708 - t709;
   const Real t711 = t707 + t710;
-  const Real t712 = t594 * par.k15;
-  const Real t713 = t599 * par.k16;
+  const Real t712 = t594 * par.k16;
+  const Real t713 = t599 * par.k17;
   const Real t714 = t712 - t713;
   const Real t715 = t605 - t610;
   const Real t716 = par.k3 * t715;
-  const Real t717 = t589 * par.k27;
+  const Real t717 = t589 * par.k34;
   const Real t718 = t716 + t717;
   const Real t719 = t714 + t718;
   const Real t720 = t604 * par.m_B;
-  const Real t721 = t608 * par.k16;
-  const Real t722 = par.k15 * t609;
+  const Real t721 = t608 * par.k17;
+  const Real t722 = par.k16 * t609;
   const Real t723 = t721 + t722;
   const Real t724 = t720 + t723;
-  const Real t725 = par.k26 * t609;
+  const Real t725 = par.k33 * t609;
   const Real t726 = par.k3 * t608;
   const Real t727 = t725 + t726;
-  const Real t728 = t604 * par.k15;
+  const Real t728 = t604 * par.k16;
   const Real t729 = t727 - t728;
 
   // rear_wheel: wrench
   const Real t730 = t613 * par.I_Rxx;
-  const Real t731 = t612 * par.k28;
+  const Real t731 = t612 * par.k35;
   const Real t732 = t730 + t731;
   const Real t733 = t622 * par.m_R;
   const Real t734 = t615 * par.m_R;
   const Real t735 = t625 * par.m_R;
-  const Real t736 = par.k29 * t627;
+  const Real t736 = par.k36 * t627;
   const Real t737 = par.I_Rxx * t626;
   const Real t738 = t736 - t737;
 
   // fork: wrench
-  const Real t739 = t629 * par.k17;
-  const Real t740 = t628 * par.k30;
+  const Real t739 = t629 * par.k18;
+  const Real t740 = t628 * par.k37;
   const Real t741 = t739 + t740;
   const Real t742 = par.k5 * t646;
   const Real t743 = t741 + t742;
-  const Real t744 = par.k8 * t656;
+  const Real t744 = par.k9 * t656;
   const Real t745 = t743 - t744;
   const Real t746 = par.m_H * t656;
-  const Real t747 = t646 * par.k10;
-  const Real t748 = t630 * par.k8;
+  const Real t747 = t646 * par.k11;
+  const Real t748 = t630 * par.k9;
   const Real t749 = t747 + t748;
   const Real t750 = t746 + t749;
   const Real t751 = par.m_H * t652;
-  const Real t752 = par.k10 * t653;
-  const Real t753 = par.k8 * t649;
+  const Real t752 = par.k11 * t653;
+  const Real t753 = par.k9 * t649;
   const Real t754 = t752 - t753;
   const Real t755 = t751 + t754;
-  const Real t756 = t633 * par.k8;
-  const Real t757 = par.k10 * t658;
+  const Real t756 = t633 * par.k9;
+  const Real t757 = par.k11 * t658;
   const Real t758 = t756 - t757;
   const Real t759 = t645 * par.m_H;
   const Real t760 = t758 + t759;
-  const Real t761 = t645 * par.k8;
-  const Real t762 = par.k10 * t652;
+  const Real t761 = t645 * par.k9;
+  const Real t762 = par.k11 * t652;
   const Real t763 = t761 - t762;
   const Real t764 = t657 - t648;
   const Real t765 = par.k5 * t764;
-  const Real t766 = t631 * par.k31;
-  const Real t767 = par.k7 * t632;
+  const Real t766 = t631 * par.k38;
+  const Real t767 = par.k8 * t632;
   const Real t768 = t766 - t767;
   const Real t769 = t765 + t768;
   const Real t770 = t763 + t769;
-  const Real t771 = par.k10 * t656;
-  const Real t772 = t646 * par.k32;
+  const Real t771 = par.k11 * t656;
+  const Real t772 = t646 * par.k39;
   const Real t773 = t630 * par.k5;
   const Real t774 = t772 - t773;
   const Real t775 = t771 + t774;
@@ -2129,17 +2328,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   // front_wheel: wrench
   const Real t776 = par.I_Fyy * t632;
   const Real t777 = t666 * par.I_Fxx;
-  const Real t778 = t659 * par.k35;
+  const Real t778 = t659 * par.k42;
   const Real t779 = t777 + t778;
   const Real t780 = t671 * par.m_F;
   const Real t781 = par.m_F * t691;
   const Real t782 = par.I_Fxx * t696;
-  const Real t783 = par.k36 * t667;
+  const Real t783 = par.k43 * t667;
   const Real t784 = t782 + t783;
   const Real t785 = par.m_F * t688;
 
   // front_wheel: joint force
-  const Real t786 = t780 * par.k12;
+  const Real t786 = t780 * par.k13;
   const Real t787 = t784 * s_r_p_2_;
   const Real t788 = t779 * c_r_p_2_;
   const Real t789 = t787 + t788;
@@ -2164,14 +2363,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t808 = par.k2 * t789;
   const Real t809 = par.k1 * t793;
   const Real t810 = t808 - t809;
-  const Real t811 = t780 * par.k11;
+  const Real t811 = t780 * par.k12;
   const Real t812 = t810 + t811;
   const Real t813 = t745 + t812;
-  const Real t814 = t806 * par.k12;
+  const Real t814 = t806 * par.k13;
   const Real t815 = par.k2 * t800;
   const Real t816 = t804 * par.k1;
   const Real t817 = t815 - t816;
-  const Real t818 = t817 * par.k11;
+  const Real t818 = t817 * par.k12;
   const Real t819 = t814 + t818;
   const Real t820 = t776 + t819;
   const Real t821 = t770 - t820;
@@ -2200,7 +2399,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t842 = t840 - t841;
   const Real t843 = par.k1 * t842;
   const Real t844 = t839 - t843;
-  const Real t845 = t837 * par.k13;
+  const Real t845 = t837 * par.k14;
   const Real t846 = t844 + t845;
   const Real t847 = t706 + t846;
   const Real t848 = t797 * par.k1;
@@ -2210,7 +2409,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t852 = c_r_p_1_ * t821;
   const Real t853 = t813 * s_r_p_1_;
   const Real t854 = t852 + t853;
-  const Real t855 = t833 * par.k13;
+  const Real t855 = t833 * par.k14;
   const Real t856 = t854 - t855;
   const Real t857 = t856 + t719;
 
@@ -2318,8 +2517,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
-/// route: projected recursion, compensated beyond 25 ulps
-/// operations: 783 add, 974 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, stable forms, compensated beyond 0.71 ulps
+/// operations: 1518 add, 1335 mul, 15 div, 22 neg, 2 sqrt, 4 sin, 3 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p  (3) rad or m: rear_spin, steer, front_spin
@@ -2338,6 +2537,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   using std::sqrt;
   using detail::constant;
   using detail::product_error;
+  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
@@ -2345,1628 +2545,2309 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
+  const Real t1 = constant<Real>(0.5L) * r_p[1];
+  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
-  const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t12 * t20;
-  const Real t22 = par.r_F * t21;
-  const Real t23 = par.k1 * t22;
-  const Real t24 = t20 * t16;
-  const Real t25 = t24 * par.r_F;
-  const Real t26 = t25 * par.k2;
-  const Real t27 = t23 + t26;
-  const Real t28 = t27 + par.k12;
-  const Real t29 = par.k1 * c_r_p_1_;
-  const Real t30 = par.k1 * t29;
-  const Real t31 = par.k18 + t30;
-  const Real t32 = t31 * t25;
-  const Real t33 = t29 * par.k2;
-  const Real t34 = par.k22 - t33;
-  const Real t35 = t22 * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = c_r_p_1_ * par.k13;
-  const Real t38 = t34 * par.r_F;
-  const Real t39 = t31 * par.c;
-  const Real t40 = t38 - t39;
-  const Real t41 = t37 + t40;
-  const Real t42 = t36 + t41;
-  const Real t43 = s_r_p_1_ * par.k13;
-  const Real t44 = par.k2 * t43;
-  const Real t45 = s_r_p_1_ * par.k1;
-  const Real t46 = par.r_F * t45;
-  const Real t47 = t44 - t46;
-  const Real t48 = t22 * t45;
-  const Real t49 = t47 - t48;
-  const Real t50 = R[6] * R[6];
-  const Real t51 = R[8] * R[8];
-  const Real t52 = t50 + t51;
-  const Real t53 = sqrt(t52);
-  const Real t54 = constant<Real>(2.0L) * t53;
-  const Real t55 = constant<Real>(1.0L) / t53;
-  const Real t56 = R[8] * t55;
-  const Real t57 = t56 * par.r_R;
-  const Real t58 = t57 - par.r_R;
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t25 * t59;
-  const Real t61 = t59 * par.c;
-  const Real t62 = t60 - t61;
-  const Real t63 = par.r_R - t57;
-  const Real t64 = c_r_p_1_ * par.c;
-  const Real t65 = c_r_p_1_ * par.k23;
-  const Real t66 = t65 * par.k1;
-  const Real t67 = t66 + par.k21;
-  const Real t68 = t64 - t67;
-  const Real t69 = t25 * c_r_p_1_;
-  const Real t70 = t68 - t69;
-  const Real t71 = constant<Real>(2.0L) * t19;
-  const Real t72 = t59 * par.r_F;
-  const Real t73 = t22 * t59;
-  const Real t74 = t72 + t73;
-  const Real t75 = t65 * par.k2;
-  const Real t76 = t75 - par.k24;
-  const Real t77 = c_r_p_1_ * par.r_F;
-  const Real t78 = t76 - t77;
-  const Real t79 = t22 * c_r_p_1_;
-  const Real t80 = t78 - t79;
-  const Real t81 = t25 * t45;
-  const Real t82 = t73 - t81;
-  const Real t83 = par.c * t45;
-  const Real t84 = t72 + t83;
-  const Real t85 = s_r_p_1_ * par.k23;
-  const Real t86 = t84 - t85;
-  const Real t87 = t82 + t86;
-  const Real t88 = c_r_p_1_ * par.k2;
-  const Real t89 = par.k2 * t88;
-  const Real t90 = par.k19 + t89;
-  const Real t91 = par.r_F * t90;
-  const Real t92 = par.k1 * t88;
-  const Real t93 = par.k22 - t92;
-  const Real t94 = t93 * par.c;
-  const Real t95 = t91 - t94;
-  const Real t96 = t25 * t93;
-  const Real t97 = t22 * t90;
-  const Real t98 = t96 + t97;
-  const Real t99 = t95 + t98;
-  const Real t100 = t55 * R[6];
-  const Real t101 = t100 * par.r_R;
-  const Real t102 = par.k1 * t43;
-  const Real t103 = t83 - t102;
-  const Real t104 = t103 - t81;
+  const Real t3 = R[8] * par.k1;
 
   // kernel
-  const Real t105 = t45 * t101;
-  const Real t106 = t105 + t104;
-  const Real t107 = c_r_p_1_ * t101;
-  const Real t108 = t42 - t107;
-  const Real t109 = constant<Real>(1.0L) / t108;
-  const Real t110 = t106 * t109;
-  const Real t111 = product_error(t110, t28);
-  const Real t112 = t58 * t90;
-  const Real t113 = t80 - t112;
-  const Real t114 = t34 * t101;
-  const Real t115 = t113 + t114;
-  const Real t116 = t58 * t59;
-  const Real t117 = t116 + t87;
-  const Real t118 = t117 + t105;
-  const Real t119 = t59 * t101;
-  const Real t120 = t49 - t119;
-  const Real t121 = t109 * t120;
-  const Real t122 = t118 * t121;
-  const Real t123 = t115 - t122;
-  const Real t124 = t31 * t101;
-  const Real t125 = t58 * t93;
-  const Real t126 = t70 - t125;
-  const Real t127 = t124 + t126;
-  const Real t128 = t110 * t118;
-  const Real t129 = t127 - t128;
-  const Real t130 = constant<Real>(1.0L) / t129;
-  const Real t131 = t123 * t130;
-  const Real t132 = t111 * t131;
-  const Real t133 = t110 * t28;
-  const Real t134 = t133 * t131;
-  const Real t135 = t28 * t121;
-  const Real t136 = t134 - t135;
-  const Real t137 = -t133;
-  const Real t138 = t59 * t63;
-  const Real t139 = t74 - t138;
-  const Real t140 = c_r_p_1_ * t63;
-  const Real t141 = t99 - t140;
-  const Real t142 = t141 * t121;
-  const Real t143 = t139 - t142;
-  const Real t144 = t63 * t45;
-  const Real t145 = t62 + t144;
-  const Real t146 = t110 * t141;
-  const Real t147 = t145 - t146;
-  const Real t148 = t147 * t131;
-  const Real t149 = t93 * t57;
-  const Real t150 = t124 - t149;
-  const Real t151 = t59 * t57;
-  const Real t152 = t105 + t151;
-  const Real t153 = t110 * t152;
-  const Real t154 = t150 - t153;
-  const Real t155 = product_error(t154, t131);
-  const Real t156 = t25 * t131;
-  const Real t157 = t57 * t90;
-  const Real t158 = t114 - t157;
-  const Real t159 = t152 * t121;
-  const Real t160 = t158 - t159;
-  const Real t161 = t154 * t131;
-  const Real t162 = t160 - t161;
-  const Real t163 = product_error(t28, t121);
-  const Real t164 = product_error(t133, t131);
-  const Real t165 = product_error(t123, t130);
-  const Real t166 = -t159;
-  const Real t167 = sum_error(t158, t166);
-  const Real t168 = product_error(t152, t121);
-  const Real t169 = t167 - t168;
-  const Real t170 = -t122;
-  const Real t171 = sum_error(t115, t170);
-  const Real t172 = product_error(t118, t121);
-  const Real t173 = t171 - t172;
-  const Real t174 = t173 * t130;
-
-  // frame: acceleration
-  const Real t175 = par.g * R[7];
-  const Real t176 = par.g * R[8];
-  const Real t177 = par.g * R[6];
+  const Real t4 = -t3;
 
   // joint angles
-  const Real t178 = R[8] * nu[0];
-  const Real t179 = par.k2 * nu[0];
-  const Real t180 = par.k1 * nu[0];
-  const Real t181 = s_r_p_1_ * nu[1];
-  const Real t182 = t181 * t3;
-  const Real t183 = c_r_p_1_ * nu[1];
-  const Real t184 = t183 * R[7];
-  const Real t185 = nu[0] * R[7];
+  const Real t5 = par.k2 * R[6];
 
-  // rear_wheel: twist
-  const Real t186 = nu[0] * c_r_p_0_;
-  const Real t187 = nu[0] * s_r_p_0_;
+  // kernel
+  const Real t6 = sum_error(t5, t4);
+  const Real t7 = product_error(par.k2, R[6]);
+  const Real t8 = t6 + t7;
+  const Real t9 = t8 * c_r_p_1_;
 
-  // frame: acceleration
-  const Real t188 = nu[0] * nu[0];
+  // joint angles
+  const Real t10 = t5 - t3;
+
+  // kernel
+  const Real t11 = product_error(c_r_p_1_, t10);
+  const Real t12 = t11 + t9;
+
+  // joint angles
+  const Real t13 = c_r_p_1_ * t10;
+  const Real t14 = s_r_p_1_ * R[7];
+
+  // kernel
+  const Real t15 = sum_error(t13, t14);
+  const Real t16 = t15 + t12;
+  const Real t17 = par.k1 * t16;
+
+  // joint angles
+  const Real t18 = t13 + t14;
+
+  // kernel
+  const Real t19 = product_error(par.k1, t18);
+  const Real t20 = t19 + t17;
+
+  // joint angles
+  const Real t21 = par.k1 * R[6];
+  const Real t22 = R[8] * par.k2;
+
+  // kernel
+  const Real t23 = sum_error(t21, t22);
+  const Real t24 = product_error(par.k1, R[6]);
+  const Real t25 = t24 + t23;
+  const Real t26 = par.k2 * t25;
+
+  // joint angles
+  const Real t27 = t21 + t22;
+
+  // kernel
+  const Real t28 = product_error(t27, par.k2);
+  const Real t29 = t28 + t26;
+  const Real t30 = t20 - t29;
+
+  // joint angles
+  const Real t31 = par.k1 * t18;
+  const Real t32 = t27 * par.k2;
+  const Real t33 = t31 - t32;
+
+  // kernel
+  const Real t34 = t33 + t30;
+  const Real t35 = t34 * t34;
+  const Real t36 = par.k2 * t16;
+
+  // joint angles
+  const Real t37 = par.k2 * t18;
+
+  // kernel
+  const Real t38 = t37 + t36;
+  const Real t39 = par.k1 * t25;
+
+  // joint angles
+  const Real t40 = par.k1 * t27;
+
+  // kernel
+  const Real t41 = t39 + t40;
+  const Real t42 = t41 + t38;
+  const Real t43 = t42 * t42;
+  const Real t44 = t35 + t43;
+  const Real t45 = sqrt(t44);
+  const Real t46 = constant<Real>(1.0L) / t45;
+  const Real t47 = t42 * t46;
 
   // passive accelerations
-  const Real t189 = t165 + t174;
-  const Real t190 = t189 * t147;
-  const Real t191 = t190 + t148;
-  const Real t192 = t143 - t191;
-  const Real t193 = t189 * t25;
-  const Real t194 = t156 + t193;
-  const Real t195 = t194 - t22;
-  const Real t196 = constant<Real>(1.0L) / t195;
-  const Real t197 = t192 * t196;
-  const Real t198 = t25 * t197;
-  const Real t199 = t147 + t198;
-  const Real t200 = t199 * t130;
-  const Real t201 = t118 * t200;
-  const Real t202 = t141 - t201;
-  const Real t203 = t109 * t202;
-  const Real t204 = par.k1 * t203;
-  const Real t205 = par.k2 + t204;
-  const Real t206 = s_r_p_1_ * t205;
-  const Real t207 = c_r_p_1_ * t200;
-  const Real t208 = t206 + t207;
-  const Real t209 = t208 + t197;
-  const Real t210 = t209 * par.I_Fyy;
-  const Real t211 = t197 * t210;
-  const Real t212 = par.k3 * t203;
-  const Real t213 = par.k9 - t212;
-  const Real t214 = t101 * t203;
-  const Real t215 = t214 - t63;
-  const Real t216 = t215 * par.k15;
-  const Real t217 = t213 - t216;
-  const Real t218 = par.k2 * t203;
-  const Real t219 = par.k1 - t218;
-  const Real t220 = par.k5 * t219;
-  const Real t221 = c_r_p_1_ * t205;
-  const Real t222 = s_r_p_1_ * t200;
-  const Real t223 = t221 - t222;
-  const Real t224 = t223 * par.k17;
-  const Real t225 = t220 + t224;
-  const Real t226 = par.k13 * t203;
-  const Real t227 = t215 - t226;
-  const Real t228 = c_r_p_1_ * t227;
-  const Real t229 = t58 * t200;
-  const Real t230 = par.k2 * t229;
-  const Real t231 = t200 * par.k13;
-  const Real t232 = t200 * t101;
-  const Real t233 = t231 - t232;
-  const Real t234 = t233 * par.k1;
-  const Real t235 = t230 - t234;
-  const Real t236 = s_r_p_1_ * t235;
-  const Real t237 = t228 - t236;
-  const Real t238 = par.k8 * t237;
-  const Real t239 = t225 - t238;
-  const Real t240 = par.k12 * t219;
-  const Real t241 = t222 - t221;
-  const Real t242 = par.k11 * t241;
-  const Real t243 = t240 - t242;
-  const Real t244 = t243 + t237;
-  const Real t245 = par.m_F * t244;
-  const Real t246 = t245 * par.k11;
-  const Real t247 = par.k2 * t219;
-  const Real t248 = par.k1 * t223;
-  const Real t249 = t247 - t248;
-  const Real t250 = c_r_p_2_ * t249;
-  const Real t251 = par.k1 * t219;
-  const Real t252 = par.k2 * t223;
-  const Real t253 = t251 + t252;
-  const Real t254 = t253 * s_r_p_2_;
-  const Real t255 = t250 + t254;
-  const Real t256 = par.I_Fxx * t255;
-  const Real t257 = t256 * s_r_p_2_;
-  const Real t258 = t253 * c_r_p_2_;
-  const Real t259 = t249 * s_r_p_2_;
-  const Real t260 = t258 - t259;
-  const Real t261 = par.I_Fxx * t260;
-  const Real t262 = c_r_p_2_ * t261;
-  const Real t263 = t257 + t262;
-  const Real t264 = t263 * par.k2;
-  const Real t265 = t256 * c_r_p_2_;
-  const Real t266 = t261 * s_r_p_2_;
-  const Real t267 = t265 - t266;
-  const Real t268 = par.k1 * t267;
-  const Real t269 = t264 - t268;
-  const Real t270 = t246 + t269;
-  const Real t271 = t239 + t270;
-  const Real t272 = c_r_p_1_ * t271;
-  const Real t273 = c_r_p_1_ * t235;
-  const Real t274 = s_r_p_1_ * t227;
-  const Real t275 = t273 + t274;
-  const Real t276 = par.k8 * t275;
-  const Real t277 = t233 * par.k2;
-  const Real t278 = par.k1 * t229;
-  const Real t279 = t277 + t278;
-  const Real t280 = par.k10 * t279;
-  const Real t281 = t276 - t280;
-  const Real t282 = t208 * par.k7;
-  const Real t283 = t281 - t282;
-  const Real t284 = t208 * par.k11;
-  const Real t285 = t284 + t275;
-  const Real t286 = par.k2 * t285;
-  const Real t287 = t208 * par.k12;
-  const Real t288 = t287 + t279;
-  const Real t289 = par.k1 * t288;
-  const Real t290 = t286 + t289;
-  const Real t291 = c_r_p_2_ * t290;
-  const Real t292 = par.k2 * t288;
-  const Real t293 = par.k1 * t285;
-  const Real t294 = t292 - t293;
-  const Real t295 = t294 * s_r_p_2_;
-  const Real t296 = t291 - t295;
-  const Real t297 = t296 * par.m_F;
-  const Real t298 = c_r_p_2_ * t297;
-  const Real t299 = t290 * s_r_p_2_;
-  const Real t300 = t294 * c_r_p_2_;
-  const Real t301 = t299 + t300;
-  const Real t302 = par.m_F * t301;
-  const Real t303 = t302 * s_r_p_2_;
-  const Real t304 = t298 + t303;
-  const Real t305 = t304 * par.k2;
-  const Real t306 = t302 * c_r_p_2_;
-  const Real t307 = t297 * s_r_p_2_;
-  const Real t308 = t306 - t307;
-  const Real t309 = par.k1 * t308;
-  const Real t310 = t305 - t309;
-  const Real t311 = t310 * par.k11;
-  const Real t312 = par.k2 * t308;
-  const Real t313 = par.k1 * t304;
-  const Real t314 = t312 + t313;
-  const Real t315 = t314 * par.k12;
-  const Real t316 = t311 + t315;
-  const Real t317 = t316 + t210;
-  const Real t318 = t283 - t317;
-  const Real t319 = t318 * s_r_p_1_;
-  const Real t320 = t272 - t319;
-  const Real t321 = par.k2 * t320;
-  const Real t322 = t245 * par.k12;
-  const Real t323 = t267 * par.k2;
-  const Real t324 = t263 * par.k1;
-  const Real t325 = t323 + t324;
-  const Real t326 = t322 + t325;
-  const Real t327 = par.k6 * t219;
-  const Real t328 = par.k5 * t241;
-  const Real t329 = t327 - t328;
-  const Real t330 = par.k10 * t237;
-  const Real t331 = t329 + t330;
-  const Real t332 = t326 + t331;
-  const Real t333 = par.k1 * t332;
-  const Real t334 = t321 + t333;
-  const Real t335 = t217 + t334;
-  const Real t336 = s_r_p_0_ * t203;
-  const Real t337 = t336 + c_r_p_0_;
-  const Real t338 = par.I_Rxx * t337;
-  const Real t339 = c_r_p_0_ * t338;
-  const Real t340 = c_r_p_0_ * t203;
-  const Real t341 = s_r_p_0_ - t340;
-  const Real t342 = par.I_Rxx * t341;
-  const Real t343 = t342 * s_r_p_0_;
-  const Real t344 = t339 + t343;
-  const Real t345 = t215 + par.r_R;
-  const Real t346 = par.m_R * t345;
-  const Real t347 = t346 * par.r_R;
-  const Real t348 = t344 + t347;
-  const Real t349 = t335 + t348;
-  const Real t350 = par.m_H * t275;
-  const Real t351 = t208 * par.k8;
-  const Real t352 = t350 - t351;
-  const Real t353 = t352 + t310;
-  const Real t354 = s_r_p_1_ * t353;
-  const Real t355 = par.m_H * t237;
-  const Real t356 = par.k8 * t241;
-  const Real t357 = par.k10 * t219;
-  const Real t358 = t356 + t357;
-  const Real t359 = t355 + t358;
-  const Real t360 = t359 + t245;
-  const Real t361 = t360 * c_r_p_1_;
-  const Real t362 = t354 + t361;
-  const Real t363 = t215 * par.m_B;
-  const Real t364 = par.k16 * t203;
-  const Real t365 = t364 + par.k15;
-  const Real t366 = t363 - t365;
-  const Real t367 = t362 + t366;
-  const Real t368 = t367 + t346;
-  const Real t369 = t215 * t368;
-  const Real t370 = t200 * par.r_R;
-  const Real t371 = t370 + t229;
-  const Real t372 = t371 * s_r_p_0_;
-  const Real t373 = t232 * c_r_p_0_;
-  const Real t374 = t372 - t373;
-  const Real t375 = par.m_R * t374;
-  const Real t376 = t375 * s_r_p_0_;
-  const Real t377 = t371 * c_r_p_0_;
-  const Real t378 = t232 * s_r_p_0_;
-  const Real t379 = t377 + t378;
-  const Real t380 = t379 * par.m_R;
-  const Real t381 = t380 * c_r_p_0_;
-  const Real t382 = t376 + t381;
-  const Real t383 = par.m_H * t279;
-  const Real t384 = t208 * par.k10;
-  const Real t385 = t383 + t384;
-  const Real t386 = t314 + t385;
-  const Real t387 = par.k1 * t386;
-  const Real t388 = c_r_p_1_ * t353;
-  const Real t389 = t360 * s_r_p_1_;
-  const Real t390 = t388 - t389;
-  const Real t391 = t390 * par.k2;
-  const Real t392 = t387 + t391;
-  const Real t393 = par.m_B * t229;
-  const Real t394 = t200 * par.k15;
-  const Real t395 = t393 - t394;
-  const Real t396 = t392 + t395;
-  const Real t397 = t382 + t396;
-  const Real t398 = t397 * t229;
-  const Real t399 = t369 + t398;
-  const Real t400 = t200 * par.k16;
-  const Real t401 = t232 * par.m_B;
-  const Real t402 = t400 - t401;
-  const Real t403 = par.k2 * t386;
-  const Real t404 = par.k1 * t390;
-  const Real t405 = t403 - t404;
-  const Real t406 = t402 + t405;
-  const Real t407 = t375 * c_r_p_0_;
-  const Real t408 = t380 * s_r_p_0_;
-  const Real t409 = t407 - t408;
-  const Real t410 = t406 + t409;
-  const Real t411 = t232 * t410;
-  const Real t412 = t399 - t411;
-  const Real t413 = t349 + t412;
-  const Real t414 = t318 * c_r_p_1_;
-  const Real t415 = s_r_p_1_ * t271;
-  const Real t416 = t414 + t415;
-  const Real t417 = par.k13 * t405;
-  const Real t418 = t416 - t417;
-  const Real t419 = par.k15 * t229;
-  const Real t420 = t232 * par.k16;
-  const Real t421 = t419 + t420;
-  const Real t422 = par.k4 * t200;
-  const Real t423 = t421 - t422;
-  const Real t424 = t418 + t423;
-  const Real t425 = par.r_R * t382;
-  const Real t426 = par.I_Ryy * t200;
-  const Real t427 = t425 + t426;
-  const Real t428 = t424 - t427;
-  const Real t429 = t428 * t200;
-  const Real t430 = t413 - t429;
-  const Real t431 = t362 * par.k13;
-  const Real t432 = t332 * par.k2;
-  const Real t433 = par.k1 * t320;
-  const Real t434 = t432 - t433;
-  const Real t435 = t431 + t434;
-  const Real t436 = t215 * par.k16;
-  const Real t437 = par.k14 * t203;
-  const Real t438 = par.k41 + t437;
-  const Real t439 = t436 - t438;
-  const Real t440 = t435 + t439;
-  const Real t441 = t342 * c_r_p_0_;
-  const Real t442 = s_r_p_0_ * t338;
-  const Real t443 = t441 - t442;
-  const Real t444 = t440 + t443;
-  const Real t445 = t444 * t203;
-  const Real t446 = t430 - t445;
-  const Real t447 = t211 + t446;
-  const Real t448 = t189 * t133;
-  const Real t449 = t132 + t448;
-  const Real t450 = t449 + t164;
-  const Real t451 = t450 - t163;
-  const Real t452 = t451 + t136;
-  const Real t453 = t452 * t196;
-  const Real t454 = t25 * t453;
-  const Real t455 = t454 - t133;
-  const Real t456 = t455 * t130;
-  const Real t457 = t456 * t118;
-  const Real t458 = t28 - t457;
-  const Real t459 = product_error(t456, t118);
-  const Real t460 = sum_error(t454, t137);
-  const Real t461 = t460 - t111;
-  const Real t462 = t461 * t130;
-  const Real t463 = product_error(t455, t130);
-  const Real t464 = t462 + t463;
-  const Real t465 = t464 * t118;
-  const Real t466 = t459 + t465;
-  const Real t467 = t458 - t466;
-  const Real t468 = t109 * t467;
-  const Real t469 = par.k1 * t468;
-  const Real t470 = s_r_p_1_ * t469;
-  const Real t471 = t456 * c_r_p_1_;
-  const Real t472 = t464 * c_r_p_1_;
-  const Real t473 = t471 + t472;
-  const Real t474 = t470 + t473;
-  const Real t475 = t474 + t453;
-  const Real t476 = par.I_Fyy * t475;
-  const Real t477 = t189 * t154;
-  const Real t478 = t477 + t155;
-  const Real t479 = t169 - t478;
-  const Real t480 = t162 + t479;
-  const Real t481 = t480 * t196;
-  const Real t482 = t476 * t481;
-  const Real t483 = t25 * t481;
-  const Real t484 = t154 + t483;
-  const Real t485 = t484 * t130;
-  const Real t486 = t485 * t101;
-  const Real t487 = sum_error(t154, t483);
-  const Real t488 = t487 * t130;
-  const Real t489 = product_error(t484, t130);
-  const Real t490 = t488 + t489;
-  const Real t491 = t490 * t101;
-  const Real t492 = t486 + t491;
-  const Real t493 = t101 - t492;
-  const Real t494 = t456 * par.r_R;
-  const Real t495 = t464 * par.r_R;
-  const Real t496 = t494 + t495;
-  const Real t497 = t58 * t464;
-  const Real t498 = t456 * t58;
-  const Real t499 = t497 + t498;
-  const Real t500 = t496 + t499;
-  const Real t501 = t500 * s_r_p_0_;
-  const Real t502 = t464 * t101;
-  const Real t503 = t456 * t101;
-  const Real t504 = t502 + t503;
-  const Real t505 = t504 * c_r_p_0_;
-  const Real t506 = t501 - t505;
-  const Real t507 = t506 * par.m_R;
-  const Real t508 = t507 * c_r_p_0_;
-  const Real t509 = t500 * c_r_p_0_;
-  const Real t510 = t504 * s_r_p_0_;
-  const Real t511 = t509 + t510;
-  const Real t512 = t511 * par.m_R;
-  const Real t513 = t512 * s_r_p_0_;
-  const Real t514 = t508 - t513;
-  const Real t515 = t474 * par.k12;
-  const Real t516 = t456 * par.k13;
-  const Real t517 = t464 * par.k13;
-  const Real t518 = t516 + t517;
-  const Real t519 = t518 - t504;
-  const Real t520 = par.k2 * t519;
-  const Real t521 = par.k1 * t499;
-  const Real t522 = t520 + t521;
-  const Real t523 = t515 + t522;
-  const Real t524 = par.k1 * t523;
-  const Real t525 = t474 * par.k11;
-  const Real t526 = t499 * par.k2;
-  const Real t527 = par.k1 * t519;
-  const Real t528 = t526 - t527;
-  const Real t529 = c_r_p_1_ * t528;
-  const Real t530 = t468 * t101;
-  const Real t531 = t468 * par.k13;
-  const Real t532 = t530 - t531;
-  const Real t533 = s_r_p_1_ * t532;
-  const Real t534 = t529 + t533;
-  const Real t535 = t525 + t534;
-  const Real t536 = t535 * par.k2;
-  const Real t537 = t524 + t536;
-  const Real t538 = c_r_p_2_ * t537;
-  const Real t539 = par.k2 * t523;
-  const Real t540 = par.k1 * t535;
-  const Real t541 = t539 - t540;
-  const Real t542 = t541 * s_r_p_2_;
-  const Real t543 = t538 - t542;
-  const Real t544 = t543 * par.m_F;
-  const Real t545 = c_r_p_2_ * t544;
-  const Real t546 = s_r_p_2_ * t537;
-  const Real t547 = c_r_p_2_ * t541;
-  const Real t548 = t546 + t547;
-  const Real t549 = t548 * par.m_F;
-  const Real t550 = s_r_p_2_ * t549;
-  const Real t551 = t545 + t550;
-  const Real t552 = par.k1 * t551;
-  const Real t553 = c_r_p_2_ * t549;
-  const Real t554 = t544 * s_r_p_2_;
-  const Real t555 = t553 - t554;
-  const Real t556 = t555 * par.k2;
-  const Real t557 = t552 + t556;
-  const Real t558 = par.m_H * t522;
-  const Real t559 = t474 * par.k10;
-  const Real t560 = t558 + t559;
-  const Real t561 = t557 + t560;
-  const Real t562 = par.k2 * t561;
-  const Real t563 = t534 * par.m_H;
-  const Real t564 = t474 * par.k8;
-  const Real t565 = t563 - t564;
-  const Real t566 = par.k2 * t551;
-  const Real t567 = par.k1 * t555;
-  const Real t568 = t566 - t567;
-  const Real t569 = t565 + t568;
-  const Real t570 = c_r_p_1_ * t569;
-  const Real t571 = t468 * par.k2;
-  const Real t572 = constant<Real>(1.0L) - t571;
-  const Real t573 = par.k12 * t572;
-  const Real t574 = s_r_p_1_ * t456;
-  const Real t575 = s_r_p_1_ * t464;
-  const Real t576 = t574 + t575;
-  const Real t577 = c_r_p_1_ * t469;
-  const Real t578 = t576 - t577;
-  const Real t579 = par.k11 * t578;
-  const Real t580 = t573 - t579;
-  const Real t581 = c_r_p_1_ * t532;
-  const Real t582 = s_r_p_1_ * t528;
-  const Real t583 = t581 - t582;
-  const Real t584 = t580 + t583;
-  const Real t585 = par.m_F * t584;
-  const Real t586 = t583 * par.m_H;
-  const Real t587 = par.k10 * t572;
-  const Real t588 = par.k8 * t578;
-  const Real t589 = t587 + t588;
-  const Real t590 = t586 + t589;
-  const Real t591 = t585 + t590;
-  const Real t592 = s_r_p_1_ * t591;
-  const Real t593 = t570 - t592;
-  const Real t594 = par.k1 * t593;
-  const Real t595 = t562 - t594;
-  const Real t596 = t464 * par.k16;
-  const Real t597 = t456 * par.k16;
-  const Real t598 = t596 + t597;
-  const Real t599 = t504 * par.m_B;
-  const Real t600 = t598 - t599;
-  const Real t601 = t595 + t600;
-  const Real t602 = t514 + t601;
-  const Real t603 = t493 * t602;
-  const Real t604 = par.m_R * t530;
-  const Real t605 = s_r_p_1_ * t569;
-  const Real t606 = t591 * c_r_p_1_;
-  const Real t607 = t605 + t606;
-  const Real t608 = par.m_B * t530;
-  const Real t609 = t468 * par.k16;
-  const Real t610 = t608 - t609;
-  const Real t611 = t607 + t610;
-  const Real t612 = t604 + t611;
-  const Real t613 = t485 * t118;
-  const Real t614 = t152 - t613;
-  const Real t615 = product_error(t485, t118);
-  const Real t616 = t118 * t490;
-  const Real t617 = t615 + t616;
-  const Real t618 = t614 - t617;
-  const Real t619 = t618 * t109;
-  const Real t620 = t619 * t101;
-  const Real t621 = t612 * t620;
-  const Real t622 = t485 * t58;
-  const Real t623 = t58 * t490;
-  const Real t624 = t622 + t623;
-  const Real t625 = t624 - t57;
-  const Real t626 = t507 * s_r_p_0_;
-  const Real t627 = t512 * c_r_p_0_;
-  const Real t628 = t626 + t627;
-  const Real t629 = t499 * par.m_B;
-  const Real t630 = t456 * par.k15;
-  const Real t631 = t464 * par.k15;
-  const Real t632 = t630 + t631;
-  const Real t633 = t629 - t632;
-  const Real t634 = t593 * par.k2;
-  const Real t635 = par.k1 * t561;
-  const Real t636 = t634 + t635;
-  const Real t637 = t633 + t636;
-  const Real t638 = t628 + t637;
-  const Real t639 = t625 * t638;
-  const Real t640 = t621 + t639;
-  const Real t641 = t603 + t640;
-  const Real t642 = t504 * par.k16;
-  const Real t643 = t499 * par.k15;
-  const Real t644 = t642 + t643;
-  const Real t645 = par.k4 * t456;
-  const Real t646 = par.k4 * t464;
-  const Real t647 = t645 + t646;
-  const Real t648 = t644 - t647;
-  const Real t649 = par.k8 * t534;
-  const Real t650 = par.k10 * t522;
-  const Real t651 = t649 - t650;
-  const Real t652 = t474 * par.k7;
-  const Real t653 = t651 - t652;
-  const Real t654 = t557 * par.k12;
-  const Real t655 = t568 * par.k11;
-  const Real t656 = t654 + t655;
-  const Real t657 = t476 + t656;
-  const Real t658 = t653 - t657;
-  const Real t659 = t658 * c_r_p_1_;
-  const Real t660 = t577 - t576;
-  const Real t661 = t660 * par.k17;
-  const Real t662 = par.k5 * t572;
-  const Real t663 = t661 + t662;
-  const Real t664 = par.k8 * t583;
-  const Real t665 = t663 - t664;
-  const Real t666 = t585 * par.k11;
-  const Real t667 = par.k2 * t660;
-  const Real t668 = par.k1 * t572;
-  const Real t669 = t667 + t668;
-  const Real t670 = t669 * s_r_p_2_;
-  const Real t671 = par.k2 * t572;
-  const Real t672 = par.k1 * t660;
-  const Real t673 = t671 - t672;
-  const Real t674 = t673 * c_r_p_2_;
-  const Real t675 = t670 + t674;
-  const Real t676 = par.I_Fxx * t675;
-  const Real t677 = t676 * s_r_p_2_;
-  const Real t678 = t669 * c_r_p_2_;
-  const Real t679 = t673 * s_r_p_2_;
-  const Real t680 = t678 - t679;
-  const Real t681 = par.I_Fxx * t680;
-  const Real t682 = t681 * c_r_p_2_;
-  const Real t683 = t677 + t682;
-  const Real t684 = t683 * par.k2;
-  const Real t685 = c_r_p_2_ * t676;
-  const Real t686 = t681 * s_r_p_2_;
-  const Real t687 = t685 - t686;
-  const Real t688 = t687 * par.k1;
-  const Real t689 = t684 - t688;
-  const Real t690 = t666 + t689;
-  const Real t691 = t665 + t690;
-  const Real t692 = s_r_p_1_ * t691;
-  const Real t693 = t659 + t692;
-  const Real t694 = t595 * par.k13;
-  const Real t695 = t693 - t694;
-  const Real t696 = t648 + t695;
-  const Real t697 = t628 * par.r_R;
-  const Real t698 = t456 * par.I_Ryy;
-  const Real t699 = par.I_Ryy * t464;
-  const Real t700 = t698 + t699;
-  const Real t701 = t697 + t700;
-  const Real t702 = t696 - t701;
-  const Real t703 = t485 * t702;
-  const Real t704 = t702 * t490;
-  const Real t705 = t703 + t704;
-  const Real t706 = t641 - t705;
-  const Real t707 = par.k16 * t530;
-  const Real t708 = t468 * par.k14;
-  const Real t709 = t707 - t708;
-  const Real t710 = par.k1 * t683;
-  const Real t711 = t687 * par.k2;
-  const Real t712 = t710 + t711;
-  const Real t713 = t585 * par.k12;
-  const Real t714 = t712 + t713;
-  const Real t715 = par.k6 * t572;
-  const Real t716 = par.k5 * t578;
-  const Real t717 = t715 - t716;
-  const Real t718 = t583 * par.k10;
-  const Real t719 = t717 + t718;
-  const Real t720 = t714 + t719;
-  const Real t721 = t720 * par.k2;
-  const Real t722 = c_r_p_1_ * t691;
-  const Real t723 = s_r_p_1_ * t658;
-  const Real t724 = t722 - t723;
-  const Real t725 = par.k1 * t724;
-  const Real t726 = t721 - t725;
-  const Real t727 = t607 * par.k13;
-  const Real t728 = t726 + t727;
-  const Real t729 = t709 + t728;
-  const Real t730 = t468 * s_r_p_0_;
-  const Real t731 = par.I_Rxx * t730;
-  const Real t732 = t731 * s_r_p_0_;
-  const Real t733 = t468 * c_r_p_0_;
-  const Real t734 = t733 * par.I_Rxx;
-  const Real t735 = t734 * c_r_p_0_;
-  const Real t736 = t732 + t735;
-  const Real t737 = t729 - t736;
-  const Real t738 = t619 * t737;
-  const Real t739 = t706 - t738;
-  const Real t740 = t739 - t700;
-  const Real t741 = t482 + t740;
-  const Real t742 = par.k1 * t619;
-  const Real t743 = s_r_p_1_ * t742;
-  const Real t744 = c_r_p_1_ * t490;
-  const Real t745 = t485 * c_r_p_1_;
-  const Real t746 = t744 + t745;
-  const Real t747 = t743 + t746;
-  const Real t748 = t481 + t747;
-  const Real t749 = par.I_Fyy * t748;
-  const Real t750 = t481 * t749;
-  const Real t751 = t485 * par.r_R;
-  const Real t752 = t490 * par.r_R;
-  const Real t753 = t751 + t752;
-  const Real t754 = t625 + t753;
-  const Real t755 = t754 * s_r_p_0_;
-  const Real t756 = t493 * c_r_p_0_;
-  const Real t757 = t755 + t756;
-  const Real t758 = t757 * par.m_R;
-  const Real t759 = t758 * s_r_p_0_;
-  const Real t760 = t754 * c_r_p_0_;
-  const Real t761 = t493 * s_r_p_0_;
-  const Real t762 = t760 - t761;
-  const Real t763 = par.m_R * t762;
-  const Real t764 = c_r_p_0_ * t763;
-  const Real t765 = t759 + t764;
-  const Real t766 = t625 * par.m_B;
-  const Real t767 = t485 * par.k15;
-  const Real t768 = t490 * par.k15;
-  const Real t769 = t767 + t768;
-  const Real t770 = t766 - t769;
-  const Real t771 = t625 * par.k2;
-  const Real t772 = t490 * par.k13;
-  const Real t773 = t485 * par.k13;
-  const Real t774 = t772 + t773;
-  const Real t775 = t493 + t774;
-  const Real t776 = t775 * par.k1;
-  const Real t777 = t771 - t776;
-  const Real t778 = c_r_p_1_ * t777;
-  const Real t779 = t619 * par.k13;
-  const Real t780 = t620 - t779;
-  const Real t781 = s_r_p_1_ * t780;
-  const Real t782 = t778 + t781;
-  const Real t783 = t747 * par.k11;
-  const Real t784 = t782 + t783;
-  const Real t785 = par.k2 * t784;
-  const Real t786 = t747 * par.k12;
-  const Real t787 = t625 * par.k1;
-  const Real t788 = t775 * par.k2;
-  const Real t789 = t787 + t788;
-  const Real t790 = t786 + t789;
-  const Real t791 = par.k1 * t790;
-  const Real t792 = t785 + t791;
-  const Real t793 = t792 * c_r_p_2_;
-  const Real t794 = par.k2 * t790;
-  const Real t795 = par.k1 * t784;
-  const Real t796 = t794 - t795;
-  const Real t797 = t796 * s_r_p_2_;
-  const Real t798 = t793 - t797;
-  const Real t799 = t798 * par.m_F;
-  const Real t800 = c_r_p_2_ * t799;
-  const Real t801 = c_r_p_2_ * t796;
-  const Real t802 = t792 * s_r_p_2_;
-  const Real t803 = t801 + t802;
-  const Real t804 = t803 * par.m_F;
-  const Real t805 = t804 * s_r_p_2_;
-  const Real t806 = t800 + t805;
-  const Real t807 = t806 * par.k2;
-  const Real t808 = t804 * c_r_p_2_;
-  const Real t809 = t799 * s_r_p_2_;
-  const Real t810 = t808 - t809;
-  const Real t811 = par.k1 * t810;
-  const Real t812 = t807 - t811;
-  const Real t813 = t782 * par.m_H;
-  const Real t814 = par.k8 * t747;
-  const Real t815 = t813 - t814;
-  const Real t816 = t812 + t815;
-  const Real t817 = t816 * c_r_p_1_;
-  const Real t818 = s_r_p_1_ * t490;
-  const Real t819 = s_r_p_1_ * t485;
-  const Real t820 = t818 + t819;
-  const Real t821 = t742 * c_r_p_1_;
-  const Real t822 = t820 - t821;
-  const Real t823 = par.k8 * t822;
-  const Real t824 = t619 * par.k2;
-  const Real t825 = par.k10 * t824;
-  const Real t826 = t823 - t825;
-  const Real t827 = c_r_p_1_ * t780;
-  const Real t828 = s_r_p_1_ * t777;
-  const Real t829 = t827 - t828;
-  const Real t830 = par.m_H * t829;
-  const Real t831 = t826 + t830;
-  const Real t832 = par.k12 * t824;
-  const Real t833 = par.k11 * t822;
-  const Real t834 = t832 + t833;
-  const Real t835 = t829 - t834;
-  const Real t836 = par.m_F * t835;
-  const Real t837 = t831 + t836;
-  const Real t838 = s_r_p_1_ * t837;
-  const Real t839 = t817 - t838;
-  const Real t840 = par.k2 * t839;
-  const Real t841 = par.k1 * t806;
-  const Real t842 = t810 * par.k2;
-  const Real t843 = t841 + t842;
-  const Real t844 = par.k10 * t747;
-  const Real t845 = par.m_H * t789;
-  const Real t846 = t844 + t845;
-  const Real t847 = t843 + t846;
-  const Real t848 = par.k1 * t847;
-  const Real t849 = t840 + t848;
-  const Real t850 = t770 + t849;
-  const Real t851 = t765 + t850;
-  const Real t852 = t625 * t851;
-  const Real t853 = par.m_R * t620;
-  const Real t854 = c_r_p_1_ * t837;
-  const Real t855 = s_r_p_1_ * t816;
-  const Real t856 = t854 + t855;
-  const Real t857 = t620 * par.m_B;
-  const Real t858 = t619 * par.k16;
-  const Real t859 = t857 - t858;
-  const Real t860 = t856 + t859;
-  const Real t861 = t853 + t860;
-  const Real t862 = t620 * t861;
-  const Real t863 = t852 + t862;
-  const Real t864 = t493 * par.m_B;
-  const Real t865 = t490 * par.k16;
-  const Real t866 = t485 * par.k16;
-  const Real t867 = t865 + t866;
-  const Real t868 = t864 + t867;
-  const Real t869 = t847 * par.k2;
-  const Real t870 = par.k1 * t839;
-  const Real t871 = t869 - t870;
-  const Real t872 = t868 + t871;
-  const Real t873 = t758 * c_r_p_0_;
-  const Real t874 = s_r_p_0_ * t763;
-  const Real t875 = t873 - t874;
-  const Real t876 = t872 + t875;
-  const Real t877 = t493 * t876;
-  const Real t878 = t863 + t877;
-  const Real t879 = constant<Real>(1.0L) - t485;
-  const Real t880 = t879 - t490;
-  const Real t881 = t880 * par.I_Ryy;
-  const Real t882 = t765 * par.r_R;
-  const Real t883 = t881 - t882;
-  const Real t884 = t625 * par.k15;
-  const Real t885 = t493 * par.k16;
-  const Real t886 = t884 - t885;
-  const Real t887 = par.k4 * t490;
-  const Real t888 = par.k4 * t485;
-  const Real t889 = t887 + t888;
-  const Real t890 = t886 - t889;
-  const Real t891 = t821 - t820;
-  const Real t892 = par.k2 * t891;
-  const Real t893 = par.k1 * t824;
-  const Real t894 = t892 - t893;
-  const Real t895 = t894 * c_r_p_2_;
-  const Real t896 = par.k2 * t824;
-  const Real t897 = par.k1 * t891;
-  const Real t898 = t896 + t897;
-  const Real t899 = t898 * s_r_p_2_;
-  const Real t900 = t895 + t899;
-  const Real t901 = par.I_Fxx * t900;
-  const Real t902 = c_r_p_2_ * t901;
-  const Real t903 = t894 * s_r_p_2_;
-  const Real t904 = t898 * c_r_p_2_;
-  const Real t905 = t903 - t904;
-  const Real t906 = par.I_Fxx * t905;
-  const Real t907 = t906 * s_r_p_2_;
-  const Real t908 = t902 + t907;
-  const Real t909 = t908 * par.k2;
-  const Real t910 = c_r_p_2_ * t906;
-  const Real t911 = t901 * s_r_p_2_;
-  const Real t912 = t910 - t911;
-  const Real t913 = t912 * par.k1;
-  const Real t914 = t909 - t913;
-  const Real t915 = t836 * par.k11;
-  const Real t916 = t914 + t915;
-  const Real t917 = t891 * par.k17;
-  const Real t918 = par.k5 * t824;
-  const Real t919 = t917 - t918;
-  const Real t920 = par.k8 * t829;
-  const Real t921 = t919 - t920;
-  const Real t922 = t916 + t921;
-  const Real t923 = s_r_p_1_ * t922;
-  const Real t924 = t782 * par.k8;
-  const Real t925 = par.k10 * t789;
-  const Real t926 = t924 - t925;
-  const Real t927 = par.k7 * t747;
-  const Real t928 = t926 - t927;
-  const Real t929 = t843 * par.k12;
-  const Real t930 = t812 * par.k11;
-  const Real t931 = t929 + t930;
-  const Real t932 = t931 + t749;
-  const Real t933 = t928 - t932;
-  const Real t934 = t933 * c_r_p_1_;
-  const Real t935 = t923 + t934;
-  const Real t936 = par.k13 * t871;
-  const Real t937 = t935 - t936;
-  const Real t938 = t890 + t937;
-  const Real t939 = t883 + t938;
-  const Real t940 = t939 * t490;
-  const Real t941 = t485 * t939;
-  const Real t942 = t940 + t941;
-  const Real t943 = t878 - t942;
-  const Real t944 = t836 * par.k12;
-  const Real t945 = t912 * par.k2;
-  const Real t946 = par.k1 * t908;
-  const Real t947 = t945 + t946;
-  const Real t948 = t944 + t947;
-  const Real t949 = par.k10 * t829;
-  const Real t950 = par.k6 * t824;
-  const Real t951 = par.k5 * t822;
-  const Real t952 = t950 + t951;
-  const Real t953 = t949 - t952;
-  const Real t954 = t948 + t953;
-  const Real t955 = par.k2 * t954;
-  const Real t956 = c_r_p_1_ * t922;
-  const Real t957 = s_r_p_1_ * t933;
-  const Real t958 = t956 - t957;
-  const Real t959 = par.k1 * t958;
-  const Real t960 = t955 - t959;
-  const Real t961 = t856 * par.k13;
-  const Real t962 = t960 + t961;
-  const Real t963 = par.k16 * t620;
-  const Real t964 = t619 * par.k14;
-  const Real t965 = t963 - t964;
-  const Real t966 = t962 + t965;
-  const Real t967 = t619 * c_r_p_0_;
-  const Real t968 = t967 * par.I_Rxx;
-  const Real t969 = t968 * c_r_p_0_;
-  const Real t970 = t619 * s_r_p_0_;
-  const Real t971 = par.I_Rxx * t970;
-  const Real t972 = t971 * s_r_p_0_;
-  const Real t973 = t969 + t972;
-  const Real t974 = t966 - t973;
-  const Real t975 = t619 * t974;
-  const Real t976 = t943 - t975;
-  const Real t977 = t976 + t881;
-  const Real t978 = t750 + t977;
-  const Real t979 = t476 * t453;
-  const Real t980 = t638 * t499;
-  const Real t981 = t612 * t530;
-  const Real t982 = t980 + t981;
-  const Real t983 = t602 * t504;
-  const Real t984 = t982 - t983;
-  const Real t985 = t456 * t702;
-  const Real t986 = t464 * t702;
-  const Real t987 = t985 + t986;
-  const Real t988 = t984 - t987;
-  const Real t989 = t468 * t737;
-  const Real t990 = t988 - t989;
-  const Real t991 = t990 + t720;
-  const Real t992 = t979 + t991;
-  const Real t993 = t625 * t397;
-  const Real t994 = t368 * t620;
-  const Real t995 = t993 + t994;
-  const Real t996 = t493 * t410;
-  const Real t997 = t995 + t996;
-  const Real t998 = t428 * t490;
-  const Real t999 = t485 * t428;
-  const Real t1000 = t998 + t999;
-  const Real t1001 = t997 - t1000;
-  const Real t1002 = t619 * t444;
-  const Real t1003 = t1001 - t1002;
-  const Real t1004 = t1003 - t426;
-  const Real t1005 = t481 * t210;
-  const Real t1006 = t1004 + t1005;
-  const Real t1007 = t468 * nu[1];
-  const Real t1008 = nu[0] * t203;
-  const Real t1009 = t1007 + t1008;
-  const Real t1010 = t619 * nu[2];
-  const Real t1011 = t1009 + t1010;
-  const Real t1012 = s_r_p_0_ * t1011;
-  const Real t1013 = t186 + t1012;
-  const Real t1014 = t1013 * nu[2];
-  const Real t1015 = t200 * nu[0];
-  const Real t1016 = t456 * nu[1];
-  const Real t1017 = t464 * nu[1];
-  const Real t1018 = t1016 + t1017;
-  const Real t1019 = t1015 + t1018;
-  const Real t1020 = t490 * nu[2];
-  const Real t1021 = t485 * nu[2];
-  const Real t1022 = t1020 + t1021;
-  const Real t1023 = t1019 + t1022;
-  const Real t1024 = t1023 * R[6];
-  const Real t1025 = t185 + t1024;
-  const Real t1026 = t1025 * t55;
-  const Real t1027 = R[8] * t1023;
-  const Real t1028 = R[7] * t1011;
-  const Real t1029 = t1027 - t1028;
-  const Real t1030 = R[6] * t1029;
-  const Real t1031 = t1030 * constant<Real>(2.0L);
-  const Real t1032 = t1025 * R[8];
-  const Real t1033 = t1032 * constant<Real>(2.0L);
-  const Real t1034 = t1031 - t1033;
-  const Real t1035 = t1034 / t54;
-  const Real t1036 = t1035 * t55;
-  const Real t1037 = t1036 / t53;
-  const Real t1038 = R[8] * t1037;
-  const Real t1039 = t1026 + t1038;
-  const Real t1040 = t1039 * par.r_R;
-  const Real t1041 = nu[2] - t1023;
-  const Real t1042 = t1040 * t1041;
-  const Real t1043 = t1042 * t59;
-  const Real t1044 = par.k1 * t1011;
-  const Real t1045 = t179 + t1044;
-  const Real t1046 = t181 * t1045;
-  const Real t1047 = t1023 * t183;
-  const Real t1048 = t1046 + t1047;
-  const Real t1049 = t1048 * par.k2;
-  const Real t1050 = t1049 * par.r_F;
-  const Real t1051 = t1048 * par.k1;
-  const Real t1052 = t1051 * par.c;
-  const Real t1053 = t1050 + t1052;
-  const Real t1054 = t625 * nu[2];
-  const Real t1055 = t499 * nu[1];
-  const Real t1056 = nu[0] * t229;
-  const Real t1057 = t1055 + t1056;
-  const Real t1058 = t1054 + t1057;
-  const Real t1059 = par.k2 * t1058;
-  const Real t1060 = t493 * nu[2];
-  const Real t1061 = t232 * nu[0];
-  const Real t1062 = t504 * nu[1];
-  const Real t1063 = t1061 + t1062;
-  const Real t1064 = t1060 - t1063;
-  const Real t1065 = t1023 * par.k13;
-  const Real t1066 = t1064 + t1065;
-  const Real t1067 = par.k1 * t1066;
-  const Real t1068 = t1059 - t1067;
-  const Real t1069 = t183 * t1068;
-  const Real t1070 = nu[2] * t620;
-  const Real t1071 = t530 * nu[1];
-  const Real t1072 = t215 * nu[0];
-  const Real t1073 = t1071 + t1072;
-  const Real t1074 = t1070 + t1073;
-  const Real t1075 = par.k13 * t1011;
-  const Real t1076 = t1074 - t1075;
-  const Real t1077 = t1076 * t181;
-  const Real t1078 = t1069 + t1077;
-  const Real t1079 = t1053 + t1078;
-  const Real t1080 = R[6] * t1011;
-  const Real t1081 = t178 + t1080;
-  const Real t1082 = s_r_p_1_ * t1081;
-  const Real t1083 = t1082 + t184;
-  const Real t1084 = par.k2 * t1029;
-  const Real t1085 = t1025 * par.k1;
-  const Real t1086 = t1084 + t1085;
-  const Real t1087 = c_r_p_1_ * t1086;
-  const Real t1088 = t1087 - t182;
-  const Real t1089 = t1083 + t1088;
-  const Real t1090 = t1089 * par.k1;
-  const Real t1091 = par.k1 * t1029;
-  const Real t1092 = t1025 * par.k2;
-  const Real t1093 = t1091 - t1092;
-  const Real t1094 = t1093 * par.k2;
-  const Real t1095 = t1090 - t1094;
-  const Real t1096 = t1095 * t20;
-  const Real t1097 = par.k1 * t1093;
-  const Real t1098 = t1089 * par.k2;
-  const Real t1099 = t1097 + t1098;
-  const Real t1100 = t16 * t1099;
-  const Real t1101 = t1100 * constant<Real>(2.0L);
-  const Real t1102 = t12 * t1095;
-  const Real t1103 = t1102 * constant<Real>(2.0L);
-  const Real t1104 = t1101 + t1103;
-  const Real t1105 = t1104 / t71;
-  const Real t1106 = t1105 * t20;
-  const Real t1107 = t1106 / t19;
-  const Real t1108 = t1107 * t12;
-  const Real t1109 = t1096 - t1108;
-  const Real t1110 = t1109 * par.r_F;
-  const Real t1111 = t1045 * c_r_p_1_;
-  const Real t1112 = s_r_p_1_ * t1023;
-  const Real t1113 = t1111 - t1112;
-  const Real t1114 = par.k2 * t1113;
-  const Real t1115 = par.k2 * t1011;
-  const Real t1116 = t180 - t1115;
-  const Real t1117 = t1116 + nu[1];
-  const Real t1118 = par.k1 * t1117;
-  const Real t1119 = t1114 + t1118;
-  const Real t1120 = t1110 * t1119;
-  const Real t1121 = t1049 * t22;
-  const Real t1122 = t1120 - t1121;
-  const Real t1123 = t20 * t1099;
-  const Real t1124 = t1107 * t16;
-  const Real t1125 = t1123 - t1124;
-  const Real t1126 = t1125 * par.r_F;
-  const Real t1127 = par.k2 * t1117;
-  const Real t1128 = par.k1 * t1113;
-  const Real t1129 = t1127 - t1128;
-  const Real t1130 = t1126 * t1129;
-  const Real t1131 = t1051 * t25;
-  const Real t1132 = t1130 + t1131;
-  const Real t1133 = t1122 + t1132;
-  const Real t1134 = t1079 - t1133;
-  const Real t1135 = t1043 + t1134;
-  const Real t1136 = t55 * t1029;
-  const Real t1137 = t1037 * R[6];
-  const Real t1138 = t1136 - t1137;
-  const Real t1139 = t1138 * par.r_R;
-  const Real t1140 = t1139 * t1011;
-  const Real t1141 = t1040 * nu[0];
-  const Real t1142 = t1140 - t1141;
-  const Real t1143 = t1142 * c_r_p_1_;
-  const Real t1144 = t1135 - t1143;
-  const Real t1145 = t1041 * t1139;
-  const Real t1146 = t1145 * t45;
-  const Real t1147 = t1144 - t1146;
-  const Real t1148 = t1076 * t183;
-  const Real t1149 = t181 * t1068;
-  const Real t1150 = t1148 - t1149;
-  const Real t1151 = t1150 * par.k1;
-  const Real t1152 = t1045 * t183;
-  const Real t1153 = t1023 * t181;
-  const Real t1154 = t1152 - t1153;
-  const Real t1155 = t1154 * par.c;
-  const Real t1156 = t1151 + t1155;
-  const Real t1157 = t481 * nu[2];
-  const Real t1158 = t453 * nu[1];
-  const Real t1159 = t197 * nu[0];
-  const Real t1160 = t1158 + t1159;
-  const Real t1161 = t1157 + t1160;
-  const Real t1162 = s_r_p_1_ * t1045;
-  const Real t1163 = t1023 * c_r_p_1_;
-  const Real t1164 = t1162 + t1163;
-  const Real t1165 = t1161 + t1164;
-  const Real t1166 = t1165 * t1126;
-  const Real t1167 = t25 * t1154;
-  const Real t1168 = t1166 + t1167;
-  const Real t1169 = t1156 - t1168;
-  const Real t1170 = t1042 * t93;
-  const Real t1171 = t1169 - t1170;
-  const Real t1172 = t1142 * t45;
-  const Real t1173 = t1171 + t1172;
-  const Real t1174 = t31 * t1145;
-  const Real t1175 = t1173 - t1174;
-  const Real t1176 = t110 * t1147;
-  const Real t1177 = t1175 - t1176;
-  const Real t1178 = t189 * t1177;
-  const Real t1179 = t131 * t1177;
-  const Real t1180 = t1178 + t1179;
-  const Real t1181 = t34 * t1145;
-  const Real t1182 = t1042 * t90;
-  const Real t1183 = t1150 * par.k2;
-  const Real t1184 = t1154 * par.r_F;
-  const Real t1185 = t1183 + t1184;
-  const Real t1186 = t1165 * t1110;
-  const Real t1187 = t22 * t1154;
-  const Real t1188 = t1186 + t1187;
-  const Real t1189 = t1185 + t1188;
-  const Real t1190 = t1182 + t1189;
-  const Real t1191 = t1142 * t59;
-  const Real t1192 = t1190 + t1191;
-  const Real t1193 = t1181 + t1192;
-  const Real t1194 = t121 * t1147;
-  const Real t1195 = t1193 + t1194;
-  const Real t1196 = t1180 + t1195;
-  const Real t1197 = t1196 * t196;
-  const Real t1198 = t25 * t1197;
-  const Real t1199 = t1177 - t1198;
-  const Real t1200 = t1199 * t130;
-  const Real t1201 = t1200 * t118;
-  const Real t1202 = t1147 - t1201;
-  const Real t1203 = t109 * t1202;
-  const Real t1204 = t1203 * c_r_p_0_;
-  const Real t1205 = t1014 + t1204;
-  const Real t1206 = t1205 * par.I_Rxx;
-  const Real t1207 = t1013 * t1041;
-  const Real t1208 = t1207 * par.k28;
-  const Real t1209 = t1206 + t1208;
-  const Real t1210 = t1209 * c_r_p_0_;
-  const Real t1211 = c_r_p_0_ * t1011;
-  const Real t1212 = t187 - t1211;
-  const Real t1213 = t1212 * t1041;
-  const Real t1214 = t1213 * par.k29;
-  const Real t1215 = t1203 * s_r_p_0_;
-  const Real t1216 = t1212 * nu[2];
-  const Real t1217 = t1215 + t1216;
-  const Real t1218 = t1217 * par.I_Rxx;
-  const Real t1219 = t1214 - t1218;
-  const Real t1220 = t1219 * s_r_p_0_;
-  const Real t1221 = t1210 - t1220;
-  const Real t1222 = t1203 * t101;
-  const Real t1223 = t1142 - t1222;
-  const Real t1224 = t1058 * t1011;
-  const Real t1225 = t1064 * nu[0];
-  const Real t1226 = t1224 + t1225;
-  const Real t1227 = t1223 - t1226;
-  const Real t1228 = t1227 - t175;
-  const Real t1229 = t1023 * nu[0];
-  const Real t1230 = t1203 - t1229;
-  const Real t1231 = t1230 * par.k13;
-  const Real t1232 = t1228 + t1231;
-  const Real t1233 = s_r_p_1_ * t1232;
-  const Real t1234 = t1200 * t58;
-  const Real t1235 = t1042 - t1234;
-  const Real t1236 = t1074 * t1011;
-  const Real t1237 = t1064 * t1023;
-  const Real t1238 = t1236 - t1237;
-  const Real t1239 = t1235 + t1238;
-  const Real t1240 = t1239 - t177;
-  const Real t1241 = t1011 * t1011;
-  const Real t1242 = t1023 * t1023;
-  const Real t1243 = t1241 + t1242;
-  const Real t1244 = par.k13 * t1243;
-  const Real t1245 = t1240 - t1244;
-  const Real t1246 = par.k2 * t1245;
-  const Real t1247 = t1200 * t101;
-  const Real t1248 = t1247 + t1145;
-  const Real t1249 = t1074 * nu[0];
-  const Real t1250 = t1023 * t1058;
-  const Real t1251 = t1249 + t1250;
-  const Real t1252 = t1248 + t1251;
-  const Real t1253 = t1252 - t176;
-  const Real t1254 = nu[0] * t1011;
-  const Real t1255 = t1254 + t1200;
-  const Real t1256 = t1255 * par.k13;
-  const Real t1257 = t1253 - t1256;
-  const Real t1258 = t1257 * par.k1;
-  const Real t1259 = t1246 - t1258;
-  const Real t1260 = c_r_p_1_ * t1259;
-  const Real t1261 = t1233 + t1260;
-  const Real t1262 = par.m_H * t1261;
-  const Real t1263 = par.k1 * t1203;
-  const Real t1264 = s_r_p_1_ * t1263;
-  const Real t1265 = t1200 * c_r_p_1_;
-  const Real t1266 = t1264 + t1265;
-  const Real t1267 = t1113 * nu[1];
-  const Real t1268 = t1266 - t1267;
-  const Real t1269 = t1113 * t1117;
-  const Real t1270 = t1268 + t1269;
-  const Real t1271 = par.k8 * t1270;
-  const Real t1272 = t1164 * t1164;
-  const Real t1273 = t1117 * t1117;
-  const Real t1274 = t1272 + t1273;
-  const Real t1275 = par.k10 * t1274;
-  const Real t1276 = t1271 - t1275;
-  const Real t1277 = t1262 + t1276;
-  const Real t1278 = t1113 * t1113;
-  const Real t1279 = t1278 + t1272;
-  const Real t1280 = par.k11 * t1279;
-  const Real t1281 = t1269 - t1268;
-  const Real t1282 = t1281 * par.k12;
-  const Real t1283 = t1280 + t1282;
-  const Real t1284 = par.k1 * t1245;
-  const Real t1285 = t1257 * par.k2;
-  const Real t1286 = t1284 + t1285;
-  const Real t1287 = t1283 + t1286;
-  const Real t1288 = par.k1 * t1287;
-  const Real t1289 = t1270 * par.k11;
-  const Real t1290 = par.k12 * t1274;
-  const Real t1291 = t1289 + t1290;
-  const Real t1292 = t1261 - t1291;
-  const Real t1293 = par.k2 * t1292;
-  const Real t1294 = t1288 + t1293;
-  const Real t1295 = t1294 * c_r_p_2_;
-  const Real t1296 = par.k2 * t1287;
-  const Real t1297 = par.k1 * t1292;
-  const Real t1298 = t1296 - t1297;
-  const Real t1299 = t1298 * s_r_p_2_;
-  const Real t1300 = t1295 - t1299;
-  const Real t1301 = t1300 * par.m_F;
-  const Real t1302 = t1301 * c_r_p_2_;
-  const Real t1303 = t1294 * s_r_p_2_;
-  const Real t1304 = c_r_p_2_ * t1298;
-  const Real t1305 = t1303 + t1304;
-  const Real t1306 = t1305 * par.m_F;
-  const Real t1307 = t1306 * s_r_p_2_;
-  const Real t1308 = t1302 + t1307;
-  const Real t1309 = t1308 * par.k2;
-  const Real t1310 = t1306 * c_r_p_2_;
-  const Real t1311 = t1301 * s_r_p_2_;
-  const Real t1312 = t1310 - t1311;
-  const Real t1313 = t1312 * par.k1;
-  const Real t1314 = t1309 - t1313;
-  const Real t1315 = t1277 + t1314;
-  const Real t1316 = s_r_p_1_ * t1315;
-  const Real t1317 = t1203 * par.k2;
-  const Real t1318 = t1113 * t1164;
-  const Real t1319 = t1317 - t1318;
-  const Real t1320 = t1319 * par.k10;
-  const Real t1321 = s_r_p_1_ * t1200;
-  const Real t1322 = c_r_p_1_ * t1263;
-  const Real t1323 = t1321 - t1322;
-  const Real t1324 = t1164 * nu[1];
-  const Real t1325 = t1323 - t1324;
-  const Real t1326 = t1164 * t1117;
-  const Real t1327 = t1325 + t1326;
-  const Real t1328 = par.k8 * t1327;
-  const Real t1329 = t1320 - t1328;
-  const Real t1330 = t1232 * c_r_p_1_;
-  const Real t1331 = s_r_p_1_ * t1259;
-  const Real t1332 = t1330 - t1331;
-  const Real t1333 = t1332 * par.m_H;
-  const Real t1334 = t1329 + t1333;
-  const Real t1335 = t1319 * par.k12;
-  const Real t1336 = par.k11 * t1327;
-  const Real t1337 = t1335 + t1336;
-  const Real t1338 = t1332 + t1337;
-  const Real t1339 = par.m_F * t1338;
-  const Real t1340 = t1334 + t1339;
-  const Real t1341 = t1340 * c_r_p_1_;
-  const Real t1342 = t1316 + t1341;
-  const Real t1343 = t1342 * par.k13;
-  const Real t1344 = par.k2 * t1317;
-  const Real t1345 = par.k1 * t1325;
-  const Real t1346 = t1344 - t1345;
-  const Real t1347 = t1346 * c_r_p_2_;
-  const Real t1348 = par.k1 * t1317;
-  const Real t1349 = par.k2 * t1325;
-  const Real t1350 = t1348 + t1349;
-  const Real t1351 = t1350 * s_r_p_2_;
-  const Real t1352 = t1347 + t1351;
-  const Real t1353 = c_r_p_2_ * t1119;
-  const Real t1354 = t1129 * s_r_p_2_;
-  const Real t1355 = t1353 - t1354;
-  const Real t1356 = t1161 * t1355;
-  const Real t1357 = t1352 - t1356;
-  const Real t1358 = par.I_Fxx * t1357;
-  const Real t1359 = t1165 * t1355;
-  const Real t1360 = par.k36 * t1359;
-  const Real t1361 = t1358 - t1360;
-  const Real t1362 = c_r_p_2_ * t1361;
-  const Real t1363 = t1350 * c_r_p_2_;
-  const Real t1364 = t1346 * s_r_p_2_;
-  const Real t1365 = t1363 - t1364;
-  const Real t1366 = c_r_p_2_ * t1129;
-  const Real t1367 = s_r_p_2_ * t1119;
-  const Real t1368 = t1366 + t1367;
-  const Real t1369 = t1161 * t1368;
-  const Real t1370 = t1365 + t1369;
-  const Real t1371 = par.I_Fxx * t1370;
-  const Real t1372 = t1165 * t1368;
-  const Real t1373 = par.k35 * t1372;
-  const Real t1374 = t1371 - t1373;
-  const Real t1375 = t1374 * s_r_p_2_;
-  const Real t1376 = t1362 - t1375;
-  const Real t1377 = par.k2 * t1376;
-  const Real t1378 = t1361 * s_r_p_2_;
-  const Real t1379 = c_r_p_2_ * t1374;
-  const Real t1380 = t1378 + t1379;
-  const Real t1381 = par.k1 * t1380;
-  const Real t1382 = t1377 + t1381;
-  const Real t1383 = t1339 * par.k12;
-  const Real t1384 = t1382 + t1383;
-  const Real t1385 = t1332 * par.k10;
-  const Real t1386 = par.k6 * t1317;
-  const Real t1387 = t1318 * par.k32;
-  const Real t1388 = t1386 - t1387;
-  const Real t1389 = par.k5 * t1327;
-  const Real t1390 = t1388 + t1389;
-  const Real t1391 = t1385 + t1390;
-  const Real t1392 = t1384 + t1391;
-  const Real t1393 = t1392 * par.k2;
-  const Real t1394 = t1380 * par.k2;
-  const Real t1395 = par.k1 * t1376;
-  const Real t1396 = t1394 - t1395;
-  const Real t1397 = t1339 * par.k11;
-  const Real t1398 = t1396 + t1397;
-  const Real t1399 = par.k5 * t1319;
-  const Real t1400 = t1325 * par.k17;
-  const Real t1401 = par.k30 * t1326;
-  const Real t1402 = t1400 - t1401;
-  const Real t1403 = t1399 + t1402;
-  const Real t1404 = t1332 * par.k8;
-  const Real t1405 = t1403 - t1404;
-  const Real t1406 = t1398 + t1405;
-  const Real t1407 = c_r_p_1_ * t1406;
-  const Real t1408 = t1268 - t1197;
-  const Real t1409 = par.I_Fyy * t1408;
-  const Real t1410 = t1314 * par.k11;
-  const Real t1411 = t1312 * par.k2;
-  const Real t1412 = t1308 * par.k1;
-  const Real t1413 = t1411 + t1412;
-  const Real t1414 = t1413 * par.k12;
-  const Real t1415 = t1410 + t1414;
-  const Real t1416 = t1409 - t1415;
-  const Real t1417 = par.k8 * t1261;
-  const Real t1418 = par.k10 * t1286;
-  const Real t1419 = t1417 - t1418;
-  const Real t1420 = t1268 * par.k7;
-  const Real t1421 = t1269 * par.k31;
-  const Real t1422 = t1420 + t1421;
-  const Real t1423 = t1273 - t1278;
-  const Real t1424 = par.k5 * t1423;
-  const Real t1425 = t1422 + t1424;
-  const Real t1426 = t1419 + t1425;
-  const Real t1427 = t1416 + t1426;
-  const Real t1428 = s_r_p_1_ * t1427;
-  const Real t1429 = t1407 - t1428;
-  const Real t1430 = par.k1 * t1429;
-  const Real t1431 = t1393 - t1430;
-  const Real t1432 = t1343 + t1431;
-  const Real t1433 = t1203 * par.k14;
-  const Real t1434 = par.k25 * t1229;
-  const Real t1435 = t1433 - t1434;
-  const Real t1436 = t1023 * t1011;
-  const Real t1437 = par.k3 * t1436;
-  const Real t1438 = t1435 - t1437;
-  const Real t1439 = t1228 * par.k16;
-  const Real t1440 = t1438 + t1439;
-  const Real t1441 = t1432 + t1440;
-  const Real t1442 = t1221 + t1441;
-  const Real t1443 = t468 * t1442;
-  const Real t1444 = t1200 - t1254;
-  const Real t1445 = t1444 * par.r_R;
-  const Real t1446 = t1240 - t1445;
-  const Real t1447 = t1446 * s_r_p_0_;
-  const Real t1448 = t188 + t1242;
-  const Real t1449 = t1448 * par.r_R;
-  const Real t1450 = t1253 + t1449;
-  const Real t1451 = t1450 * c_r_p_0_;
-  const Real t1452 = t1447 + t1451;
-  const Real t1453 = t1452 * par.m_R;
-  const Real t1454 = t1453 * c_r_p_0_;
-  const Real t1455 = t1446 * c_r_p_0_;
-  const Real t1456 = t1450 * s_r_p_0_;
-  const Real t1457 = t1455 - t1456;
-  const Real t1458 = t1457 * par.m_R;
-  const Real t1459 = s_r_p_0_ * t1458;
-  const Real t1460 = t1454 - t1459;
-  const Real t1461 = par.m_H * t1286;
-  const Real t1462 = t1281 * par.k10;
-  const Real t1463 = par.k8 * t1279;
-  const Real t1464 = t1462 - t1463;
-  const Real t1465 = t1461 + t1464;
-  const Real t1466 = t1413 + t1465;
-  const Real t1467 = t1466 * par.k2;
-  const Real t1468 = t1315 * c_r_p_1_;
-  const Real t1469 = s_r_p_1_ * t1340;
-  const Real t1470 = t1468 - t1469;
-  const Real t1471 = par.k1 * t1470;
-  const Real t1472 = t1467 - t1471;
-  const Real t1473 = t1253 * par.m_B;
-  const Real t1474 = t1448 * par.k15;
-  const Real t1475 = t1255 * par.k16;
-  const Real t1476 = t1474 + t1475;
-  const Real t1477 = t1473 - t1476;
-  const Real t1478 = t1472 + t1477;
-  const Real t1479 = t1460 + t1478;
-  const Real t1480 = t1479 * t504;
-  const Real t1481 = t1436 * par.r_R;
-  const Real t1482 = t1228 - t1481;
-  const Real t1483 = par.m_R * t1482;
-  const Real t1484 = t1230 * par.k16;
-  const Real t1485 = t1436 * par.k15;
-  const Real t1486 = t1484 + t1485;
-  const Real t1487 = t1228 * par.m_B;
-  const Real t1488 = t1486 + t1487;
-  const Real t1489 = t1342 + t1488;
-  const Real t1490 = t1483 + t1489;
-  const Real t1491 = t1490 * t530;
-  const Real t1492 = t1240 * par.m_B;
-  const Real t1493 = t1444 * par.k15;
-  const Real t1494 = par.k16 * t1243;
-  const Real t1495 = t1493 - t1494;
-  const Real t1496 = t1492 + t1495;
-  const Real t1497 = par.k2 * t1470;
-  const Real t1498 = t1466 * par.k1;
-  const Real t1499 = t1497 + t1498;
-  const Real t1500 = t1496 + t1499;
-  const Real t1501 = t1453 * s_r_p_0_;
-  const Real t1502 = c_r_p_0_ * t1458;
-  const Real t1503 = t1501 + t1502;
-  const Real t1504 = t1500 + t1503;
-  const Real t1505 = t499 * t1504;
-  const Real t1506 = t1491 + t1505;
-  const Real t1507 = t1480 - t1506;
-  const Real t1508 = t1200 * par.I_Ryy;
-  const Real t1509 = t1503 * par.r_R;
-  const Real t1510 = t1508 - t1509;
-  const Real t1511 = t1240 * par.k15;
-  const Real t1512 = t1253 * par.k16;
-  const Real t1513 = t1511 - t1512;
-  const Real t1514 = t1241 - t188;
-  const Real t1515 = par.k3 * t1514;
-  const Real t1516 = par.k4 * t1200;
-  const Real t1517 = t1254 * par.k27;
-  const Real t1518 = t1516 - t1517;
-  const Real t1519 = t1515 + t1518;
-  const Real t1520 = t1513 + t1519;
-  const Real t1521 = s_r_p_1_ * t1406;
-  const Real t1522 = c_r_p_1_ * t1427;
-  const Real t1523 = t1521 + t1522;
-  const Real t1524 = t1472 * par.k13;
-  const Real t1525 = t1523 - t1524;
-  const Real t1526 = t1520 + t1525;
-  const Real t1527 = t1510 + t1526;
-  const Real t1528 = t456 * t1527;
-  const Real t1529 = t464 * t1527;
-  const Real t1530 = t1528 + t1529;
-  const Real t1531 = t1507 + t1530;
-  const Real t1532 = t1443 + t1531;
-  const Real t1533 = t1532 - t1392;
-  const Real t1534 = t453 * t1409;
-  const Real t1535 = t1533 + t1534;
-  const Real t1536 = t232 * t1479;
-  const Real t1537 = t1504 * t229;
-  const Real t1538 = t215 * t1490;
-  const Real t1539 = t1537 + t1538;
-  const Real t1540 = t1536 - t1539;
-  const Real t1541 = t1483 * par.r_R;
-  const Real t1542 = t1219 * c_r_p_0_;
-  const Real t1543 = t1209 * s_r_p_0_;
-  const Real t1544 = t1542 + t1543;
-  const Real t1545 = t1541 + t1544;
-  const Real t1546 = t1230 * par.k3;
-  const Real t1547 = t1436 * par.k26;
-  const Real t1548 = t1546 + t1547;
-  const Real t1549 = t1228 * par.k15;
-  const Real t1550 = t1548 - t1549;
-  const Real t1551 = t1392 * par.k1;
-  const Real t1552 = par.k2 * t1429;
-  const Real t1553 = t1551 + t1552;
-  const Real t1554 = t1550 + t1553;
-  const Real t1555 = t1545 + t1554;
-  const Real t1556 = t1540 - t1555;
-  const Real t1557 = t200 * t1527;
-  const Real t1558 = t1556 + t1557;
-  const Real t1559 = t1442 * t203;
-  const Real t1560 = t1558 + t1559;
-  const Real t1561 = t197 * t1409;
-  const Real t1562 = t1560 + t1561;
-  const Real t1563 = t619 * t1442;
-  const Real t1564 = t490 * t1527;
-  const Real t1565 = t485 * t1527;
-  const Real t1566 = t1564 + t1565;
-  const Real t1567 = t625 * t1504;
-  const Real t1568 = t1490 * t620;
-  const Real t1569 = t1567 + t1568;
-  const Real t1570 = t493 * t1479;
-  const Real t1571 = t1569 + t1570;
-  const Real t1572 = t1566 - t1571;
-  const Real t1573 = t1563 + t1572;
-  const Real t1574 = t1573 - t1508;
-  const Real t1575 = t481 * t1409;
-  const Real t1576 = t1574 + t1575;
-  const Real t1577 = t453 * t210;
-  const Real t1578 = t397 * t499;
-  const Real t1579 = t368 * t530;
-  const Real t1580 = t1578 + t1579;
-  const Real t1581 = t504 * t410;
-  const Real t1582 = t1580 - t1581;
-  const Real t1583 = t464 * t428;
-  const Real t1584 = t456 * t428;
-  const Real t1585 = t1583 + t1584;
-  const Real t1586 = t1582 - t1585;
-  const Real t1587 = t468 * t444;
-  const Real t1588 = t1586 - t1587;
-  const Real t1589 = t1588 + t332;
-  const Real t1590 = t1577 + t1589;
+  const Real t48 = product_error(t47, par.r_F);
+  const Real t49 = product_error(t46, t42);
+  const Real t50 = par.r_F * t49;
+  const Real t51 = t48 + t50;
 
-  M_r[0] = t447;
-  M_r[1] = t1590;
-  M_r[2] = t1006;
-  M_r[3] = t1590;
-  M_r[4] = t992;
-  M_r[5] = t741;
-  M_r[6] = t1006;
-  M_r[7] = t741;
-  M_r[8] = t978;
-  f_r[0] = t1562;
-  f_r[1] = t1535;
-  f_r[2] = t1576;
+  // joint angles
+  const Real t52 = par.k1 * c_r_p_1_;
+  const Real t53 = par.k1 * t52;
+  const Real t54 = par.k19 + t53;
+
+  // passive accelerations
+  const Real t55 = t54 * t51;
+
+  // kernel
+  const Real t56 = par.r_F * t47;
+  const Real t57 = t54 * t56;
+
+  // passive accelerations
+  const Real t58 = t55 + t57;
+
+  // kernel
+  const Real t59 = t34 * t46;
+  const Real t60 = t59 * par.r_F;
+  const Real t61 = t2 * t2;
+  const Real t62 = constant<Real>(2.0L) * t61;
+  const Real t63 = t62 * par.k23;
+  const Real t64 = t60 * t63;
+
+  // passive accelerations
+  const Real t65 = t58 + t64;
+
+  // kernel
+  const Real t66 = par.r_F * t63;
+
+  // joint angles
+  const Real t67 = t54 * par.c;
+
+  // kernel
+  const Real t68 = t66 - t67;
+
+  // joint angles
+  const Real t69 = c_r_p_1_ * par.k14;
+
+  // kernel
+  const Real t70 = t68 + t69;
+  const Real t71 = product_error(c_r_p_1_, par.k14);
+
+  // passive accelerations
+  const Real t72 = t70 + t71;
+  const Real t73 = t72 + t65;
+
+  // joint angles
+  const Real t74 = R[6] * R[6];
+  const Real t75 = R[8] * R[8];
+  const Real t76 = t74 + t75;
+  const Real t77 = sqrt(t76);
+  const Real t78 = constant<Real>(1.0L) / t77;
+  const Real t79 = t78 * R[6];
+  const Real t80 = t79 * par.r_R;
+
+  // kernel
+  const Real t81 = c_r_p_1_ * t80;
+
+  // passive accelerations
+  const Real t82 = t73 - t81;
+  const Real t83 = constant<Real>(1.0L) / t82;
+
+  // kernel
+  const Real t84 = -t81;
+
+  // passive accelerations
+  const Real t85 = sum_error(t73, t84);
+  const Real t86 = sum_error(t72, t65);
+  const Real t87 = t86 + t85;
+  const Real t88 = t83 * t87;
+  const Real t89 = t88 / t82;
+  const Real t90 = quotient_error(constant<Real>(1.0L), t82);
+  const Real t91 = t90 - t89;
+
+  // joint angles
+  const Real t92 = s_r_p_1_ * par.k1;
+
+  // passive accelerations
+  const Real t93 = t51 * t92;
+
+  // kernel
+  const Real t94 = t56 * t92;
+
+  // passive accelerations
+  const Real t95 = t93 + t94;
+
+  // kernel
+  const Real t96 = product_error(s_r_p_1_, par.k14);
+  const Real t97 = par.k1 * t96;
+
+  // joint angles
+  const Real t98 = s_r_p_1_ * par.k14;
+  const Real t99 = par.k1 * t98;
+
+  // kernel
+  const Real t100 = t97 + t99;
+
+  // joint angles
+  const Real t101 = par.c * t92;
+
+  // kernel
+  const Real t102 = t101 - t100;
+
+  // passive accelerations
+  const Real t103 = t102 - t95;
+
+  // kernel
+  const Real t104 = t92 * t80;
+
+  // passive accelerations
+  const Real t105 = t103 + t104;
+  const Real t106 = t91 * t105;
+  const Real t107 = t83 * t105;
+  const Real t108 = t107 + t106;
+
+  // joint angles
+  const Real t109 = s_r_p_1_ * par.k2;
+
+  // kernel
+  const Real t110 = t109 * t60;
+
+  // passive accelerations
+  const Real t111 = t110 - t95;
+
+  // joint angles
+  const Real t112 = t109 * par.r_F;
+  const Real t113 = t112 + t101;
+
+  // kernel
+  const Real t114 = product_error(t109, par.r_F);
+  const Real t115 = t113 + t114;
+
+  // joint angles
+  const Real t116 = s_r_p_1_ * par.k24;
+
+  // kernel
+  const Real t117 = t115 - t116;
+
+  // passive accelerations
+  const Real t118 = t111 + t117;
+
+  // joint angles
+  const Real t119 = R[8] * t78;
+  const Real t120 = t119 * par.r_R;
+
+  // kernel
+  const Real t121 = sum_error(t120, par.k6);
+  const Real t122 = t109 * t121;
+
+  // joint angles
+  const Real t123 = t120 - par.r_R;
+
+  // kernel
+  const Real t124 = t123 * t109;
+  const Real t125 = t122 + t124;
+
+  // passive accelerations
+  const Real t126 = t118 + t125;
+  const Real t127 = t104 + t126;
+  const Real t128 = t108 * t127;
+  const Real t129 = -t128;
+  const Real t130 = c_r_p_1_ * t51;
+
+  // kernel
+  const Real t131 = t56 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t132 = t130 + t131;
+  const Real t133 = -t132;
+
+  // joint angles
+  const Real t134 = c_r_p_1_ * par.k24;
+  const Real t135 = t134 * par.k1;
+  const Real t136 = t135 + par.k22;
+  const Real t137 = c_r_p_1_ * par.c;
+  const Real t138 = t137 - t136;
+
+  // passive accelerations
+  const Real t139 = sum_error(t138, t133);
+
+  // kernel
+  const Real t140 = -t136;
+  const Real t141 = sum_error(t137, t140);
+  const Real t142 = sum_error(t135, par.k22);
+
+  // passive accelerations
+  const Real t143 = t141 - t142;
+  const Real t144 = t139 + t143;
+  const Real t145 = t138 - t132;
+
+  // kernel
+  const Real t146 = t123 * t63;
+  const Real t147 = t63 * t121;
+  const Real t148 = t146 + t147;
+
+  // passive accelerations
+  const Real t149 = -t148;
+  const Real t150 = sum_error(t145, t149);
+  const Real t151 = t150 + t144;
+  const Real t152 = t145 - t148;
+
+  // kernel
+  const Real t153 = t54 * t80;
+
+  // passive accelerations
+  const Real t154 = t153 + t152;
+  const Real t155 = t151 + t154;
+  const Real t156 = sum_error(t155, t129);
+  const Real t157 = product_error(t108, t127);
+  const Real t158 = sum_error(t126, t104);
+  const Real t159 = sum_error(t125, t118);
+  const Real t160 = t159 + t158;
+  const Real t161 = t108 * t160;
+  const Real t162 = t157 + t161;
+  const Real t163 = t156 - t162;
+  const Real t164 = t155 - t128;
+  const Real t165 = constant<Real>(1.0L) / t164;
+  const Real t166 = t165 * t163;
+  const Real t167 = t166 / t164;
+  const Real t168 = quotient_error(constant<Real>(1.0L), t164);
+  const Real t169 = t168 - t167;
+
+  // kernel
+  const Real t170 = t60 * t92;
+
+  // joint angles
+  const Real t171 = par.k2 * t98;
+  const Real t172 = par.r_F * t92;
+  const Real t173 = t171 - t172;
+
+  // kernel
+  const Real t174 = t173 - t170;
+  const Real t175 = t109 * t80;
+  const Real t176 = t174 - t175;
+
+  // passive accelerations
+  const Real t177 = t83 * t176;
+  const Real t178 = t127 * t177;
+
+  // kernel
+  const Real t179 = t34 * c_r_p_1_;
+  const Real t180 = t179 * par.r_F;
+  const Real t181 = t180 * t46;
+  const Real t182 = par.k27 * t62;
+
+  // joint angles
+  const Real t183 = c_r_p_1_ * par.r_F;
+
+  // kernel
+  const Real t184 = t182 + t183;
+  const Real t185 = sum_error(t184, t181);
+  const Real t186 = sum_error(t182, t183);
+  const Real t187 = product_error(c_r_p_1_, par.r_F);
+  const Real t188 = t187 + t186;
+  const Real t189 = t188 + t185;
+
+  // joint angles
+  const Real t190 = c_r_p_1_ * par.k2;
+  const Real t191 = par.k2 * t190;
+  const Real t192 = par.k20 + t191;
+
+  // kernel
+  const Real t193 = t121 * t192;
+  const Real t194 = sum_error(par.k20, t191);
+  const Real t195 = product_error(c_r_p_1_, par.k2);
+  const Real t196 = t195 * par.k2;
+  const Real t197 = product_error(par.k2, t190);
+  const Real t198 = t196 + t197;
+  const Real t199 = t194 + t198;
+  const Real t200 = t123 * t199;
+  const Real t201 = t193 + t200;
+  const Real t202 = product_error(t123, t192);
+  const Real t203 = t202 + t201;
+
+  // passive accelerations
+  const Real t204 = t189 + t203;
+
+  // kernel
+  const Real t205 = t184 + t181;
+  const Real t206 = t123 * t192;
+
+  // passive accelerations
+  const Real t207 = t206 + t205;
+  const Real t208 = t204 + t207;
+
+  // kernel
+  const Real t209 = par.k1 * t78;
+  const Real t210 = par.k2 * t209;
+  const Real t211 = t210 * t2;
+  const Real t212 = t211 * t2;
+  const Real t213 = t212 * R[6];
+  const Real t214 = t213 * par.r_R;
+  const Real t215 = t214 * constant<Real>(2.0L);
+
+  // passive accelerations
+  const Real t216 = t215 - t208;
+  const Real t217 = t216 - t178;
+  const Real t218 = t169 * t217;
+  const Real t219 = t91 * t176;
+
+  // kernel
+  const Real t220 = -t170;
+  const Real t221 = sum_error(t173, t220);
+  const Real t222 = -t172;
+  const Real t223 = sum_error(t171, t222);
+  const Real t224 = product_error(par.k2, t98);
+  const Real t225 = par.k2 * t96;
+  const Real t226 = t224 + t225;
+  const Real t227 = t223 + t226;
+  const Real t228 = t227 + t221;
+  const Real t229 = -t175;
+  const Real t230 = sum_error(t174, t229);
+  const Real t231 = t228 + t230;
+
+  // passive accelerations
+  const Real t232 = t83 * t231;
+  const Real t233 = t232 + t219;
+  const Real t234 = product_error(t83, t176);
+  const Real t235 = t234 + t233;
+  const Real t236 = t127 * t235;
+  const Real t237 = t177 * t160;
+  const Real t238 = t236 + t237;
+  const Real t239 = product_error(t177, t127);
+  const Real t240 = t238 + t239;
+  const Real t241 = -t178;
+  const Real t242 = sum_error(t216, t241);
+  const Real t243 = t242 - t240;
+  const Real t244 = t243 * t165;
+  const Real t245 = t218 + t244;
+  const Real t246 = product_error(t217, t165);
+  const Real t247 = t245 + t246;
+  const Real t248 = t247 * t56;
+  const Real t249 = t217 * t165;
+  const Real t250 = t249 * t51;
+  const Real t251 = t248 + t250;
+  const Real t252 = product_error(t56, t249);
+  const Real t253 = t251 + t252;
+  const Real t254 = t249 * t56;
+
+  // kernel
+  const Real t255 = -t60;
+
+  // passive accelerations
+  const Real t256 = sum_error(t254, t255);
+  const Real t257 = t253 + t256;
+  const Real t258 = t254 - t60;
+  const Real t259 = constant<Real>(1.0L) / t258;
+  const Real t260 = t259 * t257;
+  const Real t261 = t260 / t258;
+  const Real t262 = quotient_error(constant<Real>(1.0L), t258);
+  const Real t263 = t262 - t261;
+  const Real t264 = par.k2 * t51;
+
+  // kernel
+  const Real t265 = t56 * par.k2;
+
+  // passive accelerations
+  const Real t266 = t264 + t265;
+
+  // kernel
+  const Real t267 = par.k1 * t60;
+
+  // passive accelerations
+  const Real t268 = t266 + t267;
+  const Real t269 = t268 + par.k13;
+  const Real t270 = t108 * t269;
+  const Real t271 = t249 * t270;
+  const Real t272 = t269 * t177;
+  const Real t273 = t271 - t272;
+  const Real t274 = t273 * t263;
+  const Real t275 = t247 * t270;
+  const Real t276 = product_error(t108, t269);
+  const Real t277 = t249 * t276;
+  const Real t278 = t275 + t277;
+  const Real t279 = product_error(t270, t249);
+  const Real t280 = t279 + t278;
+  const Real t281 = t269 * t235;
+  const Real t282 = product_error(t269, t177);
+  const Real t283 = t282 + t281;
+  const Real t284 = t280 - t283;
+  const Real t285 = -t272;
+  const Real t286 = sum_error(t271, t285);
+  const Real t287 = t286 + t284;
+  const Real t288 = t259 * t287;
+  const Real t289 = t288 + t274;
+  const Real t290 = product_error(t259, t273);
+  const Real t291 = t289 + t290;
+  const Real t292 = t56 * t291;
+  const Real t293 = t273 * t259;
+  const Real t294 = t293 * t51;
+  const Real t295 = t294 + t292;
+  const Real t296 = product_error(t56, t293);
+  const Real t297 = t296 + t295;
+  const Real t298 = t297 - t276;
+  const Real t299 = t293 * t56;
+  const Real t300 = -t270;
+  const Real t301 = sum_error(t299, t300);
+  const Real t302 = t298 + t301;
+  const Real t303 = t302 * t165;
+  const Real t304 = t299 - t270;
+  const Real t305 = t304 * t169;
+  const Real t306 = t303 + t305;
+  const Real t307 = product_error(t165, t304);
+  const Real t308 = t307 + t306;
+  const Real t309 = t127 * t308;
+  const Real t310 = t304 * t165;
+  const Real t311 = t310 * t160;
+  const Real t312 = t309 + t311;
+  const Real t313 = product_error(t310, t127);
+  const Real t314 = t313 + t312;
+  const Real t315 = t310 * t127;
+  const Real t316 = t269 - t315;
+  const Real t317 = t316 - t314;
+  const Real t318 = t317 * t91;
+  const Real t319 = t317 * t83;
+  const Real t320 = t318 + t319;
+  const Real t321 = t320 * nu[1];
+  const Real t322 = t63 * t51;
+
+  // kernel
+  const Real t323 = t56 * t63;
+
+  // passive accelerations
+  const Real t324 = t323 + t322;
+
+  // kernel
+  const Real t325 = t60 * t199;
+  const Real t326 = t60 * t192;
+  const Real t327 = t325 + t326;
+
+  // passive accelerations
+  const Real t328 = t324 + t327;
+
+  // joint angles
+  const Real t329 = par.r_F * t192;
+
+  // kernel
+  const Real t330 = t63 * par.c;
+  const Real t331 = t329 - t330;
+
+  // passive accelerations
+  const Real t332 = sum_error(t331, t328);
+
+  // kernel
+  const Real t333 = -t330;
+  const Real t334 = sum_error(t329, t333);
+  const Real t335 = par.r_F * t199;
+  const Real t336 = product_error(par.r_F, t192);
+  const Real t337 = t336 + t335;
+  const Real t338 = t334 + t337;
+
+  // passive accelerations
+  const Real t339 = t338 + t332;
+
+  // joint angles
+  const Real t340 = par.r_R - t120;
+
+  // kernel
+  const Real t341 = product_error(c_r_p_1_, t340);
+
+  // passive accelerations
+  const Real t342 = t339 - t341;
+  const Real t343 = t331 + t328;
+
+  // kernel
+  const Real t344 = c_r_p_1_ * t340;
+
+  // passive accelerations
+  const Real t345 = t343 - t344;
+  const Real t346 = t345 + t342;
+  const Real t347 = t108 * t346;
+  const Real t348 = t109 * t51;
+
+  // kernel
+  const Real t349 = t109 * t56;
+
+  // passive accelerations
+  const Real t350 = t348 + t349;
+
+  // joint angles
+  const Real t351 = t109 * par.c;
+
+  // passive accelerations
+  const Real t352 = t350 - t351;
+
+  // kernel
+  const Real t353 = t340 * t92;
+
+  // passive accelerations
+  const Real t354 = t352 + t353;
+  const Real t355 = t354 - t347;
+  const Real t356 = t247 * t355;
+  const Real t357 = -t347;
+  const Real t358 = sum_error(t354, t357);
+  const Real t359 = product_error(t108, t346);
+  const Real t360 = t358 - t359;
+  const Real t361 = t249 * t360;
+  const Real t362 = t361 + t356;
+  const Real t363 = product_error(t249, t355);
+  const Real t364 = t363 + t362;
+  const Real t365 = t346 * t235;
+  const Real t366 = product_error(t346, t177);
+  const Real t367 = t366 + t365;
+  const Real t368 = t346 * t177;
+  const Real t369 = -t368;
+
+  // kernel
+  const Real t370 = t112 + t110;
+
+  // passive accelerations
+  const Real t371 = t370 + t114;
+
+  // kernel
+  const Real t372 = t109 * t340;
+
+  // passive accelerations
+  const Real t373 = t371 - t372;
+  const Real t374 = sum_error(t373, t369);
+  const Real t375 = t374 - t367;
+  const Real t376 = t375 - t364;
+  const Real t377 = t249 * t355;
+  const Real t378 = t373 - t368;
+  const Real t379 = t378 - t377;
+  const Real t380 = t379 + t376;
+  const Real t381 = t380 * t263;
+  const Real t382 = t259 * t380;
+  const Real t383 = t381 + t382;
+  const Real t384 = t383 * t51;
+  const Real t385 = t56 * t383;
+  const Real t386 = t384 + t385;
+  const Real t387 = sum_error(t386, t355);
+  const Real t388 = t387 + t360;
+  const Real t389 = t388 * t165;
+  const Real t390 = t386 + t355;
+  const Real t391 = t169 * t390;
+  const Real t392 = t391 + t389;
+  const Real t393 = product_error(t165, t390);
+  const Real t394 = t392 + t393;
+  const Real t395 = t127 * t394;
+  const Real t396 = t390 * t165;
+  const Real t397 = t160 * t396;
+  const Real t398 = t397 + t395;
+  const Real t399 = product_error(t396, t127);
+  const Real t400 = t399 + t398;
+  const Real t401 = t127 * t396;
+  const Real t402 = t346 - t401;
+  const Real t403 = t402 - t400;
+  const Real t404 = t403 * t83;
+  const Real t405 = t403 * t91;
+  const Real t406 = t404 + t405;
+  const Real t407 = nu[0] * t406;
+  const Real t408 = t321 + t407;
+
+  // kernel
+  const Real t409 = t109 * t120;
+  const Real t410 = t104 + t409;
+
+  // passive accelerations
+  const Real t411 = t108 * t410;
+
+  // kernel
+  const Real t412 = t120 * t63;
+  const Real t413 = t153 - t412;
+
+  // passive accelerations
+  const Real t414 = t413 - t411;
+  const Real t415 = t247 * t414;
+  const Real t416 = -t411;
+  const Real t417 = sum_error(t413, t416);
+  const Real t418 = product_error(t108, t410);
+  const Real t419 = t417 - t418;
+  const Real t420 = t249 * t419;
+  const Real t421 = t415 + t420;
+  const Real t422 = product_error(t414, t249);
+  const Real t423 = t422 + t421;
+  const Real t424 = t410 * t235;
+  const Real t425 = product_error(t177, t410);
+  const Real t426 = t425 + t424;
+  const Real t427 = t177 * t410;
+  const Real t428 = -t427;
+
+  // kernel
+  const Real t429 = t120 * t199;
+  const Real t430 = t120 * t192;
+  const Real t431 = t429 + t430;
+  const Real t432 = t63 * t80;
+  const Real t433 = t432 - t431;
+
+  // passive accelerations
+  const Real t434 = sum_error(t433, t428);
+  const Real t435 = t434 - t426;
+  const Real t436 = t435 - t423;
+  const Real t437 = t249 * t414;
+  const Real t438 = t433 - t427;
+  const Real t439 = t438 - t437;
+  const Real t440 = t436 + t439;
+  const Real t441 = t440 * t263;
+  const Real t442 = t259 * t440;
+  const Real t443 = t441 + t442;
+  const Real t444 = t443 * t51;
+  const Real t445 = t443 * t56;
+  const Real t446 = t444 + t445;
+  const Real t447 = sum_error(t414, t446);
+  const Real t448 = t419 + t447;
+  const Real t449 = t448 * t165;
+  const Real t450 = t446 + t414;
+  const Real t451 = t450 * t169;
+  const Real t452 = t451 + t449;
+  const Real t453 = product_error(t165, t450);
+  const Real t454 = t453 + t452;
+  const Real t455 = t127 * t454;
+  const Real t456 = t450 * t165;
+  const Real t457 = t456 * t160;
+  const Real t458 = t457 + t455;
+  const Real t459 = product_error(t127, t456);
+  const Real t460 = t458 + t459;
+  const Real t461 = t127 * t456;
+  const Real t462 = t410 - t461;
+  const Real t463 = t462 - t460;
+  const Real t464 = t83 * t463;
+  const Real t465 = t91 * t463;
+  const Real t466 = t464 + t465;
+  const Real t467 = t466 * nu[2];
+  const Real t468 = t408 + t467;
+  const Real t469 = t468 * R[7];
+  const Real t470 = nu[1] * t308;
+  const Real t471 = t310 * nu[1];
+  const Real t472 = t471 + t470;
+  const Real t473 = t394 * nu[0];
+  const Real t474 = t396 * nu[0];
+  const Real t475 = t473 + t474;
+  const Real t476 = t472 + t475;
+  const Real t477 = nu[2] * t454;
+  const Real t478 = t456 * nu[2];
+  const Real t479 = t477 + t478;
+  const Real t480 = t479 + t476;
+  const Real t481 = R[8] * t480;
+  const Real t482 = t481 - t469;
+  const Real t483 = par.k2 * t482;
+  const Real t484 = R[6] * t480;
+
+  // joint angles
+  const Real t485 = nu[0] * R[7];
+
+  // passive accelerations
+  const Real t486 = t484 + t485;
+  const Real t487 = t486 * par.k1;
+  const Real t488 = t487 + t483;
+  const Real t489 = c_r_p_1_ * t488;
+
+  // joint angles
+  const Real t490 = s_r_p_1_ * nu[1];
+
+  // passive accelerations
+  const Real t491 = t490 * t8;
+
+  // joint angles
+  const Real t492 = t490 * t10;
+
+  // passive accelerations
+  const Real t493 = t492 + t491;
+  const Real t494 = t489 - t493;
+  const Real t495 = R[6] * t468;
+
+  // joint angles
+  const Real t496 = R[8] * nu[0];
+
+  // passive accelerations
+  const Real t497 = t496 + t495;
+  const Real t498 = s_r_p_1_ * t497;
+
+  // joint angles
+  const Real t499 = c_r_p_1_ * nu[1];
+  const Real t500 = t499 * R[7];
+
+  // passive accelerations
+  const Real t501 = t500 + t498;
+  const Real t502 = t501 + t494;
+  const Real t503 = par.k1 * t502;
+  const Real t504 = par.k1 * t482;
+  const Real t505 = t486 * par.k2;
+  const Real t506 = t504 - t505;
+  const Real t507 = t506 * par.k2;
+  const Real t508 = t503 - t507;
+  const Real t509 = t34 * t508;
+  const Real t510 = t509 * constant<Real>(2.0L);
+  const Real t511 = par.k2 * t502;
+  const Real t512 = t506 * par.k1;
+  const Real t513 = t512 + t511;
+  const Real t514 = t42 * t513;
+  const Real t515 = t514 * constant<Real>(2.0L);
+  const Real t516 = t510 + t515;
+
+  // kernel
+  const Real t517 = t45 * constant<Real>(2.0L);
+
+  // passive accelerations
+  const Real t518 = t516 / t517;
+  const Real t519 = t46 * t518;
+  const Real t520 = t519 / t45;
+  const Real t521 = t42 * t520;
+  const Real t522 = t46 * t513;
+  const Real t523 = t522 - t521;
+  const Real t524 = t523 * par.r_F;
+  const Real t525 = par.k1 * t468;
+
+  // joint angles
+  const Real t526 = par.k2 * nu[0];
+
+  // passive accelerations
+  const Real t527 = t526 + t525;
+  const Real t528 = t527 * c_r_p_1_;
+  const Real t529 = s_r_p_1_ * t480;
+  const Real t530 = t528 - t529;
+  const Real t531 = t530 * par.k1;
+  const Real t532 = par.k2 * t468;
+
+  // joint angles
+  const Real t533 = par.k1 * nu[0];
+
+  // passive accelerations
+  const Real t534 = t533 - t532;
+  const Real t535 = t534 + nu[1];
+  const Real t536 = t535 * par.k2;
+  const Real t537 = t536 - t531;
+  const Real t538 = t524 * t537;
+  const Real t539 = t490 * t527;
+  const Real t540 = t499 * t480;
+  const Real t541 = t539 + t540;
+  const Real t542 = par.k1 * t541;
+  const Real t543 = t542 * t51;
+  const Real t544 = t56 * t542;
+  const Real t545 = t543 + t544;
+  const Real t546 = t545 + t538;
+  const Real t547 = t34 * t520;
+  const Real t548 = t46 * t508;
+  const Real t549 = t548 - t547;
+  const Real t550 = t549 * par.r_F;
+  const Real t551 = t530 * par.k2;
+  const Real t552 = t535 * par.k1;
+  const Real t553 = t552 + t551;
+  const Real t554 = t550 * t553;
+  const Real t555 = par.k2 * t541;
+  const Real t556 = t555 * t60;
+  const Real t557 = t554 - t556;
+  const Real t558 = t546 + t557;
+  const Real t559 = t542 * par.c;
+  const Real t560 = t555 * par.r_F;
+  const Real t561 = t559 + t560;
+  const Real t562 = t320 * t80;
+  const Real t563 = t562 * nu[1];
+  const Real t564 = t80 * t406;
+  const Real t565 = t564 - t340;
+  const Real t566 = t565 * nu[0];
+  const Real t567 = t566 + t563;
+  const Real t568 = t466 * t80;
+  const Real t569 = t568 * nu[2];
+  const Real t570 = t567 + t569;
+  const Real t571 = par.k14 * t468;
+  const Real t572 = t570 - t571;
+  const Real t573 = t572 * t490;
+  const Real t574 = t123 * t308;
+  const Real t575 = t310 * t121;
+  const Real t576 = t574 + t575;
+  const Real t577 = t310 * t123;
+  const Real t578 = t577 + t576;
+  const Real t579 = t578 * nu[1];
+  const Real t580 = t394 * t123;
+  const Real t581 = t121 * t396;
+  const Real t582 = t581 + t580;
+  const Real t583 = t123 * t396;
+  const Real t584 = t582 + t583;
+  const Real t585 = t584 * nu[0];
+  const Real t586 = t579 + t585;
+  const Real t587 = t123 * t454;
+  const Real t588 = t456 * t121;
+  const Real t589 = t588 + t587;
+  const Real t590 = t123 * t456;
+  const Real t591 = t589 + t590;
+  const Real t592 = t591 - t120;
+  const Real t593 = t592 * nu[2];
+  const Real t594 = t586 + t593;
+  const Real t595 = par.k2 * t594;
+  const Real t596 = par.k14 * t480;
+  const Real t597 = t80 * t308;
+  const Real t598 = t310 * t80;
+  const Real t599 = t597 + t598;
+  const Real t600 = nu[1] * t599;
+  const Real t601 = t394 * t80;
+  const Real t602 = t80 * t396;
+  const Real t603 = t601 + t602;
+  const Real t604 = t603 * nu[0];
+  const Real t605 = t604 + t600;
+  const Real t606 = t80 * t454;
+  const Real t607 = t456 * t80;
+  const Real t608 = t607 + t606;
+  const Real t609 = t80 - t608;
+  const Real t610 = t609 * nu[2];
+  const Real t611 = t610 - t605;
+  const Real t612 = t596 + t611;
+  const Real t613 = t612 * par.k1;
+  const Real t614 = t595 - t613;
+  const Real t615 = t614 * t499;
+  const Real t616 = t615 + t573;
+  const Real t617 = t561 + t616;
+  const Real t618 = t617 - t558;
+  const Real t619 = R[6] * t482;
+  const Real t620 = t619 * constant<Real>(2.0L);
+  const Real t621 = t486 * R[8];
+  const Real t622 = t621 * constant<Real>(2.0L);
+  const Real t623 = t620 - t622;
+
+  // joint angles
+  const Real t624 = constant<Real>(2.0L) * t77;
+
+  // passive accelerations
+  const Real t625 = t623 / t624;
+  const Real t626 = t78 * t625;
+  const Real t627 = t626 / t77;
+  const Real t628 = R[8] * t627;
+  const Real t629 = t486 * t78;
+  const Real t630 = t629 + t628;
+  const Real t631 = t630 * par.r_R;
+  const Real t632 = nu[2] - t480;
+  const Real t633 = t631 * t632;
+  const Real t634 = t109 * t633;
+  const Real t635 = t634 + t618;
+  const Real t636 = t627 * R[6];
+  const Real t637 = t78 * t482;
+  const Real t638 = t637 - t636;
+  const Real t639 = t638 * par.r_R;
+  const Real t640 = t639 * t468;
+  const Real t641 = t631 * nu[0];
+  const Real t642 = t640 - t641;
+  const Real t643 = c_r_p_1_ * t642;
+  const Real t644 = t635 - t643;
+  const Real t645 = t639 * t632;
+  const Real t646 = t645 * t92;
+  const Real t647 = t644 - t646;
+  const Real t648 = t108 * t647;
+  const Real t649 = -t648;
+  const Real t650 = s_r_p_1_ * t527;
+  const Real t651 = c_r_p_1_ * t480;
+  const Real t652 = t651 + t650;
+  const Real t653 = t291 * nu[1];
+  const Real t654 = t293 * nu[1];
+  const Real t655 = t654 + t653;
+  const Real t656 = t383 * nu[0];
+  const Real t657 = t656 + t655;
+  const Real t658 = t443 * nu[2];
+  const Real t659 = t658 + t657;
+  const Real t660 = t659 + t652;
+  const Real t661 = t524 * t660;
+  const Real t662 = t527 * t499;
+  const Real t663 = t490 * t480;
+  const Real t664 = t662 - t663;
+  const Real t665 = t56 * t664;
+  const Real t666 = t51 * t664;
+  const Real t667 = t665 + t666;
+  const Real t668 = t667 + t661;
+  const Real t669 = t572 * t499;
+  const Real t670 = t614 * t490;
+  const Real t671 = t669 - t670;
+  const Real t672 = par.k1 * t671;
+  const Real t673 = par.c * t664;
+  const Real t674 = t672 + t673;
+  const Real t675 = t674 - t668;
+  const Real t676 = t63 * t633;
+  const Real t677 = t675 - t676;
+  const Real t678 = t642 * t92;
+  const Real t679 = t678 + t677;
+  const Real t680 = t54 * t645;
+  const Real t681 = t679 - t680;
+  const Real t682 = sum_error(t681, t649);
+  const Real t683 = product_error(t108, t647);
+  const Real t684 = t682 - t683;
+  const Real t685 = t249 * t684;
+  const Real t686 = t681 - t648;
+  const Real t687 = t247 * t686;
+  const Real t688 = t687 + t685;
+  const Real t689 = product_error(t249, t686);
+  const Real t690 = t688 + t689;
+  const Real t691 = product_error(t177, t647);
+  const Real t692 = t235 * t647;
+  const Real t693 = t691 + t692;
+  const Real t694 = t177 * t647;
+  const Real t695 = t660 * t550;
+  const Real t696 = t60 * t664;
+  const Real t697 = t696 + t695;
+  const Real t698 = par.r_F * t664;
+  const Real t699 = par.k2 * t671;
+  const Real t700 = t698 + t699;
+  const Real t701 = t700 + t697;
+  const Real t702 = t633 * t192;
+  const Real t703 = t633 * t199;
+  const Real t704 = t702 + t703;
+  const Real t705 = t704 + t701;
+  const Real t706 = t109 * t642;
+  const Real t707 = t705 + t706;
+  const Real t708 = t645 * t63;
+  const Real t709 = t708 + t707;
+  const Real t710 = sum_error(t709, t694);
+  const Real t711 = t693 + t710;
+  const Real t712 = t711 + t690;
+  const Real t713 = t249 * t686;
+  const Real t714 = t694 + t709;
+  const Real t715 = sum_error(t714, t713);
+  const Real t716 = t712 + t715;
+  const Real t717 = t259 * t716;
+  const Real t718 = t714 + t713;
+  const Real t719 = t718 * t263;
+  const Real t720 = t717 + t719;
+  const Real t721 = product_error(t259, t718);
+  const Real t722 = t721 + t720;
+  const Real t723 = t56 * t722;
+  const Real t724 = t718 * t259;
+  const Real t725 = t724 * t51;
+  const Real t726 = t725 + t723;
+  const Real t727 = product_error(t56, t724);
+  const Real t728 = t727 + t726;
+  const Real t729 = t684 - t728;
+  const Real t730 = t56 * t724;
+  const Real t731 = -t730;
+  const Real t732 = sum_error(t686, t731);
+  const Real t733 = t729 + t732;
+  const Real t734 = t733 * t165;
+  const Real t735 = t686 - t730;
+  const Real t736 = t169 * t735;
+  const Real t737 = t734 + t736;
+  const Real t738 = product_error(t165, t735);
+  const Real t739 = t738 + t737;
+  const Real t740 = t127 * t739;
+  const Real t741 = t165 * t735;
+  const Real t742 = t741 * t160;
+  const Real t743 = t740 + t742;
+  const Real t744 = product_error(t127, t741);
+  const Real t745 = t743 + t744;
+  const Real t746 = t127 * t741;
+  const Real t747 = t647 - t746;
+  const Real t748 = t747 - t745;
+  const Real t749 = t83 * t748;
+  const Real t750 = t91 * t748;
+  const Real t751 = t749 + t750;
+  const Real t752 = par.k1 * t751;
+  const Real t753 = t752 * s_r_p_1_;
+  const Real t754 = c_r_p_1_ * t739;
+  const Real t755 = c_r_p_1_ * t741;
+  const Real t756 = t754 + t755;
+  const Real t757 = t753 + t756;
+  const Real t758 = t530 * nu[1];
+  const Real t759 = t757 - t758;
+  const Real t760 = t535 * t530;
+  const Real t761 = t760 - t759;
+  const Real t762 = t761 * par.k13;
+  const Real t763 = t652 * t652;
+  const Real t764 = t530 * t530;
+  const Real t765 = t763 + t764;
+  const Real t766 = t765 * par.k12;
+  const Real t767 = t766 + t762;
+  const Real t768 = t123 * t739;
+  const Real t769 = t121 * t741;
+  const Real t770 = t769 + t768;
+  const Real t771 = t123 * t741;
+  const Real t772 = t770 + t771;
+  const Real t773 = t633 - t772;
+  const Real t774 = t570 * t468;
+  const Real t775 = t611 * t480;
+  const Real t776 = t774 - t775;
+  const Real t777 = t773 + t776;
+
+  // frame: acceleration
+  const Real t778 = par.g * R[6];
+
+  // passive accelerations
+  const Real t779 = t777 - t778;
+  const Real t780 = t468 * t468;
+  const Real t781 = t480 * t480;
+  const Real t782 = t781 + t780;
+  const Real t783 = t782 * par.k14;
+  const Real t784 = t779 - t783;
+  const Real t785 = par.k1 * t784;
+  const Real t786 = t80 * t739;
+  const Real t787 = t80 * t741;
+  const Real t788 = t786 + t787;
+  const Real t789 = t788 + t645;
+  const Real t790 = t570 * nu[0];
+  const Real t791 = t480 * t594;
+  const Real t792 = t790 + t791;
+  const Real t793 = t789 + t792;
+
+  // frame: acceleration
+  const Real t794 = par.g * R[8];
+
+  // passive accelerations
+  const Real t795 = t793 - t794;
+  const Real t796 = t468 * nu[0];
+  const Real t797 = t796 + t741;
+  const Real t798 = t797 + t739;
+  const Real t799 = par.k14 * t798;
+  const Real t800 = t795 - t799;
+  const Real t801 = t800 * par.k2;
+  const Real t802 = t801 + t785;
+  const Real t803 = t802 + t767;
+  const Real t804 = t803 * par.k2;
+  const Real t805 = t751 * t80;
+  const Real t806 = t642 - t805;
+  const Real t807 = t594 * t468;
+  const Real t808 = t611 * nu[0];
+  const Real t809 = t807 + t808;
+  const Real t810 = t806 - t809;
+
+  // frame: acceleration
+  const Real t811 = par.g * R[7];
+
+  // passive accelerations
+  const Real t812 = t810 - t811;
+  const Real t813 = t480 * nu[0];
+  const Real t814 = t751 - t813;
+  const Real t815 = par.k14 * t814;
+  const Real t816 = t815 + t812;
+  const Real t817 = s_r_p_1_ * t816;
+  const Real t818 = par.k2 * t784;
+  const Real t819 = par.k1 * t800;
+  const Real t820 = t818 - t819;
+  const Real t821 = t820 * c_r_p_1_;
+  const Real t822 = t817 + t821;
+  const Real t823 = t759 + t760;
+  const Real t824 = par.k12 * t823;
+  const Real t825 = t535 * t535;
+  const Real t826 = t825 + t763;
+  const Real t827 = t826 * par.k13;
+  const Real t828 = t827 + t824;
+  const Real t829 = t822 - t828;
+  const Real t830 = par.k1 * t829;
+  const Real t831 = t804 - t830;
+  const Real t832 = c_r_p_2_ * t831;
+  const Real t833 = par.k2 * t829;
+  const Real t834 = par.k1 * t803;
+  const Real t835 = t833 + t834;
+  const Real t836 = t835 * s_r_p_2_;
+  const Real t837 = t832 + t836;
+  const Real t838 = par.m_F * t837;
+  const Real t839 = t838 * s_r_p_2_;
+  const Real t840 = c_r_p_2_ * t835;
+  const Real t841 = s_r_p_2_ * t831;
+  const Real t842 = t840 - t841;
+  const Real t843 = par.m_F * t842;
+  const Real t844 = t843 * c_r_p_2_;
+  const Real t845 = t839 + t844;
+  const Real t846 = t845 * par.k2;
+  const Real t847 = c_r_p_2_ * t838;
+  const Real t848 = t843 * s_r_p_2_;
+  const Real t849 = t847 - t848;
+  const Real t850 = par.k1 * t849;
+  const Real t851 = t846 - t850;
+  const Real t852 = t851 * par.k12;
+  const Real t853 = par.k1 * t845;
+  const Real t854 = par.k2 * t849;
+  const Real t855 = t853 + t854;
+  const Real t856 = par.k13 * t855;
+  const Real t857 = t852 + t856;
+  const Real t858 = t759 - t724;
+  const Real t859 = t858 - t722;
+  const Real t860 = par.I_Fyy * t859;
+  const Real t861 = t860 - t857;
+  const Real t862 = par.k9 * t822;
+  const Real t863 = t802 * par.k11;
+  const Real t864 = t862 - t863;
+  const Real t865 = par.k8 * t759;
+  const Real t866 = par.k38 * t760;
+  const Real t867 = t866 + t865;
+  const Real t868 = t535 + t530;
+  const Real t869 = t535 - t530;
+  const Real t870 = t868 * t869;
+  const Real t871 = par.k5 * t870;
+  const Real t872 = t867 + t871;
+  const Real t873 = t872 + t864;
+  const Real t874 = t861 + t873;
+  const Real t875 = t874 * s_r_p_1_;
+  const Real t876 = t752 * c_r_p_1_;
+  const Real t877 = s_r_p_1_ * t739;
+  const Real t878 = s_r_p_1_ * t741;
+  const Real t879 = t877 + t878;
+  const Real t880 = t879 - t876;
+  const Real t881 = t652 * nu[1];
+  const Real t882 = t880 - t881;
+  const Real t883 = par.k1 * t882;
+  const Real t884 = t751 * par.k2;
+  const Real t885 = par.k2 * t884;
+  const Real t886 = t885 - t883;
+  const Real t887 = t886 * c_r_p_2_;
+  const Real t888 = t882 * par.k2;
+  const Real t889 = par.k1 * t884;
+  const Real t890 = t889 + t888;
+  const Real t891 = t890 * s_r_p_2_;
+  const Real t892 = t887 + t891;
+  const Real t893 = c_r_p_2_ * t553;
+  const Real t894 = t537 * s_r_p_2_;
+  const Real t895 = t893 - t894;
+  const Real t896 = t659 * t895;
+  const Real t897 = t892 - t896;
+  const Real t898 = par.I_Fxx * t897;
+  const Real t899 = t660 * t895;
+  const Real t900 = t899 * par.k43;
+  const Real t901 = t898 - t900;
+  const Real t902 = t901 * s_r_p_2_;
+  const Real t903 = c_r_p_2_ * t890;
+  const Real t904 = t886 * s_r_p_2_;
+  const Real t905 = t903 - t904;
+  const Real t906 = s_r_p_2_ * t553;
+  const Real t907 = c_r_p_2_ * t537;
+  const Real t908 = t906 + t907;
+  const Real t909 = t659 * t908;
+  const Real t910 = t909 + t905;
+  const Real t911 = t910 * par.I_Fxx;
+  const Real t912 = t660 * t908;
+  const Real t913 = par.k42 * t912;
+  const Real t914 = t911 - t913;
+  const Real t915 = c_r_p_2_ * t914;
+  const Real t916 = t902 + t915;
+  const Real t917 = par.k2 * t916;
+  const Real t918 = t901 * c_r_p_2_;
+  const Real t919 = s_r_p_2_ * t914;
+  const Real t920 = t918 - t919;
+  const Real t921 = t920 * par.k1;
+  const Real t922 = t917 - t921;
+  const Real t923 = c_r_p_1_ * t816;
+  const Real t924 = t820 * s_r_p_1_;
+  const Real t925 = t923 - t924;
+  const Real t926 = t535 * t652;
+  const Real t927 = t882 + t926;
+  const Real t928 = par.k12 * t927;
+  const Real t929 = t530 * t652;
+  const Real t930 = t884 - t929;
+  const Real t931 = t930 * par.k13;
+  const Real t932 = t931 + t928;
+  const Real t933 = t925 + t932;
+  const Real t934 = par.m_F * t933;
+  const Real t935 = par.k12 * t934;
+  const Real t936 = t935 + t922;
+  const Real t937 = t925 * par.k9;
+  const Real t938 = t882 * par.k18;
+  const Real t939 = par.k37 * t926;
+  const Real t940 = t938 - t939;
+  const Real t941 = par.k5 * t930;
+  const Real t942 = t940 + t941;
+  const Real t943 = t942 - t937;
+  const Real t944 = t943 + t936;
+  const Real t945 = t944 * c_r_p_1_;
+  const Real t946 = t945 - t875;
+  const Real t947 = t946 * par.k1;
+  const Real t948 = t920 * par.k2;
+  const Real t949 = par.k1 * t916;
+  const Real t950 = t948 + t949;
+  const Real t951 = par.k13 * t934;
+  const Real t952 = t951 + t950;
+  const Real t953 = t925 * par.k11;
+  const Real t954 = par.k5 * t927;
+  const Real t955 = par.k7 * t884;
+  const Real t956 = t929 * par.k39;
+  const Real t957 = t955 - t956;
+  const Real t958 = t957 + t954;
+  const Real t959 = t953 + t958;
+  const Real t960 = t952 + t959;
+  const Real t961 = t960 * par.k2;
+  const Real t962 = t961 - t947;
+  const Real t963 = par.m_H * t822;
+  const Real t964 = par.k9 * t823;
+  const Real t965 = t826 * par.k11;
+  const Real t966 = t964 - t965;
+  const Real t967 = t966 + t963;
+  const Real t968 = t967 + t851;
+  const Real t969 = s_r_p_1_ * t968;
+  const Real t970 = t925 * par.m_H;
+  const Real t971 = par.k9 * t927;
+  const Real t972 = par.k11 * t930;
+  const Real t973 = t972 - t971;
+  const Real t974 = t970 + t973;
+  const Real t975 = t974 + t934;
+  const Real t976 = c_r_p_1_ * t975;
+  const Real t977 = t976 + t969;
+  const Real t978 = t977 * par.k14;
+  const Real t979 = t962 + t978;
+  const Real t980 = t812 * par.k17;
+  const Real t981 = t751 * par.k15;
+  const Real t982 = t813 * par.k32;
+  const Real t983 = t981 - t982;
+  const Real t984 = t480 * t468;
+  const Real t985 = par.k3 * t984;
+  const Real t986 = t983 - t985;
+  const Real t987 = t986 + t980;
+  const Real t988 = t987 + t979;
+  const Real t989 = t751 * c_r_p_0_;
+  const Real t990 = t468 * s_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t991 = nu[0] * c_r_p_0_;
+
+  // passive accelerations
+  const Real t992 = t991 + t990;
+  const Real t993 = t992 * nu[2];
+  const Real t994 = t993 + t989;
+  const Real t995 = t994 * par.I_Rxx;
+  const Real t996 = t992 * t632;
+  const Real t997 = par.k35 * t996;
+  const Real t998 = t995 + t997;
+  const Real t999 = t998 * c_r_p_0_;
+  const Real t1000 = t751 * s_r_p_0_;
+  const Real t1001 = t468 * c_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1002 = nu[0] * s_r_p_0_;
+
+  // passive accelerations
+  const Real t1003 = t1002 - t1001;
+  const Real t1004 = t1003 * nu[2];
+  const Real t1005 = t1004 + t1000;
+  const Real t1006 = t1005 * par.I_Rxx;
+  const Real t1007 = t1003 * t632;
+  const Real t1008 = t1007 * par.k36;
+  const Real t1009 = t1008 - t1006;
+  const Real t1010 = t1009 * s_r_p_0_;
+  const Real t1011 = t999 - t1010;
+  const Real t1012 = t988 + t1011;
+  const Real t1013 = t1012 * t466;
+  const Real t1014 = t874 * c_r_p_1_;
+  const Real t1015 = s_r_p_1_ * t944;
+  const Real t1016 = t1014 + t1015;
+  const Real t1017 = c_r_p_1_ * t968;
+  const Real t1018 = s_r_p_1_ * t975;
+  const Real t1019 = t1017 - t1018;
+  const Real t1020 = par.k1 * t1019;
+  const Real t1021 = t761 * par.k11;
+  const Real t1022 = par.k9 * t765;
+  const Real t1023 = t1021 - t1022;
+  const Real t1024 = t802 * par.m_H;
+  const Real t1025 = t1023 + t1024;
+  const Real t1026 = t1025 + t855;
+  const Real t1027 = t1026 * par.k2;
+  const Real t1028 = t1027 - t1020;
+  const Real t1029 = par.k14 * t1028;
+  const Real t1030 = t1016 - t1029;
+  const Real t1031 = par.k59 * t779;
+  const Real t1032 = t779 * par.k16;
+  const Real t1033 = t1031 + t1032;
+  const Real t1034 = t795 * par.k17;
+  const Real t1035 = t1033 - t1034;
+  const Real t1036 = par.k4 * t739;
+  const Real t1037 = par.k4 * t741;
+  const Real t1038 = t1037 + t1036;
+  const Real t1039 = t796 * par.k34;
+  const Real t1040 = t1038 - t1039;
+  const Real t1041 = t468 - nu[0];
+  const Real t1042 = t468 + nu[0];
+  const Real t1043 = t1041 * t1042;
+  const Real t1044 = par.k3 * t1043;
+  const Real t1045 = t1040 + t1044;
+  const Real t1046 = t1035 + t1045;
+  const Real t1047 = t1030 + t1046;
+  const Real t1048 = t741 - t796;
+  const Real t1049 = t1048 + t739;
+  const Real t1050 = t1049 * par.r_R;
+  const Real t1051 = t779 - t1050;
+  const Real t1052 = t1051 * s_r_p_0_;
+
+  // frame: acceleration
+  const Real t1053 = nu[0] * nu[0];
+
+  // passive accelerations
+  const Real t1054 = t1053 + t781;
+  const Real t1055 = par.r_R * t1054;
+  const Real t1056 = t795 + t1055;
+  const Real t1057 = t1056 * c_r_p_0_;
+  const Real t1058 = t1052 + t1057;
+  const Real t1059 = t1058 * par.m_R;
+  const Real t1060 = t1059 * s_r_p_0_;
+  const Real t1061 = t1051 * c_r_p_0_;
+  const Real t1062 = t1056 * s_r_p_0_;
+  const Real t1063 = t1061 - t1062;
+  const Real t1064 = par.m_R * t1063;
+  const Real t1065 = t1064 * c_r_p_0_;
+  const Real t1066 = t1060 + t1065;
+  const Real t1067 = t1066 * par.r_R;
+  const Real t1068 = par.I_Ryy * t739;
+  const Real t1069 = par.I_Ryy * t741;
+  const Real t1070 = t1069 + t1068;
+  const Real t1071 = t1070 - t1067;
+  const Real t1072 = t1071 + t1047;
+  const Real t1073 = t1072 * t456;
+  const Real t1074 = t1072 * t454;
+  const Real t1075 = t1073 + t1074;
+  const Real t1076 = par.k2 * t1019;
+  const Real t1077 = par.k1 * t1026;
+  const Real t1078 = t1076 + t1077;
+  const Real t1079 = t779 * par.m_B;
+  const Real t1080 = t1049 * par.k59;
+  const Real t1081 = t1049 * par.k16;
+  const Real t1082 = t1080 + t1081;
+  const Real t1083 = t782 * par.k17;
+  const Real t1084 = t1082 - t1083;
+  const Real t1085 = t1084 + t1079;
+  const Real t1086 = t1078 + t1085;
+  const Real t1087 = t1086 + t1066;
+  const Real t1088 = t1087 * t592;
+  const Real t1089 = t812 * par.m_B;
+  const Real t1090 = t814 * par.k17;
+  const Real t1091 = par.k16 * t984;
+  const Real t1092 = par.k59 * t984;
+  const Real t1093 = t1091 + t1092;
+  const Real t1094 = t1093 + t1090;
+  const Real t1095 = t1094 + t1089;
+  const Real t1096 = t977 + t1095;
+  const Real t1097 = par.r_R * t984;
+  const Real t1098 = t812 - t1097;
+  const Real t1099 = par.m_R * t1098;
+  const Real t1100 = t1099 + t1096;
+  const Real t1101 = t568 * t1100;
+  const Real t1102 = t1101 + t1088;
+  const Real t1103 = t795 * par.m_B;
+  const Real t1104 = t798 * par.k17;
+  const Real t1105 = par.k59 * t1054;
+  const Real t1106 = par.k16 * t1054;
+  const Real t1107 = t1105 + t1106;
+  const Real t1108 = t1104 + t1107;
+  const Real t1109 = t1103 - t1108;
+  const Real t1110 = t1109 + t1028;
+  const Real t1111 = t1059 * c_r_p_0_;
+  const Real t1112 = t1064 * s_r_p_0_;
+  const Real t1113 = t1111 - t1112;
+  const Real t1114 = t1110 + t1113;
+  const Real t1115 = t1114 * t609;
+  const Real t1116 = t1102 + t1115;
+  const Real t1117 = t1075 - t1116;
+  const Real t1118 = t1013 + t1117;
+  const Real t1119 = t1118 - t1070;
+  const Real t1120 = t443 * t860;
+  const Real t1121 = t1120 + t1119;
+  const Real t1122 = t1072 * t308;
+  const Real t1123 = t1072 * t310;
+  const Real t1124 = t1122 + t1123;
+  const Real t1125 = t1087 * t578;
+  const Real t1126 = t562 * t1100;
+  const Real t1127 = t1125 + t1126;
+  const Real t1128 = t1114 * t599;
+  const Real t1129 = t1128 - t1127;
+  const Real t1130 = t1129 + t1124;
+  const Real t1131 = t320 * t1012;
+  const Real t1132 = t1130 + t1131;
+  const Real t1133 = t1132 - t960;
+  const Real t1134 = t860 * t291;
+  const Real t1135 = t293 * t860;
+  const Real t1136 = t1134 + t1135;
+  const Real t1137 = t1133 + t1136;
+  const Real t1138 = t584 * t1087;
+  const Real t1139 = t565 * t1100;
+  const Real t1140 = t1138 + t1139;
+  const Real t1141 = t1114 * t603;
+  const Real t1142 = t1141 - t1140;
+  const Real t1143 = t946 * par.k2;
+  const Real t1144 = t960 * par.k1;
+  const Real t1145 = t1144 + t1143;
+  const Real t1146 = t812 * par.k16;
+  const Real t1147 = par.k3 * t814;
+  const Real t1148 = par.k33 * t984;
+  const Real t1149 = t1148 + t1147;
+  const Real t1150 = t1149 - t1146;
+  const Real t1151 = t1150 + t1145;
+  const Real t1152 = t1099 * par.r_R;
+  const Real t1153 = t998 * s_r_p_0_;
+  const Real t1154 = t1009 * c_r_p_0_;
+  const Real t1155 = t1153 + t1154;
+  const Real t1156 = t1155 + t1152;
+  const Real t1157 = t1151 + t1156;
+  const Real t1158 = t1142 - t1157;
+  const Real t1159 = sum_error(t1156, t1151);
+  const Real t1160 = sum_error(t1145, t1150);
+  const Real t1161 = -t1146;
+  const Real t1162 = sum_error(t1149, t1161);
+  const Real t1163 = product_error(t812, par.k16);
+  const Real t1164 = t812 * par.k59;
+  const Real t1165 = t1163 + t1164;
+  const Real t1166 = t1162 - t1165;
+  const Real t1167 = t1160 + t1166;
+  const Real t1168 = t1159 + t1167;
+  const Real t1169 = t1158 - t1168;
+  const Real t1170 = t1072 * t396;
+  const Real t1171 = t1072 * t394;
+  const Real t1172 = t1170 + t1171;
+  const Real t1173 = t1169 + t1172;
+  const Real t1174 = t1012 * t406;
+  const Real t1175 = t1174 + t1173;
+  const Real t1176 = t860 * t383;
+  const Real t1177 = t1175 + t1176;
+  const Real t1178 = t466 * par.k14;
+  const Real t1179 = t568 - t1178;
+  const Real t1180 = s_r_p_1_ * t1179;
+  const Real t1181 = par.k2 * t592;
+  const Real t1182 = par.k14 * t454;
+  const Real t1183 = t456 * par.k14;
+  const Real t1184 = t1183 + t1182;
+  const Real t1185 = t609 + t1184;
+  const Real t1186 = t1185 * par.k1;
+  const Real t1187 = t1181 - t1186;
+  const Real t1188 = t1187 * c_r_p_1_;
+  const Real t1189 = t1188 + t1180;
+  const Real t1190 = par.k1 * t466;
+  const Real t1191 = t1190 * s_r_p_1_;
+  const Real t1192 = c_r_p_1_ * t454;
+  const Real t1193 = t456 * c_r_p_1_;
+  const Real t1194 = t1192 + t1193;
+  const Real t1195 = t1194 + t1191;
+  const Real t1196 = t1195 * par.k12;
+  const Real t1197 = t1189 + t1196;
+  const Real t1198 = t1197 * par.k2;
+  const Real t1199 = t1195 * par.k13;
+  const Real t1200 = t1185 * par.k2;
+  const Real t1201 = par.k1 * t592;
+  const Real t1202 = t1200 + t1201;
+  const Real t1203 = t1202 + t1199;
+  const Real t1204 = par.k1 * t1203;
+  const Real t1205 = t1198 + t1204;
+  const Real t1206 = t1205 * s_r_p_2_;
+  const Real t1207 = par.k2 * t1203;
+  const Real t1208 = t1197 * par.k1;
+  const Real t1209 = t1207 - t1208;
+  const Real t1210 = t1209 * c_r_p_2_;
+  const Real t1211 = t1206 + t1210;
+  const Real t1212 = t1211 * par.m_F;
+  const Real t1213 = c_r_p_2_ * t1212;
+  const Real t1214 = t1205 * c_r_p_2_;
+  const Real t1215 = t1209 * s_r_p_2_;
+  const Real t1216 = t1214 - t1215;
+  const Real t1217 = t1216 * par.m_F;
+  const Real t1218 = t1217 * s_r_p_2_;
+  const Real t1219 = t1213 - t1218;
+  const Real t1220 = par.k2 * t1219;
+  const Real t1221 = t1212 * s_r_p_2_;
+  const Real t1222 = t1217 * c_r_p_2_;
+  const Real t1223 = t1221 + t1222;
+  const Real t1224 = par.k1 * t1223;
+  const Real t1225 = t1220 + t1224;
+  const Real t1226 = t1225 * par.k13;
+  const Real t1227 = t1223 * par.k2;
+  const Real t1228 = par.k1 * t1219;
+  const Real t1229 = t1227 - t1228;
+  const Real t1230 = t1229 * par.k12;
+  const Real t1231 = t1226 + t1230;
+  const Real t1232 = t1195 + t443;
+  const Real t1233 = par.I_Fyy * t1232;
+  const Real t1234 = t1233 + t1231;
+  const Real t1235 = t1189 * par.k9;
+  const Real t1236 = t1202 * par.k11;
+  const Real t1237 = t1235 - t1236;
+  const Real t1238 = t1195 * par.k8;
+  const Real t1239 = t1237 - t1238;
+  const Real t1240 = t1239 - t1234;
+  const Real t1241 = t1240 * c_r_p_1_;
+  const Real t1242 = t1190 * c_r_p_1_;
+  const Real t1243 = s_r_p_1_ * t454;
+  const Real t1244 = s_r_p_1_ * t456;
+  const Real t1245 = t1243 + t1244;
+  const Real t1246 = t1242 - t1245;
+  const Real t1247 = par.k2 * t1246;
+  const Real t1248 = t466 * par.k2;
+  const Real t1249 = par.k1 * t1248;
+  const Real t1250 = t1247 - t1249;
+  const Real t1251 = t1250 * s_r_p_2_;
+  const Real t1252 = par.k1 * t1246;
+  const Real t1253 = par.k2 * t1248;
+  const Real t1254 = t1252 + t1253;
+  const Real t1255 = t1254 * c_r_p_2_;
+  const Real t1256 = t1251 - t1255;
+  const Real t1257 = par.I_Fxx * t1256;
+  const Real t1258 = t1257 * s_r_p_2_;
+  const Real t1259 = t1254 * s_r_p_2_;
+  const Real t1260 = c_r_p_2_ * t1250;
+  const Real t1261 = t1259 + t1260;
+  const Real t1262 = par.I_Fxx * t1261;
+  const Real t1263 = c_r_p_2_ * t1262;
+  const Real t1264 = t1258 + t1263;
+  const Real t1265 = t1264 * par.k2;
+  const Real t1266 = t1257 * c_r_p_2_;
+  const Real t1267 = t1262 * s_r_p_2_;
+  const Real t1268 = t1266 - t1267;
+  const Real t1269 = t1268 * par.k1;
+  const Real t1270 = t1265 - t1269;
+  const Real t1271 = t1245 - t1242;
+  const Real t1272 = t1271 * par.k12;
+  const Real t1273 = par.k13 * t1248;
+  const Real t1274 = t1272 + t1273;
+  const Real t1275 = c_r_p_1_ * t1179;
+  const Real t1276 = s_r_p_1_ * t1187;
+  const Real t1277 = t1275 - t1276;
+  const Real t1278 = t1277 - t1274;
+  const Real t1279 = t1278 * par.m_F;
+  const Real t1280 = t1279 * par.k12;
+  const Real t1281 = t1280 + t1270;
+  const Real t1282 = t1246 * par.k18;
+  const Real t1283 = par.k5 * t1248;
+  const Real t1284 = t1282 - t1283;
+  const Real t1285 = par.k9 * t1277;
+  const Real t1286 = t1284 - t1285;
+  const Real t1287 = t1281 + t1286;
+  const Real t1288 = t1287 * s_r_p_1_;
+  const Real t1289 = t1241 + t1288;
+  const Real t1290 = t1189 * par.m_H;
+  const Real t1291 = t1195 * par.k9;
+  const Real t1292 = t1290 - t1291;
+  const Real t1293 = t1292 + t1229;
+  const Real t1294 = c_r_p_1_ * t1293;
+  const Real t1295 = t1271 * par.k9;
+  const Real t1296 = par.k11 * t1248;
+  const Real t1297 = t1295 - t1296;
+  const Real t1298 = par.m_H * t1277;
+  const Real t1299 = t1297 + t1298;
+  const Real t1300 = t1299 + t1279;
+  const Real t1301 = s_r_p_1_ * t1300;
+  const Real t1302 = t1294 - t1301;
+  const Real t1303 = par.k1 * t1302;
+  const Real t1304 = t1195 * par.k11;
+  const Real t1305 = t1202 * par.m_H;
+  const Real t1306 = t1305 + t1304;
+  const Real t1307 = t1225 + t1306;
+  const Real t1308 = t1307 * par.k2;
+  const Real t1309 = t1308 - t1303;
+  const Real t1310 = par.k14 * t1309;
+  const Real t1311 = t1289 - t1310;
+  const Real t1312 = par.k59 * t592;
+  const Real t1313 = t592 * par.k16;
+  const Real t1314 = t1312 + t1313;
+  const Real t1315 = t609 * par.k17;
+  const Real t1316 = t1314 - t1315;
+  const Real t1317 = par.k4 * t454;
+  const Real t1318 = par.k4 * t456;
+  const Real t1319 = t1317 + t1318;
+  const Real t1320 = t1316 - t1319;
+  const Real t1321 = t1311 + t1320;
+  const Real t1322 = par.r_R * t454;
+  const Real t1323 = t456 * par.r_R;
+  const Real t1324 = t1322 + t1323;
+  const Real t1325 = t1324 + t592;
+  const Real t1326 = t1325 * c_r_p_0_;
+  const Real t1327 = t609 * s_r_p_0_;
+  const Real t1328 = t1326 - t1327;
+  const Real t1329 = t1328 * par.m_R;
+  const Real t1330 = t1329 * c_r_p_0_;
+  const Real t1331 = t1325 * s_r_p_0_;
+  const Real t1332 = t609 * c_r_p_0_;
+  const Real t1333 = t1331 + t1332;
+  const Real t1334 = t1333 * par.m_R;
+  const Real t1335 = t1334 * s_r_p_0_;
+  const Real t1336 = t1330 + t1335;
+  const Real t1337 = par.r_R * t1336;
+  const Real t1338 = constant<Real>(1.0L) - t456;
+  const Real t1339 = t1338 - t454;
+  const Real t1340 = par.I_Ryy * t1339;
+  const Real t1341 = t1340 - t1337;
+  const Real t1342 = t1321 + t1341;
+  const Real t1343 = t456 * t1342;
+  const Real t1344 = t1342 * t454;
+  const Real t1345 = t1343 + t1344;
+  const Real t1346 = t1302 * par.k2;
+  const Real t1347 = t1307 * par.k1;
+  const Real t1348 = t1346 + t1347;
+  const Real t1349 = t592 * par.m_B;
+  const Real t1350 = par.k16 * t454;
+  const Real t1351 = par.k59 * t456;
+  const Real t1352 = t1351 + t1350;
+  const Real t1353 = t456 * par.k16;
+  const Real t1354 = t1353 + t1352;
+  const Real t1355 = t1349 - t1354;
+  const Real t1356 = t1355 + t1348;
+  const Real t1357 = t1356 + t1336;
+  const Real t1358 = t1357 * t592;
+  const Real t1359 = s_r_p_1_ * t1293;
+  const Real t1360 = c_r_p_1_ * t1300;
+  const Real t1361 = t1360 + t1359;
+  const Real t1362 = t568 * par.m_B;
+  const Real t1363 = t466 * par.k17;
+  const Real t1364 = t1362 - t1363;
+  const Real t1365 = t1364 + t1361;
+  const Real t1366 = par.m_R * t568;
+  const Real t1367 = t1366 + t1365;
+  const Real t1368 = t568 * t1367;
+  const Real t1369 = t1368 + t1358;
+  const Real t1370 = t609 * par.m_B;
+  const Real t1371 = par.k17 * t454;
+  const Real t1372 = t456 * par.k17;
+  const Real t1373 = t1372 + t1371;
+  const Real t1374 = t1373 + t1370;
+  const Real t1375 = t1374 + t1309;
+  const Real t1376 = t1334 * c_r_p_0_;
+  const Real t1377 = t1329 * s_r_p_0_;
+  const Real t1378 = t1376 - t1377;
+  const Real t1379 = t1378 + t1375;
+  const Real t1380 = t1379 * t609;
+  const Real t1381 = t1380 + t1369;
+  const Real t1382 = t1381 - t1345;
+  const Real t1383 = t1240 * s_r_p_1_;
+  const Real t1384 = t1287 * c_r_p_1_;
+  const Real t1385 = t1384 - t1383;
+  const Real t1386 = par.k1 * t1385;
+  const Real t1387 = t1264 * par.k1;
+  const Real t1388 = t1268 * par.k2;
+  const Real t1389 = t1387 + t1388;
+  const Real t1390 = t1279 * par.k13;
+  const Real t1391 = t1390 + t1389;
+  const Real t1392 = par.k11 * t1277;
+  const Real t1393 = t1271 * par.k5;
+  const Real t1394 = par.k7 * t1248;
+  const Real t1395 = t1394 + t1393;
+  const Real t1396 = t1392 - t1395;
+  const Real t1397 = t1396 + t1391;
+  const Real t1398 = par.k2 * t1397;
+  const Real t1399 = t1398 - t1386;
+  const Real t1400 = par.k14 * t1361;
+  const Real t1401 = t1400 + t1399;
+  const Real t1402 = t568 * par.k17;
+  const Real t1403 = t466 * par.k15;
+  const Real t1404 = t1402 - t1403;
+  const Real t1405 = t1404 + t1401;
+  const Real t1406 = t466 * s_r_p_0_;
+  const Real t1407 = par.I_Rxx * t1406;
+  const Real t1408 = t1407 * s_r_p_0_;
+  const Real t1409 = t466 * c_r_p_0_;
+  const Real t1410 = t1409 * par.I_Rxx;
+  const Real t1411 = t1410 * c_r_p_0_;
+  const Real t1412 = t1408 + t1411;
+  const Real t1413 = t1405 - t1412;
+  const Real t1414 = t1413 * t466;
+  const Real t1415 = t1382 - t1414;
+  const Real t1416 = t1340 + t1415;
+  const Real t1417 = t1233 * t443;
+  const Real t1418 = t1417 + t1416;
+  const Real t1419 = t320 * par.k14;
+  const Real t1420 = t562 - t1419;
+  const Real t1421 = t1420 * s_r_p_1_;
+  const Real t1422 = par.k2 * t578;
+  const Real t1423 = par.k14 * t308;
+  const Real t1424 = t310 * par.k14;
+  const Real t1425 = t1424 + t1423;
+  const Real t1426 = t1425 - t599;
+  const Real t1427 = par.k1 * t1426;
+  const Real t1428 = t1422 - t1427;
+  const Real t1429 = c_r_p_1_ * t1428;
+  const Real t1430 = t1421 + t1429;
+  const Real t1431 = t320 * par.k1;
+  const Real t1432 = s_r_p_1_ * t1431;
+  const Real t1433 = c_r_p_1_ * t308;
+  const Real t1434 = t310 * c_r_p_1_;
+  const Real t1435 = t1434 + t1433;
+  const Real t1436 = t1432 + t1435;
+  const Real t1437 = t1436 * par.k12;
+  const Real t1438 = t1430 + t1437;
+  const Real t1439 = t1438 * par.k2;
+  const Real t1440 = t1436 * par.k13;
+  const Real t1441 = par.k1 * t578;
+  const Real t1442 = par.k2 * t1426;
+  const Real t1443 = t1441 + t1442;
+  const Real t1444 = t1440 + t1443;
+  const Real t1445 = par.k1 * t1444;
+  const Real t1446 = t1439 + t1445;
+  const Real t1447 = t1446 * c_r_p_2_;
+  const Real t1448 = t1444 * par.k2;
+  const Real t1449 = par.k1 * t1438;
+  const Real t1450 = t1448 - t1449;
+  const Real t1451 = t1450 * s_r_p_2_;
+  const Real t1452 = t1447 - t1451;
+  const Real t1453 = t1452 * par.m_F;
+  const Real t1454 = t1453 * c_r_p_2_;
+  const Real t1455 = t1446 * s_r_p_2_;
+  const Real t1456 = t1450 * c_r_p_2_;
+  const Real t1457 = t1455 + t1456;
+  const Real t1458 = par.m_F * t1457;
+  const Real t1459 = t1458 * s_r_p_2_;
+  const Real t1460 = t1454 + t1459;
+  const Real t1461 = par.k2 * t1460;
+  const Real t1462 = c_r_p_2_ * t1458;
+  const Real t1463 = t1453 * s_r_p_2_;
+  const Real t1464 = t1462 - t1463;
+  const Real t1465 = par.k1 * t1464;
+  const Real t1466 = t1461 - t1465;
+  const Real t1467 = t1466 * par.k12;
+  const Real t1468 = t1464 * par.k2;
+  const Real t1469 = par.k1 * t1460;
+  const Real t1470 = t1468 + t1469;
+  const Real t1471 = t1470 * par.k13;
+  const Real t1472 = t1467 + t1471;
+  const Real t1473 = t1436 + t293;
+  const Real t1474 = t1473 + t291;
+  const Real t1475 = t1474 * par.I_Fyy;
+  const Real t1476 = t1472 + t1475;
+  const Real t1477 = par.k9 * t1430;
+  const Real t1478 = par.k11 * t1443;
+  const Real t1479 = t1477 - t1478;
+  const Real t1480 = t1436 * par.k8;
+  const Real t1481 = t1479 - t1480;
+  const Real t1482 = t1481 - t1476;
+  const Real t1483 = c_r_p_1_ * t1482;
+  const Real t1484 = t1431 * c_r_p_1_;
+  const Real t1485 = s_r_p_1_ * t308;
+  const Real t1486 = t310 * s_r_p_1_;
+  const Real t1487 = t1486 + t1485;
+  const Real t1488 = t1484 - t1487;
+  const Real t1489 = par.k2 * t1488;
+  const Real t1490 = t320 * par.k2;
+  const Real t1491 = constant<Real>(1.0L) - t1490;
+  const Real t1492 = par.k1 * t1491;
+  const Real t1493 = t1492 + t1489;
+  const Real t1494 = c_r_p_2_ * t1493;
+  const Real t1495 = par.k1 * t1488;
+  const Real t1496 = par.k2 * t1491;
+  const Real t1497 = t1496 - t1495;
+  const Real t1498 = t1497 * s_r_p_2_;
+  const Real t1499 = t1494 - t1498;
+  const Real t1500 = par.I_Fxx * t1499;
+  const Real t1501 = c_r_p_2_ * t1500;
+  const Real t1502 = c_r_p_2_ * t1497;
+  const Real t1503 = t1493 * s_r_p_2_;
+  const Real t1504 = t1502 + t1503;
+  const Real t1505 = par.I_Fxx * t1504;
+  const Real t1506 = t1505 * s_r_p_2_;
+  const Real t1507 = t1501 + t1506;
+  const Real t1508 = par.k2 * t1507;
+  const Real t1509 = t1505 * c_r_p_2_;
+  const Real t1510 = t1500 * s_r_p_2_;
+  const Real t1511 = t1509 - t1510;
+  const Real t1512 = par.k1 * t1511;
+  const Real t1513 = t1508 - t1512;
+  const Real t1514 = t1487 - t1484;
+  const Real t1515 = t1514 * par.k12;
+  const Real t1516 = t1491 * par.k13;
+  const Real t1517 = t1516 - t1515;
+  const Real t1518 = t1420 * c_r_p_1_;
+  const Real t1519 = s_r_p_1_ * t1428;
+  const Real t1520 = t1518 - t1519;
+  const Real t1521 = t1517 + t1520;
+  const Real t1522 = par.m_F * t1521;
+  const Real t1523 = par.k12 * t1522;
+  const Real t1524 = t1523 + t1513;
+  const Real t1525 = par.k18 * t1488;
+  const Real t1526 = par.k5 * t1491;
+  const Real t1527 = t1525 + t1526;
+  const Real t1528 = par.k9 * t1520;
+  const Real t1529 = t1527 - t1528;
+  const Real t1530 = t1524 + t1529;
+  const Real t1531 = s_r_p_1_ * t1530;
+  const Real t1532 = t1483 + t1531;
+  const Real t1533 = par.m_H * t1430;
+  const Real t1534 = t1436 * par.k9;
+  const Real t1535 = t1533 - t1534;
+  const Real t1536 = t1535 + t1466;
+  const Real t1537 = t1536 * c_r_p_1_;
+  const Real t1538 = par.m_H * t1520;
+  const Real t1539 = t1514 * par.k9;
+  const Real t1540 = par.k11 * t1491;
+  const Real t1541 = t1539 + t1540;
+  const Real t1542 = t1538 + t1541;
+  const Real t1543 = t1542 + t1522;
+  const Real t1544 = t1543 * s_r_p_1_;
+  const Real t1545 = t1537 - t1544;
+  const Real t1546 = t1545 * par.k1;
+  const Real t1547 = t1436 * par.k11;
+  const Real t1548 = par.m_H * t1443;
+  const Real t1549 = t1548 + t1547;
+  const Real t1550 = t1470 + t1549;
+  const Real t1551 = par.k2 * t1550;
+  const Real t1552 = t1551 - t1546;
+  const Real t1553 = t1552 * par.k14;
+  const Real t1554 = t1532 - t1553;
+  const Real t1555 = par.k16 * t578;
+  const Real t1556 = par.k59 * t578;
+  const Real t1557 = t1555 + t1556;
+  const Real t1558 = par.k17 * t599;
+  const Real t1559 = t1558 + t1557;
+  const Real t1560 = par.k4 * t308;
+  const Real t1561 = t310 * par.k4;
+  const Real t1562 = t1561 + t1560;
+  const Real t1563 = t1559 - t1562;
+  const Real t1564 = t1563 + t1554;
+  const Real t1565 = par.r_R * t308;
+  const Real t1566 = t310 * par.r_R;
+  const Real t1567 = t1565 + t1566;
+  const Real t1568 = t1567 + t578;
+  const Real t1569 = t1568 * c_r_p_0_;
+  const Real t1570 = s_r_p_0_ * t599;
+  const Real t1571 = t1569 + t1570;
+  const Real t1572 = t1571 * par.m_R;
+  const Real t1573 = t1572 * c_r_p_0_;
+  const Real t1574 = t1568 * s_r_p_0_;
+  const Real t1575 = c_r_p_0_ * t599;
+  const Real t1576 = t1574 - t1575;
+  const Real t1577 = t1576 * par.m_R;
+  const Real t1578 = t1577 * s_r_p_0_;
+  const Real t1579 = t1573 + t1578;
+  const Real t1580 = par.r_R * t1579;
+  const Real t1581 = par.I_Ryy * t308;
+  const Real t1582 = t310 * par.I_Ryy;
+  const Real t1583 = t1582 + t1581;
+  const Real t1584 = t1583 + t1580;
+  const Real t1585 = t1564 - t1584;
+  const Real t1586 = t1585 * t454;
+  const Real t1587 = t456 * t1585;
+  const Real t1588 = t1586 + t1587;
+  const Real t1589 = t1545 * par.k2;
+  const Real t1590 = par.k1 * t1550;
+  const Real t1591 = t1589 + t1590;
+  const Real t1592 = t578 * par.m_B;
+  const Real t1593 = par.k16 * t308;
+  const Real t1594 = t310 * par.k59;
+  const Real t1595 = t1594 + t1593;
+  const Real t1596 = t310 * par.k16;
+  const Real t1597 = t1596 + t1595;
+  const Real t1598 = t1592 - t1597;
+  const Real t1599 = t1591 + t1598;
+  const Real t1600 = t1599 + t1579;
+  const Real t1601 = t592 * t1600;
+  const Real t1602 = t1536 * s_r_p_1_;
+  const Real t1603 = t1543 * c_r_p_1_;
+  const Real t1604 = t1603 + t1602;
+  const Real t1605 = t562 * par.m_B;
+  const Real t1606 = t320 * par.k17;
+  const Real t1607 = t1605 - t1606;
+  const Real t1608 = t1604 + t1607;
+  const Real t1609 = par.m_R * t562;
+  const Real t1610 = t1608 + t1609;
+  const Real t1611 = t1610 * t568;
+  const Real t1612 = t1611 + t1601;
+  const Real t1613 = par.m_B * t599;
+  const Real t1614 = par.k17 * t308;
+  const Real t1615 = t310 * par.k17;
+  const Real t1616 = t1614 + t1615;
+  const Real t1617 = t1616 - t1613;
+  const Real t1618 = t1617 + t1552;
+  const Real t1619 = t1577 * c_r_p_0_;
+  const Real t1620 = t1572 * s_r_p_0_;
+  const Real t1621 = t1619 - t1620;
+  const Real t1622 = t1618 + t1621;
+  const Real t1623 = t1622 * t609;
+  const Real t1624 = t1612 + t1623;
+  const Real t1625 = t1624 - t1588;
+  const Real t1626 = s_r_p_1_ * t1482;
+  const Real t1627 = c_r_p_1_ * t1530;
+  const Real t1628 = t1627 - t1626;
+  const Real t1629 = par.k1 * t1628;
+  const Real t1630 = par.k1 * t1507;
+  const Real t1631 = t1511 * par.k2;
+  const Real t1632 = t1630 + t1631;
+  const Real t1633 = par.k13 * t1522;
+  const Real t1634 = t1633 + t1632;
+  const Real t1635 = par.k5 * t1514;
+  const Real t1636 = par.k7 * t1491;
+  const Real t1637 = t1636 - t1635;
+  const Real t1638 = par.k11 * t1520;
+  const Real t1639 = t1637 + t1638;
+  const Real t1640 = t1634 + t1639;
+  const Real t1641 = t1640 * par.k2;
+  const Real t1642 = t1641 - t1629;
+  const Real t1643 = t1604 * par.k14;
+  const Real t1644 = t1642 + t1643;
+  const Real t1645 = t562 * par.k17;
+  const Real t1646 = t320 * par.k15;
+  const Real t1647 = t1645 - t1646;
+  const Real t1648 = t1647 + t1644;
+  const Real t1649 = t320 * s_r_p_0_;
+  const Real t1650 = par.I_Rxx * t1649;
+  const Real t1651 = t1650 * s_r_p_0_;
+  const Real t1652 = t320 * c_r_p_0_;
+  const Real t1653 = par.I_Rxx * t1652;
+  const Real t1654 = t1653 * c_r_p_0_;
+  const Real t1655 = t1651 + t1654;
+  const Real t1656 = t1648 - t1655;
+  const Real t1657 = t466 * t1656;
+  const Real t1658 = t1625 - t1657;
+  const Real t1659 = t1658 - t1583;
+  const Real t1660 = t443 * t1475;
+  const Real t1661 = t1659 + t1660;
+  const Real t1662 = par.k1 * t406;
+  const Real t1663 = t1662 + par.k2;
+  const Real t1664 = s_r_p_1_ * t1663;
+  const Real t1665 = t394 * c_r_p_1_;
+  const Real t1666 = c_r_p_1_ * t396;
+  const Real t1667 = t1665 + t1666;
+  const Real t1668 = t1664 + t1667;
+  const Real t1669 = par.k13 * t1668;
+  const Real t1670 = par.k1 * t584;
+  const Real t1671 = t394 * par.k14;
+  const Real t1672 = par.k14 * t396;
+  const Real t1673 = t1672 + t1671;
+  const Real t1674 = t1673 - t603;
+  const Real t1675 = t1674 * par.k2;
+  const Real t1676 = t1670 + t1675;
+  const Real t1677 = t1676 + t1669;
+  const Real t1678 = par.k1 * t1677;
+  const Real t1679 = par.k12 * t1668;
+  const Real t1680 = par.k14 * t406;
+  const Real t1681 = t565 - t1680;
+  const Real t1682 = s_r_p_1_ * t1681;
+  const Real t1683 = t584 * par.k2;
+  const Real t1684 = t1674 * par.k1;
+  const Real t1685 = t1683 - t1684;
+  const Real t1686 = c_r_p_1_ * t1685;
+  const Real t1687 = t1686 + t1682;
+  const Real t1688 = t1679 + t1687;
+  const Real t1689 = t1688 * par.k2;
+  const Real t1690 = t1678 + t1689;
+  const Real t1691 = t1690 * c_r_p_2_;
+  const Real t1692 = t1677 * par.k2;
+  const Real t1693 = t1688 * par.k1;
+  const Real t1694 = t1692 - t1693;
+  const Real t1695 = t1694 * s_r_p_2_;
+  const Real t1696 = t1691 - t1695;
+  const Real t1697 = par.m_F * t1696;
+  const Real t1698 = c_r_p_2_ * t1697;
+  const Real t1699 = t1694 * c_r_p_2_;
+  const Real t1700 = t1690 * s_r_p_2_;
+  const Real t1701 = t1699 + t1700;
+  const Real t1702 = t1701 * par.m_F;
+  const Real t1703 = t1702 * s_r_p_2_;
+  const Real t1704 = t1698 + t1703;
+  const Real t1705 = par.k2 * t1704;
+  const Real t1706 = c_r_p_2_ * t1702;
+  const Real t1707 = t1697 * s_r_p_2_;
+  const Real t1708 = t1706 - t1707;
+  const Real t1709 = t1708 * par.k1;
+  const Real t1710 = t1705 - t1709;
+  const Real t1711 = t1710 * par.k12;
+  const Real t1712 = t1708 * par.k2;
+  const Real t1713 = par.k1 * t1704;
+  const Real t1714 = t1712 + t1713;
+  const Real t1715 = t1714 * par.k13;
+  const Real t1716 = t1711 + t1715;
+  const Real t1717 = t383 + t1668;
+  const Real t1718 = par.I_Fyy * t1717;
+  const Real t1719 = t1716 + t1718;
+  const Real t1720 = par.k9 * t1687;
+  const Real t1721 = t1676 * par.k11;
+  const Real t1722 = t1720 - t1721;
+  const Real t1723 = par.k8 * t1668;
+  const Real t1724 = t1722 - t1723;
+  const Real t1725 = t1724 - t1719;
+  const Real t1726 = c_r_p_1_ * t1725;
+  const Real t1727 = c_r_p_1_ * t1663;
+  const Real t1728 = s_r_p_1_ * t394;
+  const Real t1729 = s_r_p_1_ * t396;
+  const Real t1730 = t1728 + t1729;
+  const Real t1731 = t1727 - t1730;
+  const Real t1732 = t1731 * par.k2;
+  const Real t1733 = par.k2 * t406;
+  const Real t1734 = par.k1 - t1733;
+  const Real t1735 = par.k1 * t1734;
+  const Real t1736 = t1732 + t1735;
+  const Real t1737 = t1736 * s_r_p_2_;
+  const Real t1738 = par.k1 * t1731;
+  const Real t1739 = t1734 * par.k2;
+  const Real t1740 = t1739 - t1738;
+  const Real t1741 = c_r_p_2_ * t1740;
+  const Real t1742 = t1737 + t1741;
+  const Real t1743 = t1742 * par.I_Fxx;
+  const Real t1744 = t1743 * s_r_p_2_;
+  const Real t1745 = c_r_p_2_ * t1736;
+  const Real t1746 = t1740 * s_r_p_2_;
+  const Real t1747 = t1745 - t1746;
+  const Real t1748 = par.I_Fxx * t1747;
+  const Real t1749 = t1748 * c_r_p_2_;
+  const Real t1750 = t1744 + t1749;
+  const Real t1751 = t1750 * par.k2;
+  const Real t1752 = c_r_p_2_ * t1743;
+  const Real t1753 = t1748 * s_r_p_2_;
+  const Real t1754 = t1752 - t1753;
+  const Real t1755 = par.k1 * t1754;
+  const Real t1756 = t1751 - t1755;
+  const Real t1757 = t1730 - t1727;
+  const Real t1758 = par.k12 * t1757;
+  const Real t1759 = t1734 * par.k13;
+  const Real t1760 = t1759 - t1758;
+  const Real t1761 = c_r_p_1_ * t1681;
+  const Real t1762 = s_r_p_1_ * t1685;
+  const Real t1763 = t1761 - t1762;
+  const Real t1764 = t1763 + t1760;
+  const Real t1765 = t1764 * par.m_F;
+  const Real t1766 = t1765 * par.k12;
+  const Real t1767 = t1756 + t1766;
+  const Real t1768 = t1731 * par.k18;
+  const Real t1769 = par.k5 * t1734;
+  const Real t1770 = t1768 + t1769;
+  const Real t1771 = par.k9 * t1763;
+  const Real t1772 = t1770 - t1771;
+  const Real t1773 = t1767 + t1772;
+  const Real t1774 = s_r_p_1_ * t1773;
+  const Real t1775 = t1726 + t1774;
+  const Real t1776 = par.m_H * t1687;
+  const Real t1777 = par.k9 * t1668;
+  const Real t1778 = t1776 - t1777;
+  const Real t1779 = t1710 + t1778;
+  const Real t1780 = c_r_p_1_ * t1779;
+  const Real t1781 = par.k9 * t1757;
+  const Real t1782 = t1734 * par.k11;
+  const Real t1783 = t1782 + t1781;
+  const Real t1784 = t1763 * par.m_H;
+  const Real t1785 = t1783 + t1784;
+  const Real t1786 = t1765 + t1785;
+  const Real t1787 = s_r_p_1_ * t1786;
+  const Real t1788 = t1780 - t1787;
+  const Real t1789 = t1788 * par.k1;
+  const Real t1790 = par.k11 * t1668;
+  const Real t1791 = t1676 * par.m_H;
+  const Real t1792 = t1790 + t1791;
+  const Real t1793 = t1714 + t1792;
+  const Real t1794 = t1793 * par.k2;
+  const Real t1795 = t1794 - t1789;
+  const Real t1796 = par.k14 * t1795;
+  const Real t1797 = t1775 - t1796;
+  const Real t1798 = par.k59 * t584;
+  const Real t1799 = t584 * par.k16;
+  const Real t1800 = t1798 + t1799;
+  const Real t1801 = t603 * par.k17;
+  const Real t1802 = t1801 + t1800;
+  const Real t1803 = par.k4 * t394;
+  const Real t1804 = par.k4 * t396;
+  const Real t1805 = t1803 + t1804;
+  const Real t1806 = t1802 - t1805;
+  const Real t1807 = t1797 + t1806;
+  const Real t1808 = t394 * par.r_R;
+  const Real t1809 = par.r_R * t396;
+  const Real t1810 = t1808 + t1809;
+  const Real t1811 = t584 + t1810;
+  const Real t1812 = t1811 * s_r_p_0_;
+  const Real t1813 = t603 * c_r_p_0_;
+  const Real t1814 = t1812 - t1813;
+  const Real t1815 = t1814 * par.m_R;
+  const Real t1816 = t1815 * s_r_p_0_;
+  const Real t1817 = t1811 * c_r_p_0_;
+  const Real t1818 = t603 * s_r_p_0_;
+  const Real t1819 = t1817 + t1818;
+  const Real t1820 = par.m_R * t1819;
+  const Real t1821 = t1820 * c_r_p_0_;
+  const Real t1822 = t1816 + t1821;
+  const Real t1823 = t1822 * par.r_R;
+  const Real t1824 = t394 * par.I_Ryy;
+  const Real t1825 = par.I_Ryy * t396;
+  const Real t1826 = t1824 + t1825;
+  const Real t1827 = t1823 + t1826;
+  const Real t1828 = t1807 - t1827;
+  const Real t1829 = t456 * t1828;
+  const Real t1830 = t1828 * t454;
+  const Real t1831 = t1829 + t1830;
+  const Real t1832 = t1788 * par.k2;
+  const Real t1833 = par.k1 * t1793;
+  const Real t1834 = t1832 + t1833;
+  const Real t1835 = t584 * par.m_B;
+  const Real t1836 = t394 * par.k16;
+  const Real t1837 = par.k59 * t396;
+  const Real t1838 = t1837 + t1836;
+  const Real t1839 = par.k16 * t396;
+  const Real t1840 = t1838 + t1839;
+  const Real t1841 = t1835 - t1840;
+  const Real t1842 = t1841 + t1834;
+  const Real t1843 = t1842 + t1822;
+  const Real t1844 = t1843 * t592;
+  const Real t1845 = s_r_p_1_ * t1779;
+  const Real t1846 = c_r_p_1_ * t1786;
+  const Real t1847 = t1846 + t1845;
+  const Real t1848 = t565 * par.m_B;
+  const Real t1849 = par.k17 * t406;
+  const Real t1850 = par.k16 + t1849;
+  const Real t1851 = par.k59 + t1850;
+  const Real t1852 = t1848 - t1851;
+  const Real t1853 = t1852 + t1847;
+  const Real t1854 = t565 + par.r_R;
+  const Real t1855 = par.m_R * t1854;
+  const Real t1856 = t1855 + t1853;
+  const Real t1857 = t1856 * t568;
+  const Real t1858 = t1844 + t1857;
+  const Real t1859 = t603 * par.m_B;
+  const Real t1860 = t394 * par.k17;
+  const Real t1861 = par.k17 * t396;
+  const Real t1862 = t1860 + t1861;
+  const Real t1863 = t1862 - t1859;
+  const Real t1864 = t1863 + t1795;
+  const Real t1865 = t1815 * c_r_p_0_;
+  const Real t1866 = t1820 * s_r_p_0_;
+  const Real t1867 = t1865 - t1866;
+  const Real t1868 = t1867 + t1864;
+  const Real t1869 = t609 * t1868;
+  const Real t1870 = t1858 + t1869;
+  const Real t1871 = t1870 - t1831;
+  const Real t1872 = s_r_p_1_ * t1725;
+  const Real t1873 = c_r_p_1_ * t1773;
+  const Real t1874 = t1873 - t1872;
+  const Real t1875 = par.k1 * t1874;
+  const Real t1876 = t1754 * par.k2;
+  const Real t1877 = t1750 * par.k1;
+  const Real t1878 = t1876 + t1877;
+  const Real t1879 = t1765 * par.k13;
+  const Real t1880 = t1878 + t1879;
+  const Real t1881 = t1763 * par.k11;
+  const Real t1882 = par.k5 * t1757;
+  const Real t1883 = par.k7 * t1734;
+  const Real t1884 = t1883 - t1882;
+  const Real t1885 = t1881 + t1884;
+  const Real t1886 = t1885 + t1880;
+  const Real t1887 = t1886 * par.k2;
+  const Real t1888 = t1887 - t1875;
+  const Real t1889 = t1847 * par.k14;
+  const Real t1890 = t1889 + t1888;
+  const Real t1891 = t565 * par.k17;
+  const Real t1892 = par.k15 * t406;
+  const Real t1893 = par.k49 + t1892;
+  const Real t1894 = t1891 - t1893;
+  const Real t1895 = t1894 + t1890;
+  const Real t1896 = t406 * c_r_p_0_;
+  const Real t1897 = s_r_p_0_ - t1896;
+  const Real t1898 = par.I_Rxx * t1897;
+  const Real t1899 = t1898 * c_r_p_0_;
+  const Real t1900 = t406 * s_r_p_0_;
+  const Real t1901 = t1900 + c_r_p_0_;
+  const Real t1902 = par.I_Rxx * t1901;
+  const Real t1903 = t1902 * s_r_p_0_;
+  const Real t1904 = t1899 - t1903;
+  const Real t1905 = t1895 + t1904;
+  const Real t1906 = t466 * t1905;
+  const Real t1907 = t1871 - t1906;
+  const Real t1908 = t1907 - t1826;
+  const Real t1909 = t443 * t1718;
+  const Real t1910 = t1909 + t1908;
+  const Real t1911 = t1585 * t308;
+  const Real t1912 = t310 * t1585;
+  const Real t1913 = t1911 + t1912;
+  const Real t1914 = t578 * t1600;
+  const Real t1915 = t1610 * t562;
+  const Real t1916 = t1914 + t1915;
+  const Real t1917 = t1622 * t599;
+  const Real t1918 = t1916 - t1917;
+  const Real t1919 = t1918 - t1913;
+  const Real t1920 = t320 * t1656;
+  const Real t1921 = t1919 - t1920;
+  const Real t1922 = t1640 + t1921;
+  const Real t1923 = t293 * t1475;
+  const Real t1924 = t291 * t1475;
+  const Real t1925 = t1923 + t1924;
+  const Real t1926 = t1925 + t1922;
+  const Real t1927 = t1828 * t308;
+  const Real t1928 = t310 * t1828;
+  const Real t1929 = t1927 + t1928;
+  const Real t1930 = t1843 * t578;
+  const Real t1931 = t1856 * t562;
+  const Real t1932 = t1931 + t1930;
+  const Real t1933 = t1868 * t599;
+  const Real t1934 = t1932 - t1933;
+  const Real t1935 = t1934 - t1929;
+  const Real t1936 = t320 * t1905;
+  const Real t1937 = t1935 - t1936;
+  const Real t1938 = t1886 + t1937;
+  const Real t1939 = t291 * t1718;
+  const Real t1940 = t293 * t1718;
+  const Real t1941 = t1939 + t1940;
+  const Real t1942 = t1938 + t1941;
+  const Real t1943 = par.k2 * t1874;
+  const Real t1944 = par.k1 * t1886;
+  const Real t1945 = t1944 + t1943;
+  const Real t1946 = t565 * par.k16;
+  const Real t1947 = par.k59 * t565;
+  const Real t1948 = t1946 + t1947;
+  const Real t1949 = par.k3 * t406;
+  const Real t1950 = par.k10 - t1949;
+  const Real t1951 = t1950 - t1948;
+  const Real t1952 = -t1949;
+  const Real t1953 = sum_error(par.k10, t1952);
+  const Real t1954 = t1951 + t1953;
+  const Real t1955 = t1954 + t1945;
+  const Real t1956 = t1902 * c_r_p_0_;
+  const Real t1957 = t1898 * s_r_p_0_;
+  const Real t1958 = t1956 + t1957;
+  const Real t1959 = t1855 * par.r_R;
+  const Real t1960 = t1958 + t1959;
+  const Real t1961 = t1955 + t1960;
+  const Real t1962 = t1843 * t584;
+  const Real t1963 = t1856 * t565;
+  const Real t1964 = t1962 + t1963;
+  const Real t1965 = t603 * t1868;
+  const Real t1966 = t1964 - t1965;
+  const Real t1967 = t1961 + t1966;
+  const Real t1968 = t1828 * t396;
+  const Real t1969 = t394 * t1828;
+  const Real t1970 = t1968 + t1969;
+  const Real t1971 = t1967 - t1970;
+  const Real t1972 = t1905 * t406;
+  const Real t1973 = t1971 - t1972;
+  const Real t1974 = t383 * t1718;
+  const Real t1975 = t1974 + t1973;
+
+  M_r[0] = t1975;
+  M_r[1] = t1942;
+  M_r[2] = t1910;
+  M_r[3] = t1942;
+  M_r[4] = t1926;
+  M_r[5] = t1661;
+  M_r[6] = t1910;
+  M_r[7] = t1661;
+  M_r[8] = t1418;
+  f_r[0] = t1177;
+  f_r[1] = t1137;
+  f_r[2] = t1121;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: orthogonal basis, projected recursion, compensated beyond 25 ulps
-/// operations: 1019 add, 1161 mul, 14 div, 5 neg, 2 sqrt, 3 sin, 3 cos
+/// route: orthogonal basis, all blocks, stable forms, compensated beyond 0.5 ulps
+/// operations: 3468 add, 2121 mul, 25 div, 86 neg, 2 sqrt, 6 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -3987,6 +4868,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   using std::sqrt;
   using detail::constant;
   using detail::product_error;
+  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
@@ -3994,2095 +4876,4204 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
+  const Real t1 = r_p[2] - par.tilt;
+  const Real t2 = sin(t1);
+  const Real t3 = par.tilt - r_p[2];
+  const Real t4 = sin(t3);
+  const Real t5 = constant<Real>(0.5L) * r_p[1];
+  const Real t6 = sin(t5);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
-  const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t20 * t16;
-  const Real t22 = t21 * par.r_F;
-  const Real t23 = par.k1 * c_r_p_1_;
-  const Real t24 = par.k1 * t23;
-  const Real t25 = par.k18 + t24;
-  const Real t26 = t25 * t22;
-  const Real t27 = t12 * t20;
-  const Real t28 = par.r_F * t27;
-  const Real t29 = t23 * par.k2;
-  const Real t30 = par.k22 - t29;
-  const Real t31 = t28 * t30;
-  const Real t32 = t26 + t31;
-  const Real t33 = t30 * par.r_F;
-  const Real t34 = t25 * par.c;
-  const Real t35 = t33 - t34;
-  const Real t36 = c_r_p_1_ * par.k13;
-  const Real t37 = t36 + t35;
-  const Real t38 = t32 + t37;
-  const Real t39 = R[6] * R[6];
-  const Real t40 = R[8] * R[8];
-  const Real t41 = t39 + t40;
-  const Real t42 = sqrt(t41);
-  const Real t43 = constant<Real>(1.0L) / t42;
-  const Real t44 = t43 * R[6];
-  const Real t45 = t44 * par.r_R;
+  const Real t7 = R[8] * par.k1;
 
   // kernel
-  const Real t46 = c_r_p_1_ * t45;
-  const Real t47 = t38 - t46;
-  const Real t48 = constant<Real>(1.0L) / t47;
+  const Real t8 = -t7;
 
   // joint angles
-  const Real t49 = s_r_p_1_ * par.k1;
-  const Real t50 = t28 * t49;
-  const Real t51 = s_r_p_1_ * par.k13;
-  const Real t52 = par.k2 * t51;
-  const Real t53 = par.r_F * t49;
-  const Real t54 = t52 - t53;
-  const Real t55 = t54 - t50;
-  const Real t56 = s_r_p_1_ * par.k2;
+  const Real t9 = par.k2 * R[6];
 
   // kernel
-  const Real t57 = t56 * t45;
-  const Real t58 = t55 - t57;
-  const Real t59 = t48 * t58;
+  const Real t10 = sum_error(t9, t8);
+  const Real t11 = product_error(par.k2, R[6]);
+  const Real t12 = t10 + t11;
+  const Real t13 = t12 * c_r_p_1_;
 
   // joint angles
-  const Real t60 = t28 * t56;
-  const Real t61 = t22 * t49;
-  const Real t62 = t60 - t61;
-  const Real t63 = t56 * par.r_F;
-  const Real t64 = par.c * t49;
-  const Real t65 = t63 + t64;
-  const Real t66 = s_r_p_1_ * par.k23;
-  const Real t67 = t65 - t66;
-  const Real t68 = t62 + t67;
-  const Real t69 = R[8] * t43;
-  const Real t70 = t69 * par.r_R;
-  const Real t71 = t70 - par.r_R;
+  const Real t14 = t9 - t7;
 
   // kernel
-  const Real t72 = t71 * t56;
-  const Real t73 = t72 + t68;
-  const Real t74 = t49 * t45;
-  const Real t75 = t73 + t74;
-  const Real t76 = t75 * t59;
-  const Real t77 = -t76;
+  const Real t15 = product_error(c_r_p_1_, t14);
+  const Real t16 = t15 + t13;
 
   // joint angles
-  const Real t78 = t28 * c_r_p_1_;
-  const Real t79 = c_r_p_1_ * par.k23;
-  const Real t80 = t79 * par.k2;
-  const Real t81 = t80 - par.k24;
-  const Real t82 = c_r_p_1_ * par.r_F;
-  const Real t83 = t81 - t82;
-  const Real t84 = t83 - t78;
-  const Real t85 = c_r_p_1_ * par.k2;
-  const Real t86 = par.k2 * t85;
-  const Real t87 = par.k19 + t86;
+  const Real t17 = c_r_p_1_ * t14;
+  const Real t18 = s_r_p_1_ * R[7];
 
   // kernel
-  const Real t88 = t71 * t87;
-  const Real t89 = t84 - t88;
-  const Real t90 = t30 * t45;
-  const Real t91 = t89 + t90;
-  const Real t92 = sum_error(t91, t77);
-  const Real t93 = product_error(t75, t59);
-  const Real t94 = t92 - t93;
+  const Real t19 = sum_error(t17, t18);
+  const Real t20 = t19 + t16;
+  const Real t21 = par.k1 * t20;
 
   // joint angles
-  const Real t95 = par.k1 * t51;
-  const Real t96 = t64 - t95;
-  const Real t97 = t96 - t61;
+  const Real t22 = t17 + t18;
 
   // kernel
-  const Real t98 = t74 + t97;
-  const Real t99 = t98 * t48;
-  const Real t100 = t99 * t75;
+  const Real t23 = product_error(par.k1, t22);
+  const Real t24 = t23 + t21;
 
   // joint angles
-  const Real t101 = t22 * c_r_p_1_;
-  const Real t102 = t79 * par.k1;
-  const Real t103 = t102 + par.k21;
-  const Real t104 = c_r_p_1_ * par.c;
-  const Real t105 = t104 - t103;
-  const Real t106 = t105 - t101;
-  const Real t107 = par.k1 * t85;
-  const Real t108 = par.k22 - t107;
+  const Real t25 = par.k1 * R[6];
+  const Real t26 = R[8] * par.k2;
 
   // kernel
-  const Real t109 = t71 * t108;
-  const Real t110 = t106 - t109;
-  const Real t111 = t25 * t45;
-  const Real t112 = t111 + t110;
-  const Real t113 = t112 - t100;
-  const Real t114 = constant<Real>(1.0L) / t113;
-  const Real t115 = t94 * t114;
-  const Real t116 = t91 - t76;
-  const Real t117 = product_error(t116, t114);
+  const Real t27 = sum_error(t25, t26);
+  const Real t28 = product_error(par.k1, R[6]);
+  const Real t29 = t28 + t27;
+  const Real t30 = par.k2 * t29;
+
+  // joint angles
+  const Real t31 = t25 + t26;
+
+  // kernel
+  const Real t32 = product_error(t31, par.k2);
+  const Real t33 = t32 + t30;
+  const Real t34 = t24 - t33;
+
+  // joint angles
+  const Real t35 = par.k1 * t22;
+  const Real t36 = t31 * par.k2;
+  const Real t37 = t35 - t36;
+
+  // kernel
+  const Real t38 = t37 + t34;
+  const Real t39 = t38 * t38;
+  const Real t40 = par.k2 * t20;
+
+  // joint angles
+  const Real t41 = par.k2 * t22;
+
+  // kernel
+  const Real t42 = t41 + t40;
+  const Real t43 = par.k1 * t29;
+
+  // joint angles
+  const Real t44 = par.k1 * t31;
+
+  // kernel
+  const Real t45 = t43 + t44;
+  const Real t46 = t45 + t42;
+  const Real t47 = t46 * t46;
+  const Real t48 = t39 + t47;
+  const Real t49 = sqrt(t48);
+  const Real t50 = constant<Real>(1.0L) / t49;
+  const Real t51 = t46 * t50;
+  const Real t52 = par.r_F * t51;
+
+  // joint angles
+  const Real t53 = par.k1 * c_r_p_1_;
+  const Real t54 = par.k1 * t53;
+
+  // kernel
+  const Real t55 = sum_error(par.k19, t54);
+  const Real t56 = par.k26 + t55;
+
+  // accelerations
+  const Real t57 = t52 * t56;
+
+  // joint angles
+  const Real t58 = par.k19 + t54;
+
+  // accelerations
+  const Real t59 = product_error(t58, t52);
+  const Real t60 = t57 + t59;
+
+  // kernel
+  const Real t61 = t38 * t50;
+  const Real t62 = t61 * par.r_F;
+  const Real t63 = t6 * t6;
+  const Real t64 = constant<Real>(2.0L) * t63;
+  const Real t65 = t64 * par.k23;
+  const Real t66 = t62 * t65;
+  const Real t67 = t58 * t52;
+  const Real t68 = t66 + t67;
+
+  // accelerations
+  const Real t69 = t60 + t68;
+
+  // kernel
+  const Real t70 = t56 * par.c;
+
+  // joint angles
+  const Real t71 = t58 * par.c;
+
+  // kernel
+  const Real t72 = t70 + t71;
+  const Real t73 = par.r_F * t65;
+
+  // accelerations
+  const Real t74 = t73 - t72;
+
+  // joint angles
+  const Real t75 = c_r_p_1_ * par.k14;
+
+  // accelerations
+  const Real t76 = t75 + t74;
+  const Real t77 = t69 + t76;
+
+  // joint angles
+  const Real t78 = R[6] * R[6];
+  const Real t79 = R[8] * R[8];
+  const Real t80 = t78 + t79;
+  const Real t81 = sqrt(t80);
+  const Real t82 = constant<Real>(1.0L) / t81;
+  const Real t83 = t82 * R[6];
+
+  // accelerations
+  const Real t84 = quotient_error(constant<Real>(1.0L), t81);
+  const Real t85 = t84 * R[6];
+  const Real t86 = t83 + t85;
+  const Real t87 = t86 * par.r_R;
+  const Real t88 = t87 * c_r_p_1_;
+  const Real t89 = t77 - t88;
+  const Real t90 = constant<Real>(1.0L) / t89;
+  const Real t91 = sum_error(t76, t69);
+  const Real t92 = sum_error(t74, t75);
+
+  // kernel
+  const Real t93 = product_error(c_r_p_1_, par.k14);
+  const Real t94 = c_r_p_1_ * par.k28;
+  const Real t95 = t93 + t94;
+
+  // accelerations
+  const Real t96 = t92 + t95;
+  const Real t97 = t91 + t96;
+  const Real t98 = -t88;
+  const Real t99 = sum_error(t77, t98);
+  const Real t100 = t97 + t99;
+  const Real t101 = t90 * t100;
+  const Real t102 = t101 / t89;
+  const Real t103 = quotient_error(constant<Real>(1.0L), t89);
+  const Real t104 = t103 - t102;
+
+  // joint angles
+  const Real t105 = s_r_p_1_ * par.k1;
+
+  // kernel
+  const Real t106 = t52 * t105;
+  const Real t107 = s_r_p_1_ * par.k28;
+  const Real t108 = product_error(s_r_p_1_, par.k14);
+  const Real t109 = t107 + t108;
+  const Real t110 = t109 * par.k1;
+
+  // joint angles
+  const Real t111 = s_r_p_1_ * par.k14;
+  const Real t112 = par.k1 * t111;
+
+  // kernel
+  const Real t113 = t110 + t112;
+
+  // joint angles
+  const Real t114 = par.c * t105;
 
   // passive accelerations
-  const Real t118 = t117 + t115;
+  const Real t115 = t114 - t113;
+
+  // accelerations
+  const Real t116 = t115 - t106;
+  const Real t117 = t87 * t105;
+  const Real t118 = t117 + t116;
+  const Real t119 = t104 * t118;
+  const Real t120 = t90 * t118;
+  const Real t121 = t120 + t119;
 
   // joint angles
-  const Real t119 = par.k1 * t28;
-  const Real t120 = t22 * par.k2;
-  const Real t121 = t119 + t120;
-  const Real t122 = t121 + par.k12;
+  const Real t122 = s_r_p_1_ * par.k2;
 
   // kernel
-  const Real t123 = t99 * t122;
+  const Real t123 = t122 * t62;
+  const Real t124 = t123 - t106;
+
+  // joint angles
+  const Real t125 = t122 * par.r_F;
 
   // passive accelerations
-  const Real t124 = t118 * t123;
+  const Real t126 = sum_error(t125, t114);
 
   // kernel
-  const Real t125 = t116 * t114;
-  const Real t126 = product_error(t99, t122);
-  const Real t127 = t126 * t125;
+  const Real t127 = product_error(t122, par.r_F);
 
   // passive accelerations
-  const Real t128 = t127 + t124;
+  const Real t128 = t126 + t127;
 
   // kernel
-  const Real t129 = product_error(t123, t125);
+  const Real t129 = s_r_p_1_ * par.k29;
+  const Real t130 = product_error(s_r_p_1_, par.k24);
+  const Real t131 = t129 + t130;
 
   // passive accelerations
-  const Real t130 = t128 + t129;
+  const Real t132 = t128 - t131;
 
-  // kernel
-  const Real t131 = product_error(t122, t59);
-
-  // passive accelerations
-  const Real t132 = t130 - t131;
-
-  // kernel
-  const Real t133 = t123 * t125;
-  const Real t134 = t122 * t59;
+  // joint angles
+  const Real t133 = t125 + t114;
+  const Real t134 = s_r_p_1_ * par.k24;
   const Real t135 = t133 - t134;
 
   // passive accelerations
   const Real t136 = t132 + t135;
-  const Real t137 = t118 * t22;
+
+  // accelerations
+  const Real t137 = t124 + t136;
+
+  // joint angles
+  const Real t138 = R[8] * t82;
+  const Real t139 = t138 * par.r_R;
+  const Real t140 = t139 - par.r_R;
 
   // kernel
-  const Real t138 = t22 * t125;
+  const Real t141 = t140 * t122;
+
+  // accelerations
+  const Real t142 = t137 + t141;
+  const Real t143 = t142 + t117;
+  const Real t144 = t121 * t143;
+  const Real t145 = -t144;
+
+  // kernel
+  const Real t146 = t52 * c_r_p_1_;
+
+  // joint angles
+  const Real t147 = c_r_p_1_ * par.k24;
+
+  // kernel
+  const Real t148 = c_r_p_1_ * par.k29;
+  const Real t149 = t147 + t148;
+  const Real t150 = par.k1 * t149;
+  const Real t151 = par.k22 + t150;
+
+  // joint angles
+  const Real t152 = c_r_p_1_ * par.c;
+
+  // kernel
+  const Real t153 = t152 - t151;
+
+  // accelerations
+  const Real t154 = t153 - t146;
+  const Real t155 = product_error(R[8], t82);
+  const Real t156 = R[8] * t84;
+  const Real t157 = t155 + t156;
+  const Real t158 = t157 * par.r_R;
+  const Real t159 = product_error(t138, par.r_R);
+  const Real t160 = t159 + t158;
+
+  // kernel
+  const Real t161 = sum_error(t139, par.k6);
+
+  // accelerations
+  const Real t162 = t161 + t160;
+  const Real t163 = t162 * t65;
+
+  // kernel
+  const Real t164 = t140 * t65;
+
+  // accelerations
+  const Real t165 = t164 + t163;
+  const Real t166 = t154 - t165;
+  const Real t167 = t58 * t87;
+  const Real t168 = t87 * t56;
+  const Real t169 = t167 + t168;
+  const Real t170 = t166 + t169;
+  const Real t171 = sum_error(t170, t145);
+  const Real t172 = product_error(t121, t143);
+  const Real t173 = sum_error(t141, t137);
+  const Real t174 = t162 * t122;
+
+  // kernel
+  const Real t175 = product_error(t140, t122);
+
+  // accelerations
+  const Real t176 = t174 + t175;
+  const Real t177 = t176 + t173;
+  const Real t178 = sum_error(t142, t117);
+  const Real t179 = t177 + t178;
+  const Real t180 = t179 * t121;
+  const Real t181 = t172 + t180;
+
+  // kernel
+  const Real t182 = -t146;
+
+  // accelerations
+  const Real t183 = sum_error(t153, t182);
+
+  // kernel
+  const Real t184 = -t151;
+  const Real t185 = sum_error(t152, t184);
+  const Real t186 = sum_error(t150, par.k22);
+  const Real t187 = t186 + par.k31;
+  const Real t188 = t185 - t187;
+
+  // accelerations
+  const Real t189 = t188 + t183;
+  const Real t190 = -t165;
+  const Real t191 = sum_error(t154, t190);
+  const Real t192 = t191 + t189;
+  const Real t193 = sum_error(t169, t166);
+  const Real t194 = t193 + t192;
+  const Real t195 = t194 - t181;
+  const Real t196 = t171 + t195;
+  const Real t197 = t170 - t144;
+  const Real t198 = constant<Real>(1.0L) / t197;
+  const Real t199 = t196 * t198;
+  const Real t200 = t199 / t197;
+  const Real t201 = quotient_error(constant<Real>(1.0L), t197);
+  const Real t202 = t201 - t200;
+
+  // kernel
+  const Real t203 = t62 * t105;
+
+  // joint angles
+  const Real t204 = par.k2 * t111;
+  const Real t205 = par.r_F * t105;
+  const Real t206 = t204 - t205;
+
+  // kernel
+  const Real t207 = t206 - t203;
+
+  // accelerations
+  const Real t208 = t87 * t122;
+  const Real t209 = t207 - t208;
+  const Real t210 = t209 * t90;
+  const Real t211 = t143 * t210;
+
+  // kernel
+  const Real t212 = t38 * c_r_p_1_;
+  const Real t213 = t212 * par.r_F;
+  const Real t214 = t213 * t50;
+
+  // accelerations
+  const Real t215 = par.k63 * t64;
+
+  // joint angles
+  const Real t216 = c_r_p_1_ * par.r_F;
+
+  // accelerations
+  const Real t217 = t215 + t216;
+  const Real t218 = t217 + t214;
+
+  // joint angles
+  const Real t219 = c_r_p_1_ * par.k2;
+  const Real t220 = par.k2 * t219;
+  const Real t221 = par.k20 + t220;
+
+  // kernel
+  const Real t222 = t140 * t221;
+
+  // accelerations
+  const Real t223 = t222 + t218;
+  const Real t224 = t84 * par.k1;
+
+  // kernel
+  const Real t225 = par.k1 * t82;
+
+  // accelerations
+  const Real t226 = t224 + t225;
+  const Real t227 = par.k2 * t226;
+  const Real t228 = t227 * t6;
+  const Real t229 = t228 * t6;
+  const Real t230 = t229 * R[6];
+  const Real t231 = t230 * par.r_R;
+  const Real t232 = constant<Real>(2.0L) * t231;
+  const Real t233 = t232 - t223;
+  const Real t234 = t233 - t211;
+  const Real t235 = t202 * t234;
+  const Real t236 = t104 * t209;
+
+  // kernel
+  const Real t237 = -t203;
+  const Real t238 = sum_error(t206, t237);
+  const Real t239 = t109 * par.k2;
+  const Real t240 = product_error(par.k2, t111);
+  const Real t241 = t240 + t239;
+  const Real t242 = -t205;
+  const Real t243 = sum_error(t204, t242);
 
   // passive accelerations
-  const Real t139 = t138 + t137;
-  const Real t140 = t139 - t28;
-  const Real t141 = constant<Real>(1.0L) / t140;
-  const Real t142 = t136 * t141;
-  const Real t143 = t22 * t142;
+  const Real t244 = t241 + t243;
+  const Real t245 = t244 + t238;
+
+  // accelerations
+  const Real t246 = -t208;
+  const Real t247 = sum_error(t207, t246);
+  const Real t248 = t247 + t245;
+  const Real t249 = t248 * t90;
+  const Real t250 = t236 + t249;
+  const Real t251 = product_error(t90, t209);
+  const Real t252 = t251 + t250;
+  const Real t253 = t143 * t252;
+  const Real t254 = t179 * t210;
+  const Real t255 = t254 + t253;
+  const Real t256 = product_error(t210, t143);
+  const Real t257 = t255 + t256;
+  const Real t258 = -t223;
+  const Real t259 = sum_error(t232, t258);
+  const Real t260 = sum_error(t217, t214);
+  const Real t261 = sum_error(t215, t216);
 
   // kernel
-  const Real t144 = -t123;
+  const Real t262 = product_error(c_r_p_1_, par.r_F);
+
+  // accelerations
+  const Real t263 = t262 + t261;
+  const Real t264 = t263 + t260;
+  const Real t265 = t162 * t221;
+
+  // kernel
+  const Real t266 = sum_error(par.k20, t220);
+  const Real t267 = product_error(c_r_p_1_, par.k2);
+  const Real t268 = t267 * par.k2;
+  const Real t269 = product_error(par.k2, t219);
+  const Real t270 = t268 + t269;
+  const Real t271 = t266 + t270;
+  const Real t272 = t140 * t271;
+
+  // accelerations
+  const Real t273 = t265 + t272;
+
+  // kernel
+  const Real t274 = product_error(t140, t221);
+
+  // accelerations
+  const Real t275 = t274 + t273;
+  const Real t276 = t275 + t264;
+  const Real t277 = sum_error(t222, t218);
+  const Real t278 = t277 + t276;
+  const Real t279 = t259 - t278;
+  const Real t280 = t279 - t257;
+  const Real t281 = -t211;
+  const Real t282 = sum_error(t233, t281);
+  const Real t283 = t280 + t282;
+  const Real t284 = t198 * t283;
+  const Real t285 = t284 + t235;
+  const Real t286 = product_error(t234, t198);
+  const Real t287 = t286 + t285;
+  const Real t288 = t52 * t287;
+  const Real t289 = t234 * t198;
+  const Real t290 = product_error(t52, t289);
+  const Real t291 = t288 + t290;
+  const Real t292 = t52 * t289;
+
+  // kernel
+  const Real t293 = -t62;
+
+  // accelerations
+  const Real t294 = sum_error(t292, t293);
+  const Real t295 = t294 + t291;
+  const Real t296 = t292 - t62;
+  const Real t297 = constant<Real>(1.0L) / t296;
+  const Real t298 = t297 * t295;
+  const Real t299 = t298 / t296;
+  const Real t300 = quotient_error(constant<Real>(1.0L), t296);
+  const Real t301 = t300 - t299;
+
+  // kernel
+  const Real t302 = t52 * par.k2;
+  const Real t303 = par.k1 * t62;
+  const Real t304 = t302 + t303;
+  const Real t305 = t304 + par.k13;
+
+  // accelerations
+  const Real t306 = t121 * t305;
+  const Real t307 = t306 * t289;
+  const Real t308 = t305 * t210;
+  const Real t309 = t307 - t308;
+  const Real t310 = t309 * t301;
+  const Real t311 = t306 * t287;
+  const Real t312 = product_error(t121, t305);
+  const Real t313 = t289 * t312;
+  const Real t314 = t311 + t313;
+  const Real t315 = product_error(t306, t289);
+  const Real t316 = t315 + t314;
+  const Real t317 = t305 * t252;
+  const Real t318 = product_error(t305, t210);
+  const Real t319 = t317 + t318;
+  const Real t320 = t316 - t319;
+  const Real t321 = -t308;
+  const Real t322 = sum_error(t307, t321);
+  const Real t323 = t322 + t320;
+  const Real t324 = t297 * t323;
+  const Real t325 = t310 + t324;
+  const Real t326 = product_error(t297, t309);
+  const Real t327 = t326 + t325;
+  const Real t328 = t52 * t327;
+  const Real t329 = t309 * t297;
+  const Real t330 = product_error(t52, t329);
+  const Real t331 = t328 + t330;
+  const Real t332 = t331 - t312;
+  const Real t333 = t52 * t329;
+  const Real t334 = -t306;
+  const Real t335 = sum_error(t333, t334);
+  const Real t336 = t332 + t335;
+  const Real t337 = t198 * t336;
+  const Real t338 = t333 - t306;
+  const Real t339 = t202 * t338;
+  const Real t340 = t339 + t337;
+  const Real t341 = product_error(t198, t338);
+  const Real t342 = t341 + t340;
+  const Real t343 = t342 * t143;
+  const Real t344 = t338 * t198;
+  const Real t345 = t179 * t344;
+  const Real t346 = t343 + t345;
+  const Real t347 = product_error(t344, t143);
+  const Real t348 = t346 + t347;
+  const Real t349 = t344 * t143;
+  const Real t350 = -t349;
+  const Real t351 = sum_error(t305, t350);
+  const Real t352 = t351 - t348;
+  const Real t353 = t352 * t90;
+  const Real t354 = t305 - t349;
+  const Real t355 = t104 * t354;
+  const Real t356 = t353 + t355;
+  const Real t357 = product_error(t90, t354);
+  const Real t358 = t356 + t357;
+  const Real t359 = t358 * nu[1];
+  const Real t360 = t90 * t354;
+  const Real t361 = t360 * nu[1];
+  const Real t362 = t359 + t361;
+
+  // kernel
+  const Real t363 = t62 * t271;
+  const Real t364 = t62 * t221;
+  const Real t365 = t363 + t364;
+  const Real t366 = t52 * t65;
+  const Real t367 = t366 + t365;
+  const Real t368 = par.r_F * t271;
+
+  // joint angles
+  const Real t369 = par.r_F * t221;
 
   // passive accelerations
-  const Real t145 = sum_error(t143, t144);
-  const Real t146 = t145 - t126;
-  const Real t147 = t146 * t114;
-  const Real t148 = t143 - t123;
-  const Real t149 = product_error(t148, t114);
-  const Real t150 = t147 + t149;
-  const Real t151 = t150 * t75;
-  const Real t152 = t148 * t114;
-  const Real t153 = product_error(t152, t75);
-  const Real t154 = t153 + t151;
-  const Real t155 = t152 * t75;
-  const Real t156 = t122 - t155;
-  const Real t157 = t156 - t154;
-  const Real t158 = t48 * t157;
-  const Real t159 = t158 * nu[1];
-
-  // joint angles
-  const Real t160 = t22 * t108;
-  const Real t161 = t28 * t87;
-  const Real t162 = t160 + t161;
-  const Real t163 = par.r_F * t87;
-  const Real t164 = t108 * par.c;
-  const Real t165 = t163 - t164;
-  const Real t166 = t165 + t162;
-  const Real t167 = par.r_R - t70;
+  const Real t370 = t369 + t368;
 
   // kernel
-  const Real t168 = c_r_p_1_ * t167;
-  const Real t169 = t166 - t168;
-  const Real t170 = t99 * t169;
-
-  // joint angles
-  const Real t171 = t22 * t56;
-  const Real t172 = t56 * par.c;
-  const Real t173 = t171 - t172;
-
-  // kernel
-  const Real t174 = t167 * t49;
-  const Real t175 = t173 + t174;
-  const Real t176 = t175 - t170;
+  const Real t371 = t65 * par.c;
 
   // passive accelerations
-  const Real t177 = t118 * t176;
-
-  // accelerations
-  const Real t178 = -t170;
-  const Real t179 = sum_error(t175, t178);
-  const Real t180 = product_error(t99, t169);
-  const Real t181 = t179 - t180;
-  const Real t182 = t181 * t125;
-  const Real t183 = t177 + t182;
+  const Real t372 = t370 - t371;
+  const Real t373 = t372 + t367;
 
   // kernel
-  const Real t184 = product_error(t176, t125);
+  const Real t374 = -t139;
+  const Real t375 = sum_error(par.r_R, t374);
 
   // accelerations
-  const Real t185 = t184 + t183;
+  const Real t376 = t375 - t160;
+  const Real t377 = t376 * c_r_p_1_;
+
+  // joint angles
+  const Real t378 = par.r_R - t139;
 
   // kernel
-  const Real t186 = t169 * t59;
-  const Real t187 = -t186;
+  const Real t379 = c_r_p_1_ * t378;
 
-  // joint angles
-  const Real t188 = t63 + t60;
+  // accelerations
+  const Real t380 = t379 + t377;
+  const Real t381 = t373 - t380;
+  const Real t382 = t121 * t381;
 
   // kernel
-  const Real t189 = t56 * t167;
-  const Real t190 = t188 - t189;
-  const Real t191 = sum_error(t190, t187);
-  const Real t192 = product_error(t169, t59);
-  const Real t193 = t191 - t192;
+  const Real t383 = t122 * t52;
 
-  // accelerations
-  const Real t194 = t193 - t185;
+  // joint angles
+  const Real t384 = t122 * par.c;
 
   // kernel
-  const Real t195 = t176 * t125;
-  const Real t196 = t190 - t186;
-  const Real t197 = t196 - t195;
+  const Real t385 = t383 - t384;
 
   // accelerations
-  const Real t198 = t194 + t197;
-  const Real t199 = t198 * t141;
-  const Real t200 = t22 * t199;
-  const Real t201 = sum_error(t176, t200);
-  const Real t202 = t181 + t201;
-  const Real t203 = t202 * t114;
-  const Real t204 = t200 + t176;
-  const Real t205 = product_error(t114, t204);
-  const Real t206 = t203 + t205;
-  const Real t207 = t75 * t206;
-  const Real t208 = t114 * t204;
-  const Real t209 = product_error(t75, t208);
-  const Real t210 = t209 + t207;
-  const Real t211 = t75 * t208;
-  const Real t212 = t169 - t211;
-  const Real t213 = t212 - t210;
-  const Real t214 = t213 * t48;
-  const Real t215 = t214 * nu[0];
-  const Real t216 = t159 + t215;
+  const Real t386 = t376 * t105;
 
   // kernel
-  const Real t217 = t56 * t70;
-  const Real t218 = t74 + t217;
-  const Real t219 = t99 * t218;
-  const Real t220 = t108 * t70;
-  const Real t221 = t111 - t220;
-  const Real t222 = t221 - t219;
-
-  // passive accelerations
-  const Real t223 = t118 * t222;
-
-  // kernel
-  const Real t224 = t222 * t125;
+  const Real t387 = t378 * t105;
 
   // accelerations
-  const Real t225 = t223 + t224;
-
-  // kernel
-  const Real t226 = t218 * t59;
-  const Real t227 = t70 * t87;
-  const Real t228 = t90 - t227;
-  const Real t229 = t228 - t226;
-
-  // accelerations
-  const Real t230 = t229 - t225;
-  const Real t231 = t230 * t141;
-  const Real t232 = t22 * t231;
-  const Real t233 = sum_error(t222, t232);
-  const Real t234 = t233 * t114;
-  const Real t235 = t222 + t232;
-  const Real t236 = product_error(t235, t114);
-  const Real t237 = t234 + t236;
-  const Real t238 = t75 * t237;
-  const Real t239 = t235 * t114;
-  const Real t240 = product_error(t239, t75);
-  const Real t241 = t238 + t240;
-  const Real t242 = t239 * t75;
-  const Real t243 = t218 - t242;
-  const Real t244 = t243 - t241;
-  const Real t245 = t244 * t48;
-  const Real t246 = t245 * nu[2];
-  const Real t247 = t246 + t216;
-  const Real t248 = t247 * R[7];
-
-  // passive accelerations
-  const Real t249 = t150 * nu[1];
-  const Real t250 = t152 * nu[1];
-  const Real t251 = t250 + t249;
-
-  // accelerations
-  const Real t252 = t206 * nu[0];
-  const Real t253 = t208 * nu[0];
-  const Real t254 = t252 + t253;
-  const Real t255 = t251 + t254;
-  const Real t256 = t237 * nu[2];
-  const Real t257 = t239 * nu[2];
-  const Real t258 = t256 + t257;
-  const Real t259 = t255 + t258;
-  const Real t260 = R[8] * t259;
-  const Real t261 = t260 - t248;
-  const Real t262 = par.k2 * t261;
-  const Real t263 = t259 * R[6];
-
-  // joint angles
-  const Real t264 = nu[0] * R[7];
-
-  // accelerations
-  const Real t265 = t264 + t263;
-  const Real t266 = par.k1 * t265;
-  const Real t267 = t262 + t266;
-  const Real t268 = c_r_p_1_ * t267;
-
-  // joint angles
-  const Real t269 = s_r_p_1_ * nu[1];
-  const Real t270 = t269 * t3;
-
-  // accelerations
-  const Real t271 = t268 - t270;
-  const Real t272 = t247 * R[6];
-
-  // joint angles
-  const Real t273 = R[8] * nu[0];
-
-  // accelerations
-  const Real t274 = t273 + t272;
-  const Real t275 = s_r_p_1_ * t274;
-
-  // joint angles
-  const Real t276 = c_r_p_1_ * nu[1];
-  const Real t277 = t276 * R[7];
-
-  // accelerations
-  const Real t278 = t275 + t277;
-  const Real t279 = t278 + t271;
-  const Real t280 = par.k2 * t279;
-  const Real t281 = par.k1 * t261;
-  const Real t282 = t265 * par.k2;
-  const Real t283 = t281 - t282;
-  const Real t284 = t283 * par.k1;
-  const Real t285 = t280 + t284;
-  const Real t286 = t285 * t16;
-  const Real t287 = t286 * constant<Real>(2.0L);
-  const Real t288 = par.k1 * t279;
-  const Real t289 = t283 * par.k2;
-  const Real t290 = t288 - t289;
-  const Real t291 = t290 * t12;
-  const Real t292 = t291 * constant<Real>(2.0L);
-  const Real t293 = t287 + t292;
-
-  // joint angles
-  const Real t294 = constant<Real>(2.0L) * t19;
-
-  // accelerations
-  const Real t295 = t293 / t294;
-  const Real t296 = t295 * t20;
-  const Real t297 = t296 / t19;
-  const Real t298 = t297 * t16;
-  const Real t299 = t285 * t20;
-  const Real t300 = t299 - t298;
-  const Real t301 = t300 * par.r_F;
-  const Real t302 = par.k1 * t247;
-
-  // joint angles
-  const Real t303 = par.k2 * nu[0];
-
-  // accelerations
-  const Real t304 = t303 + t302;
-  const Real t305 = t304 * c_r_p_1_;
-  const Real t306 = t259 * s_r_p_1_;
-  const Real t307 = t305 - t306;
-  const Real t308 = par.k1 * t307;
-  const Real t309 = t247 * par.k2;
-
-  // joint angles
-  const Real t310 = par.k1 * nu[0];
-
-  // accelerations
-  const Real t311 = t310 - t309;
-  const Real t312 = t311 + nu[1];
-  const Real t313 = t312 * par.k2;
-  const Real t314 = t313 - t308;
-  const Real t315 = t314 * t301;
-  const Real t316 = t304 * t269;
-  const Real t317 = t259 * t276;
-  const Real t318 = t316 + t317;
-  const Real t319 = t318 * par.k1;
-  const Real t320 = t22 * t319;
-  const Real t321 = t320 + t315;
-  const Real t322 = t12 * t297;
-  const Real t323 = t290 * t20;
-  const Real t324 = t323 - t322;
-  const Real t325 = par.r_F * t324;
-  const Real t326 = par.k2 * t307;
-  const Real t327 = par.k1 * t312;
-  const Real t328 = t326 + t327;
-  const Real t329 = t328 * t325;
-  const Real t330 = t318 * par.k2;
-  const Real t331 = t28 * t330;
-  const Real t332 = t329 - t331;
-  const Real t333 = t321 + t332;
-  const Real t334 = par.r_F * t330;
-  const Real t335 = t319 * par.c;
-  const Real t336 = t334 + t335;
-  const Real t337 = t214 * t45;
-  const Real t338 = t337 - t167;
-  const Real t339 = t338 * nu[0];
-
-  // passive accelerations
-  const Real t340 = t158 * t45;
-  const Real t341 = t340 * nu[1];
-
-  // accelerations
-  const Real t342 = t341 + t339;
-  const Real t343 = t245 * t45;
-  const Real t344 = t343 * nu[2];
-  const Real t345 = t344 + t342;
-  const Real t346 = t247 * par.k13;
-  const Real t347 = t345 - t346;
-  const Real t348 = t269 * t347;
-  const Real t349 = t259 * par.k13;
-  const Real t350 = t206 * t45;
-  const Real t351 = t208 * t45;
-  const Real t352 = t351 + t350;
-  const Real t353 = t352 * nu[0];
-
-  // passive accelerations
-  const Real t354 = t150 * t45;
-  const Real t355 = t152 * t45;
-  const Real t356 = t354 + t355;
-  const Real t357 = t356 * nu[1];
-
-  // accelerations
-  const Real t358 = t353 + t357;
-  const Real t359 = t237 * t45;
-  const Real t360 = t239 * t45;
-  const Real t361 = t359 + t360;
-  const Real t362 = t45 - t361;
-  const Real t363 = t362 * nu[2];
-  const Real t364 = t363 - t358;
-  const Real t365 = t349 + t364;
-  const Real t366 = par.k1 * t365;
-
-  // passive accelerations
-  const Real t367 = t71 * t150;
-  const Real t368 = t152 * t71;
-  const Real t369 = t367 + t368;
-  const Real t370 = t369 * nu[1];
-
-  // accelerations
-  const Real t371 = t71 * t206;
-  const Real t372 = t71 * t208;
-  const Real t373 = t371 + t372;
-  const Real t374 = t373 * nu[0];
-  const Real t375 = t370 + t374;
-  const Real t376 = t71 * t237;
-  const Real t377 = t71 * t239;
-  const Real t378 = t377 + t376;
-  const Real t379 = t378 - t70;
-  const Real t380 = t379 * nu[2];
-  const Real t381 = t380 + t375;
-  const Real t382 = t381 * par.k2;
-  const Real t383 = t382 - t366;
-  const Real t384 = t276 * t383;
-  const Real t385 = t384 + t348;
-  const Real t386 = t385 + t336;
-  const Real t387 = t386 - t333;
-  const Real t388 = t261 * R[6];
-  const Real t389 = t388 * constant<Real>(2.0L);
-  const Real t390 = R[8] * t265;
-  const Real t391 = t390 * constant<Real>(2.0L);
-  const Real t392 = t389 - t391;
-
-  // joint angles
-  const Real t393 = constant<Real>(2.0L) * t42;
-
-  // accelerations
-  const Real t394 = t392 / t393;
-  const Real t395 = t394 * t43;
-  const Real t396 = t395 / t42;
-  const Real t397 = R[8] * t396;
-  const Real t398 = t43 * t265;
+  const Real t388 = t386 + t387;
+  const Real t389 = t385 + t388;
+  const Real t390 = t389 - t382;
+  const Real t391 = t390 * t287;
+  const Real t392 = -t382;
+  const Real t393 = sum_error(t389, t392);
+  const Real t394 = product_error(t121, t381);
+  const Real t395 = t393 - t394;
+  const Real t396 = t395 * t289;
+  const Real t397 = t396 + t391;
+  const Real t398 = product_error(t289, t390);
   const Real t399 = t397 + t398;
-  const Real t400 = par.r_R * t399;
-  const Real t401 = nu[2] - t259;
-  const Real t402 = t401 * t400;
-  const Real t403 = t56 * t402;
-  const Real t404 = t403 + t387;
-  const Real t405 = t396 * R[6];
-  const Real t406 = t43 * t261;
-  const Real t407 = t406 - t405;
-  const Real t408 = t407 * par.r_R;
-  const Real t409 = t408 * t247;
-  const Real t410 = t400 * nu[0];
-  const Real t411 = t409 - t410;
-  const Real t412 = c_r_p_1_ * t411;
-  const Real t413 = t404 - t412;
-  const Real t414 = t401 * t408;
-  const Real t415 = t49 * t414;
-  const Real t416 = t413 - t415;
-  const Real t417 = t99 * t416;
-  const Real t418 = t304 * s_r_p_1_;
-  const Real t419 = t259 * c_r_p_1_;
-  const Real t420 = t419 + t418;
-  const Real t421 = nu[0] * t199;
+  const Real t400 = t381 * t252;
+  const Real t401 = product_error(t381, t210);
+  const Real t402 = t400 + t401;
+  const Real t403 = t381 * t210;
+  const Real t404 = -t403;
+
+  // kernel
+  const Real t405 = t125 + t123;
 
   // passive accelerations
-  const Real t422 = t142 * nu[1];
+  const Real t406 = t405 + t127;
 
   // accelerations
-  const Real t423 = t421 + t422;
-  const Real t424 = t231 * nu[2];
-  const Real t425 = t424 + t423;
-  const Real t426 = t420 + t425;
-  const Real t427 = t426 * t301;
-  const Real t428 = t304 * t276;
-  const Real t429 = t259 * t269;
-  const Real t430 = t428 - t429;
-  const Real t431 = t22 * t430;
-  const Real t432 = t427 + t431;
-  const Real t433 = t347 * t276;
-  const Real t434 = t269 * t383;
-  const Real t435 = t433 - t434;
-  const Real t436 = par.k1 * t435;
-  const Real t437 = par.c * t430;
-  const Real t438 = t436 + t437;
-  const Real t439 = t438 - t432;
-  const Real t440 = t108 * t402;
-  const Real t441 = t439 - t440;
-  const Real t442 = t411 * t49;
-  const Real t443 = t441 + t442;
-  const Real t444 = t25 * t414;
-  const Real t445 = t443 - t444;
-  const Real t446 = t445 - t417;
-  const Real t447 = product_error(t446, t125);
-  const Real t448 = t118 * t446;
-  const Real t449 = t447 + t448;
-  const Real t450 = t416 * t59;
-  const Real t451 = t426 * t325;
-  const Real t452 = t28 * t430;
-  const Real t453 = t451 + t452;
-  const Real t454 = par.k2 * t435;
-  const Real t455 = par.r_F * t430;
-  const Real t456 = t454 + t455;
-  const Real t457 = t456 + t453;
-  const Real t458 = t402 * t87;
-  const Real t459 = t458 + t457;
-  const Real t460 = t56 * t411;
-  const Real t461 = t460 + t459;
-  const Real t462 = t30 * t414;
-  const Real t463 = t461 + t462;
-  const Real t464 = sum_error(t450, t463);
-  const Real t465 = product_error(t416, t59);
-  const Real t466 = t465 + t464;
-  const Real t467 = t466 + t449;
-  const Real t468 = t446 * t125;
-  const Real t469 = t463 + t450;
+  const Real t407 = t376 * t122;
+
+  // kernel
+  const Real t408 = t122 * t378;
+
+  // accelerations
+  const Real t409 = t407 + t408;
+  const Real t410 = t406 - t409;
+  const Real t411 = sum_error(t410, t404);
+  const Real t412 = t411 - t402;
+  const Real t413 = t412 - t399;
+  const Real t414 = t390 * t289;
+  const Real t415 = t410 - t403;
+  const Real t416 = t415 - t414;
+  const Real t417 = t416 + t413;
+  const Real t418 = t301 * t417;
+  const Real t419 = t297 * t417;
+  const Real t420 = t418 + t419;
+  const Real t421 = t52 * t420;
+  const Real t422 = sum_error(t421, t390);
+  const Real t423 = t422 + t395;
+  const Real t424 = t423 * t198;
+  const Real t425 = t421 + t390;
+  const Real t426 = t202 * t425;
+  const Real t427 = t424 + t426;
+  const Real t428 = product_error(t198, t425);
+  const Real t429 = t427 + t428;
+  const Real t430 = t429 * t143;
+  const Real t431 = t198 * t425;
+  const Real t432 = t179 * t431;
+  const Real t433 = t432 + t430;
+  const Real t434 = product_error(t431, t143);
+  const Real t435 = t433 + t434;
+  const Real t436 = t143 * t431;
+  const Real t437 = t381 - t436;
+  const Real t438 = t437 - t435;
+  const Real t439 = t104 * t438;
+  const Real t440 = t438 * t90;
+  const Real t441 = t439 + t440;
+  const Real t442 = t441 * nu[0];
+  const Real t443 = t442 + t362;
+  const Real t444 = t122 * t160;
+
+  // kernel
+  const Real t445 = t122 * t139;
+
+  // accelerations
+  const Real t446 = t445 + t444;
+  const Real t447 = t117 + t446;
+  const Real t448 = t121 * t447;
+  const Real t449 = t65 * t160;
+
+  // kernel
+  const Real t450 = t139 * t65;
+
+  // accelerations
+  const Real t451 = t450 + t449;
+  const Real t452 = t169 - t451;
+  const Real t453 = t452 - t448;
+  const Real t454 = t453 * t287;
+  const Real t455 = -t448;
+  const Real t456 = sum_error(t452, t455);
+  const Real t457 = product_error(t121, t447);
+  const Real t458 = t456 - t457;
+  const Real t459 = t458 * t289;
+  const Real t460 = t454 + t459;
+  const Real t461 = product_error(t453, t289);
+  const Real t462 = t460 + t461;
+  const Real t463 = t447 * t252;
+  const Real t464 = product_error(t210, t447);
+  const Real t465 = t464 + t463;
+  const Real t466 = t447 * t210;
+  const Real t467 = -t466;
+  const Real t468 = t160 * t221;
+
+  // kernel
+  const Real t469 = t139 * t271;
+
+  // accelerations
   const Real t470 = t469 + t468;
-  const Real t471 = t467 + t470;
-  const Real t472 = t471 * t141;
-  const Real t473 = t472 * t22;
-  const Real t474 = -t473;
-  const Real t475 = sum_error(t446, t474);
-  const Real t476 = t475 * t114;
-  const Real t477 = t446 - t473;
-  const Real t478 = product_error(t477, t114);
-  const Real t479 = t476 + t478;
-  const Real t480 = t75 * t479;
-  const Real t481 = t477 * t114;
-  const Real t482 = product_error(t75, t481);
-  const Real t483 = t480 + t482;
-  const Real t484 = t481 * t75;
-  const Real t485 = t416 - t484;
-  const Real t486 = t485 - t483;
-  const Real t487 = t48 * t486;
-  const Real t488 = par.k1 * t487;
-  const Real t489 = s_r_p_1_ * t488;
-  const Real t490 = c_r_p_1_ * t479;
-  const Real t491 = t481 * c_r_p_1_;
-  const Real t492 = t490 + t491;
-  const Real t493 = t489 + t492;
-  const Real t494 = t307 * nu[1];
-  const Real t495 = t493 - t494;
-  const Real t496 = t312 * t307;
-  const Real t497 = t496 - t495;
-  const Real t498 = t497 * par.k12;
-  const Real t499 = t420 * t420;
-  const Real t500 = t307 * t307;
+
+  // kernel
+  const Real t471 = t139 * t221;
+
+  // accelerations
+  const Real t472 = t470 + t471;
+  const Real t473 = t87 * t65;
+  const Real t474 = t473 - t472;
+  const Real t475 = sum_error(t474, t467);
+  const Real t476 = t475 - t465;
+  const Real t477 = t476 - t462;
+  const Real t478 = t453 * t289;
+  const Real t479 = t474 - t466;
+  const Real t480 = t479 - t478;
+  const Real t481 = t480 + t477;
+  const Real t482 = t481 * t301;
+  const Real t483 = t297 * t481;
+  const Real t484 = t482 + t483;
+  const Real t485 = product_error(t52, t484);
+  const Real t486 = t458 + t485;
+  const Real t487 = t52 * t484;
+  const Real t488 = sum_error(t453, t487);
+  const Real t489 = t486 + t488;
+  const Real t490 = t489 * t198;
+  const Real t491 = t453 + t487;
+  const Real t492 = t202 * t491;
+  const Real t493 = t492 + t490;
+  const Real t494 = product_error(t198, t491);
+  const Real t495 = t493 + t494;
+  const Real t496 = t143 * t495;
+  const Real t497 = t198 * t491;
+  const Real t498 = t179 * t497;
+  const Real t499 = t498 + t496;
+  const Real t500 = product_error(t143, t497);
   const Real t501 = t499 + t500;
-  const Real t502 = par.k11 * t501;
-  const Real t503 = t498 + t502;
-  const Real t504 = t479 * t45;
-  const Real t505 = t481 * t45;
-  const Real t506 = t505 + t504;
-  const Real t507 = t506 + t414;
-  const Real t508 = t345 * nu[0];
-  const Real t509 = t259 * t381;
-  const Real t510 = t508 + t509;
-  const Real t511 = t510 + t507;
+  const Real t502 = t497 * t143;
+  const Real t503 = -t502;
+  const Real t504 = sum_error(t447, t503);
+  const Real t505 = t504 - t501;
+  const Real t506 = t505 * t90;
+  const Real t507 = t447 - t502;
+  const Real t508 = t104 * t507;
+  const Real t509 = t508 + t506;
+  const Real t510 = product_error(t90, t507);
+  const Real t511 = t509 + t510;
+  const Real t512 = nu[2] * t511;
+  const Real t513 = t90 * t507;
+  const Real t514 = t513 * nu[2];
+  const Real t515 = t512 + t514;
+  const Real t516 = t515 + t443;
+  const Real t517 = t516 * R[7];
+  const Real t518 = t342 * nu[1];
+  const Real t519 = t344 * nu[1];
+  const Real t520 = t519 + t518;
+  const Real t521 = t429 * nu[0];
+  const Real t522 = nu[0] * t431;
+  const Real t523 = t522 + t521;
+  const Real t524 = t523 + t520;
+  const Real t525 = t495 * nu[2];
+  const Real t526 = t497 * nu[2];
+  const Real t527 = t526 + t525;
+  const Real t528 = t527 + t524;
+  const Real t529 = R[8] * t528;
+  const Real t530 = t529 - t517;
+  const Real t531 = t530 * par.k2;
+  const Real t532 = R[6] * t528;
 
-  // frame: acceleration
-  const Real t512 = par.g * R[8];
-
-  // accelerations
-  const Real t513 = t511 - t512;
-  const Real t514 = t247 * nu[0];
-  const Real t515 = t514 + t481;
-  const Real t516 = t515 + t479;
-  const Real t517 = par.k13 * t516;
-  const Real t518 = t513 - t517;
-  const Real t519 = par.k2 * t518;
-  const Real t520 = t71 * t479;
-  const Real t521 = t71 * t481;
-  const Real t522 = t521 + t520;
-  const Real t523 = t402 - t522;
-  const Real t524 = t247 * t345;
-  const Real t525 = t259 * t364;
-  const Real t526 = t524 - t525;
-  const Real t527 = t523 + t526;
-
-  // frame: acceleration
-  const Real t528 = par.g * R[6];
-
-  // accelerations
-  const Real t529 = t527 - t528;
-  const Real t530 = t247 * t247;
-  const Real t531 = t259 * t259;
-  const Real t532 = t530 + t531;
-  const Real t533 = par.k13 * t532;
-  const Real t534 = t529 - t533;
-  const Real t535 = par.k1 * t534;
-  const Real t536 = t519 + t535;
-  const Real t537 = t536 + t503;
-  const Real t538 = t537 * par.k2;
-  const Real t539 = t487 * t45;
-  const Real t540 = t411 - t539;
-  const Real t541 = t381 * t247;
-  const Real t542 = t364 * nu[0];
-  const Real t543 = t541 + t542;
-  const Real t544 = t540 - t543;
-
-  // frame: acceleration
-  const Real t545 = par.g * R[7];
+  // joint angles
+  const Real t533 = nu[0] * R[7];
 
   // accelerations
-  const Real t546 = t544 - t545;
-  const Real t547 = t259 * nu[0];
-  const Real t548 = t487 - t547;
-  const Real t549 = par.k13 * t548;
-  const Real t550 = t549 + t546;
-  const Real t551 = s_r_p_1_ * t550;
-  const Real t552 = t534 * par.k2;
-  const Real t553 = par.k1 * t518;
+  const Real t534 = t532 + t533;
+  const Real t535 = t534 * par.k1;
+  const Real t536 = t531 + t535;
+  const Real t537 = t536 * c_r_p_1_;
+
+  // joint angles
+  const Real t538 = s_r_p_1_ * nu[1];
+
+  // passive accelerations
+  const Real t539 = t538 * t12;
+
+  // joint angles
+  const Real t540 = t538 * t14;
+
+  // passive accelerations
+  const Real t541 = t540 + t539;
+
+  // accelerations
+  const Real t542 = t537 - t541;
+  const Real t543 = t516 * R[6];
+
+  // joint angles
+  const Real t544 = R[8] * nu[0];
+
+  // accelerations
+  const Real t545 = t544 + t543;
+  const Real t546 = s_r_p_1_ * t545;
+
+  // joint angles
+  const Real t547 = c_r_p_1_ * nu[1];
+  const Real t548 = t547 * R[7];
+
+  // accelerations
+  const Real t549 = t548 + t546;
+  const Real t550 = t542 + t549;
+  const Real t551 = t550 * par.k1;
+  const Real t552 = par.k1 * t530;
+  const Real t553 = t534 * par.k2;
   const Real t554 = t552 - t553;
-  const Real t555 = c_r_p_1_ * t554;
-  const Real t556 = t551 + t555;
-  const Real t557 = t496 + t495;
-  const Real t558 = t557 * par.k11;
-  const Real t559 = t312 * t312;
-  const Real t560 = t499 + t559;
-  const Real t561 = par.k12 * t560;
-  const Real t562 = t558 + t561;
-  const Real t563 = t556 - t562;
-  const Real t564 = par.k1 * t563;
-  const Real t565 = t538 - t564;
-  const Real t566 = t565 * c_r_p_2_;
-  const Real t567 = par.k2 * t563;
-  const Real t568 = par.k1 * t537;
-  const Real t569 = t567 + t568;
-  const Real t570 = s_r_p_2_ * t569;
-  const Real t571 = t566 + t570;
-  const Real t572 = par.m_F * t571;
-  const Real t573 = t572 * c_r_p_2_;
-  const Real t574 = c_r_p_2_ * t569;
-  const Real t575 = t565 * s_r_p_2_;
-  const Real t576 = t574 - t575;
-  const Real t577 = t576 * par.m_F;
-  const Real t578 = t577 * s_r_p_2_;
-  const Real t579 = t573 - t578;
-  const Real t580 = par.k2 * t579;
-  const Real t581 = t572 * s_r_p_2_;
-  const Real t582 = c_r_p_2_ * t577;
-  const Real t583 = t581 + t582;
-  const Real t584 = t583 * par.k1;
-  const Real t585 = t580 + t584;
-  const Real t586 = t585 * par.k12;
-  const Real t587 = t583 * par.k2;
-  const Real t588 = par.k1 * t579;
-  const Real t589 = t587 - t588;
-  const Real t590 = t589 * par.k11;
-  const Real t591 = t586 + t590;
-  const Real t592 = t495 - t472;
-  const Real t593 = t592 * par.I_Fyy;
-  const Real t594 = t593 - t591;
-  const Real t595 = par.k8 * t556;
-  const Real t596 = t536 * par.k10;
-  const Real t597 = t595 - t596;
-  const Real t598 = par.k7 * t495;
-  const Real t599 = par.k31 * t496;
-  const Real t600 = t599 + t598;
-  const Real t601 = t559 - t500;
-  const Real t602 = par.k5 * t601;
-  const Real t603 = t602 + t600;
-  const Real t604 = t597 + t603;
-  const Real t605 = t594 + t604;
-  const Real t606 = s_r_p_1_ * t605;
-  const Real t607 = c_r_p_1_ * t488;
-  const Real t608 = s_r_p_1_ * t479;
-  const Real t609 = s_r_p_1_ * t481;
-  const Real t610 = t609 + t608;
-  const Real t611 = t610 - t607;
-  const Real t612 = t420 * nu[1];
-  const Real t613 = t611 - t612;
-  const Real t614 = t613 * par.k2;
-  const Real t615 = t487 * par.k2;
-  const Real t616 = par.k1 * t615;
-  const Real t617 = t614 + t616;
-  const Real t618 = c_r_p_2_ * t617;
-  const Real t619 = par.k1 * t613;
-  const Real t620 = t615 * par.k2;
-  const Real t621 = t620 - t619;
-  const Real t622 = t621 * s_r_p_2_;
-  const Real t623 = t618 - t622;
-  const Real t624 = c_r_p_2_ * t314;
-  const Real t625 = t328 * s_r_p_2_;
-  const Real t626 = t624 + t625;
-  const Real t627 = t626 * t425;
+  const Real t555 = par.k2 * t554;
+  const Real t556 = t551 - t555;
+  const Real t557 = t38 * t556;
+  const Real t558 = t557 * constant<Real>(2.0L);
+  const Real t559 = t550 * par.k2;
+  const Real t560 = par.k1 * t554;
+  const Real t561 = t560 + t559;
+  const Real t562 = t46 * t561;
+  const Real t563 = t562 * constant<Real>(2.0L);
+  const Real t564 = t558 + t563;
+
+  // kernel
+  const Real t565 = t49 * constant<Real>(2.0L);
+
+  // accelerations
+  const Real t566 = t564 / t565;
+  const Real t567 = t566 * t50;
+  const Real t568 = t567 / t49;
+  const Real t569 = t46 * t568;
+  const Real t570 = t50 * t561;
+  const Real t571 = t570 - t569;
+  const Real t572 = par.r_F * t571;
+  const Real t573 = par.k1 * t516;
+
+  // joint angles
+  const Real t574 = par.k2 * nu[0];
+
+  // accelerations
+  const Real t575 = t573 + t574;
+  const Real t576 = c_r_p_1_ * t575;
+  const Real t577 = s_r_p_1_ * t528;
+  const Real t578 = t576 - t577;
+  const Real t579 = t578 * par.k1;
+  const Real t580 = par.k2 * t516;
+
+  // joint angles
+  const Real t581 = par.k1 * nu[0];
+
+  // accelerations
+  const Real t582 = t581 - t580;
+  const Real t583 = t582 + nu[1];
+  const Real t584 = t583 * par.k2;
+  const Real t585 = t584 - t579;
+  const Real t586 = t585 * t572;
+  const Real t587 = t538 * t575;
+  const Real t588 = t547 * t528;
+  const Real t589 = t587 + t588;
+  const Real t590 = par.k1 * t589;
+  const Real t591 = t590 * t52;
+  const Real t592 = t591 + t586;
+  const Real t593 = t38 * t568;
+  const Real t594 = t50 * t556;
+  const Real t595 = t594 - t593;
+  const Real t596 = par.r_F * t595;
+  const Real t597 = t578 * par.k2;
+  const Real t598 = par.k1 * t583;
+  const Real t599 = t597 + t598;
+  const Real t600 = t596 * t599;
+  const Real t601 = t589 * par.k2;
+  const Real t602 = t601 * t62;
+  const Real t603 = t600 - t602;
+  const Real t604 = t592 + t603;
+  const Real t605 = par.r_F * t601;
+  const Real t606 = t590 * par.c;
+  const Real t607 = t605 + t606;
+  const Real t608 = par.k14 * t516;
+  const Real t609 = par.k28 * t516;
+  const Real t610 = t608 + t609;
+  const Real t611 = t87 * t358;
+  const Real t612 = t87 * t360;
+  const Real t613 = t611 + t612;
+  const Real t614 = t613 * nu[1];
+  const Real t615 = t87 * t441;
+  const Real t616 = sum_error(t615, t140);
+  const Real t617 = t160 - t375;
+  const Real t618 = t617 + t616;
+  const Real t619 = t618 * nu[0];
+  const Real t620 = t615 - t378;
+  const Real t621 = t620 * nu[0];
+  const Real t622 = t621 + t619;
+  const Real t623 = t622 + t614;
+  const Real t624 = t87 * t511;
+  const Real t625 = t87 * t513;
+  const Real t626 = t625 + t624;
+  const Real t627 = nu[2] * t626;
   const Real t628 = t627 + t623;
-  const Real t629 = t628 * par.I_Fxx;
-  const Real t630 = t626 * t426;
-  const Real t631 = par.k35 * t630;
-  const Real t632 = t629 - t631;
-  const Real t633 = t632 * c_r_p_2_;
-  const Real t634 = t621 * c_r_p_2_;
-  const Real t635 = t617 * s_r_p_2_;
+  const Real t629 = t628 - t610;
+  const Real t630 = t538 * t629;
+  const Real t631 = par.k28 * t528;
+  const Real t632 = par.k14 * t528;
+  const Real t633 = t631 + t632;
+  const Real t634 = t87 * t342;
+  const Real t635 = product_error(t344, t87);
   const Real t636 = t634 + t635;
-  const Real t637 = c_r_p_2_ * t328;
-  const Real t638 = t314 * s_r_p_2_;
-  const Real t639 = t637 - t638;
-  const Real t640 = t425 * t639;
-  const Real t641 = t636 - t640;
-  const Real t642 = t641 * par.I_Fxx;
-  const Real t643 = t426 * t639;
-  const Real t644 = par.k36 * t643;
-  const Real t645 = t642 - t644;
-  const Real t646 = t645 * s_r_p_2_;
-  const Real t647 = t633 + t646;
-  const Real t648 = par.k2 * t647;
-  const Real t649 = t645 * c_r_p_2_;
-  const Real t650 = t632 * s_r_p_2_;
-  const Real t651 = t649 - t650;
-  const Real t652 = par.k1 * t651;
-  const Real t653 = t648 - t652;
-  const Real t654 = c_r_p_1_ * t550;
-  const Real t655 = s_r_p_1_ * t554;
-  const Real t656 = t654 - t655;
-  const Real t657 = t420 * t312;
-  const Real t658 = t613 + t657;
-  const Real t659 = t658 * par.k11;
-  const Real t660 = t420 * t307;
-  const Real t661 = t615 - t660;
-  const Real t662 = t661 * par.k12;
-  const Real t663 = t659 + t662;
-  const Real t664 = t656 + t663;
-  const Real t665 = par.m_F * t664;
-  const Real t666 = t665 * par.k11;
-  const Real t667 = t666 + t653;
-  const Real t668 = par.k8 * t656;
-  const Real t669 = t613 * par.k17;
-  const Real t670 = par.k30 * t657;
-  const Real t671 = t669 - t670;
-  const Real t672 = par.k5 * t661;
-  const Real t673 = t671 + t672;
-  const Real t674 = t673 - t668;
-  const Real t675 = t667 + t674;
-  const Real t676 = c_r_p_1_ * t675;
-  const Real t677 = t676 - t606;
-  const Real t678 = par.k2 * t677;
-  const Real t679 = par.k1 * t647;
-  const Real t680 = t651 * par.k2;
-  const Real t681 = t679 + t680;
-  const Real t682 = t665 * par.k12;
-  const Real t683 = t682 + t681;
-  const Real t684 = t656 * par.k10;
-  const Real t685 = par.k5 * t658;
-  const Real t686 = par.k6 * t615;
-  const Real t687 = t660 * par.k32;
-  const Real t688 = t686 - t687;
-  const Real t689 = t688 + t685;
-  const Real t690 = t684 + t689;
-  const Real t691 = t690 + t683;
-  const Real t692 = par.k1 * t691;
-  const Real t693 = t692 + t678;
-  const Real t694 = par.k15 * t546;
-  const Real t695 = par.k3 * t548;
-  const Real t696 = t259 * t247;
-  const Real t697 = t696 * par.k26;
-  const Real t698 = t695 + t697;
-  const Real t699 = t698 - t694;
-  const Real t700 = t693 + t699;
-  const Real t701 = t696 * par.r_R;
-  const Real t702 = t546 - t701;
-  const Real t703 = par.m_R * t702;
+  const Real t637 = t636 * nu[1];
+  const Real t638 = t87 * t344;
+  const Real t639 = t638 * nu[1];
+  const Real t640 = t637 + t639;
+  const Real t641 = t429 * t87;
+  const Real t642 = t87 * t431;
+  const Real t643 = t641 + t642;
+  const Real t644 = t643 * nu[0];
+  const Real t645 = t644 + t640;
+  const Real t646 = t87 * t495;
+  const Real t647 = product_error(t87, t497);
+  const Real t648 = t646 + t647;
+  const Real t649 = t87 * t497;
+  const Real t650 = -t649;
+  const Real t651 = sum_error(t87, t650);
+  const Real t652 = t651 - t648;
+  const Real t653 = t652 * nu[2];
+  const Real t654 = t87 - t649;
+  const Real t655 = nu[2] * t654;
+  const Real t656 = t653 + t655;
+  const Real t657 = t656 - t645;
+  const Real t658 = t633 + t657;
+  const Real t659 = par.k1 * t658;
+  const Real t660 = t140 * t342;
+  const Real t661 = t162 * t344;
+  const Real t662 = t661 + t660;
+  const Real t663 = t140 * t344;
+  const Real t664 = t663 + t662;
+  const Real t665 = t664 * nu[1];
+  const Real t666 = t429 * t140;
+  const Real t667 = t162 * t431;
+  const Real t668 = t666 + t667;
+  const Real t669 = t140 * t431;
+  const Real t670 = t668 + t669;
+  const Real t671 = t670 * nu[0];
+  const Real t672 = t671 + t665;
+  const Real t673 = t140 * t495;
+  const Real t674 = t162 * t497;
+  const Real t675 = t674 + t673;
+  const Real t676 = t140 * t497;
+  const Real t677 = t676 + t675;
+  const Real t678 = t677 - t139;
+  const Real t679 = t678 - t160;
+  const Real t680 = nu[2] * t679;
+  const Real t681 = t672 + t680;
+  const Real t682 = t681 * par.k2;
+  const Real t683 = t682 - t659;
+  const Real t684 = t683 * t547;
+  const Real t685 = t630 + t684;
+  const Real t686 = t685 + t607;
+  const Real t687 = t686 - t604;
+  const Real t688 = t530 * R[6];
+  const Real t689 = t688 * constant<Real>(2.0L);
+  const Real t690 = R[8] * t534;
+  const Real t691 = t690 * constant<Real>(2.0L);
+  const Real t692 = t689 - t691;
+
+  // joint angles
+  const Real t693 = constant<Real>(2.0L) * t81;
+
+  // accelerations
+  const Real t694 = t692 / t693;
+  const Real t695 = t84 * t694;
+  const Real t696 = t82 * t694;
+  const Real t697 = t695 + t696;
+  const Real t698 = t697 / t81;
+  const Real t699 = R[8] * t698;
+  const Real t700 = t534 * t82;
+  const Real t701 = t534 * t84;
+  const Real t702 = t700 + t701;
+  const Real t703 = t702 + t699;
   const Real t704 = t703 * par.r_R;
-  const Real t705 = t487 * c_r_p_0_;
-  const Real t706 = t247 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t707 = nu[0] * c_r_p_0_;
-
-  // accelerations
-  const Real t708 = t707 + t706;
-  const Real t709 = t708 * nu[2];
-  const Real t710 = t705 + t709;
-  const Real t711 = par.I_Rxx * t710;
-  const Real t712 = t401 * t708;
-  const Real t713 = t712 * par.k28;
-  const Real t714 = t713 + t711;
-  const Real t715 = t714 * s_r_p_0_;
-  const Real t716 = t487 * s_r_p_0_;
-  const Real t717 = t247 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t718 = nu[0] * s_r_p_0_;
-
-  // accelerations
-  const Real t719 = t718 - t717;
-  const Real t720 = t719 * nu[2];
-  const Real t721 = t720 + t716;
-  const Real t722 = par.I_Rxx * t721;
-  const Real t723 = t401 * t719;
-  const Real t724 = t723 * par.k29;
-  const Real t725 = t724 - t722;
-  const Real t726 = t725 * c_r_p_0_;
-  const Real t727 = t715 + t726;
-  const Real t728 = t727 + t704;
-  const Real t729 = t728 + t700;
-  const Real t730 = t338 * t338;
-  const Real t731 = t373 * t373;
+  const Real t705 = nu[2] - t528;
+  const Real t706 = t705 * t704;
+  const Real t707 = t706 * t122;
+  const Real t708 = t687 + t707;
+  const Real t709 = R[6] * t698;
+  const Real t710 = t530 * t82;
+  const Real t711 = t84 * t530;
+  const Real t712 = t710 + t711;
+  const Real t713 = t712 - t709;
+  const Real t714 = t713 * par.r_R;
+  const Real t715 = t516 * t714;
+  const Real t716 = nu[0] * t704;
+  const Real t717 = t715 - t716;
+  const Real t718 = c_r_p_1_ * t717;
+  const Real t719 = t708 - t718;
+  const Real t720 = t705 * t714;
+  const Real t721 = t105 * t720;
+  const Real t722 = t719 - t721;
+  const Real t723 = t121 * t722;
+  const Real t724 = -t723;
+  const Real t725 = s_r_p_1_ * t575;
+  const Real t726 = c_r_p_1_ * t528;
+  const Real t727 = t726 + t725;
+  const Real t728 = t327 * nu[1];
+  const Real t729 = t329 * nu[1];
+  const Real t730 = t729 + t728;
+  const Real t731 = t420 * nu[0];
   const Real t732 = t730 + t731;
-  const Real t733 = t352 * t352;
+  const Real t733 = t484 * nu[2];
   const Real t734 = t733 + t732;
-  const Real t735 = t734 + constant<Real>(1.0L);
-  const Real t736 = t208 * t206;
-  const Real t737 = t736 * constant<Real>(2.0L);
-  const Real t738 = t208 * t208;
-  const Real t739 = t737 + t738;
-  const Real t740 = t735 + t739;
-  const Real t741 = t214 * t214;
-  const Real t742 = t741 + t740;
-  const Real t743 = t199 * t199;
-  const Real t744 = t743 + t742;
-  const Real t745 = constant<Real>(1.0L) / t744;
-  const Real t746 = t338 * t340;
-  const Real t747 = t369 * t373;
-  const Real t748 = t746 + t747;
-  const Real t749 = t352 * t356;
-  const Real t750 = t749 + t748;
-  const Real t751 = t150 * t208;
-  const Real t752 = t152 * t206;
-  const Real t753 = t751 + t752;
-  const Real t754 = t152 * t208;
-  const Real t755 = t754 + t753;
-  const Real t756 = t750 + t755;
-  const Real t757 = t158 * t214;
-  const Real t758 = t756 + t757;
-  const Real t759 = t142 * t199;
-  const Real t760 = t759 + t758;
-  const Real t761 = t745 * t760;
-  const Real t762 = t761 * t373;
-  const Real t763 = t369 - t762;
-  const Real t764 = t763 * t763;
-  const Real t765 = t338 * t761;
-  const Real t766 = t340 - t765;
-  const Real t767 = t766 * t766;
-  const Real t768 = t764 + t767;
-  const Real t769 = t352 * t761;
-  const Real t770 = t769 - t356;
-  const Real t771 = t770 * t770;
-  const Real t772 = t771 + t768;
-  const Real t773 = t761 * t761;
-  const Real t774 = t772 + t773;
-  const Real t775 = t761 * t206;
-  const Real t776 = t761 * t208;
-  const Real t777 = t775 + t776;
-  const Real t778 = t777 - t152;
-  const Real t779 = t778 - t150;
-  const Real t780 = t779 * t779;
-  const Real t781 = t774 + t780;
-  const Real t782 = t761 * t214;
-  const Real t783 = t782 - t158;
-  const Real t784 = t783 * t783;
-  const Real t785 = t781 + t784;
-  const Real t786 = constant<Real>(1.0L) + t785;
-  const Real t787 = t761 * t199;
-  const Real t788 = t787 - t142;
-  const Real t789 = t788 * t788;
-  const Real t790 = t789 + t786;
-  const Real t791 = constant<Real>(1.0L) / t790;
-  const Real t792 = t343 * t338;
-  const Real t793 = t379 * t373;
-  const Real t794 = t793 + t792;
-  const Real t795 = t352 * t362;
-  const Real t796 = t794 - t795;
-  const Real t797 = t239 * t206;
-  const Real t798 = t237 * t208;
-  const Real t799 = t798 + t797;
-  const Real t800 = t239 * t208;
-  const Real t801 = t799 + t800;
-  const Real t802 = t796 + t801;
-  const Real t803 = t245 * t214;
-  const Real t804 = t802 + t803;
-  const Real t805 = t231 * t199;
-  const Real t806 = t805 + t804;
-  const Real t807 = t806 * t745;
-  const Real t808 = t807 * t338;
-  const Real t809 = t343 - t808;
-  const Real t810 = t766 * t809;
-  const Real t811 = t807 * t373;
-  const Real t812 = t379 - t811;
-  const Real t813 = t812 * t763;
-  const Real t814 = t810 + t813;
-  const Real t815 = t807 * t352;
-  const Real t816 = t362 + t815;
-  const Real t817 = t816 * t770;
-  const Real t818 = t814 + t817;
-  const Real t819 = t807 * t761;
-  const Real t820 = t818 + t819;
-  const Real t821 = t807 * t206;
-  const Real t822 = t807 * t208;
+  const Real t735 = t734 + t727;
+  const Real t736 = t735 * t572;
+  const Real t737 = t575 * t547;
+  const Real t738 = t538 * t528;
+  const Real t739 = t737 - t738;
+  const Real t740 = t52 * t739;
+  const Real t741 = t740 + t736;
+  const Real t742 = t547 * t629;
+  const Real t743 = t683 * t538;
+  const Real t744 = t742 - t743;
+  const Real t745 = par.k1 * t744;
+  const Real t746 = par.c * t739;
+  const Real t747 = t745 + t746;
+  const Real t748 = t747 - t741;
+  const Real t749 = t706 * t65;
+  const Real t750 = t748 - t749;
+  const Real t751 = t717 * t105;
+  const Real t752 = t750 + t751;
+  const Real t753 = t56 * t720;
+  const Real t754 = t58 * t720;
+  const Real t755 = t753 + t754;
+  const Real t756 = t752 - t755;
+  const Real t757 = sum_error(t756, t724);
+  const Real t758 = product_error(t121, t722);
+  const Real t759 = t757 - t758;
+  const Real t760 = t759 * t289;
+  const Real t761 = t756 - t723;
+  const Real t762 = t761 * t287;
+  const Real t763 = t762 + t760;
+  const Real t764 = product_error(t289, t761);
+  const Real t765 = t763 + t764;
+  const Real t766 = t722 * t252;
+  const Real t767 = product_error(t210, t722);
+  const Real t768 = t766 + t767;
+  const Real t769 = t210 * t722;
+  const Real t770 = t596 * t735;
+  const Real t771 = t62 * t739;
+  const Real t772 = t771 + t770;
+  const Real t773 = par.k2 * t744;
+  const Real t774 = par.r_F * t739;
+  const Real t775 = t774 + t773;
+  const Real t776 = t772 + t775;
+  const Real t777 = t706 * t271;
+  const Real t778 = t706 * t221;
+  const Real t779 = t777 + t778;
+  const Real t780 = t776 + t779;
+  const Real t781 = t122 * t717;
+  const Real t782 = t780 + t781;
+  const Real t783 = t65 * t720;
+  const Real t784 = t782 + t783;
+  const Real t785 = sum_error(t784, t769);
+  const Real t786 = t768 + t785;
+  const Real t787 = t786 + t765;
+  const Real t788 = t761 * t289;
+  const Real t789 = t784 + t769;
+  const Real t790 = t788 + t789;
+  const Real t791 = t787 + t790;
+  const Real t792 = t791 * t297;
+  const Real t793 = t791 * t301;
+  const Real t794 = t792 + t793;
+  const Real t795 = t794 * t52;
+  const Real t796 = -t795;
+  const Real t797 = sum_error(t761, t796);
+  const Real t798 = product_error(t52, t794);
+  const Real t799 = t759 - t798;
+  const Real t800 = t797 + t799;
+  const Real t801 = t198 * t800;
+  const Real t802 = t761 - t795;
+  const Real t803 = t202 * t802;
+  const Real t804 = t803 + t801;
+  const Real t805 = product_error(t198, t802);
+  const Real t806 = t804 + t805;
+  const Real t807 = t806 * t143;
+  const Real t808 = t198 * t802;
+  const Real t809 = t179 * t808;
+  const Real t810 = t809 + t807;
+  const Real t811 = product_error(t143, t808);
+  const Real t812 = t810 + t811;
+  const Real t813 = t143 * t808;
+  const Real t814 = t722 - t813;
+  const Real t815 = t814 - t812;
+  const Real t816 = t90 * t815;
+  const Real t817 = t104 * t815;
+  const Real t818 = t816 + t817;
+  const Real t819 = t87 * t818;
+  const Real t820 = t717 - t819;
+
+  // front_wheel: acceleration
+  const Real t821 = t122 * c_r_p_2_;
+  const Real t822 = t105 * s_r_p_2_;
   const Real t823 = t821 + t822;
-  const Real t824 = t823 - t239;
-  const Real t825 = t824 - t237;
-  const Real t826 = t825 * t779;
-  const Real t827 = t826 + t820;
-  const Real t828 = t807 * t214;
-  const Real t829 = t828 - t245;
-  const Real t830 = t829 * t783;
-  const Real t831 = t827 + t830;
-  const Real t832 = t807 * t199;
-  const Real t833 = t832 - t231;
-  const Real t834 = t788 * t833;
-  const Real t835 = t834 + t831;
-  const Real t836 = t791 * t835;
-  const Real t837 = t761 * t836;
-  const Real t838 = t837 - t807;
-  const Real t839 = t729 * t838;
-  const Real t840 = par.m_H * t556;
-  const Real t841 = t557 * par.k8;
-  const Real t842 = par.k10 * t560;
-  const Real t843 = t841 - t842;
-  const Real t844 = t843 + t840;
-  const Real t845 = t844 + t589;
-  const Real t846 = c_r_p_1_ * t845;
-  const Real t847 = par.m_H * t656;
-  const Real t848 = par.k8 * t658;
-  const Real t849 = t661 * par.k10;
-  const Real t850 = t849 - t848;
-  const Real t851 = t847 + t850;
-  const Real t852 = t665 + t851;
-  const Real t853 = s_r_p_1_ * t852;
-  const Real t854 = t846 - t853;
-  const Real t855 = par.k2 * t854;
-  const Real t856 = t497 * par.k10;
-  const Real t857 = par.k8 * t501;
-  const Real t858 = t856 - t857;
-  const Real t859 = t536 * par.m_H;
-  const Real t860 = t859 + t858;
-  const Real t861 = t860 + t585;
-  const Real t862 = par.k1 * t861;
-  const Real t863 = t855 + t862;
-  const Real t864 = t529 * par.m_B;
-  const Real t865 = t481 - t514;
-  const Real t866 = t479 + t865;
-  const Real t867 = par.k15 * t866;
-  const Real t868 = par.k16 * t532;
-  const Real t869 = t867 - t868;
-  const Real t870 = t864 + t869;
-  const Real t871 = t863 + t870;
-  const Real t872 = par.r_R * t866;
-  const Real t873 = t529 - t872;
-  const Real t874 = t873 * s_r_p_0_;
+
+  // front_wheel: wrench
+  const Real t824 = par.m_F * t823;
+
+  // front_wheel: joint force
+  const Real t825 = c_r_p_2_ * t824;
+
+  // passive accelerations
+  const Real t826 = s_r_p_1_ * t2;
+  const Real t827 = t826 * par.m_F;
+  const Real t828 = t827 * s_r_p_2_;
+  const Real t829 = t825 + t828;
+  const Real t830 = t829 * par.k2;
+
+  // front_wheel: joint force
+  const Real t831 = t824 * s_r_p_2_;
+
+  // passive accelerations
+  const Real t832 = t827 * c_r_p_2_;
+  const Real t833 = t832 - t831;
+  const Real t834 = par.k1 * t833;
+  const Real t835 = t830 - t834;
+
+  // fork: wrench
+  const Real t836 = s_r_p_1_ * par.m_H;
+
+  // passive accelerations
+  const Real t837 = t836 + t835;
+  const Real t838 = s_r_p_1_ * t837;
+
+  // fork: wrench
+  const Real t839 = par.m_H * c_r_p_1_;
+
+  // front_wheel: wrench
+  const Real t840 = c_r_p_1_ * par.m_F;
+
+  // front_wheel: joint force
+  const Real t841 = t839 + t840;
+
+  // fork: joint force
+  const Real t842 = t841 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t843 = t838 + t842;
+  const Real t844 = t843 + par.m_B;
+
+  // accelerations
+  const Real t845 = sum_error(par.m_R, t844);
+  const Real t846 = sum_error(t843, par.m_B);
+  const Real t847 = t845 + t846;
+  const Real t848 = t820 * t847;
+
+  // passive accelerations
+  const Real t849 = par.m_R + t844;
+
+  // accelerations
+  const Real t850 = t820 * t849;
+  const Real t851 = t848 + t850;
+  const Real t852 = t140 * t806;
+  const Real t853 = t162 * t808;
+  const Real t854 = t852 + t853;
+  const Real t855 = t140 * t808;
+  const Real t856 = t854 + t855;
+  const Real t857 = t706 - t856;
+
+  // passive accelerations
+  const Real t858 = c_r_p_2_ * t271;
+
+  // front_wheel: acceleration
+  const Real t859 = c_r_p_2_ * t221;
+
+  // passive accelerations
+  const Real t860 = t858 + t859;
+  const Real t861 = t65 * s_r_p_2_;
+  const Real t862 = t860 - t861;
+  const Real t863 = t862 * par.m_F;
+  const Real t864 = c_r_p_2_ * t863;
+  const Real t865 = t271 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t866 = t221 * s_r_p_2_;
+
+  // passive accelerations
+  const Real t867 = t866 + t865;
+  const Real t868 = c_r_p_2_ * t65;
+  const Real t869 = t867 + t868;
+  const Real t870 = par.m_F * t869;
+  const Real t871 = t870 * s_r_p_2_;
+  const Real t872 = t864 + t871;
+  const Real t873 = t872 * par.k2;
+  const Real t874 = c_r_p_2_ * t870;
+  const Real t875 = t863 * s_r_p_2_;
+  const Real t876 = t874 - t875;
+  const Real t877 = par.k1 * t876;
+  const Real t878 = t873 - t877;
+  const Real t879 = t267 * par.m_H;
+
+  // fork: wrench
+  const Real t880 = par.m_H * t219;
+
+  // passive accelerations
+  const Real t881 = t879 + t880;
+  const Real t882 = t878 + t881;
+  const Real t883 = s_r_p_1_ * t882;
+
+  // fork: wrench
+  const Real t884 = t122 * par.m_H;
+
+  // front_wheel: wrench
+  const Real t885 = t122 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t886 = t884 + t885;
+
+  // fork: joint force
+  const Real t887 = c_r_p_1_ * t886;
+
+  // passive accelerations
+  const Real t888 = t883 - t887;
+
+  // accelerations
+  const Real t889 = t888 * t857;
+  const Real t890 = t889 + t851;
+  const Real t891 = t87 * t806;
+  const Real t892 = t87 * t808;
+  const Real t893 = t891 + t892;
+  const Real t894 = t720 + t893;
+
+  // passive accelerations
+  const Real t895 = c_r_p_1_ * t837;
+
+  // fork: joint force
+  const Real t896 = s_r_p_1_ * t841;
+
+  // passive accelerations
+  const Real t897 = t895 - t896;
+  const Real t898 = t897 * par.k1;
+  const Real t899 = par.k2 * t833;
+  const Real t900 = t829 * par.k1;
+  const Real t901 = t899 + t900;
+  const Real t902 = t901 * par.k2;
+  const Real t903 = t902 - t898;
+
+  // accelerations
+  const Real t904 = t894 * t903;
+  const Real t905 = t904 + t890;
+  const Real t906 = par.k28 * t903;
+
+  // passive accelerations
+  const Real t907 = par.k14 * t903;
+
+  // accelerations
+  const Real t908 = t906 + t907;
+
+  // passive accelerations
+  const Real t909 = t901 * par.k13;
+  const Real t910 = t835 * par.k12;
+  const Real t911 = t909 + t910;
+
+  // fork: wrench
+  const Real t912 = s_r_p_1_ * par.k9;
+
+  // passive accelerations
+  const Real t913 = t912 - t911;
+  const Real t914 = c_r_p_1_ * t913;
+
+  // front_wheel: joint force
+  const Real t915 = par.k12 * t840;
+
+  // fork: wrench
+  const Real t916 = par.k9 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t917 = t915 - t916;
+
+  // fork: joint force
+  const Real t918 = s_r_p_1_ * t917;
+
+  // passive accelerations
+  const Real t919 = t918 + t914;
+
+  // accelerations
+  const Real t920 = t919 - t908;
+  const Real t921 = t920 * t806;
+  const Real t922 = t920 * t808;
+  const Real t923 = t921 + t922;
+  const Real t924 = t905 + t923;
+
+  // passive accelerations
+  const Real t925 = s_r_p_1_ * t913;
+
+  // fork: joint force
+  const Real t926 = c_r_p_1_ * t917;
+
+  // passive accelerations
+  const Real t927 = t926 - t925;
+  const Real t928 = par.k1 * t927;
+
+  // front_wheel: joint force
+  const Real t929 = par.k13 * t840;
+
+  // fork: wrench
+  const Real t930 = c_r_p_1_ * par.k11;
+
+  // front_wheel: joint force
+  const Real t931 = t930 + t929;
+
+  // fork: joint force
+  const Real t932 = par.k2 * t931;
+
+  // passive accelerations
+  const Real t933 = t932 - t928;
+
+  // accelerations
+  const Real t934 = par.k28 * t843;
+
+  // passive accelerations
+  const Real t935 = t843 * par.k14;
+
+  // accelerations
+  const Real t936 = t934 + t935;
+  const Real t937 = t936 + t933;
+  const Real t938 = sum_error(t937, par.k17);
+  const Real t939 = par.k62 + t938;
+  const Real t940 = t939 * t818;
+  const Real t941 = t937 + par.k17;
+  const Real t942 = t941 * t818;
+  const Real t943 = t940 + t942;
+  const Real t944 = t943 + t924;
+  const Real t945 = -t944;
+  const Real t946 = t628 * t516;
+  const Real t947 = t657 * t528;
+  const Real t948 = t946 - t947;
 
   // frame: acceleration
-  const Real t875 = nu[0] * nu[0];
+  const Real t949 = par.g * R[6];
 
   // accelerations
-  const Real t876 = t875 + t531;
-  const Real t877 = t876 * par.r_R;
-  const Real t878 = t877 + t513;
-  const Real t879 = t878 * c_r_p_0_;
-  const Real t880 = t874 + t879;
-  const Real t881 = t880 * par.m_R;
-  const Real t882 = t881 * s_r_p_0_;
-  const Real t883 = t873 * c_r_p_0_;
-  const Real t884 = t878 * s_r_p_0_;
-  const Real t885 = t883 - t884;
-  const Real t886 = t885 * par.m_R;
-  const Real t887 = t886 * c_r_p_0_;
-  const Real t888 = t882 + t887;
-  const Real t889 = t871 + t888;
-  const Real t890 = t763 * t836;
-  const Real t891 = t812 - t890;
-  const Real t892 = t889 * t891;
-  const Real t893 = s_r_p_1_ * t845;
-  const Real t894 = t852 * c_r_p_1_;
-  const Real t895 = t893 + t894;
-  const Real t896 = t546 * par.m_B;
-  const Real t897 = par.k16 * t548;
-  const Real t898 = t696 * par.k15;
-  const Real t899 = t898 + t897;
-  const Real t900 = t896 + t899;
-  const Real t901 = t900 + t895;
-  const Real t902 = t703 + t901;
-  const Real t903 = t766 * t836;
-  const Real t904 = t809 - t903;
-  const Real t905 = t902 * t904;
-  const Real t906 = t892 + t905;
-  const Real t907 = par.k1 * t854;
-  const Real t908 = par.k2 * t861;
-  const Real t909 = t908 - t907;
-  const Real t910 = t513 * par.m_B;
-  const Real t911 = t516 * par.k16;
-  const Real t912 = t876 * par.k15;
-  const Real t913 = t911 + t912;
-  const Real t914 = t910 - t913;
-  const Real t915 = t909 + t914;
-  const Real t916 = t881 * c_r_p_0_;
-  const Real t917 = t886 * s_r_p_0_;
-  const Real t918 = t916 - t917;
-  const Real t919 = t915 + t918;
-  const Real t920 = t836 * t770;
-  const Real t921 = t816 - t920;
-  const Real t922 = t919 * t921;
-  const Real t923 = t906 + t922;
-  const Real t924 = t923 + t839;
-  const Real t925 = c_r_p_1_ * t605;
-  const Real t926 = s_r_p_1_ * t675;
-  const Real t927 = t925 + t926;
-  const Real t928 = t909 * par.k13;
-  const Real t929 = t927 - t928;
-  const Real t930 = par.k15 * t529;
-  const Real t931 = t513 * par.k16;
-  const Real t932 = t930 - t931;
-  const Real t933 = par.k4 * t479;
-  const Real t934 = par.k4 * t481;
-  const Real t935 = t934 + t933;
-  const Real t936 = t514 * par.k27;
-  const Real t937 = t935 - t936;
-  const Real t938 = t530 - t875;
-  const Real t939 = par.k3 * t938;
-  const Real t940 = t939 + t937;
-  const Real t941 = t940 + t932;
-  const Real t942 = t941 + t929;
-  const Real t943 = t888 * par.r_R;
-  const Real t944 = par.I_Ryy * t479;
-  const Real t945 = par.I_Ryy * t481;
-  const Real t946 = t944 + t945;
-  const Real t947 = t946 - t943;
-  const Real t948 = t947 + t942;
-  const Real t949 = t779 * t836;
-  const Real t950 = t825 - t949;
-  const Real t951 = t950 * t948;
-  const Real t952 = t924 + t951;
-  const Real t953 = par.k1 * t677;
-  const Real t954 = par.k2 * t691;
-  const Real t955 = t954 - t953;
-  const Real t956 = t895 * par.k13;
-  const Real t957 = t956 + t955;
-  const Real t958 = t546 * par.k16;
-  const Real t959 = t487 * par.k14;
-  const Real t960 = par.k25 * t547;
-  const Real t961 = t959 - t960;
-  const Real t962 = par.k3 * t696;
+  const Real t950 = t948 - t949;
+  const Real t951 = t516 * t516;
+  const Real t952 = t528 * t528;
+  const Real t953 = t952 + t951;
+  const Real t954 = par.k14 * t953;
+  const Real t955 = par.k28 * t953;
+  const Real t956 = t954 + t955;
+  const Real t957 = t950 - t956;
+  const Real t958 = t957 * par.k2;
+  const Real t959 = t628 * nu[0];
+  const Real t960 = t681 * t528;
+  const Real t961 = t959 + t960;
+
+  // frame: acceleration
+  const Real t962 = par.g * R[8];
+
+  // accelerations
   const Real t963 = t961 - t962;
-  const Real t964 = t963 + t958;
-  const Real t965 = t964 + t957;
-  const Real t966 = t714 * c_r_p_0_;
-  const Real t967 = t725 * s_r_p_0_;
-  const Real t968 = t966 - t967;
-  const Real t969 = t965 + t968;
-  const Real t970 = t783 * t836;
-  const Real t971 = t829 - t970;
-  const Real t972 = t971 * t969;
-  const Real t973 = t952 + t972;
-  const Real t974 = t973 + t946;
-  const Real t975 = t691 * t836;
-  const Real t976 = t975 - t974;
-  const Real t977 = t788 * t836;
-  const Real t978 = t833 - t977;
-  const Real t979 = t978 * t593;
-  const Real t980 = t976 - t979;
-  const Real t981 = t214 * t969;
-  const Real t982 = t889 * t373;
-  const Real t983 = t902 * t338;
-  const Real t984 = t983 + t982;
-  const Real t985 = t919 * t352;
-  const Real t986 = t985 - t984;
-  const Real t987 = t986 - t729;
-  const Real t988 = t206 * t948;
-  const Real t989 = t208 * t948;
+  const Real t964 = t516 * nu[0];
+  const Real t965 = par.k14 * t964;
+  const Real t966 = par.k28 * t964;
+  const Real t967 = t965 + t966;
+  const Real t968 = t963 - t967;
+  const Real t969 = t968 * par.k1;
+  const Real t970 = t958 - t969;
+  const Real t971 = c_r_p_1_ * t970;
+  const Real t972 = t681 * t516;
+  const Real t973 = t657 * nu[0];
+  const Real t974 = t973 + t972;
+
+  // frame: acceleration
+  const Real t975 = par.g * R[7];
+
+  // accelerations
+  const Real t976 = t975 + t974;
+  const Real t977 = nu[0] * t528;
+  const Real t978 = par.k28 * t977;
+  const Real t979 = par.k14 * t977;
+  const Real t980 = t978 + t979;
+  const Real t981 = t980 + t976;
+  const Real t982 = sum_error(t974, t975);
+
+  // passive accelerations
+  const Real t983 = product_error(par.g, R[7]);
+
+  // accelerations
+  const Real t984 = t982 + t983;
+  const Real t985 = t981 + t984;
+  const Real t986 = s_r_p_1_ * t985;
+  const Real t987 = t971 - t986;
+  const Real t988 = t727 * t727;
+  const Real t989 = t583 * t583;
   const Real t990 = t988 + t989;
-  const Real t991 = t987 + t990;
-  const Real t992 = t981 + t991;
-  const Real t993 = t593 * t199;
-  const Real t994 = t992 + t993;
-  const Real t995 = par.k1 * t214;
-  const Real t996 = par.k2 + t995;
-  const Real t997 = s_r_p_1_ * t996;
-  const Real t998 = c_r_p_1_ * t206;
-  const Real t999 = c_r_p_1_ * t208;
-  const Real t1000 = t998 + t999;
-  const Real t1001 = t997 + t1000;
-  const Real t1002 = t1001 * par.k12;
-  const Real t1003 = par.k13 * t206;
-  const Real t1004 = t208 * par.k13;
-  const Real t1005 = t1003 + t1004;
-  const Real t1006 = t1005 - t352;
-  const Real t1007 = par.k2 * t1006;
-  const Real t1008 = par.k1 * t373;
-  const Real t1009 = t1008 + t1007;
-  const Real t1010 = t1002 + t1009;
-  const Real t1011 = t1010 * par.k2;
-  const Real t1012 = t214 * par.k13;
-  const Real t1013 = t338 - t1012;
-  const Real t1014 = s_r_p_1_ * t1013;
-  const Real t1015 = par.k1 * t1006;
-  const Real t1016 = par.k2 * t373;
-  const Real t1017 = t1016 - t1015;
-  const Real t1018 = t1017 * c_r_p_1_;
-  const Real t1019 = t1018 + t1014;
-  const Real t1020 = t1001 * par.k11;
+  const Real t991 = t990 * par.k13;
+  const Real t992 = t578 * t583;
+  const Real t993 = t578 * nu[1];
+  const Real t994 = t992 - t993;
+  const Real t995 = t994 * par.k12;
+  const Real t996 = t991 + t995;
+  const Real t997 = t987 - t996;
+  const Real t998 = par.k2 * t997;
+  const Real t999 = t993 + t992;
+  const Real t1000 = t999 * par.k13;
+  const Real t1001 = t578 * t578;
+  const Real t1002 = t988 + t1001;
+  const Real t1003 = t1002 * par.k12;
+  const Real t1004 = t1000 + t1003;
+  const Real t1005 = par.k1 * t957;
+  const Real t1006 = t968 * par.k2;
+  const Real t1007 = t1005 + t1006;
+  const Real t1008 = t1004 + t1007;
+  const Real t1009 = par.k1 * t1008;
+  const Real t1010 = t1009 + t998;
+  const Real t1011 = c_r_p_2_ * t1010;
+  const Real t1012 = par.k1 * t997;
+  const Real t1013 = par.k2 * t1008;
+  const Real t1014 = t1013 - t1012;
+  const Real t1015 = t1014 * s_r_p_2_;
+  const Real t1016 = t1011 - t1015;
+  const Real t1017 = t1016 * par.m_F;
+  const Real t1018 = c_r_p_2_ * t1017;
+  const Real t1019 = t1010 * s_r_p_2_;
+  const Real t1020 = t1014 * c_r_p_2_;
   const Real t1021 = t1019 + t1020;
-  const Real t1022 = t1021 * par.k1;
-  const Real t1023 = t1011 - t1022;
-  const Real t1024 = c_r_p_2_ * t1023;
-  const Real t1025 = t1021 * par.k2;
-  const Real t1026 = t1010 * par.k1;
-  const Real t1027 = t1025 + t1026;
-  const Real t1028 = t1027 * s_r_p_2_;
-  const Real t1029 = t1024 + t1028;
-  const Real t1030 = t1029 * par.m_F;
-  const Real t1031 = t1030 * s_r_p_2_;
-  const Real t1032 = t1027 * c_r_p_2_;
-  const Real t1033 = t1023 * s_r_p_2_;
+  const Real t1022 = par.m_F * t1021;
+  const Real t1023 = t1022 * s_r_p_2_;
+  const Real t1024 = t1018 + t1023;
+  const Real t1025 = t1024 * par.k2;
+  const Real t1026 = t1022 * c_r_p_2_;
+  const Real t1027 = t1017 * s_r_p_2_;
+  const Real t1028 = t1026 - t1027;
+  const Real t1029 = par.k1 * t1028;
+  const Real t1030 = t1025 - t1029;
+  const Real t1031 = t987 * par.m_H;
+  const Real t1032 = par.k9 * t994;
+  const Real t1033 = par.k11 * t990;
   const Real t1034 = t1032 - t1033;
-  const Real t1035 = t1034 * par.m_F;
-  const Real t1036 = c_r_p_2_ * t1035;
-  const Real t1037 = t1031 + t1036;
-  const Real t1038 = t1037 * par.k2;
-  const Real t1039 = t1030 * c_r_p_2_;
-  const Real t1040 = t1035 * s_r_p_2_;
-  const Real t1041 = t1039 - t1040;
-  const Real t1042 = t1041 * par.k1;
-  const Real t1043 = t1038 - t1042;
-  const Real t1044 = t1019 * par.m_H;
-  const Real t1045 = par.k8 * t1001;
-  const Real t1046 = t1044 - t1045;
-  const Real t1047 = t1043 + t1046;
-  const Real t1048 = t1047 * c_r_p_1_;
-  const Real t1049 = c_r_p_1_ * t996;
-  const Real t1050 = s_r_p_1_ * t206;
-  const Real t1051 = s_r_p_1_ * t208;
+  const Real t1035 = t1031 + t1034;
+  const Real t1036 = t1030 + t1035;
+  const Real t1037 = s_r_p_1_ * t1036;
+  const Real t1038 = s_r_p_1_ * t970;
+  const Real t1039 = c_r_p_1_ * t985;
+  const Real t1040 = t1039 + t1038;
+  const Real t1041 = t1040 * par.m_H;
+  const Real t1042 = t727 * nu[1];
+  const Real t1043 = t583 * t727;
+  const Real t1044 = t1042 - t1043;
+  const Real t1045 = t1044 * par.k9;
+  const Real t1046 = t578 * t727;
+  const Real t1047 = t1046 * par.k11;
+  const Real t1048 = t1045 - t1047;
+  const Real t1049 = t1048 - t1041;
+  const Real t1050 = t1044 * par.k12;
+  const Real t1051 = t1046 * par.k13;
   const Real t1052 = t1051 + t1050;
-  const Real t1053 = t1052 - t1049;
-  const Real t1054 = t1053 * par.k11;
-  const Real t1055 = par.k2 * t214;
-  const Real t1056 = par.k1 - t1055;
-  const Real t1057 = t1056 * par.k12;
-  const Real t1058 = t1057 - t1054;
-  const Real t1059 = c_r_p_1_ * t1013;
-  const Real t1060 = s_r_p_1_ * t1017;
-  const Real t1061 = t1059 - t1060;
-  const Real t1062 = t1061 + t1058;
-  const Real t1063 = t1062 * par.m_F;
-  const Real t1064 = t1053 * par.k8;
-  const Real t1065 = t1056 * par.k10;
-  const Real t1066 = t1065 + t1064;
-  const Real t1067 = t1061 * par.m_H;
-  const Real t1068 = t1066 + t1067;
-  const Real t1069 = t1068 + t1063;
-  const Real t1070 = s_r_p_1_ * t1069;
-  const Real t1071 = t1048 - t1070;
-  const Real t1072 = t1071 * par.k2;
-  const Real t1073 = par.k1 * t1037;
-  const Real t1074 = t1041 * par.k2;
-  const Real t1075 = t1073 + t1074;
-  const Real t1076 = par.k10 * t1001;
-  const Real t1077 = t1009 * par.m_H;
-  const Real t1078 = t1077 + t1076;
-  const Real t1079 = t1078 + t1075;
-  const Real t1080 = par.k1 * t1079;
-  const Real t1081 = t1072 + t1080;
-  const Real t1082 = t373 * par.m_B;
-  const Real t1083 = par.k15 * t206;
-  const Real t1084 = t208 * par.k15;
-  const Real t1085 = t1083 + t1084;
-  const Real t1086 = t1082 - t1085;
-  const Real t1087 = t1086 + t1081;
-  const Real t1088 = t206 * par.r_R;
-  const Real t1089 = t208 * par.r_R;
-  const Real t1090 = t1089 + t1088;
-  const Real t1091 = t1090 + t373;
-  const Real t1092 = t1091 * c_r_p_0_;
-  const Real t1093 = t352 * s_r_p_0_;
-  const Real t1094 = t1093 + t1092;
-  const Real t1095 = t1094 * par.m_R;
-  const Real t1096 = t1095 * c_r_p_0_;
-  const Real t1097 = t1091 * s_r_p_0_;
-  const Real t1098 = t352 * c_r_p_0_;
-  const Real t1099 = t1097 - t1098;
-  const Real t1100 = t1099 * par.m_R;
-  const Real t1101 = t1100 * s_r_p_0_;
-  const Real t1102 = t1096 + t1101;
-  const Real t1103 = t1102 + t1087;
-  const Real t1104 = t1103 * t891;
-  const Real t1105 = s_r_p_1_ * t1047;
-  const Real t1106 = t1069 * c_r_p_1_;
-  const Real t1107 = t1106 + t1105;
-  const Real t1108 = t338 * par.m_B;
-  const Real t1109 = t214 * par.k16;
-  const Real t1110 = t1109 + par.k15;
-  const Real t1111 = t1108 - t1110;
-  const Real t1112 = t1107 + t1111;
-  const Real t1113 = t338 + par.r_R;
-  const Real t1114 = par.m_R * t1113;
-  const Real t1115 = t1114 + t1112;
-  const Real t1116 = t1115 * t904;
-  const Real t1117 = t1104 + t1116;
-  const Real t1118 = par.k1 * t1071;
-  const Real t1119 = par.k2 * t1079;
+  const Real t1053 = t1040 + t1052;
+  const Real t1054 = t1053 * par.m_F;
+  const Real t1055 = t1049 - t1054;
+  const Real t1056 = c_r_p_1_ * t1055;
+  const Real t1057 = t1037 + t1056;
+  const Real t1058 = t516 * t528;
+  const Real t1059 = t1058 * par.k16;
+  const Real t1060 = par.k59 * t1058;
+  const Real t1061 = t1059 + t1060;
+  const Real t1062 = par.k17 * t977;
+  const Real t1063 = par.k62 * t977;
+  const Real t1064 = t1062 + t1063;
+  const Real t1065 = t1061 - t1064;
+  const Real t1066 = t976 * par.m_B;
+  const Real t1067 = t1065 - t1066;
+  const Real t1068 = t1057 + t1067;
+  const Real t1069 = t1058 * par.r_R;
+  const Real t1070 = t976 + t1069;
+  const Real t1071 = t1070 + t984;
+  const Real t1072 = par.m_R * t1071;
+  const Real t1073 = t1072 - t1068;
+  const Real t1074 = sum_error(t1073, t945);
+  const Real t1075 = -t1068;
+  const Real t1076 = sum_error(t1072, t1075);
+  const Real t1077 = sum_error(t1057, t1067);
+  const Real t1078 = -t1066;
+  const Real t1079 = sum_error(t1065, t1078);
+  const Real t1080 = par.m_B * t984;
+  const Real t1081 = product_error(par.m_B, t976);
+  const Real t1082 = t1080 + t1081;
+  const Real t1083 = t1079 - t1082;
+  const Real t1084 = t1077 + t1083;
+  const Real t1085 = t1076 - t1084;
+  const Real t1086 = t1085 + t1074;
+  const Real t1087 = t1086 * t620;
+  const Real t1088 = t1073 - t944;
+  const Real t1089 = t1088 * t618;
+  const Real t1090 = t1089 + t1087;
+  const Real t1091 = product_error(t620, t1088);
+  const Real t1092 = t1091 + t1090;
+  const Real t1093 = t820 * t888;
+
+  // passive accelerations
+  const Real t1094 = c_r_p_1_ * t882;
+
+  // fork: joint force
+  const Real t1095 = s_r_p_1_ * t886;
+
+  // passive accelerations
+  const Real t1096 = t1095 + t1094;
+  const Real t1097 = t1096 * par.k2;
+  const Real t1098 = par.k2 * t876;
+  const Real t1099 = par.k1 * t872;
+  const Real t1100 = t1098 + t1099;
+  const Real t1101 = t1100 + par.k41;
+  const Real t1102 = par.k1 * t1101;
+  const Real t1103 = t1102 + t1097;
+  const Real t1104 = t1103 + par.m_B;
+
+  // rear_wheel: wrench
+  const Real t1105 = par.m_R * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1106 = t1105 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1107 = par.m_R * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1108 = t1107 * s_r_p_0_;
+  const Real t1109 = t1106 + t1108;
+
+  // passive accelerations
+  const Real t1110 = t1109 + t1104;
+
+  // accelerations
+  const Real t1111 = t1110 * t857;
+  const Real t1112 = sum_error(t1109, t1104);
+  const Real t1113 = sum_error(t1103, par.m_B);
+  const Real t1114 = t1113 + t1112;
+  const Real t1115 = t1114 * t857;
+  const Real t1116 = t1111 + t1115;
+  const Real t1117 = t1116 + t1093;
+
+  // passive accelerations
+  const Real t1118 = par.k1 * t1096;
+  const Real t1119 = t1101 * par.k2;
   const Real t1120 = t1119 - t1118;
-  const Real t1121 = t352 * par.m_B;
-  const Real t1122 = t206 * par.k16;
-  const Real t1123 = t208 * par.k16;
-  const Real t1124 = t1122 + t1123;
-  const Real t1125 = t1124 - t1121;
-  const Real t1126 = t1125 + t1120;
-  const Real t1127 = t1100 * c_r_p_0_;
-  const Real t1128 = t1095 * s_r_p_0_;
-  const Real t1129 = t1127 - t1128;
-  const Real t1130 = t1126 + t1129;
-  const Real t1131 = t1130 * t921;
-  const Real t1132 = t1131 + t1117;
-  const Real t1133 = par.k12 * t1075;
-  const Real t1134 = t1043 * par.k11;
+
+  // rear_wheel: joint force
+  const Real t1121 = t1107 * c_r_p_0_;
+  const Real t1122 = t1105 * s_r_p_0_;
+  const Real t1123 = t1121 - t1122;
+
+  // passive accelerations
+  const Real t1124 = t1123 + t1120;
+
+  // accelerations
+  const Real t1125 = t1124 * t894;
+  const Real t1126 = t1125 + t1117;
+
+  // passive accelerations
+  const Real t1127 = par.k14 * t1120;
+
+  // accelerations
+  const Real t1128 = par.k28 * t1120;
+  const Real t1129 = t1127 + t1128;
+
+  // passive accelerations
+  const Real t1130 = t878 * par.k12;
+  const Real t1131 = par.k13 * t1100;
+  const Real t1132 = t1130 + t1131;
+
+  // fork: wrench
+  const Real t1133 = par.k9 * t219;
+
+  // passive accelerations
+  const Real t1134 = par.k9 * t267;
   const Real t1135 = t1133 + t1134;
-  const Real t1136 = t1001 + t199;
-  const Real t1137 = t1136 * par.I_Fyy;
-  const Real t1138 = t1135 + t1137;
-  const Real t1139 = t1019 * par.k8;
-  const Real t1140 = t1009 * par.k10;
-  const Real t1141 = t1139 - t1140;
-  const Real t1142 = par.k7 * t1001;
-  const Real t1143 = t1141 - t1142;
-  const Real t1144 = t1143 - t1138;
-  const Real t1145 = s_r_p_1_ * t1144;
-  const Real t1146 = t1049 - t1052;
-  const Real t1147 = par.k1 * t1146;
-  const Real t1148 = t1056 * par.k2;
-  const Real t1149 = t1148 - t1147;
-  const Real t1150 = t1149 * c_r_p_2_;
-  const Real t1151 = par.k2 * t1146;
-  const Real t1152 = par.k1 * t1056;
-  const Real t1153 = t1152 + t1151;
-  const Real t1154 = t1153 * s_r_p_2_;
-  const Real t1155 = t1150 + t1154;
-  const Real t1156 = par.I_Fxx * t1155;
-  const Real t1157 = t1156 * s_r_p_2_;
-  const Real t1158 = c_r_p_2_ * t1153;
-  const Real t1159 = t1149 * s_r_p_2_;
-  const Real t1160 = t1158 - t1159;
-  const Real t1161 = t1160 * par.I_Fxx;
-  const Real t1162 = c_r_p_2_ * t1161;
-  const Real t1163 = t1157 + t1162;
-  const Real t1164 = par.k2 * t1163;
-  const Real t1165 = t1156 * c_r_p_2_;
-  const Real t1166 = t1161 * s_r_p_2_;
-  const Real t1167 = t1165 - t1166;
-  const Real t1168 = par.k1 * t1167;
-  const Real t1169 = t1164 - t1168;
-  const Real t1170 = par.k11 * t1063;
-  const Real t1171 = t1169 + t1170;
-  const Real t1172 = par.k17 * t1146;
-  const Real t1173 = par.k5 * t1056;
-  const Real t1174 = t1172 + t1173;
-  const Real t1175 = t1061 * par.k8;
-  const Real t1176 = t1174 - t1175;
-  const Real t1177 = t1171 + t1176;
-  const Real t1178 = t1177 * c_r_p_1_;
-  const Real t1179 = t1178 - t1145;
-  const Real t1180 = par.k2 * t1179;
-  const Real t1181 = par.k1 * t1163;
-  const Real t1182 = par.k2 * t1167;
-  const Real t1183 = t1181 + t1182;
-  const Real t1184 = par.k12 * t1063;
-  const Real t1185 = t1183 + t1184;
-  const Real t1186 = t1061 * par.k10;
-  const Real t1187 = t1053 * par.k5;
-  const Real t1188 = par.k6 * t1056;
-  const Real t1189 = t1188 - t1187;
-  const Real t1190 = t1186 + t1189;
-  const Real t1191 = t1190 + t1185;
-  const Real t1192 = t1191 * par.k1;
-  const Real t1193 = t1192 + t1180;
-  const Real t1194 = t338 * par.k15;
-  const Real t1195 = par.k3 * t214;
-  const Real t1196 = par.k9 - t1195;
-  const Real t1197 = t1196 - t1194;
-  const Real t1198 = t1193 + t1197;
-  const Real t1199 = t1114 * par.r_R;
-  const Real t1200 = t214 * s_r_p_0_;
-  const Real t1201 = t1200 + c_r_p_0_;
-  const Real t1202 = par.I_Rxx * t1201;
-  const Real t1203 = t1202 * c_r_p_0_;
-  const Real t1204 = t214 * c_r_p_0_;
-  const Real t1205 = s_r_p_0_ - t1204;
-  const Real t1206 = t1205 * par.I_Rxx;
-  const Real t1207 = t1206 * s_r_p_0_;
-  const Real t1208 = t1203 + t1207;
-  const Real t1209 = t1199 + t1208;
-  const Real t1210 = t1198 + t1209;
-  const Real t1211 = t1210 * t838;
-  const Real t1212 = t1132 + t1211;
-  const Real t1213 = c_r_p_1_ * t1144;
-  const Real t1214 = s_r_p_1_ * t1177;
-  const Real t1215 = t1213 + t1214;
-  const Real t1216 = t1120 * par.k13;
-  const Real t1217 = t1215 - t1216;
-  const Real t1218 = par.k15 * t373;
-  const Real t1219 = t352 * par.k16;
-  const Real t1220 = t1218 + t1219;
-  const Real t1221 = par.k4 * t206;
-  const Real t1222 = par.k4 * t208;
-  const Real t1223 = t1221 + t1222;
-  const Real t1224 = t1220 - t1223;
-  const Real t1225 = t1217 + t1224;
-  const Real t1226 = par.r_R * t1102;
-  const Real t1227 = par.I_Ryy * t206;
-  const Real t1228 = par.I_Ryy * t208;
-  const Real t1229 = t1227 + t1228;
-  const Real t1230 = t1229 + t1226;
-  const Real t1231 = t1225 - t1230;
-  const Real t1232 = t950 * t1231;
-  const Real t1233 = t1232 + t1212;
-  const Real t1234 = par.k1 * t1179;
-  const Real t1235 = t1191 * par.k2;
-  const Real t1236 = t1235 - t1234;
-  const Real t1237 = t1107 * par.k13;
-  const Real t1238 = t1237 + t1236;
-  const Real t1239 = t338 * par.k16;
-  const Real t1240 = t214 * par.k14;
-  const Real t1241 = par.k41 + t1240;
-  const Real t1242 = t1239 - t1241;
-  const Real t1243 = t1238 + t1242;
-  const Real t1244 = t1206 * c_r_p_0_;
-  const Real t1245 = t1202 * s_r_p_0_;
-  const Real t1246 = t1244 - t1245;
-  const Real t1247 = t1246 + t1243;
-  const Real t1248 = t971 * t1247;
-  const Real t1249 = t1233 + t1248;
-  const Real t1250 = t1249 - t1229;
-  const Real t1251 = t1191 * t836;
-  const Real t1252 = t1250 - t1251;
-  const Real t1253 = t978 * t1137;
-  const Real t1254 = t1252 - t1253;
-  const Real t1255 = t1103 * t373;
-  const Real t1256 = t1115 * t338;
-  const Real t1257 = t1255 + t1256;
-  const Real t1258 = t352 * t1130;
-  const Real t1259 = t1257 - t1258;
-  const Real t1260 = t1210 + t1259;
-  const Real t1261 = t1231 * t208;
-  const Real t1262 = t1231 * t206;
-  const Real t1263 = t1261 + t1262;
-  const Real t1264 = t1260 - t1263;
-  const Real t1265 = t1247 * t214;
-  const Real t1266 = t1264 - t1265;
-  const Real t1267 = t1137 * t199;
-  const Real t1268 = t1266 + t1267;
-  const Real t1269 = constant<Real>(1.0L) / t1268;
-  const Real t1270 = t1269 * t1254;
-  const Real t1271 = t994 * t1270;
-  const Real t1272 = t980 - t1271;
-  const Real t1273 = t729 * t761;
-  const Real t1274 = t889 * t763;
-  const Real t1275 = t766 * t902;
-  const Real t1276 = t1275 + t1274;
-  const Real t1277 = t919 * t770;
-  const Real t1278 = t1277 + t1276;
-  const Real t1279 = t1273 - t1278;
-  const Real t1280 = t779 * t948;
-  const Real t1281 = t1279 - t1280;
-  const Real t1282 = t783 * t969;
-  const Real t1283 = t1281 - t1282;
-  const Real t1284 = t1283 - t691;
-  const Real t1285 = t788 * t593;
-  const Real t1286 = t1284 - t1285;
-  const Real t1287 = t761 * t1210;
-  const Real t1288 = t1103 * t763;
-  const Real t1289 = t1115 * t766;
-  const Real t1290 = t1289 + t1288;
-  const Real t1291 = t1130 * t770;
-  const Real t1292 = t1291 + t1290;
-  const Real t1293 = t1292 - t1287;
-  const Real t1294 = t1231 * t779;
-  const Real t1295 = t1294 + t1293;
-  const Real t1296 = t1247 * t783;
-  const Real t1297 = t1295 + t1296;
-  const Real t1298 = t1191 + t1297;
-  const Real t1299 = t788 * t1137;
-  const Real t1300 = t1298 - t1299;
-  const Real t1301 = t1269 * t1300;
-  const Real t1302 = t994 * t1301;
-  const Real t1303 = t1286 - t1302;
-  const Real t1304 = t152 - t777;
-  const Real t1305 = t1304 + t150;
-  const Real t1306 = par.k13 * t1305;
-  const Real t1307 = t1306 + t770;
-  const Real t1308 = par.k1 * t1307;
-  const Real t1309 = par.k2 * t763;
-  const Real t1310 = t1309 - t1308;
-  const Real t1311 = t1310 * c_r_p_1_;
-  const Real t1312 = t783 * par.k13;
-  const Real t1313 = t766 + t1312;
-  const Real t1314 = s_r_p_1_ * t1313;
-  const Real t1315 = t1311 + t1314;
-  const Real t1316 = par.k1 * t783;
-  const Real t1317 = t761 * par.k2;
-  const Real t1318 = t1317 + t1316;
-  const Real t1319 = s_r_p_1_ * t1318;
-  const Real t1320 = c_r_p_1_ * t779;
-  const Real t1321 = t1319 + t1320;
-  const Real t1322 = t1321 * par.k11;
-  const Real t1323 = t1315 - t1322;
-  const Real t1324 = par.k1 * t1323;
-  const Real t1325 = t1307 * par.k2;
-  const Real t1326 = par.k1 * t763;
-  const Real t1327 = t1325 + t1326;
-  const Real t1328 = t1321 * par.k12;
-  const Real t1329 = t1327 - t1328;
-  const Real t1330 = t1329 * par.k2;
-  const Real t1331 = t1330 - t1324;
-  const Real t1332 = c_r_p_2_ * t1331;
-  const Real t1333 = par.k2 * t1323;
-  const Real t1334 = t1329 * par.k1;
-  const Real t1335 = t1334 + t1333;
-  const Real t1336 = t1335 * s_r_p_2_;
-  const Real t1337 = t1332 + t1336;
-  const Real t1338 = t1337 * par.m_F;
-  const Real t1339 = t1338 * c_r_p_2_;
-  const Real t1340 = c_r_p_2_ * t1335;
-  const Real t1341 = t1331 * s_r_p_2_;
-  const Real t1342 = t1340 - t1341;
-  const Real t1343 = t1342 * par.m_F;
-  const Real t1344 = t1343 * s_r_p_2_;
-  const Real t1345 = t1339 - t1344;
-  const Real t1346 = par.k2 * t1345;
-  const Real t1347 = t1338 * s_r_p_2_;
-  const Real t1348 = c_r_p_2_ * t1343;
-  const Real t1349 = t1347 + t1348;
-  const Real t1350 = t1349 * par.k1;
-  const Real t1351 = t1346 + t1350;
-  const Real t1352 = t1351 * par.k12;
-  const Real t1353 = t1349 * par.k2;
-  const Real t1354 = par.k1 * t1345;
-  const Real t1355 = t1353 - t1354;
-  const Real t1356 = t1355 * par.k11;
-  const Real t1357 = t1352 + t1356;
-  const Real t1358 = t788 + t1321;
-  const Real t1359 = t1358 * par.I_Fyy;
-  const Real t1360 = t1359 - t1357;
-  const Real t1361 = par.k8 * t1315;
-  const Real t1362 = par.k10 * t1327;
-  const Real t1363 = t1361 - t1362;
-  const Real t1364 = t1321 * par.k7;
-  const Real t1365 = t1364 + t1363;
-  const Real t1366 = t1365 + t1360;
-  const Real t1367 = s_r_p_1_ * t1366;
-  const Real t1368 = s_r_p_1_ * t779;
-  const Real t1369 = t1318 * c_r_p_1_;
-  const Real t1370 = t1368 - t1369;
-  const Real t1371 = par.k1 * t1370;
-  const Real t1372 = t783 * par.k2;
-  const Real t1373 = par.k1 * t761;
-  const Real t1374 = t1372 - t1373;
-  const Real t1375 = constant<Real>(1.0L) + t1374;
-  const Real t1376 = par.k2 * t1375;
-  const Real t1377 = t1376 - t1371;
+  const Real t1136 = t1135 - par.k40;
+  const Real t1137 = t1136 - t1132;
+  const Real t1138 = t1137 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t1139 = t885 * par.k12;
+
+  // fork: wrench
+  const Real t1140 = par.k9 * t122;
+
+  // front_wheel: joint force
+  const Real t1141 = t1140 - t1139;
+
+  // fork: joint force
+  const Real t1142 = t1141 * s_r_p_1_;
+
+  // passive accelerations
+  const Real t1143 = t1142 + t1138;
+
+  // accelerations
+  const Real t1144 = t1143 - t1129;
+  const Real t1145 = t1144 + par.k16;
+
+  // rear_wheel: joint force
+  const Real t1146 = t1109 * par.r_R;
+
+  // accelerations
+  const Real t1147 = t1145 - t1146;
+  const Real t1148 = t1147 * t808;
+  const Real t1149 = t1148 + t1126;
+
+  // passive accelerations
+  const Real t1150 = s_r_p_1_ * t1137;
+
+  // fork: joint force
+  const Real t1151 = t1141 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t1152 = t1151 - t1150;
+  const Real t1153 = t1152 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1154 = t885 * par.k13;
+
+  // fork: wrench
+  const Real t1155 = t122 * par.k11;
+
+  // front_wheel: joint force
+  const Real t1156 = t1155 + t1154;
+
+  // fork: joint force
+  const Real t1157 = par.k2 * t1156;
+
+  // passive accelerations
+  const Real t1158 = t1153 + t1157;
+  const Real t1159 = par.k14 * t888;
+
+  // accelerations
+  const Real t1160 = par.k28 * t888;
+  const Real t1161 = t1159 + t1160;
+  const Real t1162 = t1161 - t1158;
+  const Real t1163 = t1162 * t818;
+  const Real t1164 = sum_error(t1163, t1149);
+  const Real t1165 = sum_error(t1148, t1126);
+  const Real t1166 = t1147 * t806;
+
+  // rear_wheel: joint force
+  const Real t1167 = -t1146;
+
+  // accelerations
+  const Real t1168 = sum_error(t1145, t1167);
+  const Real t1169 = sum_error(t1144, par.k16);
+  const Real t1170 = t1169 + par.k59;
+  const Real t1171 = t1168 + t1170;
+  const Real t1172 = t1171 * t808;
+  const Real t1173 = t1172 + t1166;
+  const Real t1174 = product_error(t808, t1147);
+  const Real t1175 = t1174 + t1173;
+  const Real t1176 = t1165 + t1175;
+  const Real t1177 = t1164 + t1176;
+  const Real t1178 = c_r_p_1_ * t1036;
+  const Real t1179 = s_r_p_1_ * t1055;
+  const Real t1180 = t1178 - t1179;
+  const Real t1181 = par.k2 * t1180;
+  const Real t1182 = par.k2 * t1028;
+  const Real t1183 = par.k1 * t1024;
+  const Real t1184 = t1182 + t1183;
+  const Real t1185 = par.m_H * t1007;
+  const Real t1186 = t999 * par.k11;
+  const Real t1187 = par.k9 * t1002;
+  const Real t1188 = t1186 - t1187;
+  const Real t1189 = t1185 + t1188;
+  const Real t1190 = t1184 + t1189;
+  const Real t1191 = t1190 * par.k1;
+  const Real t1192 = t1191 + t1181;
+  const Real t1193 = t950 * par.m_B;
+  const Real t1194 = t953 * par.k17;
+  const Real t1195 = par.k62 * t953;
+  const Real t1196 = t1194 + t1195;
+  const Real t1197 = par.k16 * t964;
+  const Real t1198 = par.k59 * t964;
+  const Real t1199 = t1197 + t1198;
+  const Real t1200 = t1196 + t1199;
+  const Real t1201 = t1193 - t1200;
+  const Real t1202 = t1201 + t1192;
+  const Real t1203 = t964 * par.r_R;
+  const Real t1204 = t950 + t1203;
+  const Real t1205 = t1204 * c_r_p_0_;
+
+  // frame: acceleration
+  const Real t1206 = nu[0] * nu[0];
+
+  // accelerations
+  const Real t1207 = t1206 + t952;
+  const Real t1208 = t1207 * par.r_R;
+  const Real t1209 = t1208 + t963;
+  const Real t1210 = s_r_p_0_ * t1209;
+  const Real t1211 = t1205 - t1210;
+  const Real t1212 = par.m_R * t1211;
+  const Real t1213 = t1212 * c_r_p_0_;
+  const Real t1214 = t1204 * s_r_p_0_;
+  const Real t1215 = c_r_p_0_ * t1209;
+  const Real t1216 = t1214 + t1215;
+  const Real t1217 = par.m_R * t1216;
+  const Real t1218 = t1217 * s_r_p_0_;
+  const Real t1219 = t1213 + t1218;
+  const Real t1220 = sum_error(t1219, t1202);
+  const Real t1221 = sum_error(t1201, t1192);
+  const Real t1222 = t1221 + t1220;
+  const Real t1223 = t1222 + t1177;
+  const Real t1224 = t1163 + t1149;
+  const Real t1225 = t1202 + t1219;
+  const Real t1226 = sum_error(t1225, t1224);
+  const Real t1227 = t1226 + t1223;
+  const Real t1228 = t1227 * t670;
+  const Real t1229 = t1224 + t1225;
+  const Real t1230 = t670 * t1229;
+  const Real t1231 = t1230 + t1228;
+  const Real t1232 = -t1231;
+  const Real t1233 = t1088 * t620;
+  const Real t1234 = sum_error(t1233, t1232);
+  const Real t1235 = t1092 + t1234;
+  const Real t1236 = t1233 - t1231;
+  const Real t1237 = t820 * t903;
+  const Real t1238 = t1124 * t857;
+  const Real t1239 = t1238 + t1237;
+  const Real t1240 = c_r_p_2_ * t56;
+
+  // front_wheel: acceleration
+  const Real t1241 = t58 * c_r_p_2_;
+
+  // accelerations
+  const Real t1242 = t1241 + t1240;
+  const Real t1243 = t1242 + t861;
+  const Real t1244 = t1243 * par.m_F;
+  const Real t1245 = t1244 * s_r_p_2_;
+  const Real t1246 = t56 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1247 = t58 * s_r_p_2_;
+
+  // accelerations
+  const Real t1248 = t1247 + t1246;
+  const Real t1249 = t868 - t1248;
+  const Real t1250 = par.m_F * t1249;
+  const Real t1251 = t1250 * c_r_p_2_;
+  const Real t1252 = t1245 + t1251;
+  const Real t1253 = t1252 * par.k2;
+  const Real t1254 = t1244 * c_r_p_2_;
+  const Real t1255 = t1250 * s_r_p_2_;
+  const Real t1256 = t1254 - t1255;
+  const Real t1257 = par.k1 * t1256;
+  const Real t1258 = t1253 - t1257;
+
+  // fork: wrench
+  const Real t1259 = par.m_H * t53;
+
+  // accelerations
+  const Real t1260 = t1258 - t1259;
+  const Real t1261 = c_r_p_1_ * t1260;
+
+  // fork: wrench
+  const Real t1262 = par.m_H * t105;
+
+  // front_wheel: wrench
+  const Real t1263 = par.m_F * t105;
+
+  // front_wheel: joint force
+  const Real t1264 = t1262 + t1263;
+
+  // fork: joint force
+  const Real t1265 = s_r_p_1_ * t1264;
+
+  // accelerations
+  const Real t1266 = t1261 - t1265;
+  const Real t1267 = par.k1 * t1266;
+  const Real t1268 = t1252 * par.k1;
+  const Real t1269 = par.k2 * t1256;
+  const Real t1270 = t1268 + t1269;
+  const Real t1271 = t1270 + par.k46;
+  const Real t1272 = t1271 * par.k2;
+  const Real t1273 = t1272 - t1267;
+  const Real t1274 = t1273 + par.m_B;
+  const Real t1275 = t1109 + t1274;
+  const Real t1276 = t894 * t1275;
+  const Real t1277 = t1276 + t1239;
+  const Real t1278 = par.k28 * t1273;
+  const Real t1279 = par.k14 * t1273;
+  const Real t1280 = t1278 + t1279;
+  const Real t1281 = par.k12 * t1258;
+  const Real t1282 = t1270 * par.k13;
+  const Real t1283 = t1281 + t1282;
+
+  // fork: wrench
+  const Real t1284 = par.k9 * t53;
+  const Real t1285 = par.k47 + t1284;
+
+  // accelerations
+  const Real t1286 = t1283 + t1285;
+  const Real t1287 = t1286 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t1288 = par.k12 * t1263;
+
+  // fork: wrench
+  const Real t1289 = par.k9 * t105;
+
+  // front_wheel: joint force
+  const Real t1290 = t1288 - t1289;
+
+  // fork: joint force
+  const Real t1291 = s_r_p_1_ * t1290;
+
+  // accelerations
+  const Real t1292 = t1291 - t1287;
+  const Real t1293 = t1292 - t1280;
+  const Real t1294 = t1293 - par.k17;
+  const Real t1295 = t1294 - par.k62;
+
+  // rear_wheel: joint force
+  const Real t1296 = t1122 - t1121;
+  const Real t1297 = t1296 * par.r_R;
+
+  // accelerations
+  const Real t1298 = t1295 - t1297;
+  const Real t1299 = t1298 * t808;
+  const Real t1300 = t1299 + t1277;
+  const Real t1301 = t1286 * s_r_p_1_;
+
+  // fork: joint force
+  const Real t1302 = c_r_p_1_ * t1290;
+
+  // accelerations
+  const Real t1303 = t1301 + t1302;
+  const Real t1304 = t1303 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1305 = par.k13 * t1263;
+
+  // fork: wrench
+  const Real t1306 = par.k11 * t105;
+
+  // front_wheel: joint force
+  const Real t1307 = t1306 + t1305;
+
+  // fork: joint force
+  const Real t1308 = t1307 * par.k2;
+
+  // accelerations
+  const Real t1309 = t1308 - t1304;
+  const Real t1310 = s_r_p_1_ * t1260;
+
+  // fork: joint force
+  const Real t1311 = c_r_p_1_ * t1264;
+
+  // accelerations
+  const Real t1312 = t1311 + t1310;
+  const Real t1313 = t1312 * par.k14;
+  const Real t1314 = t1312 * par.k28;
+  const Real t1315 = t1313 + t1314;
+  const Real t1316 = t1315 + t1309;
+  const Real t1317 = t1316 * t818;
+  const Real t1318 = t1300 + t1317;
+  const Real t1319 = par.k1 * t1180;
+  const Real t1320 = t1190 * par.k2;
+  const Real t1321 = t1320 - t1319;
+  const Real t1322 = t963 * par.m_B;
+  const Real t1323 = t964 * par.k17;
+  const Real t1324 = par.k62 * t964;
+  const Real t1325 = t1323 + t1324;
+  const Real t1326 = t1207 * par.k16;
+  const Real t1327 = t1207 * par.k59;
+  const Real t1328 = t1326 + t1327;
+  const Real t1329 = t1325 + t1328;
+  const Real t1330 = t1322 - t1329;
+  const Real t1331 = t1321 + t1330;
+  const Real t1332 = t1217 * c_r_p_0_;
+  const Real t1333 = t1212 * s_r_p_0_;
+  const Real t1334 = t1332 - t1333;
+  const Real t1335 = t1331 + t1334;
+  const Real t1336 = sum_error(t1335, t1318);
+  const Real t1337 = sum_error(t1277, t1299);
+  const Real t1338 = t806 * t1298;
+  const Real t1339 = product_error(t808, t1298);
+  const Real t1340 = t1339 + t1338;
+  const Real t1341 = t1340 + t1337;
+  const Real t1342 = sum_error(t1317, t1300);
+  const Real t1343 = t1341 + t1342;
+  const Real t1344 = t1336 + t1343;
+  const Real t1345 = t643 * t1344;
+  const Real t1346 = t1318 + t1335;
+  const Real t1347 = t643 * t1346;
+  const Real t1348 = t1347 + t1345;
+  const Real t1349 = sum_error(t1348, t1236);
+  const Real t1350 = t1349 + t1235;
+
+  // passive accelerations
+  const Real t1351 = par.k2 * t927;
+
+  // fork: joint force
+  const Real t1352 = par.k1 * t931;
+
+  // passive accelerations
+  const Real t1353 = t1351 + t1352;
+  const Real t1354 = t1353 - par.k16;
+  const Real t1355 = par.k45 + t1354;
+
+  // accelerations
+  const Real t1356 = t820 * t1355;
+
+  // passive accelerations
+  const Real t1357 = sum_error(t1353, par.k44);
+  const Real t1358 = t1357 - par.k59;
+  const Real t1359 = sum_error(par.k45, t1354);
+  const Real t1360 = t1358 + t1359;
+
+  // accelerations
+  const Real t1361 = t820 * t1360;
+  const Real t1362 = t1356 + t1361;
+
+  // passive accelerations
+  const Real t1363 = t1152 * par.k2;
+
+  // fork: joint force
+  const Real t1364 = par.k1 * t1156;
+
+  // passive accelerations
+  const Real t1365 = t1363 - t1364;
+
+  // accelerations
+  const Real t1366 = t1365 * t857;
+  const Real t1367 = t1362 + t1366;
+  const Real t1368 = t1303 * par.k2;
+
+  // fork: joint force
+  const Real t1369 = par.k1 * t1307;
+
+  // accelerations
+  const Real t1370 = t1368 + t1369;
+  const Real t1371 = t1370 * t894;
+  const Real t1372 = t1371 + t1367;
+
+  // front_wheel: acceleration
+  const Real t1373 = t122 * par.k13;
+  const Real t1374 = t1373 * par.k1;
+  const Real t1375 = t122 * par.k12;
+  const Real t1376 = t1375 * par.k2;
+  const Real t1377 = t1374 + t1376;
   const Real t1378 = c_r_p_2_ * t1377;
-  const Real t1379 = par.k2 * t1370;
+  const Real t1379 = t1373 * par.k2;
   const Real t1380 = par.k1 * t1375;
-  const Real t1381 = t1380 + t1379;
-  const Real t1382 = t1381 * s_r_p_2_;
-  const Real t1383 = t1378 + t1382;
-  const Real t1384 = par.I_Fxx * t1383;
-  const Real t1385 = t1384 * s_r_p_2_;
+  const Real t1381 = t1379 - t1380;
+  const Real t1382 = s_r_p_2_ * t1381;
+  const Real t1383 = t1378 - t1382;
+
+  // front_wheel: wrench
+  const Real t1384 = t1383 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1385 = t1384 * c_r_p_2_;
+
+  // front_wheel: acceleration
   const Real t1386 = c_r_p_2_ * t1381;
   const Real t1387 = t1377 * s_r_p_2_;
-  const Real t1388 = t1386 - t1387;
-  const Real t1389 = par.I_Fxx * t1388;
-  const Real t1390 = t1389 * c_r_p_2_;
+  const Real t1388 = t1386 + t1387;
+
+  // front_wheel: wrench
+  const Real t1389 = t1388 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1390 = t1389 * s_r_p_2_;
   const Real t1391 = t1385 + t1390;
   const Real t1392 = t1391 * par.k2;
-  const Real t1393 = t1384 * c_r_p_2_;
-  const Real t1394 = t1389 * s_r_p_2_;
+  const Real t1393 = t1389 * c_r_p_2_;
+  const Real t1394 = t1384 * s_r_p_2_;
   const Real t1395 = t1393 - t1394;
-  const Real t1396 = t1395 * par.k1;
+  const Real t1396 = par.k1 * t1395;
   const Real t1397 = t1392 - t1396;
-  const Real t1398 = s_r_p_1_ * t1310;
-  const Real t1399 = c_r_p_1_ * t1313;
-  const Real t1400 = t1399 - t1398;
-  const Real t1401 = t1369 - t1368;
-  const Real t1402 = t1401 * par.k11;
-  const Real t1403 = t1375 * par.k12;
-  const Real t1404 = t1403 - t1402;
-  const Real t1405 = t1404 + t1400;
-  const Real t1406 = t1405 * par.m_F;
-  const Real t1407 = par.k11 * t1406;
-  const Real t1408 = t1397 + t1407;
-  const Real t1409 = par.k8 * t1400;
-  const Real t1410 = par.k17 * t1370;
-  const Real t1411 = par.k5 * t1375;
-  const Real t1412 = t1411 + t1410;
-  const Real t1413 = t1412 - t1409;
-  const Real t1414 = t1408 + t1413;
-  const Real t1415 = t1414 * c_r_p_1_;
-  const Real t1416 = t1415 - t1367;
-  const Real t1417 = t1416 * par.k2;
-  const Real t1418 = t1395 * par.k2;
-  const Real t1419 = t1391 * par.k1;
-  const Real t1420 = t1418 + t1419;
-  const Real t1421 = par.k12 * t1406;
-  const Real t1422 = t1420 + t1421;
-  const Real t1423 = par.k10 * t1400;
-  const Real t1424 = par.k5 * t1401;
-  const Real t1425 = par.k6 * t1375;
-  const Real t1426 = t1425 - t1424;
-  const Real t1427 = t1426 + t1423;
-  const Real t1428 = t1422 + t1427;
-  const Real t1429 = par.k1 * t1428;
-  const Real t1430 = t1429 + t1417;
-  const Real t1431 = par.k3 * t783;
-  const Real t1432 = t761 * par.k9;
-  const Real t1433 = t1431 - t1432;
-  const Real t1434 = t766 * par.k15;
-  const Real t1435 = t1433 - t1434;
-  const Real t1436 = t1430 + t1435;
-  const Real t1437 = t783 * c_r_p_0_;
-  const Real t1438 = t761 * s_r_p_0_;
-  const Real t1439 = t1437 - t1438;
-  const Real t1440 = par.I_Rxx * t1439;
-  const Real t1441 = t1440 * s_r_p_0_;
-  const Real t1442 = t783 * s_r_p_0_;
-  const Real t1443 = t761 * c_r_p_0_;
-  const Real t1444 = t1442 + t1443;
-  const Real t1445 = t1444 * par.I_Rxx;
-  const Real t1446 = t1445 * c_r_p_0_;
-  const Real t1447 = t1441 - t1446;
-  const Real t1448 = t761 * par.r_R;
-  const Real t1449 = t766 - t1448;
-  const Real t1450 = t1449 * par.m_R;
-  const Real t1451 = t1450 * par.r_R;
-  const Real t1452 = t1451 + t1447;
-  const Real t1453 = t1452 + t1436;
-  const Real t1454 = t1453 * t761;
-  const Real t1455 = par.m_H * t1315;
-  const Real t1456 = t1321 * par.k8;
-  const Real t1457 = t1456 + t1455;
-  const Real t1458 = t1457 + t1355;
-  const Real t1459 = t1458 * c_r_p_1_;
-  const Real t1460 = par.m_H * t1400;
-  const Real t1461 = t1401 * par.k8;
-  const Real t1462 = par.k10 * t1375;
-  const Real t1463 = t1461 + t1462;
-  const Real t1464 = t1460 + t1463;
-  const Real t1465 = t1464 + t1406;
-  const Real t1466 = s_r_p_1_ * t1465;
-  const Real t1467 = t1459 - t1466;
-  const Real t1468 = t1467 * par.k2;
-  const Real t1469 = par.m_H * t1327;
-  const Real t1470 = t1321 * par.k10;
-  const Real t1471 = t1469 - t1470;
-  const Real t1472 = t1351 + t1471;
-  const Real t1473 = par.k1 * t1472;
-  const Real t1474 = t1468 + t1473;
-  const Real t1475 = t779 * par.k15;
-  const Real t1476 = t763 * par.m_B;
-  const Real t1477 = t1475 + t1476;
-  const Real t1478 = t1474 + t1477;
-  const Real t1479 = t779 * par.r_R;
-  const Real t1480 = t763 - t1479;
-  const Real t1481 = c_r_p_0_ * t1480;
-  const Real t1482 = t770 * s_r_p_0_;
-  const Real t1483 = t1481 - t1482;
-  const Real t1484 = par.m_R * t1483;
-  const Real t1485 = t1484 * c_r_p_0_;
-  const Real t1486 = s_r_p_0_ * t1480;
-  const Real t1487 = t770 * c_r_p_0_;
-  const Real t1488 = t1486 + t1487;
-  const Real t1489 = t1488 * par.m_R;
-  const Real t1490 = s_r_p_0_ * t1489;
-  const Real t1491 = t1485 + t1490;
-  const Real t1492 = t1491 + t1478;
-  const Real t1493 = t763 * t1492;
-  const Real t1494 = t1458 * s_r_p_1_;
-  const Real t1495 = t1465 * c_r_p_1_;
-  const Real t1496 = t1495 + t1494;
-  const Real t1497 = t783 * par.k16;
-  const Real t1498 = t761 * par.k15;
-  const Real t1499 = t1497 + t1498;
-  const Real t1500 = t766 * par.m_B;
-  const Real t1501 = t1499 + t1500;
-  const Real t1502 = t1496 + t1501;
-  const Real t1503 = t1450 + t1502;
-  const Real t1504 = t766 * t1503;
-  const Real t1505 = t1493 + t1504;
-  const Real t1506 = par.k1 * t1467;
-  const Real t1507 = t1472 * par.k2;
-  const Real t1508 = t1507 - t1506;
-  const Real t1509 = t1305 * par.k16;
-  const Real t1510 = par.m_B * t770;
-  const Real t1511 = t1510 + t1509;
-  const Real t1512 = t1508 + t1511;
-  const Real t1513 = c_r_p_0_ * t1489;
-  const Real t1514 = t1484 * s_r_p_0_;
-  const Real t1515 = t1513 - t1514;
-  const Real t1516 = t1515 + t1512;
-  const Real t1517 = t1516 * t770;
-  const Real t1518 = t1517 + t1505;
-  const Real t1519 = t1518 - t1454;
-  const Real t1520 = t1366 * c_r_p_1_;
-  const Real t1521 = s_r_p_1_ * t1414;
-  const Real t1522 = t1520 + t1521;
-  const Real t1523 = t1508 * par.k13;
-  const Real t1524 = t1522 - t1523;
-  const Real t1525 = par.k4 * t779;
-  const Real t1526 = t763 * par.k15;
-  const Real t1527 = par.k16 * t770;
-  const Real t1528 = t1526 - t1527;
-  const Real t1529 = t1528 + t1525;
-  const Real t1530 = t1524 + t1529;
-  const Real t1531 = t1491 * par.r_R;
-  const Real t1532 = par.I_Ryy * t779;
-  const Real t1533 = t1532 - t1531;
-  const Real t1534 = t1533 + t1530;
-  const Real t1535 = t779 * t1534;
-  const Real t1536 = t1519 + t1535;
-  const Real t1537 = par.k1 * t1416;
-  const Real t1538 = t1428 * par.k2;
-  const Real t1539 = t1538 - t1537;
-  const Real t1540 = par.k13 * t1496;
-  const Real t1541 = t1540 + t1539;
-  const Real t1542 = t783 * par.k14;
-  const Real t1543 = par.k3 * t761;
-  const Real t1544 = t1542 - t1543;
-  const Real t1545 = t766 * par.k16;
-  const Real t1546 = t1544 + t1545;
-  const Real t1547 = t1541 + t1546;
-  const Real t1548 = t1445 * s_r_p_0_;
-  const Real t1549 = t1440 * c_r_p_0_;
-  const Real t1550 = t1548 + t1549;
-  const Real t1551 = t1547 + t1550;
-  const Real t1552 = t783 * t1551;
-  const Real t1553 = t1536 + t1552;
-  const Real t1554 = t1553 + t1428;
-  const Real t1555 = t1359 * t788;
-  const Real t1556 = t1554 + t1555;
-  const Real t1557 = t1301 * t1300;
-  const Real t1558 = t1556 - t1557;
-  const Real t1559 = constant<Real>(1.0L) / t1558;
-  const Real t1560 = t1453 * t838;
-  const Real t1561 = t1492 * t891;
-  const Real t1562 = t904 * t1503;
-  const Real t1563 = t1562 + t1561;
-  const Real t1564 = t1516 * t921;
-  const Real t1565 = t1563 + t1564;
-  const Real t1566 = t1560 + t1565;
-  const Real t1567 = t950 * t1534;
-  const Real t1568 = t1566 + t1567;
-  const Real t1569 = t971 * t1551;
-  const Real t1570 = t1568 + t1569;
-  const Real t1571 = t1570 + t1532;
-  const Real t1572 = t1428 * t836;
-  const Real t1573 = t1571 - t1572;
-  const Real t1574 = t978 * t1359;
-  const Real t1575 = t1574 + t1573;
-  const Real t1576 = t1301 * t1254;
-  const Real t1577 = t1575 - t1576;
-  const Real t1578 = t1559 * t1577;
-  const Real t1579 = t1303 * t1578;
-  const Real t1580 = t1272 - t1579;
-  const Real t1581 = t949 - t825;
-  const Real t1582 = t1581 * par.k13;
-  const Real t1583 = t1582 + t921;
-  const Real t1584 = t1583 * par.k1;
-  const Real t1585 = par.k2 * t891;
-  const Real t1586 = t1585 - t1584;
-  const Real t1587 = c_r_p_1_ * t1586;
-  const Real t1588 = t971 * par.k13;
-  const Real t1589 = t904 + t1588;
-  const Real t1590 = s_r_p_1_ * t1589;
-  const Real t1591 = t1587 + t1590;
-  const Real t1592 = par.k2 * t838;
-  const Real t1593 = t971 * par.k1;
-  const Real t1594 = t1592 - t1593;
-  const Real t1595 = s_r_p_1_ * t1594;
-  const Real t1596 = t950 * c_r_p_1_;
-  const Real t1597 = t1596 - t1595;
-  const Real t1598 = t1597 * par.k11;
-  const Real t1599 = t1591 - t1598;
-  const Real t1600 = t1599 * par.k2;
-  const Real t1601 = t1595 - t1596;
-  const Real t1602 = t1601 * par.k12;
-  const Real t1603 = t1583 * par.k2;
-  const Real t1604 = par.k1 * t891;
-  const Real t1605 = t1603 + t1604;
-  const Real t1606 = t1602 + t1605;
-  const Real t1607 = par.k1 * t1606;
-  const Real t1608 = t1600 + t1607;
-  const Real t1609 = t1608 * s_r_p_2_;
-  const Real t1610 = t1599 * par.k1;
-  const Real t1611 = t1606 * par.k2;
-  const Real t1612 = t1611 - t1610;
-  const Real t1613 = t1612 * c_r_p_2_;
-  const Real t1614 = t1609 + t1613;
-  const Real t1615 = par.m_F * t1614;
-  const Real t1616 = t1615 * c_r_p_2_;
-  const Real t1617 = c_r_p_2_ * t1608;
-  const Real t1618 = t1612 * s_r_p_2_;
-  const Real t1619 = t1617 - t1618;
-  const Real t1620 = t1619 * par.m_F;
-  const Real t1621 = t1620 * s_r_p_2_;
-  const Real t1622 = t1616 - t1621;
-  const Real t1623 = t1622 * par.k2;
-  const Real t1624 = t1615 * s_r_p_2_;
-  const Real t1625 = t1620 * c_r_p_2_;
-  const Real t1626 = t1624 + t1625;
-  const Real t1627 = par.k1 * t1626;
-  const Real t1628 = t1623 + t1627;
-  const Real t1629 = t1628 * par.k12;
-  const Real t1630 = par.k2 * t1626;
-  const Real t1631 = par.k1 * t1622;
-  const Real t1632 = t1630 - t1631;
-  const Real t1633 = t1632 * par.k11;
-  const Real t1634 = t1629 + t1633;
-  const Real t1635 = t978 + t1597;
-  const Real t1636 = t1635 * par.I_Fyy;
-  const Real t1637 = t1636 - t1634;
-  const Real t1638 = par.k8 * t1591;
-  const Real t1639 = par.k10 * t1605;
-  const Real t1640 = t1638 - t1639;
-  const Real t1641 = t1597 * par.k7;
-  const Real t1642 = t1640 + t1641;
-  const Real t1643 = t1637 + t1642;
-  const Real t1644 = s_r_p_1_ * t1643;
-  const Real t1645 = t1594 * c_r_p_1_;
-  const Real t1646 = t950 * s_r_p_1_;
-  const Real t1647 = t1646 + t1645;
-  const Real t1648 = par.k2 * t1647;
-  const Real t1649 = par.k1 * t838;
-  const Real t1650 = t971 * par.k2;
-  const Real t1651 = t1649 + t1650;
-  const Real t1652 = t1651 - t836;
-  const Real t1653 = par.k1 * t1652;
-  const Real t1654 = t1653 + t1648;
-  const Real t1655 = t1654 * c_r_p_2_;
-  const Real t1656 = par.k1 * t1647;
-  const Real t1657 = par.k2 * t1652;
-  const Real t1658 = t1657 - t1656;
-  const Real t1659 = t1658 * s_r_p_2_;
-  const Real t1660 = t1655 - t1659;
-  const Real t1661 = par.I_Fxx * t1660;
-  const Real t1662 = t1661 * c_r_p_2_;
-  const Real t1663 = t1654 * s_r_p_2_;
-  const Real t1664 = t1658 * c_r_p_2_;
-  const Real t1665 = t1663 + t1664;
-  const Real t1666 = par.I_Fxx * t1665;
-  const Real t1667 = t1666 * s_r_p_2_;
-  const Real t1668 = t1662 + t1667;
-  const Real t1669 = t1668 * par.k2;
-  const Real t1670 = t1666 * c_r_p_2_;
-  const Real t1671 = t1661 * s_r_p_2_;
-  const Real t1672 = t1670 - t1671;
-  const Real t1673 = par.k1 * t1672;
-  const Real t1674 = t1669 - t1673;
-  const Real t1675 = par.k11 * t1647;
-  const Real t1676 = par.k12 * t1652;
-  const Real t1677 = t1675 + t1676;
-  const Real t1678 = s_r_p_1_ * t1586;
-  const Real t1679 = c_r_p_1_ * t1589;
-  const Real t1680 = t1679 - t1678;
-  const Real t1681 = t1677 + t1680;
-  const Real t1682 = par.m_F * t1681;
-  const Real t1683 = t1682 * par.k11;
-  const Real t1684 = t1683 + t1674;
-  const Real t1685 = par.k8 * t1680;
-  const Real t1686 = t1647 * par.k17;
-  const Real t1687 = par.k5 * t1652;
-  const Real t1688 = t1686 + t1687;
-  const Real t1689 = t1688 - t1685;
-  const Real t1690 = t1684 + t1689;
-  const Real t1691 = c_r_p_1_ * t1690;
-  const Real t1692 = t1691 - t1644;
-  const Real t1693 = t1692 * par.k2;
-  const Real t1694 = t1668 * par.k1;
-  const Real t1695 = par.k2 * t1672;
-  const Real t1696 = t1694 + t1695;
-  const Real t1697 = t1682 * par.k12;
-  const Real t1698 = t1696 + t1697;
-  const Real t1699 = par.k10 * t1680;
-  const Real t1700 = par.k5 * t1647;
-  const Real t1701 = par.k6 * t1652;
-  const Real t1702 = t1701 + t1700;
-  const Real t1703 = t1702 + t1699;
-  const Real t1704 = t1698 + t1703;
-  const Real t1705 = t1704 * par.k1;
-  const Real t1706 = t1693 + t1705;
-  const Real t1707 = par.k9 * t838;
-  const Real t1708 = par.k3 * t971;
-  const Real t1709 = t1707 + t1708;
-  const Real t1710 = t904 * par.k15;
-  const Real t1711 = t1709 - t1710;
-  const Real t1712 = t1706 + t1711;
-  const Real t1713 = t838 * c_r_p_0_;
-  const Real t1714 = t971 * s_r_p_0_;
-  const Real t1715 = t1713 - t1714;
-  const Real t1716 = t1715 * par.I_Rxx;
-  const Real t1717 = t1716 * c_r_p_0_;
-  const Real t1718 = t971 * c_r_p_0_;
-  const Real t1719 = t838 * s_r_p_0_;
-  const Real t1720 = t1718 + t1719;
-  const Real t1721 = par.I_Rxx * t1720;
-  const Real t1722 = t1721 * s_r_p_0_;
-  const Real t1723 = t1717 + t1722;
-  const Real t1724 = t807 - t837;
-  const Real t1725 = par.r_R * t1724;
-  const Real t1726 = t904 - t1725;
-  const Real t1727 = t1726 * par.m_R;
-  const Real t1728 = t1727 * par.r_R;
-  const Real t1729 = t1723 + t1728;
-  const Real t1730 = t1712 + t1729;
-  const Real t1731 = t838 * t1730;
-  const Real t1732 = par.m_H * t1591;
-  const Real t1733 = t1597 * par.k8;
-  const Real t1734 = t1732 + t1733;
-  const Real t1735 = t1632 + t1734;
-  const Real t1736 = t1735 * c_r_p_1_;
-  const Real t1737 = par.m_H * t1680;
-  const Real t1738 = par.k8 * t1647;
-  const Real t1739 = par.k10 * t1652;
-  const Real t1740 = t1739 - t1738;
-  const Real t1741 = t1740 + t1737;
-  const Real t1742 = t1741 + t1682;
-  const Real t1743 = s_r_p_1_ * t1742;
-  const Real t1744 = t1736 - t1743;
-  const Real t1745 = par.k2 * t1744;
-  const Real t1746 = t1601 * par.k10;
-  const Real t1747 = par.m_H * t1605;
-  const Real t1748 = t1746 + t1747;
-  const Real t1749 = t1628 + t1748;
-  const Real t1750 = par.k1 * t1749;
-  const Real t1751 = t1745 + t1750;
-  const Real t1752 = par.m_B * t891;
-  const Real t1753 = t950 * par.k15;
-  const Real t1754 = t1752 + t1753;
-  const Real t1755 = t1751 + t1754;
-  const Real t1756 = t950 * par.r_R;
-  const Real t1757 = t891 - t1756;
-  const Real t1758 = t1757 * s_r_p_0_;
-  const Real t1759 = t921 * c_r_p_0_;
-  const Real t1760 = t1758 + t1759;
-  const Real t1761 = par.m_R * t1760;
-  const Real t1762 = t1761 * s_r_p_0_;
-  const Real t1763 = t1757 * c_r_p_0_;
-  const Real t1764 = t921 * s_r_p_0_;
-  const Real t1765 = t1763 - t1764;
-  const Real t1766 = par.m_R * t1765;
-  const Real t1767 = t1766 * c_r_p_0_;
-  const Real t1768 = t1762 + t1767;
-  const Real t1769 = t1755 + t1768;
-  const Real t1770 = t1769 * t891;
-  const Real t1771 = t1735 * s_r_p_1_;
-  const Real t1772 = c_r_p_1_ * t1742;
-  const Real t1773 = t1771 + t1772;
-  const Real t1774 = par.k15 * t1724;
-  const Real t1775 = t971 * par.k16;
-  const Real t1776 = t1774 + t1775;
-  const Real t1777 = t904 * par.m_B;
-  const Real t1778 = t1776 + t1777;
-  const Real t1779 = t1773 + t1778;
-  const Real t1780 = t1727 + t1779;
-  const Real t1781 = t904 * t1780;
-  const Real t1782 = t1781 + t1770;
-  const Real t1783 = par.k1 * t1744;
-  const Real t1784 = t1749 * par.k2;
-  const Real t1785 = t1784 - t1783;
-  const Real t1786 = t1581 * par.k16;
-  const Real t1787 = t921 * par.m_B;
-  const Real t1788 = t1786 + t1787;
-  const Real t1789 = t1788 + t1785;
-  const Real t1790 = t1761 * c_r_p_0_;
-  const Real t1791 = t1766 * s_r_p_0_;
-  const Real t1792 = t1790 - t1791;
-  const Real t1793 = t1792 + t1789;
-  const Real t1794 = t1793 * t921;
-  const Real t1795 = t1782 + t1794;
-  const Real t1796 = t1731 + t1795;
-  const Real t1797 = c_r_p_1_ * t1643;
-  const Real t1798 = s_r_p_1_ * t1690;
-  const Real t1799 = t1798 + t1797;
-  const Real t1800 = t1785 * par.k13;
-  const Real t1801 = t1799 - t1800;
-  const Real t1802 = par.k15 * t891;
-  const Real t1803 = par.k16 * t921;
-  const Real t1804 = t1802 - t1803;
-  const Real t1805 = par.k4 * t950;
-  const Real t1806 = t1804 + t1805;
-  const Real t1807 = t1806 + t1801;
-  const Real t1808 = par.r_R * t1768;
-  const Real t1809 = t950 + constant<Real>(1.0L);
-  const Real t1810 = par.I_Ryy * t1809;
-  const Real t1811 = t1810 - t1808;
-  const Real t1812 = t1811 + t1807;
-  const Real t1813 = t950 * t1812;
-  const Real t1814 = t1796 + t1813;
-  const Real t1815 = par.k1 * t1692;
-  const Real t1816 = t1704 * par.k2;
-  const Real t1817 = t1816 - t1815;
-  const Real t1818 = t1773 * par.k13;
-  const Real t1819 = t1817 + t1818;
-  const Real t1820 = t971 * par.k14;
-  const Real t1821 = par.k3 * t1724;
-  const Real t1822 = t1820 - t1821;
-  const Real t1823 = t904 * par.k16;
-  const Real t1824 = t1823 + t1822;
-  const Real t1825 = t1819 + t1824;
-  const Real t1826 = t1721 * c_r_p_0_;
-  const Real t1827 = t1716 * s_r_p_0_;
-  const Real t1828 = t1826 - t1827;
-  const Real t1829 = t1828 + t1825;
-  const Real t1830 = t971 * t1829;
-  const Real t1831 = t1814 + t1830;
-  const Real t1832 = t1831 + t1810;
-  const Real t1833 = t1704 * t836;
-  const Real t1834 = t1832 - t1833;
-  const Real t1835 = t978 * t1636;
-  const Real t1836 = t1834 + t1835;
-  const Real t1837 = t1270 * t1254;
-  const Real t1838 = t1836 - t1837;
-  const Real t1839 = t1577 * t1578;
-  const Real t1840 = t1838 - t1839;
-  const Real t1841 = constant<Real>(1.0L) / t1840;
-  const Real t1842 = t1580 * t1841;
-  const Real t1843 = t1842 * t1578;
-  const Real t1844 = t1559 * t1303;
-  const Real t1845 = t1844 - t1843;
-  const Real t1846 = t1301 * t1845;
-  const Real t1847 = t1269 * t994;
-  const Real t1848 = t1847 - t1846;
-  const Real t1849 = t1842 * t1270;
-  const Real t1850 = t1848 - t1849;
-  const Real t1851 = t1850 * t199;
-  const Real t1852 = t788 * t1845;
-  const Real t1853 = t1852 - t1851;
-  const Real t1854 = t978 * t1842;
-  const Real t1855 = t1854 + t1853;
-  const Real t1856 = t1855 - t472;
-  const Real t1857 = t1842 * t836;
-  const Real t1858 = t1845 - t1857;
-  const Real t1859 = t1850 * t214;
-  const Real t1860 = t783 * t1845;
-  const Real t1861 = t1860 - t1859;
-  const Real t1862 = t1842 * t971;
-  const Real t1863 = t1862 + t1861;
-  const Real t1864 = t1863 + t487;
-  const Real t1865 = t1850 * t208;
-  const Real t1866 = t1850 * t206;
-  const Real t1867 = t1865 + t1866;
-  const Real t1868 = t779 * t1845;
-  const Real t1869 = t1868 - t1867;
-  const Real t1870 = t1842 * t950;
-  const Real t1871 = t1870 + t1869;
-  const Real t1872 = t481 + t1871;
-  const Real t1873 = t1872 + t479;
-  const Real t1874 = t761 * t1845;
-  const Real t1875 = t1850 - t1874;
-  const Real t1876 = t1842 * t838;
-  const Real t1877 = t1876 + t1875;
-  const Real t1878 = t352 * t1850;
-  const Real t1879 = t1845 * t770;
-  const Real t1880 = t1879 - t1878;
-  const Real t1881 = t1842 * t921;
-  const Real t1882 = t1881 + t1880;
-  const Real t1883 = t507 + t1882;
-  const Real t1884 = t1850 * t338;
-  const Real t1885 = t766 * t1845;
-  const Real t1886 = t1885 + t1884;
-  const Real t1887 = t1842 * t904;
-  const Real t1888 = t1886 + t1887;
-  const Real t1889 = t1888 + t540;
-  const Real t1890 = t1850 * t373;
-  const Real t1891 = t763 * t1845;
-  const Real t1892 = t1891 + t1890;
-  const Real t1893 = t1842 * t891;
-  const Real t1894 = t1893 + t1892;
-  const Real t1895 = t523 + t1894;
-  const Real t1896 = t1858 * t761;
-  const Real t1897 = t1850 - t1896;
-  const Real t1898 = t807 * t1842;
-  const Real t1899 = t1897 - t1898;
+  const Real t1398 = t1397 - t1140;
 
-  nu_dot_out[0] = t1899;
-  nu_dot_out[1] = t1858;
-  nu_dot_out[2] = t1842;
-  eta_dot[0] = t1895;
-  eta_dot[1] = t1889;
-  eta_dot[2] = t1883;
-  eta_dot[3] = t1877;
-  eta_dot[4] = t1873;
-  eta_dot[5] = t1864;
-  r_p_ddot[0] = t1842;
-  r_p_ddot[1] = t1858;
-  r_p_ddot[2] = t1856;
+  // fork: joint force
+  const Real t1399 = t1398 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t1400 = t267 * par.k12;
+
+  // front_wheel: acceleration
+  const Real t1401 = par.k12 * t219;
+
+  // passive accelerations
+  const Real t1402 = t1400 + t1401;
+  const Real t1403 = par.k48 + t1402;
+  const Real t1404 = t1403 * par.m_F;
+  const Real t1405 = par.k40 - t1135;
+  const Real t1406 = t1405 + t1404;
+  const Real t1407 = s_r_p_1_ * t1406;
+  const Real t1408 = t1399 - t1407;
+  const Real t1409 = t1408 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1410 = par.k2 * t1395;
+  const Real t1411 = t1391 * par.k1;
+  const Real t1412 = t1410 + t1411;
+  const Real t1413 = t1412 + t1155;
+
+  // fork: joint force
+  const Real t1414 = t1413 * par.k2;
+
+  // passive accelerations
+  const Real t1415 = t1414 - t1409;
+  const Real t1416 = t1415 * par.k14;
+
+  // accelerations
+  const Real t1417 = t1415 * par.k28;
+  const Real t1418 = t1416 + t1417;
+
+  // front_wheel: joint force
+  const Real t1419 = par.k12 * t1397;
+  const Real t1420 = t1412 * par.k13;
+  const Real t1421 = t1419 + t1420;
+
+  // front_wheel: wrench
+  const Real t1422 = t122 * par.I_Fyy;
+
+  // front_wheel: joint force
+  const Real t1423 = t1422 + t1421;
+
+  // fork: wrench
+  const Real t1424 = par.k8 * t122;
+
+  // front_wheel: joint force
+  const Real t1425 = t1424 + t1423;
+
+  // fork: joint force
+  const Real t1426 = t1425 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t1427 = par.I_Fxx * t869;
+  const Real t1428 = t1427 * s_r_p_2_;
+  const Real t1429 = t862 * par.I_Fxx;
+  const Real t1430 = t1429 * c_r_p_2_;
+  const Real t1431 = t1428 + t1430;
+  const Real t1432 = par.k2 * t1431;
+  const Real t1433 = c_r_p_2_ * t1427;
+  const Real t1434 = t1429 * s_r_p_2_;
+  const Real t1435 = t1433 - t1434;
+  const Real t1436 = par.k1 * t1435;
+  const Real t1437 = t1432 - t1436;
+  const Real t1438 = t1404 * par.k12;
+  const Real t1439 = t1437 + t1438;
+
+  // fork: wrench
+  const Real t1440 = t219 * par.k18;
+
+  // passive accelerations
+  const Real t1441 = t267 * par.k18;
+  const Real t1442 = t1440 + t1441;
+  const Real t1443 = par.k51 + t1442;
+  const Real t1444 = t1443 + t1439;
+  const Real t1445 = s_r_p_1_ * t1444;
+  const Real t1446 = t1445 - t1426;
+
+  // accelerations
+  const Real t1447 = t1446 - t1418;
+  const Real t1448 = t806 * t1447;
+  const Real t1449 = t808 * t1447;
+  const Real t1450 = t1448 + t1449;
+  const Real t1451 = t1450 + t1372;
+
+  // fork: joint force
+  const Real t1452 = t1425 * s_r_p_1_;
+
+  // passive accelerations
+  const Real t1453 = c_r_p_1_ * t1444;
+  const Real t1454 = t1453 + t1452;
+  const Real t1455 = par.k1 * t1454;
+  const Real t1456 = par.k2 * t1435;
+  const Real t1457 = par.k1 * t1431;
+  const Real t1458 = t1456 + t1457;
+  const Real t1459 = t1404 * par.k13;
+  const Real t1460 = t1459 + t1458;
+
+  // fork: wrench
+  const Real t1461 = par.k5 * t219;
+
+  // passive accelerations
+  const Real t1462 = par.k5 * t267;
+  const Real t1463 = t1461 + t1462;
+  const Real t1464 = par.k50 + t1463;
+  const Real t1465 = t1464 + t1460;
+  const Real t1466 = t1465 * par.k2;
+  const Real t1467 = t1466 - t1455;
+
+  // fork: joint force
+  const Real t1468 = t1398 * s_r_p_1_;
+
+  // passive accelerations
+  const Real t1469 = c_r_p_1_ * t1406;
+  const Real t1470 = t1468 + t1469;
+  const Real t1471 = t1470 * par.k14;
+
+  // accelerations
+  const Real t1472 = par.k28 * t1470;
+  const Real t1473 = t1471 + t1472;
+  const Real t1474 = t1467 + t1473;
+  const Real t1475 = t1474 + par.k3;
+
+  // rear_wheel: wrench
+  const Real t1476 = par.I_Rxx * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1477 = t1476 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1478 = par.I_Rxx * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1479 = t1478 * s_r_p_0_;
+  const Real t1480 = t1477 - t1479;
+
+  // accelerations
+  const Real t1481 = sum_error(t1480, t1475);
+  const Real t1482 = sum_error(par.k3, t1474);
+  const Real t1483 = t1482 + par.k69;
+  const Real t1484 = t1481 + t1483;
+  const Real t1485 = t1484 * t818;
+  const Real t1486 = t1475 + t1480;
+  const Real t1487 = t1486 * t818;
+  const Real t1488 = t1485 + t1487;
+  const Real t1489 = t1488 + t1451;
+  const Real t1490 = t794 * t1422;
+  const Real t1491 = t1490 + t1489;
+  const Real t1492 = t1030 * par.k12;
+  const Real t1493 = t1184 * par.k13;
+  const Real t1494 = t1492 + t1493;
+  const Real t1495 = t993 * par.I_Fyy;
+  const Real t1496 = t1494 + t1495;
+  const Real t1497 = t987 * par.k9;
+  const Real t1498 = par.k11 * t1007;
+  const Real t1499 = t1497 - t1498;
+  const Real t1500 = t992 * par.k38;
+  const Real t1501 = par.k8 * t993;
+  const Real t1502 = t1500 - t1501;
+  const Real t1503 = t583 - t578;
+  const Real t1504 = t578 + t583;
+  const Real t1505 = t1503 * t1504;
+  const Real t1506 = par.k5 * t1505;
+  const Real t1507 = t1502 + t1506;
+  const Real t1508 = t1499 + t1507;
+  const Real t1509 = t1508 - t1496;
+  const Real t1510 = s_r_p_1_ * t1509;
+  const Real t1511 = t599 * s_r_p_2_;
+  const Real t1512 = t585 * c_r_p_2_;
+  const Real t1513 = t1511 + t1512;
+  const Real t1514 = t734 * t1513;
+  const Real t1515 = t1042 * par.k2;
+  const Real t1516 = t1515 * c_r_p_2_;
+  const Real t1517 = par.k1 * t1042;
+  const Real t1518 = t1517 * s_r_p_2_;
+  const Real t1519 = t1516 + t1518;
+  const Real t1520 = t1514 - t1519;
+  const Real t1521 = par.I_Fxx * t1520;
+  const Real t1522 = t735 * t1513;
+  const Real t1523 = t1522 * par.k42;
+  const Real t1524 = t1521 - t1523;
+  const Real t1525 = c_r_p_2_ * t1524;
+  const Real t1526 = c_r_p_2_ * t599;
+  const Real t1527 = t585 * s_r_p_2_;
+  const Real t1528 = t1526 - t1527;
+  const Real t1529 = t1528 * t734;
+  const Real t1530 = t1042 * t4;
+  const Real t1531 = t1530 - t1529;
+  const Real t1532 = par.I_Fxx * t1531;
+  const Real t1533 = t1528 * t735;
+  const Real t1534 = par.k43 * t1533;
+  const Real t1535 = t1532 - t1534;
+  const Real t1536 = t1535 * s_r_p_2_;
+  const Real t1537 = t1525 + t1536;
+  const Real t1538 = t1537 * par.k2;
+  const Real t1539 = t1535 * c_r_p_2_;
+  const Real t1540 = t1524 * s_r_p_2_;
+  const Real t1541 = t1539 - t1540;
+  const Real t1542 = t1541 * par.k1;
+  const Real t1543 = t1538 - t1542;
+  const Real t1544 = par.k12 * t1054;
+  const Real t1545 = t1543 - t1544;
+  const Real t1546 = t1040 * par.k9;
+  const Real t1547 = par.k37 * t1043;
+  const Real t1548 = t1042 * par.k18;
+  const Real t1549 = t1547 + t1548;
+  const Real t1550 = par.k5 * t1046;
+  const Real t1551 = t1549 + t1550;
+  const Real t1552 = t1546 - t1551;
+  const Real t1553 = t1545 + t1552;
+  const Real t1554 = t1553 * c_r_p_1_;
+  const Real t1555 = t1554 - t1510;
+  const Real t1556 = t1555 * par.k2;
+  const Real t1557 = t1537 * par.k1;
+  const Real t1558 = t1541 * par.k2;
+  const Real t1559 = t1557 + t1558;
+  const Real t1560 = par.k13 * t1054;
+  const Real t1561 = t1559 - t1560;
+  const Real t1562 = t1040 * par.k11;
+  const Real t1563 = par.k5 * t1044;
+  const Real t1564 = t1046 * par.k39;
+  const Real t1565 = t1563 + t1564;
+  const Real t1566 = t1565 + t1562;
+  const Real t1567 = t1561 - t1566;
+  const Real t1568 = t1567 * par.k1;
+  const Real t1569 = t1568 + t1556;
+  const Real t1570 = t976 * par.k16;
+  const Real t1571 = t1058 * par.k67;
+  const Real t1572 = t977 * par.k69;
+  const Real t1573 = par.k3 * t977;
+  const Real t1574 = t1572 + t1573;
+  const Real t1575 = t1571 - t1574;
+  const Real t1576 = t1570 + t1575;
+  const Real t1577 = t1569 + t1576;
+  const Real t1578 = t516 * c_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1579 = nu[0] * s_r_p_0_;
+
+  // accelerations
+  const Real t1580 = t1579 - t1578;
+  const Real t1581 = t1580 * t705;
+  const Real t1582 = t1581 * par.k36;
+  const Real t1583 = t1580 * nu[2];
+  const Real t1584 = par.I_Rxx * t1583;
+  const Real t1585 = t1582 - t1584;
+  const Real t1586 = t1585 * c_r_p_0_;
+  const Real t1587 = t516 * s_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1588 = nu[0] * c_r_p_0_;
+
+  // accelerations
+  const Real t1589 = t1588 + t1587;
+  const Real t1590 = t1589 * nu[2];
+  const Real t1591 = t1590 * par.I_Rxx;
+  const Real t1592 = t1589 * t705;
+  const Real t1593 = t1592 * par.k35;
+  const Real t1594 = t1591 + t1593;
+  const Real t1595 = t1594 * s_r_p_0_;
+  const Real t1596 = t1586 + t1595;
+  const Real t1597 = par.r_R * t1072;
+  const Real t1598 = t1596 - t1597;
+  const Real t1599 = t1598 + t1577;
+  const Real t1600 = sum_error(t1491, t1599);
+  const Real t1601 = sum_error(t1598, t1577);
+  const Real t1602 = sum_error(t1576, t1569);
+  const Real t1603 = par.k16 * t984;
+  const Real t1604 = par.k59 * t976;
+  const Real t1605 = t1604 + t1603;
+  const Real t1606 = product_error(par.k16, t976);
+  const Real t1607 = t1605 + t1606;
+  const Real t1608 = sum_error(t1570, t1575);
+  const Real t1609 = t1607 + t1608;
+  const Real t1610 = t1609 + t1602;
+  const Real t1611 = t1601 + t1610;
+  const Real t1612 = t1600 + t1611;
+  const Real t1613 = t1350 - t1612;
+  const Real t1614 = t1236 + t1348;
+  const Real t1615 = t1491 + t1599;
+  const Real t1616 = -t1615;
+  const Real t1617 = sum_error(t1614, t1616);
+  const Real t1618 = t1617 + t1613;
+  const Real t1619 = t1614 - t1615;
+  const Real t1620 = t820 * t920;
+  const Real t1621 = t1171 * t857;
+  const Real t1622 = t1147 * t857;
+  const Real t1623 = t1621 + t1622;
+  const Real t1624 = t1623 + t1620;
+  const Real t1625 = t1298 * t894;
+  const Real t1626 = t1625 + t1624;
+
+  // front_wheel: acceleration
+  const Real t1627 = c_r_p_1_ * par.k13;
+  const Real t1628 = t1627 + par.k21;
+
+  // accelerations
+  const Real t1629 = par.k30 + t1628;
+  const Real t1630 = par.k2 * t1629;
+
+  // front_wheel: acceleration
+  const Real t1631 = c_r_p_1_ * par.k12;
+
+  // accelerations
+  const Real t1632 = t149 - t1631;
+  const Real t1633 = par.k1 * t1632;
+  const Real t1634 = t1630 + t1633;
+  const Real t1635 = t1634 * s_r_p_2_;
+  const Real t1636 = t1632 * par.k2;
+  const Real t1637 = par.k1 * t1629;
+  const Real t1638 = t1636 - t1637;
+  const Real t1639 = t1638 * c_r_p_2_;
+  const Real t1640 = t1635 + t1639;
+  const Real t1641 = t1640 * par.m_F;
+  const Real t1642 = t1641 * c_r_p_2_;
+  const Real t1643 = t1638 * s_r_p_2_;
+  const Real t1644 = t1634 * c_r_p_2_;
+  const Real t1645 = t1643 - t1644;
+  const Real t1646 = par.m_F * t1645;
+  const Real t1647 = t1646 * s_r_p_2_;
+  const Real t1648 = t1642 + t1647;
+  const Real t1649 = par.k2 * t1648;
+  const Real t1650 = c_r_p_2_ * t1646;
+  const Real t1651 = t1641 * s_r_p_2_;
+  const Real t1652 = t1650 - t1651;
+  const Real t1653 = par.k1 * t1652;
+  const Real t1654 = t1649 - t1653;
+  const Real t1655 = par.m_H * t149;
+  const Real t1656 = t916 + t1655;
+  const Real t1657 = t1656 + t1654;
+  const Real t1658 = c_r_p_1_ * t1657;
+  const Real t1659 = par.m_H * t131;
+
+  // fork: wrench
+  const Real t1660 = par.m_H * t134;
+
+  // accelerations
+  const Real t1661 = t1660 + t1659;
+  const Real t1662 = t912 + t1661;
+
+  // front_wheel: acceleration
+  const Real t1663 = s_r_p_1_ * par.k12;
+  const Real t1664 = t1663 - t134;
+
+  // accelerations
+  const Real t1665 = t1664 - t131;
+  const Real t1666 = par.m_F * t1665;
+  const Real t1667 = t1666 - t1662;
+  const Real t1668 = s_r_p_1_ * t1667;
+  const Real t1669 = t1658 - t1668;
+  const Real t1670 = par.k1 * t1669;
+  const Real t1671 = par.k1 * t1648;
+  const Real t1672 = t1652 * par.k2;
+  const Real t1673 = t1671 + t1672;
+  const Real t1674 = par.k66 + t930;
+  const Real t1675 = t1673 - t1674;
+  const Real t1676 = par.k2 * t1675;
+  const Real t1677 = t1676 - t1670;
+  const Real t1678 = t1677 * par.k14;
+  const Real t1679 = t1677 * par.k28;
+  const Real t1680 = t1678 + t1679;
+  const Real t1681 = par.k13 * t1673;
+  const Real t1682 = par.k12 * t1654;
+  const Real t1683 = t1681 + t1682;
+
+  // front_wheel: wrench
+  const Real t1684 = c_r_p_1_ * par.I_Fyy;
+
+  // accelerations
+  const Real t1685 = t1684 - t1683;
+  const Real t1686 = par.k9 * t149;
+  const Real t1687 = t1686 + par.k68;
+
+  // fork: wrench
+  const Real t1688 = par.k8 * c_r_p_1_;
+
+  // accelerations
+  const Real t1689 = t1688 + t1687;
+  const Real t1690 = t1689 + t1685;
+  const Real t1691 = c_r_p_1_ * t1690;
+
+  // front_wheel: wrench
+  const Real t1692 = par.I_Fxx * t823;
+
+  // front_wheel: joint force
+  const Real t1693 = c_r_p_2_ * t1692;
+
+  // passive accelerations
+  const Real t1694 = t826 * par.I_Fxx;
+  const Real t1695 = t1694 * s_r_p_2_;
+  const Real t1696 = t1695 + t1693;
+  const Real t1697 = t1696 * par.k2;
+
+  // front_wheel: joint force
+  const Real t1698 = t1692 * s_r_p_2_;
+
+  // passive accelerations
+  const Real t1699 = t1694 * c_r_p_2_;
+  const Real t1700 = t1699 - t1698;
+  const Real t1701 = par.k1 * t1700;
+  const Real t1702 = t1697 - t1701;
+
+  // accelerations
+  const Real t1703 = par.k12 * t1666;
+  const Real t1704 = t1702 + t1703;
+  const Real t1705 = par.k9 * t131;
+
+  // fork: wrench
+  const Real t1706 = par.k9 * t134;
+
+  // accelerations
+  const Real t1707 = t1705 + t1706;
+
+  // fork: wrench
+  const Real t1708 = s_r_p_1_ * par.k18;
+
+  // accelerations
+  const Real t1709 = t1707 + t1708;
+  const Real t1710 = t1709 + t1704;
+  const Real t1711 = s_r_p_1_ * t1710;
+  const Real t1712 = t1711 + t1691;
+  const Real t1713 = t1712 - t1680;
+  const Real t1714 = par.k4 + t1713;
+
+  // rear_wheel: acceleration
+  const Real t1715 = par.r_R * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1716 = par.m_R * t1715;
+
+  // rear_wheel: joint force
+  const Real t1717 = t1716 * c_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1718 = par.r_R * s_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1719 = par.m_R * t1718;
+
+  // rear_wheel: joint force
+  const Real t1720 = t1719 * s_r_p_0_;
+  const Real t1721 = t1717 + t1720;
+  const Real t1722 = t1721 * par.r_R;
+  const Real t1723 = par.I_Ryy + t1722;
+
+  // accelerations
+  const Real t1724 = t1723 + t1714;
+  const Real t1725 = t1724 * t808;
+  const Real t1726 = t1626 + t1725;
+  const Real t1727 = s_r_p_1_ * t1690;
+  const Real t1728 = c_r_p_1_ * t1710;
+  const Real t1729 = t1728 - t1727;
+  const Real t1730 = par.k1 * t1729;
+
+  // passive accelerations
+  const Real t1731 = t1696 * par.k1;
+  const Real t1732 = par.k2 * t1700;
+  const Real t1733 = t1731 + t1732;
+
+  // accelerations
+  const Real t1734 = par.k13 * t1666;
+  const Real t1735 = t1734 + t1733;
+  const Real t1736 = par.k11 * t131;
+
+  // fork: wrench
+  const Real t1737 = par.k11 * t134;
+
+  // accelerations
+  const Real t1738 = t1736 + t1737;
+
+  // fork: wrench
+  const Real t1739 = s_r_p_1_ * par.k5;
+
+  // accelerations
+  const Real t1740 = t1739 - t1738;
+  const Real t1741 = t1735 + t1740;
+  const Real t1742 = par.k2 * t1741;
+  const Real t1743 = t1742 - t1730;
+  const Real t1744 = s_r_p_1_ * t1657;
+  const Real t1745 = c_r_p_1_ * t1667;
+  const Real t1746 = t1744 + t1745;
+  const Real t1747 = par.k14 * t1746;
+  const Real t1748 = par.k28 * t1746;
+  const Real t1749 = t1747 + t1748;
+  const Real t1750 = t1743 + t1749;
+  const Real t1751 = t1750 * t818;
+  const Real t1752 = t1726 + t1751;
+  const Real t1753 = t1684 * t794;
+  const Real t1754 = -t1753;
+  const Real t1755 = sum_error(t1752, t1754);
+  const Real t1756 = sum_error(t1751, t1726);
+  const Real t1757 = sum_error(t1626, t1725);
+  const Real t1758 = sum_error(t1624, t1625);
+  const Real t1759 = t1724 * t806;
+  const Real t1760 = sum_error(par.k4, t1713);
+  const Real t1761 = t1760 + par.k64;
+  const Real t1762 = sum_error(t1723, t1714);
+  const Real t1763 = t1761 + t1762;
+  const Real t1764 = t1763 * t808;
+  const Real t1765 = t1759 + t1764;
+  const Real t1766 = product_error(t1724, t808);
+  const Real t1767 = t1766 + t1765;
+  const Real t1768 = t1758 + t1767;
+  const Real t1769 = t1757 + t1768;
+  const Real t1770 = t1756 + t1769;
+  const Real t1771 = t1755 + t1770;
+  const Real t1772 = t1321 * par.k14;
+  const Real t1773 = par.k28 * t1321;
+  const Real t1774 = t1772 + t1773;
+  const Real t1775 = t1509 * c_r_p_1_;
+  const Real t1776 = t1553 * s_r_p_1_;
+  const Real t1777 = t1775 + t1776;
+  const Real t1778 = t1777 - t1774;
+  const Real t1779 = t963 * par.k17;
+  const Real t1780 = par.k62 * t963;
+  const Real t1781 = t1779 + t1780;
+  const Real t1782 = par.k16 * t950;
+  const Real t1783 = t1782 - t1781;
+  const Real t1784 = t516 + nu[0];
+  const Real t1785 = t516 - nu[0];
+  const Real t1786 = t1784 * t1785;
+  const Real t1787 = t1786 * par.k69;
+  const Real t1788 = t1786 * par.k3;
+  const Real t1789 = t1787 + t1788;
+  const Real t1790 = par.k61 * t964;
+  const Real t1791 = t1789 - t1790;
+  const Real t1792 = t1783 + t1791;
+  const Real t1793 = t1792 + t1778;
+  const Real t1794 = -t1793;
+  const Real t1795 = t1219 * par.r_R;
+  const Real t1796 = sum_error(t1795, t1794);
+  const Real t1797 = sum_error(t1792, t1778);
+  const Real t1798 = -t1781;
+  const Real t1799 = sum_error(t1782, t1798);
+  const Real t1800 = product_error(par.k16, t950);
+  const Real t1801 = par.k59 * t950;
+  const Real t1802 = t1800 + t1801;
+  const Real t1803 = t1802 + t1799;
+  const Real t1804 = sum_error(t1783, t1791);
+  const Real t1805 = t1803 + t1804;
+  const Real t1806 = t1805 + t1797;
+  const Real t1807 = t1796 - t1806;
+  const Real t1808 = t1807 - t1771;
+  const Real t1809 = t1753 - t1752;
+  const Real t1810 = t1795 - t1793;
+  const Real t1811 = sum_error(t1810, t1809);
+  const Real t1812 = t1808 + t1811;
+  const Real t1813 = t1812 * t431;
+  const Real t1814 = t1752 - t1753;
+  const Real t1815 = t1810 - t1814;
+  const Real t1816 = t429 * t1815;
+  const Real t1817 = t1813 + t1816;
+  const Real t1818 = t1815 * t431;
+  const Real t1819 = t1817 + t1818;
+  const Real t1820 = -t1819;
+  const Real t1821 = sum_error(t1619, t1820);
+  const Real t1822 = t1821 + t1618;
+  const Real t1823 = t1619 - t1819;
+  const Real t1824 = t820 * t939;
+  const Real t1825 = t941 * t820;
+  const Real t1826 = t1824 + t1825;
+  const Real t1827 = t1162 * t857;
+  const Real t1828 = t1827 + t1826;
+  const Real t1829 = t894 * t1316;
+  const Real t1830 = t1829 + t1828;
+  const Real t1831 = t1750 * t806;
+  const Real t1832 = t1750 * t808;
+  const Real t1833 = t1831 + t1832;
+  const Real t1834 = t1830 + t1833;
+
+  // front_wheel: acceleration
+  const Real t1835 = par.k12 * t105;
+  const Real t1836 = t111 - t1835;
+
+  // accelerations
+  const Real t1837 = t109 + t1836;
+  const Real t1838 = t1837 * par.k2;
+
+  // front_wheel: acceleration
+  const Real t1839 = par.k13 * t105;
+  const Real t1840 = t1839 * par.k1;
+
+  // accelerations
+  const Real t1841 = t1838 - t1840;
+  const Real t1842 = t1841 * s_r_p_2_;
+  const Real t1843 = t1837 * par.k1;
+
+  // front_wheel: acceleration
+  const Real t1844 = t1839 * par.k2;
+
+  // accelerations
+  const Real t1845 = t1843 + t1844;
+  const Real t1846 = t1845 * c_r_p_2_;
+  const Real t1847 = t1842 - t1846;
+  const Real t1848 = t1847 * par.m_F;
+  const Real t1849 = t1848 * s_r_p_2_;
+  const Real t1850 = t1845 * s_r_p_2_;
+  const Real t1851 = c_r_p_2_ * t1841;
+  const Real t1852 = t1850 + t1851;
+  const Real t1853 = par.m_F * t1852;
+  const Real t1854 = c_r_p_2_ * t1853;
+  const Real t1855 = t1849 + t1854;
+  const Real t1856 = par.k1 * t1855;
+  const Real t1857 = c_r_p_2_ * t1848;
+  const Real t1858 = t1853 * s_r_p_2_;
+  const Real t1859 = t1857 - t1858;
+  const Real t1860 = t1859 * par.k2;
+  const Real t1861 = t1856 + t1860;
+  const Real t1862 = t1861 * par.k13;
+  const Real t1863 = par.k2 * t1855;
+  const Real t1864 = t1859 * par.k1;
+  const Real t1865 = t1863 - t1864;
+  const Real t1866 = t1865 * par.k12;
+  const Real t1867 = t1862 + t1866;
+
+  // front_wheel: wrench
+  const Real t1868 = par.I_Fyy * t105;
+
+  // accelerations
+  const Real t1869 = t1868 - t1867;
+  const Real t1870 = t109 * par.k9;
+
+  // fork: wrench
+  const Real t1871 = par.k9 * t111;
+
+  // accelerations
+  const Real t1872 = t1870 + t1871;
+
+  // fork: wrench
+  const Real t1873 = par.k8 * t105;
+
+  // accelerations
+  const Real t1874 = t1872 + t1873;
+  const Real t1875 = t1874 + t1869;
+  const Real t1876 = s_r_p_1_ * t1875;
+  const Real t1877 = par.I_Fxx * t1243;
+  const Real t1878 = t1877 * s_r_p_2_;
+  const Real t1879 = par.I_Fxx * t1249;
+  const Real t1880 = c_r_p_2_ * t1879;
+  const Real t1881 = t1878 + t1880;
+  const Real t1882 = t1881 * par.k2;
+  const Real t1883 = t1877 * c_r_p_2_;
+  const Real t1884 = t1879 * s_r_p_2_;
+  const Real t1885 = t1883 - t1884;
+  const Real t1886 = par.k1 * t1885;
+  const Real t1887 = t1882 - t1886;
+
+  // front_wheel: acceleration
+  const Real t1888 = t53 * par.k12;
+  const Real t1889 = par.k55 - t1888;
+  const Real t1890 = t75 + t1889;
+
+  // accelerations
+  const Real t1891 = t1890 + t95;
+  const Real t1892 = par.m_F * t1891;
+  const Real t1893 = t1892 * par.k12;
+  const Real t1894 = t1887 + t1893;
+  const Real t1895 = par.k9 * t95;
+
+  // fork: wrench
+  const Real t1896 = par.k9 * t75;
+
+  // accelerations
+  const Real t1897 = t1895 + t1896;
+
+  // fork: wrench
+  const Real t1898 = t53 * par.k18;
+  const Real t1899 = par.k56 - t1898;
+
+  // accelerations
+  const Real t1900 = t1899 - t1897;
+  const Real t1901 = t1900 + t1894;
+  const Real t1902 = c_r_p_1_ * t1901;
+  const Real t1903 = t1902 - t1876;
+  const Real t1904 = t1903 * par.k1;
+  const Real t1905 = par.k1 * t1881;
+  const Real t1906 = par.k2 * t1885;
+  const Real t1907 = t1905 + t1906;
+  const Real t1908 = t1892 * par.k13;
+  const Real t1909 = t1908 + t1907;
+  const Real t1910 = par.k11 * t95;
+
+  // fork: wrench
+  const Real t1911 = t75 * par.k11;
+
+  // accelerations
+  const Real t1912 = t1911 + t1910;
+
+  // fork: wrench
+  const Real t1913 = par.k5 * t53;
+  const Real t1914 = par.k57 - t1913;
+
+  // accelerations
+  const Real t1915 = t1914 + t1912;
+  const Real t1916 = t1909 + t1915;
+  const Real t1917 = t1916 * par.k2;
+  const Real t1918 = t1917 - t1904;
+  const Real t1919 = t109 * par.m_H;
+
+  // fork: wrench
+  const Real t1920 = par.m_H * t111;
+
+  // accelerations
+  const Real t1921 = t1919 + t1920;
+  const Real t1922 = t1289 + t1921;
+  const Real t1923 = t1922 + t1865;
+  const Real t1924 = t1923 * s_r_p_1_;
+  const Real t1925 = par.m_H * t95;
+
+  // fork: wrench
+  const Real t1926 = par.m_H * t75;
+
+  // accelerations
+  const Real t1927 = t1926 + t1925;
+  const Real t1928 = t1285 + t1927;
+  const Real t1929 = t1892 + t1928;
+  const Real t1930 = c_r_p_1_ * t1929;
+  const Real t1931 = t1930 + t1924;
+  const Real t1932 = t1931 * par.k14;
+  const Real t1933 = t1931 * par.k28;
+  const Real t1934 = t1932 + t1933;
+  const Real t1935 = t1918 + t1934;
+  const Real t1936 = par.k15 + t1935;
+
+  // rear_wheel: joint force
+  const Real t1937 = t1476 * s_r_p_0_;
+  const Real t1938 = t1478 * c_r_p_0_;
+  const Real t1939 = t1937 + t1938;
+
+  // accelerations
+  const Real t1940 = t1936 + t1939;
+  const Real t1941 = t1940 * t818;
+  const Real t1942 = t1834 + t1941;
+  const Real t1943 = t794 * t1868;
+  const Real t1944 = t1942 - t1943;
+  const Real t1945 = t1555 * par.k1;
+  const Real t1946 = t1567 * par.k2;
+  const Real t1947 = t1946 - t1945;
+  const Real t1948 = t1057 * par.k14;
+  const Real t1949 = t1057 * par.k28;
+  const Real t1950 = t1948 + t1949;
+  const Real t1951 = t1950 + t1947;
+  const Real t1952 = par.k3 * t1058;
+  const Real t1953 = t1058 * par.k69;
+  const Real t1954 = t1952 + t1953;
+  const Real t1955 = par.k65 * t977;
+  const Real t1956 = t1954 + t1955;
+  const Real t1957 = t976 * par.k17;
+  const Real t1958 = t1956 + t1957;
+  const Real t1959 = t1951 - t1958;
+  const Real t1960 = t1594 * c_r_p_0_;
+  const Real t1961 = t1585 * s_r_p_0_;
+  const Real t1962 = t1960 - t1961;
+  const Real t1963 = t1962 + t1959;
+  const Real t1964 = sum_error(t1963, t1944);
+  const Real t1965 = -t1958;
+  const Real t1966 = sum_error(t1951, t1965);
+  const Real t1967 = par.k17 * t984;
+  const Real t1968 = par.k62 * t976;
+  const Real t1969 = t1968 + t1967;
+  const Real t1970 = product_error(par.k17, t976);
+  const Real t1971 = t1969 + t1970;
+  const Real t1972 = sum_error(t1956, t1957);
+  const Real t1973 = t1971 + t1972;
+  const Real t1974 = t1966 - t1973;
+  const Real t1975 = sum_error(t1962, t1959);
+  const Real t1976 = t1974 + t1975;
+  const Real t1977 = t1964 + t1976;
+  const Real t1978 = t441 * t1977;
+  const Real t1979 = t1944 + t1963;
+  const Real t1980 = t1979 * t441;
+  const Real t1981 = t1980 + t1978;
+  const Real t1982 = sum_error(t1981, t1823);
+  const Real t1983 = t1822 + t1982;
+  const Real t1984 = t1981 + t1823;
+  const Real t1985 = t1868 * t818;
+  const Real t1986 = t1684 * t806;
+  const Real t1987 = t1684 * t808;
+  const Real t1988 = t1987 + t1986;
+  const Real t1989 = t1985 + t1988;
+  const Real t1990 = t794 * par.I_Fyy;
+  const Real t1991 = t1989 - t1990;
+  const Real t1992 = t1495 - t1991;
+  const Real t1993 = t1992 * t420;
+  const Real t1994 = -t1993;
+  const Real t1995 = sum_error(t1984, t1994);
+  const Real t1996 = t1983 + t1995;
+  const Real t1997 = t620 * t618;
+  const Real t1998 = t1997 * constant<Real>(2.0L);
+  const Real t1999 = t620 * t620;
+  const Real t2000 = t1998 + t1999;
+  const Real t2001 = t670 * t670;
+  const Real t2002 = t2001 + t2000;
+  const Real t2003 = t643 * t643;
+  const Real t2004 = t2002 + t2003;
+  const Real t2005 = constant<Real>(1.0L) + t2004;
+  const Real t2006 = t429 * t431;
+  const Real t2007 = t2006 * constant<Real>(2.0L);
+  const Real t2008 = t431 * t431;
+  const Real t2009 = t2008 + t2007;
+  const Real t2010 = t2009 + t2005;
+  const Real t2011 = t441 * t441;
+  const Real t2012 = t2010 + t2011;
+  const Real t2013 = t420 * t420;
+  const Real t2014 = t2013 + t2012;
+  const Real t2015 = constant<Real>(1.0L) / t2014;
+  const Real t2016 = t613 * t620;
+  const Real t2017 = t613 * t618;
+  const Real t2018 = t2016 + t2017;
+  const Real t2019 = t670 * t664;
+  const Real t2020 = t2019 + t2018;
+  const Real t2021 = t636 * t643;
+  const Real t2022 = t638 * t643;
+  const Real t2023 = t2021 + t2022;
+  const Real t2024 = t2020 + t2023;
+  const Real t2025 = t342 * t431;
+  const Real t2026 = t429 * t344;
+  const Real t2027 = t2025 + t2026;
+  const Real t2028 = t344 * t431;
+  const Real t2029 = t2028 + t2027;
+  const Real t2030 = t2029 + t2024;
+  const Real t2031 = t358 * t441;
+  const Real t2032 = t360 * t441;
+  const Real t2033 = t2032 + t2031;
+  const Real t2034 = t2033 + t2030;
+  const Real t2035 = t420 * t327;
+  const Real t2036 = t329 * t420;
+  const Real t2037 = t2035 + t2036;
+  const Real t2038 = t2034 + t2037;
+  const Real t2039 = t2015 * t2038;
+  const Real t2040 = t620 * t2039;
+  const Real t2041 = t2039 * t618;
+  const Real t2042 = t2040 + t2041;
+  const Real t2043 = t613 - t2042;
+  const Real t2044 = t849 * t620;
+  const Real t2045 = t670 * t888;
+  const Real t2046 = t2044 + t2045;
+  const Real t2047 = t643 * t903;
+  const Real t2048 = t2046 - t2047;
+  const Real t2049 = t2048 + t1355;
+  const Real t2050 = t429 * t920;
+  const Real t2051 = t920 * t431;
+  const Real t2052 = t2051 + t2050;
+  const Real t2053 = t2049 - t2052;
+  const Real t2054 = t441 * t939;
+  const Real t2055 = t941 * t441;
+  const Real t2056 = t2054 + t2055;
+  const Real t2057 = t2053 - t2056;
+  const Real t2058 = t2043 * t2057;
+  const Real t2059 = t849 * t618;
+  const Real t2060 = t620 * t847;
+  const Real t2061 = t2059 + t2060;
+  const Real t2062 = product_error(t620, t849);
+  const Real t2063 = t2061 + t2062;
+  const Real t2064 = sum_error(t2044, t2045);
+  const Real t2065 = t2063 + t2064;
+  const Real t2066 = -t2047;
+  const Real t2067 = sum_error(t2046, t2066);
+  const Real t2068 = t2065 + t2067;
+  const Real t2069 = t2068 + t1360;
+  const Real t2070 = sum_error(t1355, t2048);
+  const Real t2071 = t2069 + t2070;
+  const Real t2072 = -t2052;
+  const Real t2073 = sum_error(t2049, t2072);
+  const Real t2074 = t2073 + t2071;
+  const Real t2075 = -t2056;
+  const Real t2076 = sum_error(t2053, t2075);
+  const Real t2077 = t2076 + t2074;
+  const Real t2078 = t2077 * t2043;
+  const Real t2079 = t2058 + t2078;
+  const Real t2080 = t2039 * t670;
+  const Real t2081 = t664 - t2080;
+  const Real t2082 = t618 * t888;
+  const Real t2083 = t620 * t888;
+  const Real t2084 = t2083 + t2082;
+  const Real t2085 = t1110 * t670;
+  const Real t2086 = t1114 * t670;
+  const Real t2087 = t2085 + t2086;
+  const Real t2088 = t2087 + t2084;
+  const Real t2089 = t1124 * t643;
+  const Real t2090 = t2088 - t2089;
+  const Real t2091 = t1365 + t2090;
+  const Real t2092 = t1147 * t431;
+  const Real t2093 = t2091 - t2092;
+  const Real t2094 = t1162 * t441;
+  const Real t2095 = -t2094;
+  const Real t2096 = sum_error(t2093, t2095);
+  const Real t2097 = -t2092;
+  const Real t2098 = sum_error(t2091, t2097);
+  const Real t2099 = t429 * t1147;
+  const Real t2100 = t1171 * t431;
+  const Real t2101 = t2099 + t2100;
+  const Real t2102 = product_error(t431, t1147);
+  const Real t2103 = t2101 + t2102;
+  const Real t2104 = t2098 - t2103;
+  const Real t2105 = t2096 + t2104;
+  const Real t2106 = t2105 * t2081;
+  const Real t2107 = t2093 - t2094;
+  const Real t2108 = t2081 * t2107;
+  const Real t2109 = t2106 + t2108;
+  const Real t2110 = t2109 + t2079;
+  const Real t2111 = t643 * t2039;
+  const Real t2112 = -t638;
+  const Real t2113 = sum_error(t2111, t2112);
+  const Real t2114 = t2113 - t636;
+  const Real t2115 = t903 * t618;
+  const Real t2116 = t620 * t903;
+  const Real t2117 = t2116 + t2115;
+  const Real t2118 = t1124 * t670;
+  const Real t2119 = t2117 + t2118;
+  const Real t2120 = t643 * t1275;
+  const Real t2121 = t2119 - t2120;
+  const Real t2122 = t1370 + t2121;
+  const Real t2123 = t429 * t1298;
+  const Real t2124 = t1298 * t431;
+  const Real t2125 = t2124 + t2123;
+  const Real t2126 = t2122 - t2125;
+  const Real t2127 = t441 * t1316;
+  const Real t2128 = t2126 - t2127;
+  const Real t2129 = t2128 * t2114;
+  const Real t2130 = t2111 - t638;
+  const Real t2131 = t2128 * t2130;
+  const Real t2132 = t2129 + t2131;
+  const Real t2133 = t2132 + t2110;
+  const Real t2134 = t618 * t1355;
+  const Real t2135 = t1360 * t620;
+  const Real t2136 = t2134 + t2135;
+  const Real t2137 = product_error(t620, t1355);
+  const Real t2138 = t2137 + t2136;
+  const Real t2139 = t620 * t1355;
+  const Real t2140 = t1365 * t670;
+  const Real t2141 = sum_error(t2140, t2139);
+  const Real t2142 = t2141 + t2138;
+  const Real t2143 = t2140 + t2139;
+  const Real t2144 = t1370 * t643;
+  const Real t2145 = -t2144;
+  const Real t2146 = sum_error(t2143, t2145);
+  const Real t2147 = t2146 + t2142;
+
+  // passive accelerations
+  const Real t2148 = par.k2 * t1454;
+  const Real t2149 = par.k1 * t1465;
+  const Real t2150 = t2148 + t2149;
+
+  // accelerations
+  const Real t2151 = sum_error(t2150, par.k10);
+  const Real t2152 = par.k60 + t2151;
+
+  // passive accelerations
+  const Real t2153 = par.k10 + t2150;
+
+  // rear_wheel: joint force
+  const Real t2154 = par.k52 + t1939;
+
+  // accelerations
+  const Real t2155 = sum_error(t2153, t2154);
+  const Real t2156 = t2152 + t2155;
+  const Real t2157 = t2147 + t2156;
+  const Real t2158 = t2143 - t2144;
+
+  // passive accelerations
+  const Real t2159 = t2153 + t2154;
+
+  // accelerations
+  const Real t2160 = sum_error(t2159, t2158);
+  const Real t2161 = t2157 + t2160;
+  const Real t2162 = t2159 + t2158;
+  const Real t2163 = t429 * t1447;
+  const Real t2164 = t1447 * t431;
+  const Real t2165 = t2163 + t2164;
+  const Real t2166 = -t2165;
+  const Real t2167 = sum_error(t2162, t2166);
+  const Real t2168 = t2167 + t2161;
+  const Real t2169 = t2162 - t2165;
+  const Real t2170 = t1484 * t441;
+  const Real t2171 = t1486 * t441;
+  const Real t2172 = t2170 + t2171;
+  const Real t2173 = -t2172;
+  const Real t2174 = sum_error(t2169, t2173);
+  const Real t2175 = t2168 + t2174;
+  const Real t2176 = t2169 - t2172;
+  const Real t2177 = t1422 * t420;
+  const Real t2178 = sum_error(t2177, t2176);
+  const Real t2179 = t2178 + t2175;
+  const Real t2180 = t2179 * t2039;
+  const Real t2181 = t2176 + t2177;
+  const Real t2182 = t2039 * t2181;
+  const Real t2183 = t2180 + t2182;
+  const Real t2184 = t2133 - t2183;
+  const Real t2185 = t2039 * t431;
+  const Real t2186 = t429 * t2039;
+  const Real t2187 = t2185 + t2186;
+  const Real t2188 = -t344;
+  const Real t2189 = sum_error(t2187, t2188);
+  const Real t2190 = t2189 - t342;
+  const Real t2191 = t920 * t618;
+  const Real t2192 = t920 * t620;
+  const Real t2193 = t2192 + t2191;
+  const Real t2194 = t1171 * t670;
+  const Real t2195 = t1147 * t670;
+  const Real t2196 = t2194 + t2195;
+  const Real t2197 = t2193 + t2196;
+  const Real t2198 = t643 * t1298;
+  const Real t2199 = t2197 - t2198;
+  const Real t2200 = t2199 + t1447;
+  const Real t2201 = t1724 * t431;
+  const Real t2202 = t2200 - t2201;
+  const Real t2203 = t1750 * t441;
+  const Real t2204 = t2202 - t2203;
+  const Real t2205 = t1684 * t420;
+  const Real t2206 = t2204 - t2205;
+  const Real t2207 = t2206 * t2190;
+  const Real t2208 = t2187 - t344;
+  const Real t2209 = -t2203;
+  const Real t2210 = sum_error(t2202, t2209);
+  const Real t2211 = -t2201;
+  const Real t2212 = sum_error(t2200, t2211);
+  const Real t2213 = t429 * t1724;
+  const Real t2214 = t1763 * t431;
+  const Real t2215 = t2213 + t2214;
+  const Real t2216 = product_error(t431, t1724);
+  const Real t2217 = t2216 + t2215;
+  const Real t2218 = t2212 - t2217;
+  const Real t2219 = t2210 + t2218;
+  const Real t2220 = -t2205;
+  const Real t2221 = sum_error(t2204, t2220);
+  const Real t2222 = t2219 + t2221;
+  const Real t2223 = t2208 * t2222;
+  const Real t2224 = t2223 + t2207;
+  const Real t2225 = t2208 * t2206;
+  const Real t2226 = t2225 + t2224;
+  const Real t2227 = t2184 + t2226;
+  const Real t2228 = t441 * t2039;
+  const Real t2229 = t2228 - t360;
+  const Real t2230 = t941 * t620;
+  const Real t2231 = t1162 * t670;
+  const Real t2232 = t2231 + t2230;
+  const Real t2233 = t643 * t1316;
+  const Real t2234 = t2232 - t2233;
+  const Real t2235 = t1486 + t2234;
+  const Real t2236 = t429 * t1750;
+  const Real t2237 = t1750 * t431;
+  const Real t2238 = t2237 + t2236;
+  const Real t2239 = t2235 - t2238;
+  const Real t2240 = t441 * t1940;
+  const Real t2241 = t2239 - t2240;
+  const Real t2242 = t1868 * t420;
+  const Real t2243 = t2241 - t2242;
+  const Real t2244 = t2229 * t2243;
+  const Real t2245 = t2227 + t2244;
+  const Real t2246 = t931 * t618;
+  const Real t2247 = t620 * t931;
+  const Real t2248 = t2246 + t2247;
+  const Real t2249 = t1156 * t670;
+  const Real t2250 = t2248 - t2249;
+  const Real t2251 = t643 * t1307;
+  const Real t2252 = t2250 - t2251;
+  const Real t2253 = t2252 + t1465;
+  const Real t2254 = t429 * t1741;
+  const Real t2255 = t1741 * t431;
+  const Real t2256 = t2255 + t2254;
+  const Real t2257 = t2253 - t2256;
+  const Real t2258 = t1916 * t441;
+  const Real t2259 = t2257 - t2258;
+  const Real t2260 = t2259 + t2245;
+  const Real t2261 = t420 * t2039;
+  const Real t2262 = -t329;
+  const Real t2263 = sum_error(t2261, t2262);
+  const Real t2264 = t2263 - t327;
+  const Real t2265 = t1868 * t441;
+  const Real t2266 = t1684 * t429;
+  const Real t2267 = t1684 * t431;
+  const Real t2268 = t2266 + t2267;
+  const Real t2269 = t1422 + t2268;
+  const Real t2270 = t2269 + t2265;
+  const Real t2271 = par.I_Fyy * t420;
+  const Real t2272 = t2270 + t2271;
+  const Real t2273 = t2264 * t2272;
+  const Real t2274 = t2261 - t329;
+  const Real t2275 = t2274 * t2272;
+  const Real t2276 = t2275 + t2273;
+  const Real t2277 = t2260 - t2276;
+  const Real t2278 = t2077 * t620;
+  const Real t2279 = t2057 * t618;
+  const Real t2280 = t2279 + t2278;
+  const Real t2281 = t620 * t2057;
+  const Real t2282 = t2280 + t2281;
+  const Real t2283 = t2105 * t670;
+  const Real t2284 = t670 * t2107;
+  const Real t2285 = t2284 + t2283;
+  const Real t2286 = t2282 + t2285;
+  const Real t2287 = t2128 * t643;
+  const Real t2288 = t2286 - t2287;
+  const Real t2289 = t2288 + t2181;
+  const Real t2290 = t2222 * t431;
+  const Real t2291 = t429 * t2206;
+  const Real t2292 = t2290 + t2291;
+  const Real t2293 = t2206 * t431;
+  const Real t2294 = t2292 + t2293;
+  const Real t2295 = t2289 - t2294;
+  const Real t2296 = t941 * t618;
+  const Real t2297 = t620 * t939;
+  const Real t2298 = t2296 + t2297;
+  const Real t2299 = product_error(t620, t941);
+  const Real t2300 = t2299 + t2298;
+  const Real t2301 = sum_error(t2230, t2231);
+  const Real t2302 = t2301 + t2300;
+  const Real t2303 = -t2233;
+  const Real t2304 = sum_error(t2232, t2303);
+  const Real t2305 = t2302 + t2304;
+  const Real t2306 = t1484 + t2305;
+  const Real t2307 = sum_error(t2234, t1486);
+  const Real t2308 = t2306 + t2307;
+  const Real t2309 = -t2238;
+  const Real t2310 = sum_error(t2235, t2309);
+  const Real t2311 = t2308 + t2310;
+  const Real t2312 = -t2240;
+  const Real t2313 = sum_error(t2239, t2312);
+  const Real t2314 = t2313 + t2311;
+  const Real t2315 = -t2242;
+  const Real t2316 = sum_error(t2241, t2315);
+  const Real t2317 = t2314 + t2316;
+  const Real t2318 = t441 * t2317;
+  const Real t2319 = t441 * t2243;
+  const Real t2320 = t2319 + t2318;
+  const Real t2321 = t2295 - t2320;
+  const Real t2322 = t2272 * t420;
+  const Real t2323 = t2321 + t2322;
+  const Real t2324 = constant<Real>(1.0L) / t2323;
+  const Real t2325 = t2277 * t2324;
+  const Real t2326 = t1996 * t2325;
+  const Real t2327 = t1984 - t1993;
+  const Real t2328 = sum_error(t2227, t2244);
+  const Real t2329 = -t360;
+  const Real t2330 = sum_error(t2228, t2329);
+  const Real t2331 = t2330 - t358;
+  const Real t2332 = t2331 * t2243;
+  const Real t2333 = t2229 * t2317;
+  const Real t2334 = t2333 + t2332;
+  const Real t2335 = product_error(t2243, t2229);
+  const Real t2336 = t2335 + t2334;
+  const Real t2337 = t2336 + t2328;
+  const Real t2338 = sum_error(t2259, t2245);
+  const Real t2339 = t2337 + t2338;
+  const Real t2340 = -t2276;
+  const Real t2341 = sum_error(t2260, t2340);
+  const Real t2342 = t2339 + t2341;
+  const Real t2343 = t2324 * t2342;
+  const Real t2344 = -t2320;
+  const Real t2345 = sum_error(t2295, t2344);
+  const Real t2346 = sum_error(t2181, t2288);
+  const Real t2347 = t2179 + t2346;
+  const Real t2348 = -t2294;
+  const Real t2349 = sum_error(t2289, t2348);
+  const Real t2350 = t2347 + t2349;
+  const Real t2351 = t2345 + t2350;
+  const Real t2352 = sum_error(t2321, t2322);
+  const Real t2353 = t2351 + t2352;
+  const Real t2354 = t2324 * t2353;
+  const Real t2355 = t2354 / t2323;
+  const Real t2356 = quotient_error(constant<Real>(1.0L), t2323);
+  const Real t2357 = t2356 - t2355;
+  const Real t2358 = t2277 * t2357;
+  const Real t2359 = t2343 + t2358;
+  const Real t2360 = product_error(t2277, t2324);
+  const Real t2361 = t2359 + t2360;
+  const Real t2362 = t2327 * t2361;
+  const Real t2363 = t2326 + t2362;
+  const Real t2364 = product_error(t2325, t2327);
+  const Real t2365 = t2364 + t2363;
+  const Real t2366 = t1227 * t2081;
+  const Real t2367 = t2081 * t1229;
+  const Real t2368 = t2366 + t2367;
+  const Real t2369 = -t2368;
+  const Real t2370 = t1088 * t2043;
+  const Real t2371 = sum_error(t2370, t2369);
+  const Real t2372 = t1086 * t2043;
+  const Real t2373 = product_error(t2043, t1088);
+  const Real t2374 = t2373 + t2372;
+  const Real t2375 = t2371 + t2374;
+  const Real t2376 = t2370 - t2368;
+  const Real t2377 = t2130 * t1344;
+  const Real t2378 = t2114 * t1346;
+  const Real t2379 = t2377 + t2378;
+  const Real t2380 = t2130 * t1346;
+  const Real t2381 = t2379 + t2380;
+  const Real t2382 = -t2381;
+  const Real t2383 = sum_error(t2376, t2382);
+  const Real t2384 = t2383 + t2375;
+  const Real t2385 = t2376 - t2381;
+  const Real t2386 = t2039 * t1612;
+  const Real t2387 = t2039 * t1615;
+  const Real t2388 = t2387 + t2386;
+  const Real t2389 = sum_error(t2385, t2388);
+  const Real t2390 = t2389 + t2384;
+  const Real t2391 = t1812 * t2208;
+  const Real t2392 = t1815 * t2190;
+  const Real t2393 = t2391 + t2392;
+  const Real t2394 = product_error(t2208, t1815);
+  const Real t2395 = t2393 + t2394;
+  const Real t2396 = t2395 + t2390;
+  const Real t2397 = t2388 + t2385;
+  const Real t2398 = t2208 * t1815;
+  const Real t2399 = sum_error(t2397, t2398);
+  const Real t2400 = t2396 + t2399;
+  const Real t2401 = t2229 * t1977;
+  const Real t2402 = t1979 * t2331;
+  const Real t2403 = t2402 + t2401;
+  const Real t2404 = product_error(t1979, t2229);
+  const Real t2405 = t2404 + t2403;
+  const Real t2406 = t2400 - t2405;
+  const Real t2407 = t2397 + t2398;
+  const Real t2408 = t1979 * t2229;
+  const Real t2409 = -t2408;
+  const Real t2410 = sum_error(t2407, t2409);
+  const Real t2411 = t2410 + t2406;
+  const Real t2412 = t2407 - t2408;
+  const Real t2413 = t820 * t931;
+  const Real t2414 = t1156 * t857;
+  const Real t2415 = t2413 - t2414;
+  const Real t2416 = t1307 * t894;
+  const Real t2417 = t2415 + t2416;
+  const Real t2418 = t806 * t1741;
+  const Real t2419 = t1741 * t808;
+  const Real t2420 = t2418 + t2419;
+  const Real t2421 = t2420 + t2417;
+  const Real t2422 = t1916 * t818;
+  const Real t2423 = t2421 + t2422;
+  const Real t2424 = t1566 - t1561;
+  const Real t2425 = t2424 - t2423;
+  const Real t2426 = sum_error(t2412, t2425);
+  const Real t2427 = t2426 + t2411;
+  const Real t2428 = t2425 + t2412;
+  const Real t2429 = t1992 * t2264;
+  const Real t2430 = t1992 * t2274;
+  const Real t2431 = t2429 + t2430;
+  const Real t2432 = sum_error(t2431, t2428);
+  const Real t2433 = t2432 + t2427;
+  const Real t2434 = t2433 - t2365;
+  const Real t2435 = t2327 * t2325;
+  const Real t2436 = -t2435;
+  const Real t2437 = t2428 + t2431;
+  const Real t2438 = sum_error(t2437, t2436);
+  const Real t2439 = t2438 + t2434;
+  const Real t2440 = t2130 * t2114;
+  const Real t2441 = t2440 * constant<Real>(2.0L);
+  const Real t2442 = t2130 * t2130;
+  const Real t2443 = t2442 + t2441;
+  const Real t2444 = t2043 * t2043;
+  const Real t2445 = t2081 * t2081;
+  const Real t2446 = t2444 + t2445;
+  const Real t2447 = t2443 + t2446;
+  const Real t2448 = t2039 * t2039;
+  const Real t2449 = t2447 + t2448;
+  const Real t2450 = t2208 * t2190;
+  const Real t2451 = t2450 * constant<Real>(2.0L);
+  const Real t2452 = t2208 * t2208;
+  const Real t2453 = t2452 + t2451;
+  const Real t2454 = t2453 + t2449;
+  const Real t2455 = t2229 * t2331;
+  const Real t2456 = t2455 * constant<Real>(2.0L);
+  const Real t2457 = t2229 * t2229;
+  const Real t2458 = t2457 + t2456;
+  const Real t2459 = t2458 + t2454;
+  const Real t2460 = t2459 + constant<Real>(1.0L);
+  const Real t2461 = t2274 * t2264;
+  const Real t2462 = t2461 * constant<Real>(2.0L);
+  const Real t2463 = t2274 * t2274;
+  const Real t2464 = t2462 + t2463;
+  const Real t2465 = t2460 + t2464;
+  const Real t2466 = constant<Real>(1.0L) / t2465;
+  const Real t2467 = t620 * t626;
+  const Real t2468 = t618 * t626;
+  const Real t2469 = t2467 + t2468;
+  const Real t2470 = t670 * t679;
+  const Real t2471 = t2470 + t2469;
+  const Real t2472 = t652 * t643;
+  const Real t2473 = t643 * t654;
+  const Real t2474 = t2472 + t2473;
+  const Real t2475 = t2471 - t2474;
+  const Real t2476 = t495 * t431;
+  const Real t2477 = t429 * t497;
+  const Real t2478 = t2476 + t2477;
+  const Real t2479 = t497 * t431;
+  const Real t2480 = t2478 + t2479;
+  const Real t2481 = t2480 + t2475;
+  const Real t2482 = t441 * t511;
+  const Real t2483 = t513 * t441;
+  const Real t2484 = t2482 + t2483;
+  const Real t2485 = t2484 + t2481;
+  const Real t2486 = t484 * t420;
+  const Real t2487 = t2485 + t2486;
+  const Real t2488 = t2015 * t2487;
+  const Real t2489 = t643 * t2488;
+  const Real t2490 = t2489 + t654;
+  const Real t2491 = t2490 * t2114;
+  const Real t2492 = sum_error(t654, t2489);
+  const Real t2493 = t2492 + t652;
+  const Real t2494 = t2493 * t2130;
+  const Real t2495 = t2491 + t2494;
+  const Real t2496 = t2490 * t2130;
+  const Real t2497 = t2495 + t2496;
+  const Real t2498 = t618 * t2488;
+  const Real t2499 = t620 * t2488;
+  const Real t2500 = t2498 + t2499;
+  const Real t2501 = t626 - t2500;
+  const Real t2502 = t2501 * t2043;
+  const Real t2503 = t670 * t2488;
+  const Real t2504 = t679 - t2503;
+  const Real t2505 = t2081 * t2504;
+  const Real t2506 = t2502 + t2505;
+  const Real t2507 = t2497 + t2506;
+  const Real t2508 = t2039 * t2488;
+  const Real t2509 = t2508 + t2507;
+  const Real t2510 = t429 * t2488;
+  const Real t2511 = t2488 * t431;
+  const Real t2512 = t2510 + t2511;
+  const Real t2513 = -t497;
+  const Real t2514 = sum_error(t2512, t2513);
+  const Real t2515 = t2514 - t495;
+  const Real t2516 = t2208 * t2515;
+  const Real t2517 = t2512 - t497;
+  const Real t2518 = t2517 * t2190;
+  const Real t2519 = t2516 + t2518;
+  const Real t2520 = t2517 * t2208;
+  const Real t2521 = t2520 + t2519;
+  const Real t2522 = t2509 + t2521;
+  const Real t2523 = t441 * t2488;
+  const Real t2524 = -t513;
+  const Real t2525 = sum_error(t2523, t2524);
+  const Real t2526 = t2525 - t511;
+  const Real t2527 = t2229 * t2526;
+  const Real t2528 = t2523 - t513;
+  const Real t2529 = t2528 * t2331;
+  const Real t2530 = t2527 + t2529;
+  const Real t2531 = t2229 * t2528;
+  const Real t2532 = t2530 + t2531;
+  const Real t2533 = t2522 + t2532;
+  const Real t2534 = t420 * t2488;
+  const Real t2535 = t2534 - t484;
+  const Real t2536 = t2264 * t2535;
+  const Real t2537 = -t484;
+  const Real t2538 = sum_error(t2534, t2537);
+  const Real t2539 = t2274 * t2538;
+  const Real t2540 = t2536 + t2539;
+  const Real t2541 = t2274 * t2535;
+  const Real t2542 = t2541 + t2540;
+  const Real t2543 = t2533 + t2542;
+  const Real t2544 = t2543 * t2466;
+  const Real t2545 = product_error(t2544, t2130);
+  const Real t2546 = t2114 * t2544;
+  const Real t2547 = t2545 + t2546;
+  const Real t2548 = t2493 - t2547;
+  const Real t2549 = t2130 * t2544;
+  const Real t2550 = t2490 - t2549;
+  const Real t2551 = t2548 + t2550;
+  const Real t2552 = t2128 * t2551;
+  const Real t2553 = t2043 * t2544;
+  const Real t2554 = t2501 - t2553;
+  const Real t2555 = t2554 * t2057;
+  const Real t2556 = t2077 * t2554;
+  const Real t2557 = t2555 + t2556;
+  const Real t2558 = t2081 * t2544;
+  const Real t2559 = t2504 - t2558;
+  const Real t2560 = t2559 * t2107;
+  const Real t2561 = t2560 + t2557;
+  const Real t2562 = t2552 + t2561;
+  const Real t2563 = t2039 * t2544;
+  const Real t2564 = t2563 - t2488;
+  const Real t2565 = t2179 * t2564;
+  const Real t2566 = t2564 * t2181;
+  const Real t2567 = t2565 + t2566;
+  const Real t2568 = t2567 + t2562;
+  const Real t2569 = product_error(t2208, t2544);
+  const Real t2570 = t2190 * t2544;
+  const Real t2571 = t2569 + t2570;
+  const Real t2572 = t2515 - t2571;
+  const Real t2573 = t2208 * t2544;
+  const Real t2574 = t2517 - t2573;
+  const Real t2575 = t2572 + t2574;
+  const Real t2576 = t2206 * t2575;
+  const Real t2577 = t2575 * t2222;
+  const Real t2578 = t2576 + t2577;
+  const Real t2579 = t2568 + t2578;
+  const Real t2580 = t2331 * t2544;
+  const Real t2581 = product_error(t2544, t2229);
+  const Real t2582 = t2580 + t2581;
+  const Real t2583 = t2526 - t2582;
+  const Real t2584 = t2229 * t2544;
+  const Real t2585 = t2528 - t2584;
+  const Real t2586 = t2583 + t2585;
+  const Real t2587 = t2586 * t2243;
+  const Real t2588 = t2586 * t2317;
+  const Real t2589 = t2587 + t2588;
+  const Real t2590 = t2589 + t2579;
+  const Real t2591 = t429 * par.I_Ryy;
+  const Real t2592 = par.I_Ryy * t431;
+  const Real t2593 = t2591 + t2592;
+  const Real t2594 = t2590 - t2593;
+  const Real t2595 = t2259 * t2544;
+  const Real t2596 = -t2595;
+  const Real t2597 = sum_error(t2594, t2596);
+  const Real t2598 = -t2593;
+  const Real t2599 = sum_error(t2590, t2598);
+  const Real t2600 = sum_error(t2579, t2589);
+  const Real t2601 = sum_error(t2567, t2562);
+  const Real t2602 = sum_error(t2560, t2557);
+  const Real t2603 = t2105 * t2559;
+  const Real t2604 = product_error(t2559, t2107);
+  const Real t2605 = t2603 + t2604;
+  const Real t2606 = t2602 + t2605;
+  const Real t2607 = sum_error(t2552, t2561);
+  const Real t2608 = t2606 + t2607;
+  const Real t2609 = t2601 + t2608;
+  const Real t2610 = sum_error(t2578, t2568);
+  const Real t2611 = t2609 + t2610;
+  const Real t2612 = t2600 + t2611;
+  const Real t2613 = t2599 + t2612;
+  const Real t2614 = t2597 + t2613;
+  const Real t2615 = t2594 - t2595;
+  const Real t2616 = t2264 * t2544;
+  const Real t2617 = product_error(t2274, t2544);
+  const Real t2618 = t2616 + t2617;
+  const Real t2619 = t2538 - t2618;
+  const Real t2620 = t2274 * t2544;
+  const Real t2621 = t2535 - t2620;
+  const Real t2622 = t2619 + t2621;
+  const Real t2623 = t2622 * t2272;
+  const Real t2624 = -t2623;
+  const Real t2625 = sum_error(t2615, t2624);
+  const Real t2626 = t2614 + t2625;
+  const Real t2627 = t2325 * t2626;
+  const Real t2628 = t2615 - t2623;
+  const Real t2629 = t2361 * t2628;
+  const Real t2630 = t2629 + t2627;
+  const Real t2631 = t2325 * t2628;
+  const Real t2632 = t2631 + t2630;
+  const Real t2633 = t2043 * t903;
+  const Real t2634 = t1124 * t2081;
+  const Real t2635 = t2634 + t2633;
+  const Real t2636 = t2114 * t1275;
+  const Real t2637 = t2130 * t1275;
+  const Real t2638 = t2636 + t2637;
+  const Real t2639 = t2635 + t2638;
+  const Real t2640 = t1370 * t2039;
+  const Real t2641 = t2639 - t2640;
+  const Real t2642 = t2208 * t1298;
+  const Real t2643 = t2641 + t2642;
+  const Real t2644 = t2331 * t1316;
+  const Real t2645 = t2229 * t1316;
+  const Real t2646 = t2645 + t2644;
+  const Real t2647 = t2646 + t2643;
+  const Real t2648 = t1307 + t2647;
+  const Real t2649 = t2551 * t2648;
+  const Real t2650 = t849 * t2043;
+  const Real t2651 = t2043 * t847;
+  const Real t2652 = t2650 + t2651;
+  const Real t2653 = t2081 * t888;
+  const Real t2654 = t2652 + t2653;
+  const Real t2655 = t2114 * t903;
+  const Real t2656 = t2130 * t903;
+  const Real t2657 = t2655 + t2656;
+  const Real t2658 = t2654 + t2657;
+  const Real t2659 = t1360 * t2039;
+  const Real t2660 = t2039 * t1355;
+  const Real t2661 = t2659 + t2660;
+  const Real t2662 = t2658 - t2661;
+  const Real t2663 = t920 * t2190;
+  const Real t2664 = t920 * t2208;
+  const Real t2665 = t2663 + t2664;
+  const Real t2666 = t2662 + t2665;
+  const Real t2667 = t941 * t2331;
+  const Real t2668 = t2229 * t939;
+  const Real t2669 = t2667 + t2668;
+  const Real t2670 = t941 * t2229;
+  const Real t2671 = t2670 + t2669;
+  const Real t2672 = t2666 + t2671;
+  const Real t2673 = t2672 + t931;
+  const Real t2674 = t2673 * t2554;
+  const Real t2675 = t2043 * t888;
+  const Real t2676 = t1110 * t2081;
+  const Real t2677 = t1114 * t2081;
+  const Real t2678 = t2676 + t2677;
+  const Real t2679 = t2675 + t2678;
+  const Real t2680 = t1124 * t2114;
+  const Real t2681 = t1124 * t2130;
+  const Real t2682 = t2680 + t2681;
+  const Real t2683 = t2679 + t2682;
+  const Real t2684 = t1365 * t2039;
+  const Real t2685 = t2683 - t2684;
+  const Real t2686 = t1147 * t2208;
+  const Real t2687 = t2685 + t2686;
+  const Real t2688 = t2331 * t1162;
+  const Real t2689 = t2229 * t1162;
+  const Real t2690 = t2689 + t2688;
+  const Real t2691 = t2687 + t2690;
+  const Real t2692 = t2691 - t1156;
+  const Real t2693 = t2559 * t2692;
+  const Real t2694 = t2674 + t2693;
+  const Real t2695 = t2694 + t2649;
+  const Real t2696 = t1360 * t2043;
+  const Real t2697 = t2043 * t1355;
+  const Real t2698 = t2696 + t2697;
+  const Real t2699 = t1365 * t2081;
+  const Real t2700 = t2699 + t2698;
+  const Real t2701 = t1370 * t2114;
+  const Real t2702 = t1370 * t2130;
+  const Real t2703 = t2702 + t2701;
+  const Real t2704 = t2700 + t2703;
+  const Real t2705 = t2159 * t2039;
+  const Real t2706 = t2156 * t2039;
+  const Real t2707 = t2705 + t2706;
+  const Real t2708 = t2704 - t2707;
+  const Real t2709 = t2190 * t1447;
+  const Real t2710 = t2208 * t1447;
+  const Real t2711 = t2709 + t2710;
+  const Real t2712 = t2708 + t2711;
+  const Real t2713 = t1486 * t2331;
+  const Real t2714 = t2229 * t1484;
+  const Real t2715 = t2713 + t2714;
+  const Real t2716 = t1486 * t2229;
+  const Real t2717 = t2715 + t2716;
+  const Real t2718 = t2712 + t2717;
+  const Real t2719 = t1465 + t2718;
+  const Real t2720 = t1422 * t2264;
+  const Real t2721 = t1422 * t2274;
+  const Real t2722 = t2721 + t2720;
+  const Real t2723 = t2719 - t2722;
+  const Real t2724 = t2564 * t2723;
+  const Real t2725 = t2724 + t2695;
+  const Real t2726 = t1171 * t2081;
+  const Real t2727 = t1147 * t2081;
+  const Real t2728 = t2726 + t2727;
+  const Real t2729 = t920 * t2043;
+  const Real t2730 = t2728 + t2729;
+  const Real t2731 = t1298 * t2114;
+  const Real t2732 = t2130 * t1298;
+  const Real t2733 = t2732 + t2731;
+  const Real t2734 = t2730 + t2733;
+  const Real t2735 = t2039 * t1447;
+  const Real t2736 = t2734 - t2735;
+  const Real t2737 = t1724 * t2208;
+  const Real t2738 = t2737 + t2736;
+  const Real t2739 = t1750 * t2331;
+  const Real t2740 = t2229 * t1750;
+  const Real t2741 = t2739 + t2740;
+  const Real t2742 = t2741 + t2738;
+  const Real t2743 = t1741 + t2742;
+  const Real t2744 = t1684 * t2264;
+  const Real t2745 = t1684 * t2274;
+  const Real t2746 = t2745 + t2744;
+  const Real t2747 = t2746 + t2743;
+  const Real t2748 = t2747 * t2575;
+  const Real t2749 = t2748 + t2725;
+  const Real t2750 = t2043 * t939;
+  const Real t2751 = t941 * t2043;
+  const Real t2752 = t2750 + t2751;
+  const Real t2753 = t1162 * t2081;
+  const Real t2754 = t2752 + t2753;
+  const Real t2755 = t2114 * t1316;
+  const Real t2756 = t2130 * t1316;
+  const Real t2757 = t2756 + t2755;
+  const Real t2758 = t2754 + t2757;
+  const Real t2759 = t1484 * t2039;
+  const Real t2760 = t1486 * t2039;
+  const Real t2761 = t2759 + t2760;
+  const Real t2762 = t2758 - t2761;
+  const Real t2763 = t1750 * t2190;
+  const Real t2764 = t1750 * t2208;
+  const Real t2765 = t2763 + t2764;
+  const Real t2766 = t2765 + t2762;
+  const Real t2767 = t2229 * t1940;
+  const Real t2768 = t2767 + t2766;
+  const Real t2769 = t2331 * t1940;
+  const Real t2770 = product_error(t1940, t2229);
+  const Real t2771 = t2770 + t2769;
+  const Real t2772 = t2771 + t2768;
+  const Real t2773 = t2772 + t1916;
+  const Real t2774 = t1868 * t2264;
+  const Real t2775 = t2274 * t1868;
+  const Real t2776 = t2774 + t2775;
+  const Real t2777 = t2776 + t2773;
+  const Real t2778 = t2777 * t2586;
+  const Real t2779 = t2778 + t2749;
+  const Real t2780 = par.I_Ryy * t2190;
+  const Real t2781 = par.I_Ryy * t2208;
+  const Real t2782 = t2780 + t2781;
+  const Real t2783 = t2779 + t2782;
+  const Real t2784 = t2043 * t931;
+  const Real t2785 = t1156 * t2081;
+  const Real t2786 = t2784 - t2785;
+  const Real t2787 = t1307 * t2114;
+  const Real t2788 = t2130 * t1307;
+  const Real t2789 = t2788 + t2787;
+  const Real t2790 = t2786 + t2789;
+  const Real t2791 = t1465 * t2039;
+  const Real t2792 = t2790 - t2791;
+  const Real t2793 = t2190 * t1741;
+  const Real t2794 = t2208 * t1741;
+  const Real t2795 = t2793 + t2794;
+  const Real t2796 = t2792 + t2795;
+  const Real t2797 = t1916 * t2331;
+  const Real t2798 = t2229 * t1916;
+  const Real t2799 = t2798 + t2797;
+  const Real t2800 = t2796 + t2799;
+
+  // front_wheel: acceleration
+  const Real t2801 = c_r_p_2_ * par.k2;
+  const Real t2802 = par.k1 * s_r_p_2_;
+  const Real t2803 = t2801 + t2802;
+
+  // front_wheel: wrench
+  const Real t2804 = par.I_Fxx * t2803;
+
+  // front_wheel: joint force
+  const Real t2805 = t2804 * s_r_p_2_;
+
+  // passive accelerations
+  const Real t2806 = par.I_Fxx * t4;
+  const Real t2807 = t2806 * c_r_p_2_;
+  const Real t2808 = t2805 + t2807;
+  const Real t2809 = t2808 * par.k1;
+
+  // front_wheel: joint force
+  const Real t2810 = c_r_p_2_ * t2804;
+
+  // passive accelerations
+  const Real t2811 = t2806 * s_r_p_2_;
+  const Real t2812 = t2810 - t2811;
+  const Real t2813 = par.k2 * t2812;
+  const Real t2814 = t2809 + t2813;
+  const Real t2815 = par.k58 + t2814;
+  const Real t2816 = par.k7 + t2815;
+
+  // accelerations
+  const Real t2817 = t2800 + t2816;
+  const Real t2818 = t2817 * t2544;
+  const Real t2819 = t2783 - t2818;
+  const Real t2820 = t1684 * t2190;
+  const Real t2821 = t1684 * t2208;
+  const Real t2822 = t2820 + t2821;
+  const Real t2823 = t1422 * t2039;
+  const Real t2824 = t2822 + t2823;
+  const Real t2825 = t1868 * t2331;
+  const Real t2826 = t2229 * t1868;
+  const Real t2827 = t2825 + t2826;
+  const Real t2828 = t2824 + t2827;
+  const Real t2829 = t2264 * par.I_Fyy;
+  const Real t2830 = t2274 * par.I_Fyy;
+  const Real t2831 = t2830 + t2829;
+  const Real t2832 = t2831 + t2828;
+  const Real t2833 = t2622 * t2832;
+  const Real t2834 = t2819 + t2833;
+  const Real t2835 = t2834 - t2632;
+  const Real t2836 = sum_error(t1307, t2647);
+  const Real t2837 = sum_error(t2642, t2641);
+  const Real t2838 = t1298 * t2190;
+  const Real t2839 = product_error(t2208, t1298);
+  const Real t2840 = t2838 + t2839;
+  const Real t2841 = t2840 + t2837;
+  const Real t2842 = sum_error(t2646, t2643);
+  const Real t2843 = t2841 + t2842;
+  const Real t2844 = t2836 + t2843;
+  const Real t2845 = t2130 * t2844;
+  const Real t2846 = t2114 * t2648;
+  const Real t2847 = t2846 + t2845;
+  const Real t2848 = t2130 * t2648;
+  const Real t2849 = t2848 + t2847;
+  const Real t2850 = sum_error(t2685, t2686);
+  const Real t2851 = t1147 * t2190;
+  const Real t2852 = t1171 * t2208;
+  const Real t2853 = t2852 + t2851;
+  const Real t2854 = product_error(t2208, t1147);
+  const Real t2855 = t2854 + t2853;
+  const Real t2856 = t2850 + t2855;
+  const Real t2857 = sum_error(t2690, t2687);
+  const Real t2858 = t2856 + t2857;
+
+  // front_wheel: joint force
+  const Real t2859 = -t1156;
+
+  // accelerations
+  const Real t2860 = sum_error(t2691, t2859);
+  const Real t2861 = t2858 + t2860;
+  const Real t2862 = t2861 * t2081;
+  const Real t2863 = t2081 * t2692;
+  const Real t2864 = t2862 + t2863;
+  const Real t2865 = t2673 * t2043;
+  const Real t2866 = t2865 + t2864;
+  const Real t2867 = t2849 + t2866;
+  const Real t2868 = t2039 * t2723;
+  const Real t2869 = t2867 - t2868;
+  const Real t2870 = t2208 * t2747;
+  const Real t2871 = t2869 + t2870;
+  const Real t2872 = t2229 * t2777;
+  const Real t2873 = t2777 * t2331;
+  const Real t2874 = t2872 + t2873;
+  const Real t2875 = t2874 + t2871;
+  const Real t2876 = t2817 + t2875;
+  const Real t2877 = t2264 * t2832;
+  const Real t2878 = t2274 * t2832;
+  const Real t2879 = t2877 + t2878;
+  const Real t2880 = t2879 + t2876;
+  const Real t2881 = t2277 * t2361;
+  const Real t2882 = t2342 * t2325;
+  const Real t2883 = t2882 + t2881;
+  const Real t2884 = t2277 * t2325;
+  const Real t2885 = t2883 + t2884;
+  const Real t2886 = t2880 - t2885;
+  const Real t2887 = constant<Real>(1.0L) / t2886;
+  const Real t2888 = t2835 * t2887;
+  const Real t2889 = t2439 * t2888;
+  const Real t2890 = t2437 - t2435;
+  const Real t2891 = -t2632;
+  const Real t2892 = sum_error(t2834, t2891);
+  const Real t2893 = product_error(t2648, t2551);
+  const Real t2894 = t2551 * t2844;
+  const Real t2895 = t2893 + t2894;
+  const Real t2896 = sum_error(t2693, t2674);
+  const Real t2897 = t2861 * t2559;
+  const Real t2898 = product_error(t2692, t2559);
+  const Real t2899 = t2897 + t2898;
+  const Real t2900 = t2896 + t2899;
+  const Real t2901 = t2900 + t2895;
+  const Real t2902 = sum_error(t2694, t2649);
+  const Real t2903 = t2901 + t2902;
+  const Real t2904 = sum_error(t2724, t2695);
+  const Real t2905 = t2904 + t2903;
+  const Real t2906 = product_error(t2747, t2575);
+  const Real t2907 = -t2735;
+  const Real t2908 = sum_error(t2734, t2907);
+  const Real t2909 = sum_error(t2733, t2730);
+  const Real t2910 = t2909 + t2908;
+  const Real t2911 = t1724 * t2190;
+  const Real t2912 = t1763 * t2208;
+  const Real t2913 = t2912 + t2911;
+  const Real t2914 = product_error(t2208, t1724);
+  const Real t2915 = t2913 + t2914;
+  const Real t2916 = t2910 + t2915;
+  const Real t2917 = sum_error(t2736, t2737);
+  const Real t2918 = t2917 + t2916;
+  const Real t2919 = sum_error(t2738, t2741);
+  const Real t2920 = t2918 + t2919;
+  const Real t2921 = sum_error(t2742, t1741);
+  const Real t2922 = t2920 + t2921;
+  const Real t2923 = sum_error(t2746, t2743);
+  const Real t2924 = t2923 + t2922;
+  const Real t2925 = t2924 * t2575;
+  const Real t2926 = t2906 + t2925;
+  const Real t2927 = t2926 + t2905;
+  const Real t2928 = sum_error(t2748, t2725);
+  const Real t2929 = t2928 + t2927;
+  const Real t2930 = sum_error(t2778, t2749);
+  const Real t2931 = t2930 + t2929;
+  const Real t2932 = sum_error(t2779, t2782);
+  const Real t2933 = t2932 + t2931;
+  const Real t2934 = -t2818;
+  const Real t2935 = sum_error(t2783, t2934);
+  const Real t2936 = t2933 + t2935;
+  const Real t2937 = sum_error(t2833, t2819);
+  const Real t2938 = t2937 + t2936;
+  const Real t2939 = t2892 + t2938;
+  const Real t2940 = t2939 * t2887;
+  const Real t2941 = sum_error(t2876, t2879);
+  const Real t2942 = sum_error(t2871, t2874);
+  const Real t2943 = sum_error(t2870, t2869);
+  const Real t2944 = t2208 * t2924;
+  const Real t2945 = t2747 * t2190;
+  const Real t2946 = t2944 + t2945;
+  const Real t2947 = product_error(t2208, t2747);
+  const Real t2948 = t2946 + t2947;
+  const Real t2949 = t2948 + t2943;
+  const Real t2950 = t2942 + t2949;
+  const Real t2951 = sum_error(t2875, t2817);
+  const Real t2952 = t2950 + t2951;
+  const Real t2953 = t2941 + t2952;
+  const Real t2954 = -t2885;
+  const Real t2955 = sum_error(t2880, t2954);
+  const Real t2956 = t2953 + t2955;
+  const Real t2957 = t2956 * t2887;
+  const Real t2958 = t2957 / t2886;
+  const Real t2959 = quotient_error(constant<Real>(1.0L), t2886);
+  const Real t2960 = t2959 - t2958;
+  const Real t2961 = t2835 * t2960;
+  const Real t2962 = t2940 + t2961;
+  const Real t2963 = product_error(t2835, t2887);
+  const Real t2964 = t2963 + t2962;
+  const Real t2965 = t2890 * t2964;
+  const Real t2966 = t2965 + t2889;
+  const Real t2967 = product_error(t2890, t2888);
+  const Real t2968 = t2967 + t2966;
+  const Real t2969 = t1086 * t2554;
+  const Real t2970 = t1088 * t2554;
+  const Real t2971 = t2969 + t2970;
+  const Real t2972 = t2559 * t1229;
+  const Real t2973 = -t2972;
+  const Real t2974 = sum_error(t2971, t2973);
+  const Real t2975 = t1227 * t2559;
+  const Real t2976 = product_error(t1229, t2559);
+  const Real t2977 = t2975 + t2976;
+  const Real t2978 = t2974 - t2977;
+  const Real t2979 = t1344 * t2551;
+  const Real t2980 = product_error(t1346, t2551);
+  const Real t2981 = t2979 + t2980;
+  const Real t2982 = t2978 - t2981;
+  const Real t2983 = t2971 - t2972;
+  const Real t2984 = t2551 * t1346;
+  const Real t2985 = -t2984;
+  const Real t2986 = sum_error(t2983, t2985);
+  const Real t2987 = t2982 + t2986;
+  const Real t2988 = t2564 * t1612;
+  const Real t2989 = product_error(t2564, t1615);
+  const Real t2990 = t2989 + t2988;
+  const Real t2991 = t2987 - t2990;
+  const Real t2992 = t2983 - t2984;
+  const Real t2993 = t2564 * t1615;
+  const Real t2994 = -t2993;
+  const Real t2995 = sum_error(t2992, t2994);
+  const Real t2996 = t2991 + t2995;
+  const Real t2997 = t1812 * t2575;
+  const Real t2998 = product_error(t1815, t2575);
+  const Real t2999 = t2998 + t2997;
+  const Real t3000 = t2999 + t2996;
+  const Real t3001 = t2992 - t2993;
+  const Real t3002 = t1815 * t2575;
+  const Real t3003 = sum_error(t3001, t3002);
+  const Real t3004 = t3003 + t3000;
+  const Real t3005 = t3001 + t3002;
+  const Real t3006 = t2586 * t1977;
+  const Real t3007 = t1979 * t2586;
+  const Real t3008 = t3007 + t3006;
+  const Real t3009 = -t3008;
+  const Real t3010 = sum_error(t3005, t3009);
+  const Real t3011 = t3004 + t3010;
+  const Real t3012 = t3005 - t3008;
+  const Real t3013 = par.I_Ryy * t806;
+  const Real t3014 = par.I_Ryy * t808;
+  const Real t3015 = t3014 + t3013;
+  const Real t3016 = -t3015;
+  const Real t3017 = sum_error(t3012, t3016);
+  const Real t3018 = t3017 + t3011;
+  const Real t3019 = t3012 - t3015;
+  const Real t3020 = t2425 * t2544;
+  const Real t3021 = -t3020;
+  const Real t3022 = sum_error(t3019, t3021);
+  const Real t3023 = t3018 + t3022;
+  const Real t3024 = t3019 - t3020;
+  const Real t3025 = t1992 * t2622;
+  const Real t3026 = sum_error(t3025, t3024);
+  const Real t3027 = t3026 + t3023;
+  const Real t3028 = t2324 * t2628;
+  const Real t3029 = t1996 * t3028;
+  const Real t3030 = t2324 * t2626;
+  const Real t3031 = t2357 * t2628;
+  const Real t3032 = t3031 + t3030;
+  const Real t3033 = product_error(t2324, t2628);
+  const Real t3034 = t3032 + t3033;
+  const Real t3035 = t2327 * t3034;
+  const Real t3036 = t3029 + t3035;
+  const Real t3037 = product_error(t3028, t2327);
+  const Real t3038 = t3037 + t3036;
+  const Real t3039 = t3027 - t3038;
+  const Real t3040 = t3024 + t3025;
+  const Real t3041 = t2327 * t3028;
+  const Real t3042 = -t3041;
+  const Real t3043 = sum_error(t3040, t3042);
+  const Real t3044 = t3043 + t3039;
+  const Real t3045 = t3044 - t2968;
+  const Real t3046 = t3040 - t3041;
+  const Real t3047 = t2890 * t2888;
+  const Real t3048 = t3046 - t3047;
+  const Real t3049 = t3045 + t3048;
+  const Real t3050 = t2835 * t2964;
+  const Real t3051 = t2939 * t2888;
+  const Real t3052 = t3051 + t3050;
+  const Real t3053 = t2835 * t2888;
+  const Real t3054 = t3052 + t3053;
+  const Real t3055 = t1124 * t2551;
+  const Real t3056 = t2554 * t888;
+  const Real t3057 = t1110 * t2559;
+  const Real t3058 = t3056 + t3057;
+  const Real t3059 = t3058 + t3055;
+  const Real t3060 = t2564 * t1365;
+  const Real t3061 = t3060 + t3059;
+  const Real t3062 = t1147 * t2575;
+  const Real t3063 = t1171 * t2575;
+  const Real t3064 = t3062 + t3063;
+  const Real t3065 = t3064 + t3061;
+  const Real t3066 = sum_error(t3060, t3059);
+  const Real t3067 = sum_error(t3055, t3058);
+  const Real t3068 = product_error(t1110, t2559);
+  const Real t3069 = t1114 * t2559;
+  const Real t3070 = t3068 + t3069;
+  const Real t3071 = sum_error(t3056, t3057);
+  const Real t3072 = t3070 + t3071;
+  const Real t3073 = t3072 + t3067;
+  const Real t3074 = t3066 + t3073;
+  const Real t3075 = t3065 + t3074;
+  const Real t3076 = t2586 * t1162;
+  const Real t3077 = t3076 + t3075;
+  const Real t3078 = t1156 * t2544;
+  const Real t3079 = t3077 + t3078;
+  const Real t3080 = t3079 * t2559;
+  const Real t3081 = t2554 * t847;
+  const Real t3082 = t849 * t2554;
+  const Real t3083 = t3081 + t3082;
+  const Real t3084 = t2559 * t888;
+  const Real t3085 = t3083 + t3084;
+  const Real t3086 = t2551 * t903;
+  const Real t3087 = t3085 + t3086;
+  const Real t3088 = t2564 * t1355;
+  const Real t3089 = t2564 * t1360;
+  const Real t3090 = t3088 + t3089;
+  const Real t3091 = t3087 + t3090;
+  const Real t3092 = t920 * t2575;
+  const Real t3093 = t3091 + t3092;
+  const Real t3094 = t2586 * t939;
+  const Real t3095 = t941 * t2586;
+  const Real t3096 = t3094 + t3095;
+  const Real t3097 = t3093 + t3096;
+  const Real t3098 = t931 * t2544;
+  const Real t3099 = t3097 - t3098;
+  const Real t3100 = t2554 * t3099;
+  const Real t3101 = t3100 + t3080;
+  const Real t3102 = t2551 * t1275;
+  const Real t3103 = t2554 * t903;
+  const Real t3104 = t1124 * t2559;
+  const Real t3105 = t3103 + t3104;
+  const Real t3106 = t3102 + t3105;
+  const Real t3107 = t1370 * t2564;
+  const Real t3108 = t3107 + t3106;
+  const Real t3109 = t1298 * t2575;
+  const Real t3110 = t3108 + t3109;
+  const Real t3111 = t2586 * t1316;
+  const Real t3112 = t3111 + t3110;
+  const Real t3113 = t1307 * t2544;
+  const Real t3114 = t3112 - t3113;
+  const Real t3115 = t2551 * t3114;
+  const Real t3116 = t3115 + t3101;
+  const Real t3117 = t2554 * t1355;
+  const Real t3118 = t1360 * t2554;
+  const Real t3119 = t3117 + t3118;
+  const Real t3120 = t1365 * t2559;
+  const Real t3121 = t3120 + t3119;
+  const Real t3122 = t1370 * t2551;
+  const Real t3123 = t3121 + t3122;
+  const Real t3124 = t2159 * t2564;
+  const Real t3125 = t2564 * t2156;
+  const Real t3126 = t3124 + t3125;
+  const Real t3127 = t3123 + t3126;
+  const Real t3128 = t2575 * t1447;
+  const Real t3129 = t3128 + t3127;
+  const Real t3130 = t1486 * t2586;
+  const Real t3131 = t1484 * t2586;
+  const Real t3132 = t3130 + t3131;
+  const Real t3133 = t3129 + t3132;
+  const Real t3134 = t1465 * t2544;
+  const Real t3135 = t3133 - t3134;
+  const Real t3136 = t1422 * t2622;
+  const Real t3137 = t3135 - t3136;
+  const Real t3138 = t3137 * t2564;
+  const Real t3139 = t3138 + t3116;
+  const Real t3140 = t1298 * t2551;
+  const Real t3141 = t1147 * t2559;
+  const Real t3142 = t1171 * t2559;
+  const Real t3143 = t3141 + t3142;
+  const Real t3144 = t920 * t2554;
+  const Real t3145 = t3143 + t3144;
+  const Real t3146 = t3140 + t3145;
+  const Real t3147 = t2564 * t1447;
+  const Real t3148 = t3147 + t3146;
+  const Real t3149 = t1763 * t2575;
+  const Real t3150 = t1724 * t2575;
+  const Real t3151 = t3149 + t3150;
+  const Real t3152 = t3148 + t3151;
+  const Real t3153 = t1750 * t2586;
+  const Real t3154 = t3153 + t3152;
+  const Real t3155 = t3154 + par.I_Ryy;
+  const Real t3156 = t1741 * t2544;
+  const Real t3157 = t3155 - t3156;
+  const Real t3158 = t1684 * t2622;
+  const Real t3159 = t3158 + t3157;
+  const Real t3160 = t3159 * t2575;
+  const Real t3161 = t3160 + t3139;
+  const Real t3162 = t2551 * t1316;
+  const Real t3163 = t941 * t2554;
+  const Real t3164 = t2554 * t939;
+  const Real t3165 = t3163 + t3164;
+  const Real t3166 = t1162 * t2559;
+  const Real t3167 = t3165 + t3166;
+  const Real t3168 = t3162 + t3167;
+  const Real t3169 = t1486 * t2564;
+  const Real t3170 = t1484 * t2564;
+  const Real t3171 = t3169 + t3170;
+  const Real t3172 = t3171 + t3168;
+  const Real t3173 = t1750 * t2575;
+  const Real t3174 = t3173 + t3172;
+  const Real t3175 = t2586 * t1940;
+  const Real t3176 = t3175 + t3174;
+  const Real t3177 = t1916 * t2544;
+  const Real t3178 = t3176 - t3177;
+  const Real t3179 = t1868 * t2622;
+  const Real t3180 = t3178 + t3179;
+  const Real t3181 = t2586 * t3180;
+  const Real t3182 = t3161 + t3181;
+  const Real t3183 = par.I_Ryy * t2575;
+  const Real t3184 = par.I_Ryy + t3183;
+  const Real t3185 = t3184 + t3182;
+  const Real t3186 = t2551 * t1307;
+  const Real t3187 = t2554 * t931;
+  const Real t3188 = t2559 * t1156;
+  const Real t3189 = t3187 - t3188;
+  const Real t3190 = t3189 + t3186;
+  const Real t3191 = t2564 * t1465;
+  const Real t3192 = t3190 + t3191;
+  const Real t3193 = t1741 * t2575;
+  const Real t3194 = t3193 + t3192;
+  const Real t3195 = t1916 * t2586;
+  const Real t3196 = t3195 + t3194;
+  const Real t3197 = t2544 * t2816;
+  const Real t3198 = t3196 - t3197;
+  const Real t3199 = t2544 * t3198;
+  const Real t3200 = t3185 - t3199;
+  const Real t3201 = t1684 * t2575;
+  const Real t3202 = t1422 * t2564;
+  const Real t3203 = t3201 - t3202;
+  const Real t3204 = t1868 * t2586;
+  const Real t3205 = t3204 + t3203;
+  const Real t3206 = t2622 * par.I_Fyy;
+  const Real t3207 = t3205 + t3206;
+  const Real t3208 = t2622 * t3207;
+  const Real t3209 = t3208 + t3200;
+  const Real t3210 = t3034 * t2628;
+  const Real t3211 = t3028 * t2626;
+  const Real t3212 = t3211 + t3210;
+  const Real t3213 = t3028 * t2628;
+  const Real t3214 = t3213 + t3212;
+  const Real t3215 = t3209 - t3214;
+  const Real t3216 = t3215 - t3054;
+  const Real t3217 = constant<Real>(1.0L) / t3216;
+  const Real t3218 = t3217 * t3049;
+  const Real t3219 = t3218 * t2964;
+  const Real t3220 = t3218 * t2888;
+  const Real t3221 = t3219 + t3220;
+  const Real t3222 = -t3221;
+  const Real t3223 = t2890 * t2887;
+  const Real t3224 = sum_error(t3223, t3222);
+  const Real t3225 = t2439 * t2887;
+  const Real t3226 = t2890 * t2960;
+  const Real t3227 = t3225 + t3226;
+  const Real t3228 = product_error(t2890, t2887);
+  const Real t3229 = t3228 + t3227;
+  const Real t3230 = t3224 + t3229;
+  const Real t3231 = t3230 * t2325;
+  const Real t3232 = t3223 - t3221;
+  const Real t3233 = t3232 * t2361;
+  const Real t3234 = t3231 + t3233;
+  const Real t3235 = t3232 * t2325;
+  const Real t3236 = t3235 + t3234;
+  const Real t3237 = -t3236;
+  const Real t3238 = t2327 * t2324;
+  const Real t3239 = sum_error(t3238, t3237);
+  const Real t3240 = t1996 * t2324;
+  const Real t3241 = t2327 * t2357;
+  const Real t3242 = t3241 + t3240;
+  const Real t3243 = product_error(t2324, t2327);
+  const Real t3244 = t3242 + t3243;
+  const Real t3245 = t3239 + t3244;
+  const Real t3246 = t3238 - t3236;
+  const Real t3247 = t3218 * t3028;
+  const Real t3248 = t3034 * t3218;
+  const Real t3249 = t3247 + t3248;
+  const Real t3250 = -t3249;
+  const Real t3251 = sum_error(t3246, t3250);
+  const Real t3252 = t3251 + t3245;
+  const Real t3253 = t3252 * t420;
+  const Real t3254 = t3246 - t3249;
+  const Real t3255 = t3254 * t420;
+  const Real t3256 = t3255 + t3253;
+  const Real t3257 = -t3256;
+  const Real t3258 = t2274 * t3232;
+  const Real t3259 = sum_error(t3258, t3257);
+  const Real t3260 = t2274 * t3230;
+  const Real t3261 = t2264 * t3232;
+  const Real t3262 = t3261 + t3260;
+  const Real t3263 = product_error(t2274, t3232);
+  const Real t3264 = t3263 + t3262;
+  const Real t3265 = t3259 + t3264;
+  const Real t3266 = t3258 - t3256;
+  const Real t3267 = t3218 * t2622;
+  const Real t3268 = sum_error(t3267, t3266);
+  const Real t3269 = t3265 + t3268;
+  const Real t3270 = t3267 + t3266;
+  const Real t3271 = t3270 - t794;
+  const Real t3272 = t3271 + t3269;
+  const Real t3273 = t3218 * t2544;
+  const Real t3274 = t3232 - t3273;
+  const Real t3275 = t3230 + t3274;
+  const Real t3276 = t3252 * t441;
+  const Real t3277 = t3254 * t441;
+  const Real t3278 = t3277 + t3276;
+  const Real t3279 = t2229 * t3230;
+  const Real t3280 = t2331 * t3232;
+  const Real t3281 = t3279 + t3280;
+  const Real t3282 = t2229 * t3232;
+  const Real t3283 = t3281 + t3282;
+  const Real t3284 = t3283 - t3278;
+  const Real t3285 = t3218 * t2586;
+  const Real t3286 = t3285 + t3284;
+  const Real t3287 = t3286 + t818;
+  const Real t3288 = t3252 * t431;
+  const Real t3289 = t429 * t3254;
+  const Real t3290 = t3289 + t3288;
+  const Real t3291 = t3254 * t431;
+  const Real t3292 = t3291 + t3290;
+  const Real t3293 = -t3292;
+  const Real t3294 = t2208 * t3232;
+  const Real t3295 = sum_error(t3294, t3293);
+  const Real t3296 = t3230 * t2208;
+  const Real t3297 = t3232 * t2190;
+  const Real t3298 = t3296 + t3297;
+  const Real t3299 = product_error(t2208, t3232);
+  const Real t3300 = t3299 + t3298;
+  const Real t3301 = t3295 + t3300;
+  const Real t3302 = t3294 - t3292;
+  const Real t3303 = t3218 * t2575;
+  const Real t3304 = sum_error(t3303, t3302);
+  const Real t3305 = t3301 + t3304;
+  const Real t3306 = t806 + t3305;
+  const Real t3307 = t3302 + t3303;
+  const Real t3308 = t3307 + t808;
+  const Real t3309 = t3306 + t3308;
+  const Real t3310 = t3230 * t2039;
+  const Real t3311 = t3232 * t2039;
+  const Real t3312 = t3311 + t3310;
+  const Real t3313 = -t3312;
+  const Real t3314 = sum_error(t3254, t3313);
+  const Real t3315 = t3252 + t3314;
+  const Real t3316 = t3254 - t3312;
+  const Real t3317 = t2564 * t3218;
+  const Real t3318 = sum_error(t3316, t3317);
+  const Real t3319 = t3315 + t3318;
+  const Real t3320 = t3316 + t3317;
+  const Real t3321 = t3319 + t3320;
+  const Real t3322 = t3252 * t643;
+  const Real t3323 = t643 * t3254;
+  const Real t3324 = t3323 + t3322;
+  const Real t3325 = t3230 * t2130;
+  const Real t3326 = t3232 * t2114;
+  const Real t3327 = t3326 + t3325;
+  const Real t3328 = t2130 * t3232;
+  const Real t3329 = t3328 + t3327;
+  const Real t3330 = t3329 - t3324;
+  const Real t3331 = t3218 * t2551;
+  const Real t3332 = t3331 + t3330;
+  const Real t3333 = t3332 + t894;
+  const Real t3334 = t3252 * t620;
+  const Real t3335 = t3254 * t618;
+  const Real t3336 = t3334 + t3335;
+  const Real t3337 = t3254 * t620;
+  const Real t3338 = t3337 + t3336;
+  const Real t3339 = t3230 * t2043;
+  const Real t3340 = t3232 * t2043;
+  const Real t3341 = t3339 + t3340;
+  const Real t3342 = t3338 + t3341;
+  const Real t3343 = t3218 * t2554;
+  const Real t3344 = t3342 + t3343;
+  const Real t3345 = t820 + t3344;
+  const Real t3346 = t3252 * t670;
+  const Real t3347 = t3254 * t670;
+  const Real t3348 = t3347 + t3346;
+  const Real t3349 = t3230 * t2081;
+  const Real t3350 = t3232 * t2081;
+  const Real t3351 = t3350 + t3349;
+  const Real t3352 = t3348 + t3351;
+  const Real t3353 = t3218 * t2559;
+  const Real t3354 = t3352 + t3353;
+  const Real t3355 = t3354 + t857;
+  const Real t3356 = t2039 * t3275;
+  const Real t3357 = t3254 - t3356;
+  const Real t3358 = t3252 + t3357;
+  const Real t3359 = t3218 * t2488;
+  const Real t3360 = t3358 - t3359;
+
+  nu_dot_out[0] = t3360;
+  nu_dot_out[1] = t3275;
+  nu_dot_out[2] = t3218;
+  eta_dot[0] = t3355;
+  eta_dot[1] = t3345;
+  eta_dot[2] = t3333;
+  eta_dot[3] = t3321;
+  eta_dot[4] = t3309;
+  eta_dot[5] = t3287;
+  r_p_ddot[0] = t3218;
+  r_p_ddot[1] = t3275;
+  r_p_ddot[2] = t3272;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, compensated beyond 25 ulps
-/// operations: 470 add, 546 mul, 9 div, 3 neg, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, stable forms, compensated beyond 1 ulps
+/// operations: 1009 add, 810 mul, 13 div, 17 neg, 2 sqrt, 4 sin, 3 cos
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p     (3) rad or m: rear_spin, steer, front_spin
@@ -6101,6 +9092,7 @@ inline void multipliers(const Prepared<Real>& par,
   using std::sqrt;
   using detail::constant;
   using detail::product_error;
+  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
@@ -6108,897 +9100,1124 @@ inline void multipliers(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
+  const Real t1 = constant<Real>(0.5L) * r_p[1];
+  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
-  const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t12 * t20;
-  const Real t22 = par.r_F * t21;
-  const Real t23 = par.k1 * t22;
-  const Real t24 = t20 * t16;
-  const Real t25 = t24 * par.r_F;
-  const Real t26 = t25 * par.k2;
-  const Real t27 = t23 + t26;
-  const Real t28 = t27 + par.k12;
-  const Real t29 = par.k1 * c_r_p_1_;
-  const Real t30 = par.k1 * t29;
-  const Real t31 = par.k18 + t30;
-  const Real t32 = t31 * t25;
-  const Real t33 = t29 * par.k2;
-  const Real t34 = par.k22 - t33;
-  const Real t35 = t22 * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = c_r_p_1_ * par.k13;
-  const Real t38 = t34 * par.r_F;
-  const Real t39 = t31 * par.c;
-  const Real t40 = t38 - t39;
-  const Real t41 = t37 + t40;
-  const Real t42 = t36 + t41;
-  const Real t43 = s_r_p_1_ * par.k13;
-  const Real t44 = par.k2 * t43;
-  const Real t45 = s_r_p_1_ * par.k1;
-  const Real t46 = par.r_F * t45;
-  const Real t47 = t44 - t46;
-  const Real t48 = t22 * t45;
-  const Real t49 = t47 - t48;
-  const Real t50 = R[6] * R[6];
-  const Real t51 = R[8] * R[8];
-  const Real t52 = t50 + t51;
-  const Real t53 = sqrt(t52);
-  const Real t54 = constant<Real>(2.0L) * t53;
-  const Real t55 = constant<Real>(1.0L) / t53;
-  const Real t56 = R[8] * t55;
-  const Real t57 = t56 * par.r_R;
-  const Real t58 = t57 - par.r_R;
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t25 * t59;
-  const Real t61 = t59 * par.c;
-  const Real t62 = t60 - t61;
-  const Real t63 = par.r_R - t57;
-  const Real t64 = c_r_p_1_ * par.c;
-  const Real t65 = c_r_p_1_ * par.k23;
-  const Real t66 = t65 * par.k1;
-  const Real t67 = t66 + par.k21;
-  const Real t68 = t64 - t67;
-  const Real t69 = t25 * c_r_p_1_;
-  const Real t70 = t68 - t69;
-  const Real t71 = constant<Real>(2.0L) * t19;
-  const Real t72 = t59 * par.r_F;
-  const Real t73 = t22 * t59;
-  const Real t74 = t72 + t73;
-  const Real t75 = t65 * par.k2;
-  const Real t76 = t75 - par.k24;
-  const Real t77 = c_r_p_1_ * par.r_F;
-  const Real t78 = t76 - t77;
-  const Real t79 = t22 * c_r_p_1_;
-  const Real t80 = t78 - t79;
-  const Real t81 = t25 * t45;
-  const Real t82 = t73 - t81;
-  const Real t83 = par.c * t45;
-  const Real t84 = t72 + t83;
-  const Real t85 = s_r_p_1_ * par.k23;
-  const Real t86 = t84 - t85;
-  const Real t87 = t82 + t86;
-  const Real t88 = c_r_p_1_ * par.k2;
-  const Real t89 = par.k2 * t88;
-  const Real t90 = par.k19 + t89;
-  const Real t91 = par.r_F * t90;
-  const Real t92 = par.k1 * t88;
-  const Real t93 = par.k22 - t92;
-  const Real t94 = t93 * par.c;
-  const Real t95 = t91 - t94;
-  const Real t96 = t25 * t93;
-  const Real t97 = t22 * t90;
-  const Real t98 = t96 + t97;
-  const Real t99 = t95 + t98;
-  const Real t100 = t55 * R[6];
-  const Real t101 = t100 * par.r_R;
-  const Real t102 = par.k1 * t43;
-  const Real t103 = t83 - t102;
-  const Real t104 = t103 - t81;
+  const Real t3 = R[6] * R[6];
+  const Real t4 = R[8] * R[8];
+  const Real t5 = t3 + t4;
+  const Real t6 = sqrt(t5);
+  const Real t7 = constant<Real>(2.0L) * t6;
+  const Real t8 = constant<Real>(1.0L) / t6;
+  const Real t9 = R[8] * t8;
+  const Real t10 = t9 * par.r_R;
+  const Real t11 = t10 - par.r_R;
+  const Real t12 = par.k2 * R[6];
+  const Real t13 = R[8] * par.k1;
+  const Real t14 = t12 - t13;
+  const Real t15 = c_r_p_1_ * t14;
+  const Real t16 = s_r_p_1_ * R[7];
+  const Real t17 = t15 + t16;
+  const Real t18 = par.k2 * t17;
+  const Real t19 = par.k1 * t17;
+  const Real t20 = par.k1 * R[6];
+  const Real t21 = R[8] * par.k2;
+  const Real t22 = t20 + t21;
+  const Real t23 = t22 * par.k2;
+  const Real t24 = t19 - t23;
+  const Real t25 = par.r_R - t10;
+  const Real t26 = c_r_p_1_ * par.k14;
+  const Real t27 = c_r_p_1_ * par.k2;
+  const Real t28 = par.k2 * t27;
+  const Real t29 = par.k20 + t28;
+  const Real t30 = par.r_F * t29;
+  const Real t31 = s_r_p_1_ * par.k2;
+  const Real t32 = t31 * par.c;
+  const Real t33 = par.k1 * c_r_p_1_;
+  const Real t34 = par.k1 * t33;
+  const Real t35 = par.k19 + t34;
+  const Real t36 = t35 * par.c;
+  const Real t37 = c_r_p_1_ * par.c;
+  const Real t38 = c_r_p_1_ * par.k24;
+  const Real t39 = t38 * par.k1;
+  const Real t40 = t39 + par.k22;
+  const Real t41 = t37 - t40;
+  const Real t42 = par.k1 * t22;
+  const Real t43 = c_r_p_1_ * par.r_F;
+  const Real t44 = t8 * R[6];
+  const Real t45 = t44 * par.r_R;
+  const Real t46 = s_r_p_1_ * par.k14;
+  const Real t47 = par.k2 * t46;
+  const Real t48 = s_r_p_1_ * par.k1;
+  const Real t49 = par.r_F * t48;
+  const Real t50 = t47 - t49;
+  const Real t51 = t31 * par.r_F;
+  const Real t52 = par.c * t48;
+  const Real t53 = t51 + t52;
+  const Real t54 = s_r_p_1_ * par.k24;
+  const Real t55 = t53 - t54;
+  const Real t56 = par.k1 * t46;
 
   // kernel
-  const Real t105 = t45 * t101;
-  const Real t106 = t105 + t104;
-  const Real t107 = c_r_p_1_ * t101;
-  const Real t108 = t42 - t107;
-  const Real t109 = constant<Real>(1.0L) / t108;
-  const Real t110 = t106 * t109;
-  const Real t111 = t110 * t28;
-  const Real t112 = t58 * t90;
-  const Real t113 = t80 - t112;
-  const Real t114 = t34 * t101;
-  const Real t115 = t113 + t114;
-  const Real t116 = t58 * t59;
-  const Real t117 = t116 + t87;
-  const Real t118 = t117 + t105;
-  const Real t119 = t59 * t101;
-  const Real t120 = t49 - t119;
-  const Real t121 = t109 * t120;
-  const Real t122 = t118 * t121;
-  const Real t123 = t115 - t122;
-  const Real t124 = t31 * t101;
-  const Real t125 = t58 * t93;
-  const Real t126 = t70 - t125;
-  const Real t127 = t124 + t126;
-  const Real t128 = t110 * t118;
-  const Real t129 = t127 - t128;
-  const Real t130 = constant<Real>(1.0L) / t129;
-  const Real t131 = t123 * t130;
-  const Real t132 = t111 * t131;
-  const Real t133 = t28 * t121;
-  const Real t134 = t132 - t133;
-  const Real t135 = -t111;
-  const Real t136 = t59 * t63;
-  const Real t137 = t74 - t136;
-  const Real t138 = c_r_p_1_ * t63;
-  const Real t139 = t99 - t138;
-  const Real t140 = t139 * t121;
-  const Real t141 = t137 - t140;
-  const Real t142 = t63 * t45;
-  const Real t143 = t62 + t142;
-  const Real t144 = t110 * t139;
-  const Real t145 = t143 - t144;
-  const Real t146 = t145 * t131;
-  const Real t147 = t93 * t57;
-  const Real t148 = t124 - t147;
-  const Real t149 = t59 * t57;
-  const Real t150 = t105 + t149;
-  const Real t151 = t110 * t150;
-  const Real t152 = t148 - t151;
-  const Real t153 = product_error(t152, t131);
-  const Real t154 = t25 * t131;
-  const Real t155 = t57 * t90;
-  const Real t156 = t114 - t155;
-  const Real t157 = t150 * t121;
+  const Real t57 = product_error(c_r_p_1_, par.r_F);
+  const Real t58 = t2 * t2;
+  const Real t59 = constant<Real>(2.0L) * t58;
+  const Real t60 = par.k27 * t59;
+  const Real t61 = sum_error(t60, t43);
+  const Real t62 = t57 + t61;
+  const Real t63 = t60 + t43;
+  const Real t64 = product_error(par.k1, t17);
+  const Real t65 = sum_error(t15, t16);
+  const Real t66 = product_error(c_r_p_1_, t14);
+  const Real t67 = -t13;
+  const Real t68 = sum_error(t12, t67);
+  const Real t69 = product_error(par.k2, R[6]);
+  const Real t70 = t68 + t69;
+  const Real t71 = t70 * c_r_p_1_;
+  const Real t72 = t66 + t71;
+  const Real t73 = t65 + t72;
+  const Real t74 = par.k1 * t73;
+  const Real t75 = t64 + t74;
+  const Real t76 = product_error(t22, par.k2);
+  const Real t77 = product_error(par.k1, R[6]);
+  const Real t78 = sum_error(t20, t21);
+  const Real t79 = t77 + t78;
+  const Real t80 = par.k2 * t79;
+  const Real t81 = t76 + t80;
+  const Real t82 = t75 - t81;
+  const Real t83 = t24 + t82;
+  const Real t84 = t83 * c_r_p_1_;
+  const Real t85 = t84 * par.r_F;
+  const Real t86 = t83 * t83;
+  const Real t87 = par.k1 * t79;
+  const Real t88 = t87 + t42;
+  const Real t89 = par.k2 * t73;
+  const Real t90 = t18 + t89;
+  const Real t91 = t88 + t90;
+  const Real t92 = t91 * t91;
+  const Real t93 = t86 + t92;
+  const Real t94 = sqrt(t93);
+  const Real t95 = constant<Real>(1.0L) / t94;
+  const Real t96 = t85 * t95;
+  const Real t97 = sum_error(t63, t96);
+  const Real t98 = t62 + t97;
+  const Real t99 = t83 * t95;
+  const Real t100 = t99 * par.r_F;
+  const Real t101 = -t100;
+  const Real t102 = -t49;
+  const Real t103 = sum_error(t47, t102);
+  const Real t104 = product_error(par.k2, t46);
+  const Real t105 = product_error(s_r_p_1_, par.k14);
+  const Real t106 = par.k2 * t105;
+  const Real t107 = t104 + t106;
+  const Real t108 = t103 + t107;
+  const Real t109 = t100 * t48;
+  const Real t110 = -t109;
+  const Real t111 = sum_error(t50, t110);
+  const Real t112 = t108 + t111;
+  const Real t113 = t31 * t100;
+  const Real t114 = t91 * t95;
+  const Real t115 = par.r_F * t114;
+  const Real t116 = t115 * t48;
+  const Real t117 = t113 - t116;
+  const Real t118 = par.k1 * t8;
+  const Real t119 = par.k2 * t118;
+  const Real t120 = t119 * t2;
+  const Real t121 = t120 * t2;
+  const Real t122 = t121 * R[6];
+  const Real t123 = t122 * par.r_R;
+  const Real t124 = t123 * constant<Real>(2.0L);
+  const Real t125 = t63 + t96;
+  const Real t126 = t11 * t29;
+  const Real t127 = sum_error(par.k20, t28);
+  const Real t128 = product_error(c_r_p_1_, par.k2);
+  const Real t129 = t128 * par.k2;
+  const Real t130 = product_error(par.k2, t27);
+  const Real t131 = t129 + t130;
+  const Real t132 = t127 + t131;
+  const Real t133 = t11 * t132;
+  const Real t134 = t126 + t133;
+  const Real t135 = t125 + t134;
+  const Real t136 = t124 - t135;
+  const Real t137 = t35 * t45;
+  const Real t138 = t59 * par.k23;
+  const Real t139 = t10 * t138;
+  const Real t140 = t137 - t139;
+  const Real t141 = t31 * t115;
+  const Real t142 = t141 - t32;
+  const Real t143 = t25 * t48;
+  const Real t144 = t142 + t143;
+  const Real t145 = t138 * par.c;
+  const Real t146 = t115 * par.k2;
+  const Real t147 = par.k1 * t100;
+  const Real t148 = t146 + t147;
+  const Real t149 = t148 + par.k13;
+  const Real t150 = par.r_F * t138;
+  const Real t151 = t150 - t36;
+  const Real t152 = t151 + t26;
+  const Real t153 = t100 * t138;
+  const Real t154 = t35 * t115;
+  const Real t155 = t153 + t154;
+  const Real t156 = t152 + t155;
+  const Real t157 = c_r_p_1_ * t45;
   const Real t158 = t156 - t157;
-  const Real t159 = t152 * t131;
-  const Real t160 = t158 - t159;
-  const Real t161 = product_error(t28, t121);
-  const Real t162 = product_error(t111, t131);
-  const Real t163 = product_error(t123, t130);
-  const Real t164 = -t157;
-  const Real t165 = sum_error(t156, t164);
-  const Real t166 = product_error(t150, t121);
-  const Real t167 = t165 - t166;
-  const Real t168 = -t122;
-  const Real t169 = sum_error(t115, t168);
-  const Real t170 = product_error(t118, t121);
+  const Real t159 = constant<Real>(1.0L) / t158;
+  const Real t160 = c_r_p_1_ * t25;
+  const Real t161 = t11 * t31;
+  const Real t162 = t50 - t109;
+  const Real t163 = t31 * t45;
+  const Real t164 = t162 - t163;
+  const Real t165 = t48 * t45;
+  const Real t166 = t31 * t10;
+  const Real t167 = t165 + t166;
+  const Real t168 = t115 * c_r_p_1_;
+  const Real t169 = t41 - t168;
+  const Real t170 = t11 * t138;
   const Real t171 = t169 - t170;
-  const Real t172 = t171 * t130;
+  const Real t172 = t171 + t137;
+  const Real t173 = t115 * t138;
+  const Real t174 = t100 * t132;
+  const Real t175 = t100 * t29;
+  const Real t176 = t174 + t175;
+  const Real t177 = t173 + t176;
+  const Real t178 = t138 * t45;
+  const Real t179 = t10 * t132;
+  const Real t180 = t10 * t29;
+  const Real t181 = t179 + t180;
+  const Real t182 = t178 - t181;
+  const Real t183 = t94 * constant<Real>(2.0L);
+  const Real t184 = par.k1 * t105;
+  const Real t185 = t184 + t56;
+  const Real t186 = t52 - t185;
+  const Real t187 = t186 - t116;
+  const Real t188 = t165 + t187;
+  const Real t189 = product_error(c_r_p_1_, t25);
+  const Real t190 = par.r_F * t132;
+  const Real t191 = t51 + t113;
+  const Real t192 = t31 * t25;
+  const Real t193 = t191 - t192;
 
   // frame: acceleration
-  const Real t173 = par.g * R[7];
-  const Real t174 = par.g * R[8];
-  const Real t175 = par.g * R[6];
+  const Real t194 = par.g * R[7];
+  const Real t195 = par.g * R[8];
+  const Real t196 = par.g * R[6];
 
   // joint angles
-  const Real t176 = R[8] * nu[0];
-  const Real t177 = par.k2 * nu[0];
-  const Real t178 = par.k1 * nu[0];
-  const Real t179 = s_r_p_1_ * nu[1];
-  const Real t180 = t179 * t3;
-  const Real t181 = c_r_p_1_ * nu[1];
-  const Real t182 = t181 * R[7];
-  const Real t183 = nu[0] * R[7];
+  const Real t197 = R[8] * nu[0];
+  const Real t198 = par.k2 * nu[0];
+  const Real t199 = par.k1 * nu[0];
+  const Real t200 = s_r_p_1_ * nu[1];
+  const Real t201 = t200 * t14;
+  const Real t202 = c_r_p_1_ * nu[1];
+  const Real t203 = t202 * R[7];
+  const Real t204 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t184 = nu[0] * c_r_p_0_;
-  const Real t185 = nu[0] * s_r_p_0_;
+  const Real t205 = nu[0] * c_r_p_0_;
+  const Real t206 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t186 = nu[0] * nu[0];
+  const Real t207 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t187 = t163 + t172;
-  const Real t188 = t187 * t152;
-  const Real t189 = t188 + t153;
-  const Real t190 = t167 - t189;
-  const Real t191 = t160 + t190;
-  const Real t192 = t187 * t25;
-  const Real t193 = t154 + t192;
-  const Real t194 = t193 - t22;
-  const Real t195 = constant<Real>(1.0L) / t194;
-  const Real t196 = t191 * t195;
-  const Real t197 = t25 * t196;
-  const Real t198 = t152 + t197;
-  const Real t199 = t198 * t130;
-  const Real t200 = t199 * t118;
-  const Real t201 = t150 - t200;
-  const Real t202 = product_error(t199, t118);
-  const Real t203 = sum_error(t152, t197);
-  const Real t204 = t203 * t130;
-  const Real t205 = product_error(t198, t130);
-  const Real t206 = t204 + t205;
-  const Real t207 = t118 * t206;
-  const Real t208 = t202 + t207;
-  const Real t209 = t201 - t208;
-  const Real t210 = t209 * t109;
-  const Real t211 = t210 * t101;
-  const Real t212 = nu[2] * t211;
-  const Real t213 = t187 * t145;
-  const Real t214 = t213 + t146;
-  const Real t215 = t141 - t214;
-  const Real t216 = t215 * t195;
-  const Real t217 = t25 * t216;
-  const Real t218 = t145 + t217;
-  const Real t219 = t218 * t130;
-  const Real t220 = t219 * nu[0];
-  const Real t221 = t187 * t111;
-  const Real t222 = t118 * t219;
-  const Real t223 = t139 - t222;
-  const Real t224 = t109 * t223;
-  const Real t225 = nu[0] * t224;
-  const Real t226 = t199 * t101;
-  const Real t227 = t206 * t101;
-  const Real t228 = t226 + t227;
-  const Real t229 = t101 - t228;
-  const Real t230 = t229 * nu[2];
-  const Real t231 = t58 * t219;
-  const Real t232 = nu[0] * t231;
-  const Real t233 = t101 * t224;
-  const Real t234 = t233 - t63;
-  const Real t235 = t234 * nu[0];
-  const Real t236 = t196 * nu[2];
-  const Real t237 = t210 * nu[2];
-  const Real t238 = t199 * t58;
-  const Real t239 = t58 * t206;
-  const Real t240 = t238 + t239;
-  const Real t241 = t240 - t57;
-  const Real t242 = t241 * nu[2];
-  const Real t243 = t216 * nu[0];
-  const Real t244 = t206 * nu[2];
-  const Real t245 = t199 * nu[2];
-  const Real t246 = t244 + t245;
-  const Real t247 = t219 * t101;
-  const Real t248 = t247 * nu[0];
+  const Real t208 = t112 + t164;
+  const Real t209 = t208 * t159;
+  const Real t210 = t209 * t167;
+  const Real t211 = -t210;
+  const Real t212 = sum_error(t182, t211);
+  const Real t213 = product_error(t209, t167);
+  const Real t214 = t212 - t213;
+  const Real t215 = t159 * t188;
+  const Real t216 = t215 * t167;
+  const Real t217 = -t216;
+  const Real t218 = sum_error(t140, t217);
+  const Real t219 = product_error(t215, t167);
+  const Real t220 = t218 - t219;
+  const Real t221 = t149 * t209;
+  const Real t222 = -t221;
+  const Real t223 = t200 * t70;
+  const Real t224 = t201 + t223;
+  const Real t225 = t140 - t216;
+  const Real t226 = t215 * t149;
+  const Real t227 = -t226;
+  const Real t228 = product_error(t149, t209);
+  const Real t229 = t182 - t210;
+  const Real t230 = t30 + t190;
+  const Real t231 = t230 - t145;
+  const Real t232 = t231 + t177;
+  const Real t233 = t232 - t160;
+  const Real t234 = product_error(t215, t149);
 
   // rear_wheel: acceleration
-  const Real t249 = nu_dot[0] * c_r_p_0_;
-  const Real t250 = nu_dot[0] * s_r_p_0_;
+  const Real t235 = nu_dot[0] * c_r_p_0_;
+  const Real t236 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t251 = nu_dot[0] * par.k2;
-  const Real t252 = par.k1 * nu_dot[0];
+  const Real t237 = nu_dot[0] * par.k2;
+  const Real t238 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t253 = t221 + t162;
-  const Real t254 = t253 - t161;
-  const Real t255 = t134 + t254;
-  const Real t256 = t255 * t195;
-  const Real t257 = t25 * t256;
-  const Real t258 = t257 - t111;
-  const Real t259 = t258 * t130;
-  const Real t260 = t259 * t118;
-  const Real t261 = t28 - t260;
-  const Real t262 = product_error(t259, t118);
-  const Real t263 = sum_error(t257, t135);
-  const Real t264 = t263 * t130;
-  const Real t265 = product_error(t258, t130);
-  const Real t266 = t264 + t265;
-  const Real t267 = t118 * t266;
-  const Real t268 = t262 + t267;
-  const Real t269 = t261 - t268;
-  const Real t270 = t109 * t269;
-  const Real t271 = t270 * t101;
-  const Real t272 = t271 * nu[1];
-  const Real t273 = t235 + t272;
-  const Real t274 = t212 + t273;
-  const Real t275 = t274 * nu[0];
-  const Real t276 = t266 * nu[1];
-  const Real t277 = t259 * nu[1];
+  const Real t239 = t117 + t55;
+  const Real t240 = t161 + t239;
+  const Real t241 = t165 + t240;
+  const Real t242 = t241 * t209;
+  const Real t243 = t136 - t242;
+  const Real t244 = t215 * t241;
+  const Real t245 = t172 - t244;
+  const Real t246 = constant<Real>(1.0L) / t245;
+  const Real t247 = t243 * t246;
+  const Real t248 = t247 * t115;
+  const Real t249 = t248 - t100;
+  const Real t250 = quotient_error(constant<Real>(1.0L), t249);
+  const Real t251 = product_error(t243, t246);
+  const Real t252 = -t135;
+  const Real t253 = sum_error(t124, t252);
+  const Real t254 = sum_error(t134, t125);
+  const Real t255 = t98 + t254;
+  const Real t256 = t253 - t255;
+  const Real t257 = product_error(t209, t241);
+  const Real t258 = t256 - t257;
+  const Real t259 = -t242;
+  const Real t260 = sum_error(t136, t259);
+  const Real t261 = t258 + t260;
+  const Real t262 = t246 * t261;
+  const Real t263 = quotient_error(constant<Real>(1.0L), t245);
+  const Real t264 = -t244;
+  const Real t265 = sum_error(t172, t264);
+  const Real t266 = sum_error(t137, t171);
+  const Real t267 = product_error(t215, t241);
+  const Real t268 = t266 - t267;
+  const Real t269 = t265 + t268;
+  const Real t270 = t269 * t246;
+  const Real t271 = t270 / t245;
+  const Real t272 = t263 - t271;
+  const Real t273 = t243 * t272;
+  const Real t274 = t262 + t273;
+  const Real t275 = t251 + t274;
+  const Real t276 = t115 * t275;
+  const Real t277 = product_error(t115, t247);
   const Real t278 = t276 + t277;
-  const Real t279 = t220 + t278;
-  const Real t280 = t279 + t246;
-  const Real t281 = t259 * t58;
-  const Real t282 = t58 * t266;
-  const Real t283 = t281 + t282;
-  const Real t284 = t283 * nu[1];
-  const Real t285 = t232 + t284;
-  const Real t286 = t285 + t242;
-  const Real t287 = t280 * t286;
-  const Real t288 = t275 + t287;
-  const Real t289 = nu[2] - t280;
-  const Real t290 = R[8] * t280;
-  const Real t291 = t270 * nu[1];
-  const Real t292 = t225 + t291;
-  const Real t293 = t292 + t237;
-  const Real t294 = t293 * R[7];
-  const Real t295 = t290 - t294;
-  const Real t296 = t295 * t55;
-  const Real t297 = t295 * R[6];
-  const Real t298 = t297 * constant<Real>(2.0L);
-  const Real t299 = t280 * R[6];
-  const Real t300 = t299 + t183;
-  const Real t301 = R[8] * t300;
-  const Real t302 = t301 * constant<Real>(2.0L);
-  const Real t303 = t298 - t302;
-  const Real t304 = t303 / t54;
-  const Real t305 = t304 * t55;
-  const Real t306 = t305 / t53;
-  const Real t307 = t306 * R[6];
-  const Real t308 = t296 - t307;
-  const Real t309 = t308 * par.r_R;
-  const Real t310 = t289 * t309;
-  const Real t311 = t293 * par.k13;
-  const Real t312 = t274 - t311;
-  const Real t313 = t181 * t312;
-  const Real t314 = par.k2 * t286;
-  const Real t315 = t280 * par.k13;
-  const Real t316 = t259 * t101;
-  const Real t317 = t266 * t101;
-  const Real t318 = t316 + t317;
-  const Real t319 = t318 * nu[1];
-  const Real t320 = t319 + t248;
-  const Real t321 = t230 - t320;
-  const Real t322 = t315 + t321;
-  const Real t323 = par.k1 * t322;
-  const Real t324 = t314 - t323;
-  const Real t325 = t324 * t179;
-  const Real t326 = t313 - t325;
-  const Real t327 = par.k1 * t326;
-  const Real t328 = par.k1 * t293;
-  const Real t329 = t177 + t328;
-  const Real t330 = t181 * t329;
-  const Real t331 = t280 * t179;
-  const Real t332 = t330 - t331;
-  const Real t333 = t332 * par.c;
-  const Real t334 = t327 + t333;
-  const Real t335 = t295 * par.k1;
-  const Real t336 = par.k2 * t300;
-  const Real t337 = t335 - t336;
-  const Real t338 = par.k1 * t337;
-  const Real t339 = t293 * R[6];
-  const Real t340 = t176 + t339;
-  const Real t341 = s_r_p_1_ * t340;
-  const Real t342 = t341 + t182;
-  const Real t343 = t295 * par.k2;
-  const Real t344 = par.k1 * t300;
-  const Real t345 = t343 + t344;
-  const Real t346 = t345 * c_r_p_1_;
-  const Real t347 = t346 - t180;
-  const Real t348 = t342 + t347;
-  const Real t349 = par.k2 * t348;
-  const Real t350 = t338 + t349;
-  const Real t351 = t350 * t20;
-  const Real t352 = t350 * t16;
-  const Real t353 = t352 * constant<Real>(2.0L);
-  const Real t354 = par.k1 * t348;
-  const Real t355 = par.k2 * t337;
-  const Real t356 = t354 - t355;
-  const Real t357 = t356 * t12;
-  const Real t358 = t357 * constant<Real>(2.0L);
-  const Real t359 = t353 + t358;
-  const Real t360 = t359 / t71;
-  const Real t361 = t360 * t20;
-  const Real t362 = t361 / t19;
-  const Real t363 = t362 * t16;
-  const Real t364 = t351 - t363;
-  const Real t365 = par.r_F * t364;
-  const Real t366 = s_r_p_1_ * t329;
-  const Real t367 = t280 * c_r_p_1_;
-  const Real t368 = t366 + t367;
-  const Real t369 = t256 * nu[1];
-  const Real t370 = t369 + t243;
-  const Real t371 = t236 + t370;
-  const Real t372 = t368 + t371;
-  const Real t373 = t365 * t372;
-  const Real t374 = t332 * t25;
-  const Real t375 = t373 + t374;
-  const Real t376 = t334 - t375;
-  const Real t377 = R[8] * t306;
-  const Real t378 = t55 * t300;
-  const Real t379 = t377 + t378;
-  const Real t380 = t379 * par.r_R;
-  const Real t381 = t289 * t380;
-  const Real t382 = t93 * t381;
-  const Real t383 = t376 - t382;
-  const Real t384 = t309 * t293;
-  const Real t385 = t380 * nu[0];
-  const Real t386 = t384 - t385;
-  const Real t387 = t386 * t45;
-  const Real t388 = t383 + t387;
-  const Real t389 = t31 * t310;
-  const Real t390 = t388 - t389;
-  const Real t391 = t324 * t181;
-  const Real t392 = t179 * t312;
-  const Real t393 = t391 + t392;
-  const Real t394 = t179 * t329;
-  const Real t395 = t280 * t181;
-  const Real t396 = t394 + t395;
-  const Real t397 = par.k1 * t396;
-  const Real t398 = t397 * par.c;
-  const Real t399 = t396 * par.k2;
-  const Real t400 = t399 * par.r_F;
-  const Real t401 = t398 + t400;
-  const Real t402 = t393 + t401;
-  const Real t403 = t356 * t20;
-  const Real t404 = t362 * t12;
-  const Real t405 = t403 - t404;
-  const Real t406 = t405 * par.r_F;
-  const Real t407 = c_r_p_1_ * t329;
-  const Real t408 = s_r_p_1_ * t280;
-  const Real t409 = t407 - t408;
-  const Real t410 = t409 * par.k2;
-  const Real t411 = par.k2 * t293;
-  const Real t412 = t178 - t411;
-  const Real t413 = t412 + nu[1];
-  const Real t414 = par.k1 * t413;
-  const Real t415 = t410 + t414;
-  const Real t416 = t406 * t415;
-  const Real t417 = t399 * t22;
-  const Real t418 = t416 - t417;
-  const Real t419 = t413 * par.k2;
-  const Real t420 = par.k1 * t409;
-  const Real t421 = t419 - t420;
-  const Real t422 = t365 * t421;
-  const Real t423 = t397 * t25;
-  const Real t424 = t422 + t423;
-  const Real t425 = t418 + t424;
-  const Real t426 = t402 - t425;
-  const Real t427 = t59 * t381;
-  const Real t428 = t426 + t427;
-  const Real t429 = t386 * c_r_p_1_;
-  const Real t430 = t428 - t429;
-  const Real t431 = t310 * t45;
-  const Real t432 = t430 - t431;
-  const Real t433 = t110 * t432;
-  const Real t434 = t390 - t433;
-  const Real t435 = t432 * t121;
-  const Real t436 = t386 * t59;
-  const Real t437 = t381 * t90;
-  const Real t438 = t332 * t22;
-  const Real t439 = t406 * t372;
-  const Real t440 = t438 + t439;
-  const Real t441 = t326 * par.k2;
-  const Real t442 = t332 * par.r_F;
-  const Real t443 = t441 + t442;
-  const Real t444 = t440 + t443;
-  const Real t445 = t437 + t444;
-  const Real t446 = t436 + t445;
-  const Real t447 = t34 * t310;
+  const Real t279 = sum_error(t248, t101);
+  const Real t280 = t278 + t279;
+  const Real t281 = constant<Real>(1.0L) / t249;
+  const Real t282 = t280 * t281;
+  const Real t283 = t282 / t249;
+  const Real t284 = t250 - t283;
+  const Real t285 = product_error(t225, t247);
+  const Real t286 = t247 * t220;
+  const Real t287 = t225 * t275;
+  const Real t288 = t286 + t287;
+  const Real t289 = t285 + t288;
+  const Real t290 = t214 - t289;
+  const Real t291 = t247 * t225;
+  const Real t292 = t229 - t291;
+  const Real t293 = t290 + t292;
+  const Real t294 = t284 * t293;
+  const Real t295 = t281 * t293;
+  const Real t296 = t294 + t295;
+  const Real t297 = t115 * t296;
+  const Real t298 = t225 + t297;
+  const Real t299 = t298 * t246;
+  const Real t300 = t299 * t241;
+  const Real t301 = t167 - t300;
+  const Real t302 = sum_error(t225, t297);
+  const Real t303 = t220 + t302;
+  const Real t304 = t303 * t246;
+  const Real t305 = t298 * t272;
+  const Real t306 = t304 + t305;
+  const Real t307 = product_error(t246, t298);
+  const Real t308 = t306 + t307;
+  const Real t309 = t241 * t308;
+  const Real t310 = product_error(t241, t299);
+  const Real t311 = t309 + t310;
+  const Real t312 = t301 - t311;
+  const Real t313 = t312 * t159;
+  const Real t314 = t45 * t313;
+  const Real t315 = nu_dot[2] * t314;
+  const Real t316 = t233 - t189;
+  const Real t317 = t209 * t316;
+  const Real t318 = -t317;
+  const Real t319 = sum_error(t193, t318);
+  const Real t320 = product_error(t316, t209);
+  const Real t321 = t319 - t320;
+  const Real t322 = t215 * t316;
+  const Real t323 = t144 - t322;
+  const Real t324 = product_error(t247, t323);
+  const Real t325 = -t322;
+  const Real t326 = sum_error(t144, t325);
+  const Real t327 = product_error(t215, t316);
+  const Real t328 = t326 - t327;
+  const Real t329 = t247 * t328;
+  const Real t330 = t323 * t275;
+  const Real t331 = t329 + t330;
+  const Real t332 = t324 + t331;
+  const Real t333 = t321 - t332;
+  const Real t334 = t193 - t317;
+  const Real t335 = t247 * t323;
+  const Real t336 = t334 - t335;
+  const Real t337 = t333 + t336;
+  const Real t338 = t337 * t284;
+  const Real t339 = t337 * t281;
+  const Real t340 = t338 + t339;
+  const Real t341 = t115 * t340;
+  const Real t342 = t341 + t323;
+  const Real t343 = t342 * t246;
+  const Real t344 = t241 * t343;
+  const Real t345 = t316 - t344;
+  const Real t346 = sum_error(t341, t323);
+  const Real t347 = t328 + t346;
+  const Real t348 = t246 * t347;
+  const Real t349 = t342 * t272;
+  const Real t350 = t348 + t349;
+  const Real t351 = product_error(t246, t342);
+  const Real t352 = t350 + t351;
+  const Real t353 = t241 * t352;
+  const Real t354 = product_error(t343, t241);
+  const Real t355 = t353 + t354;
+  const Real t356 = t345 - t355;
+  const Real t357 = t159 * t356;
+  const Real t358 = t45 * t357;
+  const Real t359 = t358 - t25;
+  const Real t360 = t359 * nu_dot[0];
+  const Real t361 = t247 * t226;
+  const Real t362 = t361 - t221;
+  const Real t363 = t281 * t362;
+  const Real t364 = t115 * t363;
+  const Real t365 = t364 - t226;
+  const Real t366 = t365 * t246;
+  const Real t367 = t366 * t241;
+  const Real t368 = t149 - t367;
+  const Real t369 = product_error(t246, t365);
+  const Real t370 = product_error(t281, t362);
+  const Real t371 = t284 * t362;
+  const Real t372 = sum_error(t361, t222);
+  const Real t373 = product_error(t226, t247);
+  const Real t374 = t247 * t234;
+  const Real t375 = t226 * t275;
+  const Real t376 = t374 + t375;
+  const Real t377 = t373 + t376;
+  const Real t378 = t377 - t228;
+  const Real t379 = t372 + t378;
+  const Real t380 = t281 * t379;
+  const Real t381 = t371 + t380;
+  const Real t382 = t370 + t381;
+  const Real t383 = t382 * t115;
+  const Real t384 = product_error(t115, t363);
+  const Real t385 = t383 + t384;
+  const Real t386 = t385 - t234;
+  const Real t387 = sum_error(t364, t227);
+  const Real t388 = t386 + t387;
+  const Real t389 = t246 * t388;
+  const Real t390 = t365 * t272;
+  const Real t391 = t389 + t390;
+  const Real t392 = t369 + t391;
+  const Real t393 = t241 * t392;
+  const Real t394 = product_error(t366, t241);
+  const Real t395 = t393 + t394;
+  const Real t396 = t368 - t395;
+  const Real t397 = t159 * t396;
+  const Real t398 = t397 * t45;
+  const Real t399 = nu_dot[1] * t398;
+  const Real t400 = t360 + t399;
+  const Real t401 = t315 + t400;
+  const Real t402 = nu[2] * t313;
+  const Real t403 = t397 * nu[1];
+  const Real t404 = nu[0] * t357;
+  const Real t405 = t403 + t404;
+  const Real t406 = t402 + t405;
+  const Real t407 = t352 * nu[0];
+  const Real t408 = t343 * nu[0];
+  const Real t409 = t407 + t408;
+  const Real t410 = t392 * nu[1];
+  const Real t411 = t366 * nu[1];
+  const Real t412 = t410 + t411;
+  const Real t413 = t409 + t412;
+  const Real t414 = nu[2] * t308;
+  const Real t415 = t299 * nu[2];
+  const Real t416 = t414 + t415;
+  const Real t417 = t413 + t416;
+  const Real t418 = R[8] * t417;
+  const Real t419 = t406 * R[7];
+  const Real t420 = t418 - t419;
+  const Real t421 = t420 * t8;
+  const Real t422 = t420 * R[6];
+  const Real t423 = t422 * constant<Real>(2.0L);
+  const Real t424 = t417 * R[6];
+  const Real t425 = t204 + t424;
+  const Real t426 = R[8] * t425;
+  const Real t427 = t426 * constant<Real>(2.0L);
+  const Real t428 = t423 - t427;
+  const Real t429 = t428 / t7;
+  const Real t430 = t8 * t429;
+  const Real t431 = t430 / t6;
+  const Real t432 = t431 * R[6];
+  const Real t433 = t421 - t432;
+  const Real t434 = t433 * par.r_R;
+  const Real t435 = t406 * t434;
+  const Real t436 = t8 * t425;
+  const Real t437 = R[8] * t431;
+  const Real t438 = t436 + t437;
+  const Real t439 = par.r_R * t438;
+  const Real t440 = t439 * nu[0];
+  const Real t441 = t435 - t440;
+  const Real t442 = t11 * t392;
+  const Real t443 = t366 * t11;
+  const Real t444 = t442 + t443;
+  const Real t445 = t444 * nu[1];
+  const Real t446 = t11 * t343;
+  const Real t447 = t11 * t352;
   const Real t448 = t446 + t447;
-  const Real t449 = t435 + t448;
-  const Real t450 = t434 * t131;
-  const Real t451 = t187 * t434;
-  const Real t452 = t450 + t451;
-  const Real t453 = t449 + t452;
-  const Real t454 = t453 * t195;
-  const Real t455 = t25 * t454;
-  const Real t456 = t434 - t455;
-  const Real t457 = t456 * t130;
-  const Real t458 = t457 * t101;
-  const Real t459 = t310 + t458;
-  const Real t460 = t229 * nu_dot[2];
-  const Real t461 = t247 * nu_dot[0];
-  const Real t462 = nu_dot[1] * t318;
-  const Real t463 = t461 + t462;
-  const Real t464 = t460 - t463;
-  const Real t465 = t459 + t464;
-  const Real t466 = t288 + t465;
-  const Real t467 = t466 - t174;
-  const Real t468 = t467 * par.m_B;
-  const Real t469 = t280 * t280;
-  const Real t470 = t186 + t469;
-  const Real t471 = t470 * par.k15;
-  const Real t472 = nu_dot[1] * t266;
-  const Real t473 = nu_dot[1] * t259;
+  const Real t449 = t448 * nu[0];
+  const Real t450 = t445 + t449;
+  const Real t451 = t11 * t299;
+  const Real t452 = t11 * t308;
+  const Real t453 = t451 + t452;
+  const Real t454 = t453 - t10;
+  const Real t455 = nu[2] * t454;
+  const Real t456 = t450 + t455;
+  const Real t457 = par.k2 * t456;
+  const Real t458 = t45 * t308;
+  const Real t459 = t299 * t45;
+  const Real t460 = t458 + t459;
+  const Real t461 = t45 - t460;
+  const Real t462 = t461 * nu[2];
+  const Real t463 = t366 * t45;
+  const Real t464 = t392 * t45;
+  const Real t465 = t463 + t464;
+  const Real t466 = t465 * nu[1];
+  const Real t467 = t352 * t45;
+  const Real t468 = t343 * t45;
+  const Real t469 = t467 + t468;
+  const Real t470 = t469 * nu[0];
+  const Real t471 = t466 + t470;
+  const Real t472 = t462 - t471;
+  const Real t473 = t417 * par.k14;
   const Real t474 = t472 + t473;
-  const Real t475 = nu_dot[0] * t219;
-  const Real t476 = t474 + t475;
-  const Real t477 = nu_dot[2] * t206;
-  const Real t478 = nu_dot[2] * t199;
-  const Real t479 = t477 + t478;
-  const Real t480 = t476 + t479;
-  const Real t481 = t457 - t480;
-  const Real t482 = t293 * nu[0];
-  const Real t483 = t481 + t482;
-  const Real t484 = t483 * par.k16;
-  const Real t485 = t471 + t484;
-  const Real t486 = t468 - t485;
-  const Real t487 = t409 * t413;
-  const Real t488 = t481 * c_r_p_1_;
-  const Real t489 = t118 * t457;
-  const Real t490 = t432 - t489;
-  const Real t491 = t490 * t109;
-  const Real t492 = nu_dot[2] * t210;
-  const Real t493 = nu_dot[0] * t224;
-  const Real t494 = t270 * nu_dot[1];
-  const Real t495 = t493 + t494;
-  const Real t496 = t492 + t495;
-  const Real t497 = t491 - t496;
-  const Real t498 = t497 * par.k1;
-  const Real t499 = t251 - t498;
-  const Real t500 = s_r_p_1_ * t499;
-  const Real t501 = t488 - t500;
-  const Real t502 = t409 * nu[1];
-  const Real t503 = t501 - t502;
-  const Real t504 = t487 - t503;
-  const Real t505 = par.k10 * t504;
-  const Real t506 = t368 * t368;
-  const Real t507 = t409 * t409;
-  const Real t508 = t506 + t507;
-  const Real t509 = par.k8 * t508;
-  const Real t510 = t505 - t509;
-  const Real t511 = par.k13 * t483;
-  const Real t512 = t467 - t511;
-  const Real t513 = par.k2 * t512;
-  const Real t514 = nu_dot[0] * t231;
-  const Real t515 = t283 * nu_dot[1];
-  const Real t516 = t514 + t515;
-  const Real t517 = nu_dot[2] * t241;
-  const Real t518 = t516 + t517;
-  const Real t519 = t58 * t457;
-  const Real t520 = t381 - t519;
-  const Real t521 = t518 + t520;
-  const Real t522 = t274 * t293;
-  const Real t523 = t280 * t321;
-  const Real t524 = t522 - t523;
-  const Real t525 = t521 + t524;
-  const Real t526 = t525 - t175;
-  const Real t527 = t293 * t293;
-  const Real t528 = t469 + t527;
-  const Real t529 = par.k13 * t528;
-  const Real t530 = t526 - t529;
-  const Real t531 = t530 * par.k1;
-  const Real t532 = t513 + t531;
-  const Real t533 = t532 * par.m_H;
-  const Real t534 = t510 + t533;
-  const Real t535 = t508 * par.k11;
-  const Real t536 = par.k12 * t504;
-  const Real t537 = t535 + t536;
-  const Real t538 = t532 + t537;
-  const Real t539 = par.k2 * t538;
-  const Real t540 = t530 * par.k2;
-  const Real t541 = par.k1 * t512;
-  const Real t542 = t540 - t541;
-  const Real t543 = t542 * c_r_p_1_;
-  const Real t544 = t491 * t101;
-  const Real t545 = t386 - t544;
-  const Real t546 = nu_dot[2] * t211;
-  const Real t547 = t234 * nu_dot[0];
-  const Real t548 = nu_dot[1] * t271;
-  const Real t549 = t547 + t548;
-  const Real t550 = t546 + t549;
-  const Real t551 = t545 + t550;
-  const Real t552 = t293 * t286;
-  const Real t553 = t321 * nu[0];
-  const Real t554 = t552 + t553;
-  const Real t555 = t551 - t554;
-  const Real t556 = t555 - t173;
-  const Real t557 = t280 * nu[0];
-  const Real t558 = t497 - t557;
-  const Real t559 = par.k13 * t558;
-  const Real t560 = t556 + t559;
-  const Real t561 = s_r_p_1_ * t560;
-  const Real t562 = t543 + t561;
-  const Real t563 = t503 + t487;
-  const Real t564 = par.k11 * t563;
-  const Real t565 = t413 * t413;
-  const Real t566 = t506 + t565;
-  const Real t567 = t566 * par.k12;
-  const Real t568 = t564 + t567;
-  const Real t569 = t562 - t568;
-  const Real t570 = t569 * par.k1;
-  const Real t571 = t539 - t570;
-  const Real t572 = t571 * c_r_p_2_;
-  const Real t573 = t569 * par.k2;
-  const Real t574 = par.k1 * t538;
+  const Real t475 = par.k1 * t474;
+  const Real t476 = t457 - t475;
+  const Real t477 = t476 * t202;
+  const Real t478 = nu[1] * t398;
+  const Real t479 = t359 * nu[0];
+  const Real t480 = t478 + t479;
+  const Real t481 = nu[2] * t314;
+  const Real t482 = t480 + t481;
+  const Real t483 = t406 * par.k14;
+  const Real t484 = t482 - t483;
+  const Real t485 = t484 * t200;
+  const Real t486 = t477 + t485;
+  const Real t487 = t417 * t202;
+  const Real t488 = t406 * par.k1;
+  const Real t489 = t198 + t488;
+  const Real t490 = t489 * t200;
+  const Real t491 = t487 + t490;
+  const Real t492 = t491 * par.k2;
+  const Real t493 = par.r_F * t492;
+  const Real t494 = t491 * par.k1;
+  const Real t495 = t494 * par.c;
+  const Real t496 = t493 + t495;
+  const Real t497 = t486 + t496;
+  const Real t498 = t406 * par.k2;
+  const Real t499 = t199 - t498;
+  const Real t500 = t499 + nu[1];
+  const Real t501 = par.k1 * t500;
+  const Real t502 = t489 * c_r_p_1_;
+  const Real t503 = s_r_p_1_ * t417;
+  const Real t504 = t502 - t503;
+  const Real t505 = t504 * par.k2;
+  const Real t506 = t501 + t505;
+  const Real t507 = t406 * R[6];
+  const Real t508 = t507 + t197;
+  const Real t509 = t508 * s_r_p_1_;
+  const Real t510 = t509 + t203;
+  const Real t511 = par.k1 * t425;
+  const Real t512 = t420 * par.k2;
+  const Real t513 = t511 + t512;
+  const Real t514 = c_r_p_1_ * t513;
+  const Real t515 = t514 - t224;
+  const Real t516 = t510 + t515;
+  const Real t517 = t516 * par.k1;
+  const Real t518 = t420 * par.k1;
+  const Real t519 = par.k2 * t425;
+  const Real t520 = t518 - t519;
+  const Real t521 = t520 * par.k2;
+  const Real t522 = t517 - t521;
+  const Real t523 = t522 * t95;
+  const Real t524 = t520 * par.k1;
+  const Real t525 = t516 * par.k2;
+  const Real t526 = t524 + t525;
+  const Real t527 = t91 * t526;
+  const Real t528 = t527 * constant<Real>(2.0L);
+  const Real t529 = t522 * t83;
+  const Real t530 = t529 * constant<Real>(2.0L);
+  const Real t531 = t528 + t530;
+  const Real t532 = t531 / t183;
+  const Real t533 = t95 * t532;
+  const Real t534 = t533 / t94;
+  const Real t535 = t83 * t534;
+  const Real t536 = t523 - t535;
+  const Real t537 = par.r_F * t536;
+  const Real t538 = t506 * t537;
+  const Real t539 = t100 * t492;
+  const Real t540 = t538 - t539;
+  const Real t541 = t494 * t115;
+  const Real t542 = t95 * t526;
+  const Real t543 = t91 * t534;
+  const Real t544 = t542 - t543;
+  const Real t545 = t544 * par.r_F;
+  const Real t546 = par.k2 * t500;
+  const Real t547 = t504 * par.k1;
+  const Real t548 = t546 - t547;
+  const Real t549 = t545 * t548;
+  const Real t550 = t541 + t549;
+  const Real t551 = t540 + t550;
+  const Real t552 = t497 - t551;
+  const Real t553 = nu[2] - t417;
+  const Real t554 = t439 * t553;
+  const Real t555 = t31 * t554;
+  const Real t556 = t552 + t555;
+  const Real t557 = t441 * c_r_p_1_;
+  const Real t558 = t556 - t557;
+  const Real t559 = t553 * t434;
+  const Real t560 = t559 * t48;
+  const Real t561 = t558 - t560;
+  const Real t562 = t441 * t48;
+  const Real t563 = t484 * t202;
+  const Real t564 = t200 * t476;
+  const Real t565 = t563 - t564;
+  const Real t566 = t565 * par.k1;
+  const Real t567 = t489 * t202;
+  const Real t568 = t200 * t417;
+  const Real t569 = t567 - t568;
+  const Real t570 = t569 * par.c;
+  const Real t571 = t566 + t570;
+  const Real t572 = t115 * t569;
+  const Real t573 = t489 * s_r_p_1_;
+  const Real t574 = c_r_p_1_ * t417;
   const Real t575 = t573 + t574;
-  const Real t576 = t575 * s_r_p_2_;
-  const Real t577 = t572 + t576;
-  const Real t578 = par.m_F * t577;
-  const Real t579 = t578 * c_r_p_2_;
-  const Real t580 = c_r_p_2_ * t575;
-  const Real t581 = t571 * s_r_p_2_;
-  const Real t582 = t580 - t581;
-  const Real t583 = par.m_F * t582;
-  const Real t584 = t583 * s_r_p_2_;
-  const Real t585 = t579 - t584;
-  const Real t586 = t585 * par.k2;
-  const Real t587 = t578 * s_r_p_2_;
-  const Real t588 = c_r_p_2_ * t583;
-  const Real t589 = t587 + t588;
-  const Real t590 = par.k1 * t589;
-  const Real t591 = t586 + t590;
-  const Real t592 = t534 + t591;
-  const Real t593 = par.k2 * t592;
-  const Real t594 = par.k2 * t589;
-  const Real t595 = t585 * par.k1;
-  const Real t596 = t594 - t595;
-  const Real t597 = t562 * par.m_H;
-  const Real t598 = par.k8 * t563;
-  const Real t599 = t566 * par.k10;
-  const Real t600 = t598 - t599;
-  const Real t601 = t597 + t600;
-  const Real t602 = t596 + t601;
-  const Real t603 = t602 * c_r_p_1_;
-  const Real t604 = c_r_p_1_ * t560;
-  const Real t605 = s_r_p_1_ * t542;
-  const Real t606 = t604 - t605;
-  const Real t607 = t497 * par.k2;
-  const Real t608 = t252 + t607;
-  const Real t609 = nu_dot[1] + t608;
-  const Real t610 = t368 * t409;
-  const Real t611 = t609 - t610;
-  const Real t612 = par.k12 * t611;
-  const Real t613 = s_r_p_1_ * t481;
-  const Real t614 = c_r_p_1_ * t499;
+  const Real t576 = t340 * nu[0];
+  const Real t577 = nu[1] * t363;
+  const Real t578 = t382 * nu[1];
+  const Real t579 = t577 + t578;
+  const Real t580 = t576 + t579;
+  const Real t581 = t296 * nu[2];
+  const Real t582 = t580 + t581;
+  const Real t583 = t575 + t582;
+  const Real t584 = t583 * t545;
+  const Real t585 = t572 + t584;
+  const Real t586 = t571 - t585;
+  const Real t587 = t138 * t554;
+  const Real t588 = t586 - t587;
+  const Real t589 = t562 + t588;
+  const Real t590 = t35 * t559;
+  const Real t591 = t589 - t590;
+  const Real t592 = t215 * t561;
+  const Real t593 = t591 - t592;
+  const Real t594 = t247 * t593;
+  const Real t595 = t209 * t561;
+  const Real t596 = t559 * t138;
+  const Real t597 = t100 * t569;
+  const Real t598 = t583 * t537;
+  const Real t599 = t597 + t598;
+  const Real t600 = t565 * par.k2;
+  const Real t601 = par.r_F * t569;
+  const Real t602 = t600 + t601;
+  const Real t603 = t599 + t602;
+  const Real t604 = t132 * t554;
+  const Real t605 = t554 * t29;
+  const Real t606 = t604 + t605;
+  const Real t607 = t603 + t606;
+  const Real t608 = t441 * t31;
+  const Real t609 = t607 + t608;
+  const Real t610 = t596 + t609;
+  const Real t611 = t595 + t610;
+  const Real t612 = t594 + t611;
+  const Real t613 = product_error(t209, t561);
+  const Real t614 = sum_error(t610, t595);
   const Real t615 = t613 + t614;
-  const Real t616 = t368 * nu[1];
-  const Real t617 = t615 - t616;
-  const Real t618 = t368 * t413;
-  const Real t619 = t617 + t618;
-  const Real t620 = par.k11 * t619;
-  const Real t621 = t612 + t620;
-  const Real t622 = t606 + t621;
-  const Real t623 = t622 * par.m_F;
-  const Real t624 = par.k10 * t611;
-  const Real t625 = par.k8 * t619;
-  const Real t626 = t624 - t625;
-  const Real t627 = t606 * par.m_H;
-  const Real t628 = t626 + t627;
-  const Real t629 = t623 + t628;
-  const Real t630 = s_r_p_1_ * t629;
-  const Real t631 = t603 - t630;
-  const Real t632 = par.k1 * t631;
-  const Real t633 = t593 - t632;
-  const Real t634 = t486 + t633;
-  const Real t635 = t470 * par.r_R;
-  const Real t636 = t467 + t635;
-  const Real t637 = t636 * c_r_p_0_;
-  const Real t638 = t481 - t482;
-  const Real t639 = t638 * par.r_R;
-  const Real t640 = t526 - t639;
-  const Real t641 = t640 * s_r_p_0_;
-  const Real t642 = t637 + t641;
-  const Real t643 = t642 * par.m_R;
-  const Real t644 = t643 * c_r_p_0_;
-  const Real t645 = t640 * c_r_p_0_;
-  const Real t646 = t636 * s_r_p_0_;
-  const Real t647 = t645 - t646;
-  const Real t648 = par.m_R * t647;
-  const Real t649 = s_r_p_0_ * t648;
-  const Real t650 = t644 - t649;
-  const Real t651 = t634 + t650;
-  const Real t652 = t651 * t101;
-  const Real t653 = nu_dot[0] * t216;
-  const Real t654 = nu_dot[1] * t256;
-  const Real t655 = t653 + t654;
-  const Real t656 = nu_dot[2] * t196;
-  const Real t657 = t655 + t656;
-  const Real t658 = t454 + t657;
-  const Real t659 = t503 - t658;
-  const Real t660 = t659 * par.I_Fyy;
-  const Real t661 = t591 * par.k12;
-  const Real t662 = t596 * par.k11;
-  const Real t663 = t661 + t662;
-  const Real t664 = t660 - t663;
-  const Real t665 = t562 * par.k8;
-  const Real t666 = t532 * par.k10;
-  const Real t667 = t665 - t666;
-  const Real t668 = t565 - t507;
-  const Real t669 = par.k5 * t668;
-  const Real t670 = t487 * par.k31;
-  const Real t671 = t503 * par.k7;
-  const Real t672 = t670 + t671;
-  const Real t673 = t669 + t672;
-  const Real t674 = t667 + t673;
-  const Real t675 = t664 + t674;
-  const Real t676 = t675 * c_r_p_1_;
-  const Real t677 = t623 * par.k11;
-  const Real t678 = par.k1 * t609;
-  const Real t679 = t617 * par.k2;
-  const Real t680 = t678 + t679;
-  const Real t681 = c_r_p_2_ * t680;
-  const Real t682 = t609 * par.k2;
-  const Real t683 = par.k1 * t617;
-  const Real t684 = t682 - t683;
-  const Real t685 = t684 * s_r_p_2_;
-  const Real t686 = t681 - t685;
-  const Real t687 = t415 * s_r_p_2_;
-  const Real t688 = t421 * c_r_p_2_;
-  const Real t689 = t687 + t688;
-  const Real t690 = t371 * t689;
-  const Real t691 = t686 + t690;
-  const Real t692 = par.I_Fxx * t691;
-  const Real t693 = t372 * t689;
-  const Real t694 = par.k35 * t693;
-  const Real t695 = t692 - t694;
-  const Real t696 = t695 * c_r_p_2_;
-  const Real t697 = c_r_p_2_ * t684;
-  const Real t698 = t680 * s_r_p_2_;
+  const Real t616 = t593 * t275;
+  const Real t617 = product_error(t247, t593);
+  const Real t618 = t616 + t617;
+  const Real t619 = t615 + t618;
+  const Real t620 = t612 + t619;
+  const Real t621 = t620 * t284;
+  const Real t622 = t620 * t281;
+  const Real t623 = t621 + t622;
+  const Real t624 = t623 * t115;
+  const Real t625 = t593 - t624;
+  const Real t626 = t625 * t246;
+  const Real t627 = t241 * t626;
+  const Real t628 = t561 - t627;
+  const Real t629 = product_error(t241, t626);
+  const Real t630 = product_error(t246, t625);
+  const Real t631 = t625 * t272;
+  const Real t632 = -t624;
+  const Real t633 = sum_error(t593, t632);
+  const Real t634 = t633 * t246;
+  const Real t635 = t631 + t634;
+  const Real t636 = t630 + t635;
+  const Real t637 = t636 * t241;
+  const Real t638 = t629 + t637;
+  const Real t639 = t628 - t638;
+  const Real t640 = t159 * t639;
+  const Real t641 = t640 * t45;
+  const Real t642 = t441 - t641;
+  const Real t643 = t401 + t642;
+  const Real t644 = t406 * t456;
+  const Real t645 = t472 * nu[0];
+  const Real t646 = t644 + t645;
+  const Real t647 = t643 - t646;
+  const Real t648 = t647 - t194;
+  const Real t649 = nu_dot[2] * t313;
+  const Real t650 = nu_dot[1] * t397;
+  const Real t651 = nu_dot[0] * t357;
+  const Real t652 = t650 + t651;
+  const Real t653 = t649 + t652;
+  const Real t654 = t640 - t653;
+  const Real t655 = t417 * nu[0];
+  const Real t656 = t654 - t655;
+  const Real t657 = t656 * par.k14;
+  const Real t658 = t648 + t657;
+  const Real t659 = t658 * s_r_p_1_;
+  const Real t660 = t406 * t482;
+  const Real t661 = t472 * t417;
+  const Real t662 = t660 - t661;
+  const Real t663 = t11 * t626;
+  const Real t664 = t11 * t636;
+  const Real t665 = t663 + t664;
+  const Real t666 = t554 - t665;
+  const Real t667 = nu_dot[2] * t454;
+  const Real t668 = nu_dot[1] * t444;
+  const Real t669 = nu_dot[0] * t448;
+  const Real t670 = t668 + t669;
+  const Real t671 = t667 + t670;
+  const Real t672 = t666 + t671;
+  const Real t673 = t662 + t672;
+  const Real t674 = t673 - t196;
+  const Real t675 = t417 * t417;
+  const Real t676 = t406 * t406;
+  const Real t677 = t675 + t676;
+  const Real t678 = par.k14 * t677;
+  const Real t679 = t674 - t678;
+  const Real t680 = t679 * par.k2;
+  const Real t681 = nu_dot[2] * t461;
+  const Real t682 = t465 * nu_dot[1];
+  const Real t683 = nu_dot[0] * t469;
+  const Real t684 = t682 + t683;
+  const Real t685 = t681 - t684;
+  const Real t686 = t636 * t45;
+  const Real t687 = t626 * t45;
+  const Real t688 = t686 + t687;
+  const Real t689 = t559 + t688;
+  const Real t690 = t685 + t689;
+  const Real t691 = t482 * nu[0];
+  const Real t692 = t417 * t456;
+  const Real t693 = t691 + t692;
+  const Real t694 = t690 + t693;
+  const Real t695 = t694 - t195;
+  const Real t696 = t406 * nu[0];
+  const Real t697 = nu_dot[2] * t308;
+  const Real t698 = nu_dot[2] * t299;
   const Real t699 = t697 + t698;
-  const Real t700 = c_r_p_2_ * t415;
-  const Real t701 = t421 * s_r_p_2_;
-  const Real t702 = t700 - t701;
-  const Real t703 = t702 * t371;
-  const Real t704 = t699 - t703;
-  const Real t705 = par.I_Fxx * t704;
-  const Real t706 = t702 * t372;
-  const Real t707 = t706 * par.k36;
-  const Real t708 = t705 - t707;
-  const Real t709 = t708 * s_r_p_2_;
+  const Real t700 = nu_dot[1] * t392;
+  const Real t701 = t366 * nu_dot[1];
+  const Real t702 = t700 + t701;
+  const Real t703 = nu_dot[0] * t343;
+  const Real t704 = nu_dot[0] * t352;
+  const Real t705 = t703 + t704;
+  const Real t706 = t702 + t705;
+  const Real t707 = t699 + t706;
+  const Real t708 = t626 - t707;
+  const Real t709 = t708 + t636;
   const Real t710 = t696 + t709;
-  const Real t711 = t710 * par.k2;
-  const Real t712 = t708 * c_r_p_2_;
-  const Real t713 = t695 * s_r_p_2_;
-  const Real t714 = t712 - t713;
-  const Real t715 = par.k1 * t714;
-  const Real t716 = t711 - t715;
-  const Real t717 = t677 + t716;
-  const Real t718 = t617 * par.k17;
-  const Real t719 = par.k30 * t618;
-  const Real t720 = t718 - t719;
-  const Real t721 = par.k5 * t611;
-  const Real t722 = t720 + t721;
-  const Real t723 = par.k8 * t606;
+  const Real t711 = t710 * par.k14;
+  const Real t712 = t695 - t711;
+  const Real t713 = t712 * par.k1;
+  const Real t714 = t680 - t713;
+  const Real t715 = t714 * c_r_p_1_;
+  const Real t716 = t659 + t715;
+  const Real t717 = t504 * t500;
+  const Real t718 = c_r_p_1_ * t709;
+  const Real t719 = t654 * par.k1;
+  const Real t720 = t237 - t719;
+  const Real t721 = s_r_p_1_ * t720;
+  const Real t722 = t718 - t721;
+  const Real t723 = t504 * nu[1];
   const Real t724 = t722 - t723;
   const Real t725 = t717 + t724;
-  const Real t726 = s_r_p_1_ * t725;
-  const Real t727 = t676 + t726;
-  const Real t728 = par.k13 * t633;
-  const Real t729 = t727 - t728;
-  const Real t730 = t526 * par.k15;
-  const Real t731 = t467 * par.k16;
-  const Real t732 = t730 - t731;
-  const Real t733 = par.k4 * t481;
-  const Real t734 = par.k27 * t482;
-  const Real t735 = t733 - t734;
-  const Real t736 = t527 - t186;
-  const Real t737 = par.k3 * t736;
-  const Real t738 = t735 + t737;
-  const Real t739 = t732 + t738;
-  const Real t740 = t729 + t739;
-  const Real t741 = nu_dot[2] + t481;
-  const Real t742 = t741 * par.I_Ryy;
-  const Real t743 = c_r_p_0_ * t648;
-  const Real t744 = t643 * s_r_p_0_;
-  const Real t745 = t743 + t744;
-  const Real t746 = t745 * par.r_R;
-  const Real t747 = t742 - t746;
-  const Real t748 = t740 + t747;
-  const Real t749 = t526 * par.m_B;
-  const Real t750 = t638 * par.k15;
-  const Real t751 = t528 * par.k16;
-  const Real t752 = t750 - t751;
-  const Real t753 = t749 + t752;
-  const Real t754 = par.k2 * t631;
-  const Real t755 = par.k1 * t592;
-  const Real t756 = t754 + t755;
-  const Real t757 = t753 + t756;
-  const Real t758 = t745 + t757;
-  const Real t759 = t758 * t58;
-  const Real t760 = t748 - t759;
-  const Real t761 = t652 + t760;
-  const Real t762 = t293 * s_r_p_0_;
-  const Real t763 = t184 + t762;
-  const Real t764 = t289 * t763;
-  const Real t765 = par.k28 * t764;
-  const Real t766 = t497 * c_r_p_0_;
-  const Real t767 = t766 + t250;
-  const Real t768 = t763 * nu[2];
-  const Real t769 = t767 + t768;
-  const Real t770 = t769 * par.I_Rxx;
+  const Real t726 = par.k12 * t725;
+  const Real t727 = t500 * t500;
+  const Real t728 = t575 * t575;
+  const Real t729 = t727 + t728;
+  const Real t730 = t729 * par.k13;
+  const Real t731 = t726 + t730;
+  const Real t732 = t716 - t731;
+  const Real t733 = par.k2 * t732;
+  const Real t734 = t504 * t504;
+  const Real t735 = t728 + t734;
+  const Real t736 = par.k12 * t735;
+  const Real t737 = t717 - t724;
+  const Real t738 = t737 * par.k13;
+  const Real t739 = t736 + t738;
+  const Real t740 = t679 * par.k1;
+  const Real t741 = t712 * par.k2;
+  const Real t742 = t740 + t741;
+  const Real t743 = t739 + t742;
+  const Real t744 = par.k1 * t743;
+  const Real t745 = t733 + t744;
+  const Real t746 = t745 * s_r_p_2_;
+  const Real t747 = par.k2 * t743;
+  const Real t748 = par.k1 * t732;
+  const Real t749 = t747 - t748;
+  const Real t750 = t749 * c_r_p_2_;
+  const Real t751 = t746 + t750;
+  const Real t752 = t751 * par.m_F;
+  const Real t753 = t752 * s_r_p_2_;
+  const Real t754 = t745 * c_r_p_2_;
+  const Real t755 = t749 * s_r_p_2_;
+  const Real t756 = t754 - t755;
+  const Real t757 = par.m_F * t756;
+  const Real t758 = c_r_p_2_ * t757;
+  const Real t759 = t753 + t758;
+  const Real t760 = t759 * par.k2;
+  const Real t761 = t752 * c_r_p_2_;
+  const Real t762 = t757 * s_r_p_2_;
+  const Real t763 = t761 - t762;
+  const Real t764 = par.k1 * t763;
+  const Real t765 = t760 - t764;
+  const Real t766 = t716 * par.m_H;
+  const Real t767 = par.k9 * t725;
+  const Real t768 = par.k11 * t729;
+  const Real t769 = t767 - t768;
+  const Real t770 = t766 + t769;
   const Real t771 = t765 + t770;
-  const Real t772 = t771 * c_r_p_0_;
-  const Real t773 = t293 * c_r_p_0_;
-  const Real t774 = t185 - t773;
-  const Real t775 = t289 * t774;
-  const Real t776 = t775 * par.k29;
-  const Real t777 = t497 * s_r_p_0_;
-  const Real t778 = t249 - t777;
-  const Real t779 = t774 * nu[2];
+  const Real t772 = c_r_p_1_ * t771;
+  const Real t773 = t658 * c_r_p_1_;
+  const Real t774 = s_r_p_1_ * t714;
+  const Real t775 = t773 - t774;
+  const Real t776 = c_r_p_1_ * t720;
+  const Real t777 = s_r_p_1_ * t709;
+  const Real t778 = t776 + t777;
+  const Real t779 = t575 * nu[1];
   const Real t780 = t778 - t779;
-  const Real t781 = par.I_Rxx * t780;
-  const Real t782 = t776 + t781;
-  const Real t783 = t782 * s_r_p_0_;
-  const Real t784 = t772 - t783;
-  const Real t785 = par.k2 * t714;
-  const Real t786 = par.k1 * t710;
-  const Real t787 = t785 + t786;
-  const Real t788 = t623 * par.k12;
-  const Real t789 = t787 + t788;
-  const Real t790 = par.k5 * t619;
-  const Real t791 = par.k6 * t609;
-  const Real t792 = t610 * par.k32;
-  const Real t793 = t791 - t792;
-  const Real t794 = t790 + t793;
-  const Real t795 = t606 * par.k10;
-  const Real t796 = t794 + t795;
-  const Real t797 = t789 + t796;
-  const Real t798 = par.k2 * t797;
-  const Real t799 = t725 * c_r_p_1_;
-  const Real t800 = s_r_p_1_ * t675;
-  const Real t801 = t799 - t800;
-  const Real t802 = t801 * par.k1;
-  const Real t803 = t798 - t802;
-  const Real t804 = s_r_p_1_ * t602;
-  const Real t805 = c_r_p_1_ * t629;
-  const Real t806 = t804 + t805;
-  const Real t807 = par.k13 * t806;
-  const Real t808 = t803 + t807;
-  const Real t809 = t497 * par.k14;
-  const Real t810 = t557 * par.k25;
-  const Real t811 = t809 - t810;
-  const Real t812 = t280 * t293;
-  const Real t813 = t812 - nu_dot[0];
-  const Real t814 = par.k3 * t813;
-  const Real t815 = t811 - t814;
-  const Real t816 = t556 * par.k16;
-  const Real t817 = t815 + t816;
-  const Real t818 = t808 + t817;
-  const Real t819 = t784 + t818;
-  const Real t820 = t813 * par.r_R;
-  const Real t821 = t556 - t820;
-  const Real t822 = t821 * par.m_R;
-  const Real t823 = t813 * par.k15;
-  const Real t824 = par.k16 * t558;
-  const Real t825 = t823 + t824;
-  const Real t826 = t556 * par.m_B;
-  const Real t827 = t825 + t826;
-  const Real t828 = t827 + t806;
-  const Real t829 = t822 + t828;
-  const Real t830 = t829 * t101;
-  const Real t831 = t819 - t830;
-  const Real t832 = t831 * t109;
-  const Real t833 = t118 * t832;
-  const Real t834 = t761 - t833;
-  const Real t835 = t834 * t130;
-  const Real t836 = t25 * t835;
-  const Real t837 = t660 + t836;
-  const Real t838 = t195 * t837;
-  const Real t839 = t131 * t838;
-  const Real t840 = t187 * t838;
-  const Real t841 = t839 + t840;
-  const Real t842 = t835 - t841;
-  const Real t843 = t31 * t842;
-  const Real t844 = t651 - t843;
-  const Real t845 = t110 * t842;
-  const Real t846 = t832 - t845;
-  const Real t847 = t121 * t838;
-  const Real t848 = t846 - t847;
-  const Real t849 = t848 * t45;
-  const Real t850 = t844 - t849;
-  const Real t851 = t34 * t838;
-  const Real t852 = t850 - t851;
-  const Real t853 = t842 * t93;
-  const Real t854 = t758 - t853;
-  const Real t855 = t848 * t59;
-  const Real t856 = t854 + t855;
-  const Real t857 = t90 * t838;
-  const Real t858 = t856 - t857;
-  const Real t859 = t842 * t45;
-  const Real t860 = t859 + t829;
-  const Real t861 = t848 * c_r_p_1_;
-  const Real t862 = t860 - t861;
-  const Real t863 = t59 * t838;
-  const Real t864 = t862 - t863;
+  const Real t781 = t575 * t500;
+  const Real t782 = t780 + t781;
+  const Real t783 = t782 * par.k12;
+  const Real t784 = t654 * par.k2;
+  const Real t785 = t238 + t784;
+  const Real t786 = nu_dot[1] + t785;
+  const Real t787 = t504 * t575;
+  const Real t788 = t786 - t787;
+  const Real t789 = t788 * par.k13;
+  const Real t790 = t783 + t789;
+  const Real t791 = t775 + t790;
+  const Real t792 = par.m_F * t791;
+  const Real t793 = par.m_H * t775;
+  const Real t794 = t788 * par.k11;
+  const Real t795 = par.k9 * t782;
+  const Real t796 = t794 - t795;
+  const Real t797 = t793 + t796;
+  const Real t798 = t792 + t797;
+  const Real t799 = s_r_p_1_ * t798;
+  const Real t800 = t772 - t799;
+  const Real t801 = par.k2 * t800;
+  const Real t802 = par.k2 * t763;
+  const Real t803 = par.k1 * t759;
+  const Real t804 = t802 + t803;
+  const Real t805 = par.m_H * t742;
+  const Real t806 = t737 * par.k11;
+  const Real t807 = par.k9 * t735;
+  const Real t808 = t806 - t807;
+  const Real t809 = t805 + t808;
+  const Real t810 = t804 + t809;
+  const Real t811 = t810 * par.k1;
+  const Real t812 = t801 + t811;
+  const Real t813 = t674 * par.m_B;
+  const Real t814 = t709 - t696;
+  const Real t815 = t814 * par.k16;
+  const Real t816 = t677 * par.k17;
+  const Real t817 = t815 - t816;
+  const Real t818 = t813 + t817;
+  const Real t819 = t812 + t818;
+  const Real t820 = t814 * par.r_R;
+  const Real t821 = t674 - t820;
+  const Real t822 = t821 * c_r_p_0_;
+  const Real t823 = t207 + t675;
+  const Real t824 = par.r_R * t823;
+  const Real t825 = t695 + t824;
+  const Real t826 = t825 * s_r_p_0_;
+  const Real t827 = t822 - t826;
+  const Real t828 = t827 * par.m_R;
+  const Real t829 = c_r_p_0_ * t828;
+  const Real t830 = t825 * c_r_p_0_;
+  const Real t831 = t821 * s_r_p_0_;
+  const Real t832 = t830 + t831;
+  const Real t833 = t832 * par.m_R;
+  const Real t834 = t833 * s_r_p_0_;
+  const Real t835 = t829 + t834;
+  const Real t836 = t819 + t835;
+  const Real t837 = nu_dot[2] + t709;
+  const Real t838 = par.I_Ryy * t837;
+  const Real t839 = par.r_R * t835;
+  const Real t840 = t838 - t839;
+  const Real t841 = t674 * par.k16;
+  const Real t842 = t695 * par.k17;
+  const Real t843 = t841 - t842;
+  const Real t844 = t406 + nu[0];
+  const Real t845 = t406 - nu[0];
+  const Real t846 = t844 * t845;
+  const Real t847 = par.k3 * t846;
+  const Real t848 = par.k4 * t709;
+  const Real t849 = t696 * par.k34;
+  const Real t850 = t848 - t849;
+  const Real t851 = t847 + t850;
+  const Real t852 = t843 + t851;
+  const Real t853 = par.k8 * t724;
+  const Real t854 = t717 * par.k38;
+  const Real t855 = t853 + t854;
+  const Real t856 = t500 - t504;
+  const Real t857 = t504 + t500;
+  const Real t858 = t856 * t857;
+  const Real t859 = par.k5 * t858;
+  const Real t860 = t855 + t859;
+  const Real t861 = par.k9 * t716;
+  const Real t862 = par.k11 * t742;
+  const Real t863 = t861 - t862;
+  const Real t864 = t860 + t863;
+  const Real t865 = nu_dot[2] * t296;
+  const Real t866 = nu_dot[1] * t363;
+  const Real t867 = nu_dot[1] * t382;
+  const Real t868 = t866 + t867;
+  const Real t869 = nu_dot[0] * t340;
+  const Real t870 = t868 + t869;
+  const Real t871 = t865 + t870;
+  const Real t872 = t871 + t623;
+  const Real t873 = t724 - t872;
+  const Real t874 = t873 * par.I_Fyy;
+  const Real t875 = t804 * par.k13;
+  const Real t876 = par.k12 * t765;
+  const Real t877 = t875 + t876;
+  const Real t878 = t874 - t877;
+  const Real t879 = t864 + t878;
+  const Real t880 = c_r_p_1_ * t879;
+  const Real t881 = t788 * par.k5;
+  const Real t882 = t780 * par.k18;
+  const Real t883 = par.k37 * t781;
+  const Real t884 = t882 - t883;
+  const Real t885 = t881 + t884;
+  const Real t886 = par.k9 * t775;
+  const Real t887 = t885 - t886;
+  const Real t888 = t780 * par.k2;
+  const Real t889 = t786 * par.k1;
+  const Real t890 = t888 + t889;
+  const Real t891 = t890 * s_r_p_2_;
+  const Real t892 = t786 * par.k2;
+  const Real t893 = t780 * par.k1;
+  const Real t894 = t892 - t893;
+  const Real t895 = t894 * c_r_p_2_;
+  const Real t896 = t891 + t895;
+  const Real t897 = c_r_p_2_ * t506;
+  const Real t898 = t548 * s_r_p_2_;
+  const Real t899 = t897 - t898;
+  const Real t900 = t899 * t582;
+  const Real t901 = t896 - t900;
+  const Real t902 = par.I_Fxx * t901;
+  const Real t903 = t899 * t583;
+  const Real t904 = par.k43 * t903;
+  const Real t905 = t902 - t904;
+  const Real t906 = t905 * s_r_p_2_;
+  const Real t907 = t890 * c_r_p_2_;
+  const Real t908 = t894 * s_r_p_2_;
+  const Real t909 = t907 - t908;
+  const Real t910 = t506 * s_r_p_2_;
+  const Real t911 = c_r_p_2_ * t548;
+  const Real t912 = t910 + t911;
+  const Real t913 = t912 * t582;
+  const Real t914 = t909 + t913;
+  const Real t915 = par.I_Fxx * t914;
+  const Real t916 = t912 * t583;
+  const Real t917 = par.k42 * t916;
+  const Real t918 = t915 - t917;
+  const Real t919 = c_r_p_2_ * t918;
+  const Real t920 = t906 + t919;
+  const Real t921 = par.k2 * t920;
+  const Real t922 = c_r_p_2_ * t905;
+  const Real t923 = t918 * s_r_p_2_;
+  const Real t924 = t922 - t923;
+  const Real t925 = t924 * par.k1;
+  const Real t926 = t921 - t925;
+  const Real t927 = t792 * par.k12;
+  const Real t928 = t926 + t927;
+  const Real t929 = t887 + t928;
+  const Real t930 = s_r_p_1_ * t929;
+  const Real t931 = t880 + t930;
+  const Real t932 = t810 * par.k2;
+  const Real t933 = par.k1 * t800;
+  const Real t934 = t932 - t933;
+  const Real t935 = t934 * par.k14;
+  const Real t936 = t931 - t935;
+  const Real t937 = t852 + t936;
+  const Real t938 = t840 + t937;
+  const Real t939 = t11 * t836;
+  const Real t940 = t938 - t939;
+  const Real t941 = t833 * c_r_p_0_;
+  const Real t942 = s_r_p_0_ * t828;
+  const Real t943 = t941 - t942;
+  const Real t944 = t695 * par.m_B;
+  const Real t945 = par.k16 * t823;
+  const Real t946 = t710 * par.k17;
+  const Real t947 = t945 + t946;
+  const Real t948 = t944 - t947;
+  const Real t949 = t948 + t934;
+  const Real t950 = t943 + t949;
+  const Real t951 = t950 * t45;
+  const Real t952 = t940 + t951;
+  const Real t953 = t406 * s_r_p_0_;
+  const Real t954 = t205 + t953;
+  const Real t955 = t553 * t954;
+  const Real t956 = par.k35 * t955;
+  const Real t957 = t954 * nu[2];
+  const Real t958 = t654 * c_r_p_0_;
+  const Real t959 = t958 + t236;
+  const Real t960 = t957 + t959;
+  const Real t961 = par.I_Rxx * t960;
+  const Real t962 = t956 + t961;
+  const Real t963 = t962 * c_r_p_0_;
+  const Real t964 = t654 * s_r_p_0_;
+  const Real t965 = t235 - t964;
+  const Real t966 = t406 * c_r_p_0_;
+  const Real t967 = t206 - t966;
+  const Real t968 = t967 * nu[2];
+  const Real t969 = t965 - t968;
+  const Real t970 = par.I_Rxx * t969;
+  const Real t971 = t967 * t553;
+  const Real t972 = par.k36 * t971;
+  const Real t973 = t970 + t972;
+  const Real t974 = t973 * s_r_p_0_;
+  const Real t975 = t963 - t974;
+  const Real t976 = t786 * par.k7;
+  const Real t977 = t787 * par.k39;
+  const Real t978 = t976 - t977;
+  const Real t979 = par.k5 * t782;
+  const Real t980 = t978 + t979;
+  const Real t981 = par.k11 * t775;
+  const Real t982 = t980 + t981;
+  const Real t983 = t792 * par.k13;
+  const Real t984 = par.k1 * t920;
+  const Real t985 = t924 * par.k2;
+  const Real t986 = t984 + t985;
+  const Real t987 = t983 + t986;
+  const Real t988 = t982 + t987;
+  const Real t989 = par.k2 * t988;
+  const Real t990 = c_r_p_1_ * t929;
+  const Real t991 = s_r_p_1_ * t879;
+  const Real t992 = t990 - t991;
+  const Real t993 = t992 * par.k1;
+  const Real t994 = t989 - t993;
+  const Real t995 = s_r_p_1_ * t771;
+  const Real t996 = c_r_p_1_ * t798;
+  const Real t997 = t995 + t996;
+  const Real t998 = t997 * par.k14;
+  const Real t999 = t994 + t998;
+  const Real t1000 = t654 * par.k15;
+  const Real t1001 = t655 * par.k32;
+  const Real t1002 = t1000 - t1001;
+  const Real t1003 = t406 * t417;
+  const Real t1004 = t1003 - nu_dot[0];
+  const Real t1005 = par.k3 * t1004;
+  const Real t1006 = t1002 - t1005;
+  const Real t1007 = t648 * par.k17;
+  const Real t1008 = t1006 + t1007;
+  const Real t1009 = t999 + t1008;
+  const Real t1010 = t975 + t1009;
+  const Real t1011 = t656 * par.k17;
+  const Real t1012 = t1004 * par.k16;
+  const Real t1013 = t1011 + t1012;
+  const Real t1014 = t648 * par.m_B;
+  const Real t1015 = t1013 + t1014;
+  const Real t1016 = t1015 + t997;
+  const Real t1017 = t1004 * par.r_R;
+  const Real t1018 = t648 - t1017;
+  const Real t1019 = par.m_R * t1018;
+  const Real t1020 = t1016 + t1019;
+  const Real t1021 = t1020 * t45;
+  const Real t1022 = t1010 - t1021;
+  const Real t1023 = t159 * t1022;
+  const Real t1024 = t241 * t1023;
+  const Real t1025 = t952 - t1024;
+  const Real t1026 = t1025 * t246;
+  const Real t1027 = t115 * t1026;
+  const Real t1028 = t1025 * t272;
+  const Real t1029 = -t1024;
+  const Real t1030 = sum_error(t952, t1029);
+  const Real t1031 = product_error(t241, t1023);
+  const Real t1032 = t1030 - t1031;
+  const Real t1033 = t1032 * t246;
+  const Real t1034 = t1028 + t1033;
+  const Real t1035 = product_error(t246, t1025);
+  const Real t1036 = t1034 + t1035;
+  const Real t1037 = t1036 * t115;
+  const Real t1038 = t1027 + t1037;
+  const Real t1039 = t1038 + t874;
+  const Real t1040 = t281 * t1039;
+  const Real t1041 = t284 * t1039;
+  const Real t1042 = t1040 + t1041;
+  const Real t1043 = t247 * t1042;
+  const Real t1044 = t1026 - t1043;
+  const Real t1045 = t1044 * t138;
+  const Real t1046 = -t1043;
+  const Real t1047 = sum_error(t1026, t1046);
+  const Real t1048 = product_error(t1042, t247);
+  const Real t1049 = t1042 * t275;
+  const Real t1050 = t1048 + t1049;
+  const Real t1051 = t1036 - t1050;
+  const Real t1052 = t1047 + t1051;
+  const Real t1053 = t1052 * t138;
+  const Real t1054 = t1045 + t1053;
+  const Real t1055 = t836 - t1054;
+  const Real t1056 = t215 * t1044;
+  const Real t1057 = -t1056;
+  const Real t1058 = sum_error(t1023, t1057);
+  const Real t1059 = product_error(t215, t1044);
+  const Real t1060 = t1052 * t215;
+  const Real t1061 = t1059 + t1060;
+  const Real t1062 = t1058 - t1061;
+  const Real t1063 = product_error(t209, t1042);
+  const Real t1064 = t1062 - t1063;
+  const Real t1065 = t1023 - t1056;
+  const Real t1066 = t1042 * t209;
+  const Real t1067 = t1065 - t1066;
+  const Real t1068 = t1064 + t1067;
+  const Real t1069 = t31 * t1068;
+  const Real t1070 = t1055 + t1069;
+  const Real t1071 = t1042 * t29;
+  const Real t1072 = t1042 * t132;
+  const Real t1073 = t1071 + t1072;
+  const Real t1074 = t1070 - t1073;
+  const Real t1075 = t1052 + t1044;
+  const Real t1076 = t35 * t1052;
+  const Real t1077 = t35 * t1044;
+  const Real t1078 = t1076 + t1077;
+  const Real t1079 = t950 - t1078;
+  const Real t1080 = t48 * t1068;
+  const Real t1081 = t1079 - t1080;
+  const Real t1082 = t1042 * t138;
+  const Real t1083 = t1081 - t1082;
+  const Real t1084 = t1044 * t48;
+  const Real t1085 = t1052 * t48;
+  const Real t1086 = t1084 + t1085;
+  const Real t1087 = t1086 + t1020;
+  const Real t1088 = c_r_p_1_ * t1068;
+  const Real t1089 = t1087 - t1088;
+  const Real t1090 = t31 * t1042;
+  const Real t1091 = t1089 - t1090;
 
-  lambda[0] = t858;
-  lambda[1] = t864;
-  lambda[2] = t852;
-  lambda[3] = t838;
-  lambda[4] = t848;
-  lambda[5] = t842;
+  lambda[0] = t1074;
+  lambda[1] = t1091;
+  lambda[2] = t1083;
+  lambda[3] = t1042;
+  lambda[4] = t1068;
+  lambda[5] = t1075;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.
@@ -7128,11 +10347,11 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t97 = t64 * t12;
   const Real t98 = t38 * t16;
   const Real t99 = t97 + t98;
-  const Real t100 = par.k13 * R[6];
+  const Real t100 = par.k14 * R[6];
   const Real t101 = p[2] + t100;
   const Real t102 = t99 + t101;
   const Real t103 = -t102;
-  const Real t104 = par.k13 * R[7];
+  const Real t104 = par.k14 * R[7];
   const Real t105 = par.k2 * R[7];
   const Real t106 = c_r_p_1_ * t105;
   const Real t107 = s_r_p_1_ * R[6];
@@ -7186,7 +10405,7 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t155 = R[6] * t154;
   const Real t156 = t152 + t155;
   const Real t157 = -t156;
-  const Real t158 = R[8] * par.k13;
+  const Real t158 = R[8] * par.k14;
   const Real t159 = par.k1 * t3;
   const Real t160 = c_r_p_1_ * t10;
   const Real t161 = t160 * par.k2;
@@ -7341,11 +10560,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t24 = t22 + t23;
   const Real t25 = t24 * par.k2;
   const Real t26 = t21 + t25;
-  const Real t27 = eta[5] * par.k13;
+  const Real t27 = eta[5] * par.k14;
   const Real t28 = eta[1] + t27;
   const Real t29 = r_p_dot[0] + eta[4];
   const Real t30 = par.k2 * eta[0];
-  const Real t31 = par.k13 * eta[4];
+  const Real t31 = par.k14 * eta[4];
   const Real t32 = eta[2] - t31;
   const Real t33 = par.k1 * t32;
   const Real t34 = t30 - t33;
@@ -7383,8 +10602,8 @@ inline void energies(const Prepared<Real>& par,
   const Real t62 = t60 + t61;
 
   // front_wheel: twist
-  const Real t63 = t20 * par.k12;
-  const Real t64 = t24 * par.k11;
+  const Real t63 = t20 * par.k13;
+  const Real t64 = t24 * par.k12;
   const Real t65 = t63 + t64;
   const Real t66 = t56 + t65;
   const Real t67 = t26 * c_r_p_2_;
@@ -7393,10 +10612,10 @@ inline void energies(const Prepared<Real>& par,
   const Real t70 = c_r_p_2_ * t37;
   const Real t71 = t26 * s_r_p_2_;
   const Real t72 = t70 + t71;
-  const Real t73 = t15 * par.k11;
+  const Real t73 = t15 * par.k12;
   const Real t74 = t59 - t73;
   const Real t75 = par.k2 * t74;
-  const Real t76 = t15 * par.k12;
+  const Real t76 = t15 * par.k13;
   const Real t77 = t62 - t76;
   const Real t78 = par.k1 * t77;
   const Real t79 = t75 + t78;
@@ -7411,7 +10630,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t88 = t86 + t87;
 
   // conditions on the position
-  const Real t89 = par.k13 * R[6];
+  const Real t89 = par.k14 * R[6];
   const Real t90 = p[2] + t89;
 
   // rear_wheel: pose
@@ -7419,26 +10638,26 @@ inline void energies(const Prepared<Real>& par,
   const Real t92 = p[2] - t91;
 
   // front_wheel: pose
-  const Real t93 = t9 * par.k12;
-  const Real t94 = t3 * par.k11;
+  const Real t93 = t9 * par.k13;
+  const Real t94 = t3 * par.k12;
   const Real t95 = t93 - t94;
   const Real t96 = t95 + t90;
 
   // frame: energy
-  const Real t97 = R[6] * par.k16;
-  const Real t98 = R[8] * par.k15;
+  const Real t97 = R[6] * par.k17;
+  const Real t98 = R[8] * par.k16;
   const Real t99 = t97 + t98;
   const Real t100 = p[2] * par.m_B;
   const Real t101 = t99 + t100;
   const Real t102 = par.g * t101;
   const Real t103 = eta[5] * par.k3;
-  const Real t104 = par.k9 * eta[3];
+  const Real t104 = par.k10 * eta[3];
   const Real t105 = t103 + t104;
   const Real t106 = eta[3] * t105;
   const Real t107 = par.k4 * eta[4];
   const Real t108 = eta[4] * t107;
   const Real t109 = t106 + t108;
-  const Real t110 = eta[5] * par.k14;
+  const Real t110 = eta[5] * par.k15;
   const Real t111 = par.k3 * eta[3];
   const Real t112 = t110 + t111;
   const Real t113 = eta[5] * t112;
@@ -7449,14 +10668,14 @@ inline void energies(const Prepared<Real>& par,
   const Real t118 = eta[2] * eta[2];
   const Real t119 = t117 + t118;
   const Real t120 = t119 * par.m_B;
-  const Real t121 = par.k15 * eta[4];
+  const Real t121 = par.k16 * eta[4];
   const Real t122 = t121 * eta[0];
-  const Real t123 = eta[5] * par.k16;
-  const Real t124 = eta[3] * par.k15;
+  const Real t123 = eta[5] * par.k17;
+  const Real t124 = eta[3] * par.k16;
   const Real t125 = t123 - t124;
   const Real t126 = eta[1] * t125;
   const Real t127 = t122 + t126;
-  const Real t128 = eta[4] * par.k16;
+  const Real t128 = eta[4] * par.k17;
   const Real t129 = eta[2] * t128;
   const Real t130 = t127 - t129;
   const Real t131 = t130 * constant<Real>(2.0L);
@@ -7488,21 +10707,21 @@ inline void energies(const Prepared<Real>& par,
 
   // fork: energy
   const Real t155 = par.m_H * t90;
-  const Real t156 = par.k8 * t3;
-  const Real t157 = par.k10 * t9;
+  const Real t156 = par.k9 * t3;
+  const Real t157 = par.k11 * t9;
   const Real t158 = t156 + t157;
   const Real t159 = t155 + t158;
   const Real t160 = par.g * t159;
   const Real t161 = t137 + t160;
-  const Real t162 = t20 * par.k6;
+  const Real t162 = t20 * par.k7;
   const Real t163 = par.k5 * t24;
   const Real t164 = t162 + t163;
   const Real t165 = t20 * t164;
-  const Real t166 = t24 * par.k17;
+  const Real t166 = t24 * par.k18;
   const Real t167 = t20 * par.k5;
   const Real t168 = t166 + t167;
   const Real t169 = t24 * t168;
-  const Real t170 = par.k7 * t15;
+  const Real t170 = par.k8 * t15;
   const Real t171 = t15 * t170;
   const Real t172 = t169 + t171;
   const Real t173 = t165 + t172;
@@ -7512,14 +10731,14 @@ inline void energies(const Prepared<Real>& par,
   const Real t177 = t175 + t176;
   const Real t178 = t174 + t177;
   const Real t179 = t178 * par.m_H;
-  const Real t180 = t20 * par.k10;
-  const Real t181 = par.k8 * t24;
+  const Real t180 = t20 * par.k11;
+  const Real t181 = par.k9 * t24;
   const Real t182 = t180 - t181;
   const Real t183 = t56 * t182;
-  const Real t184 = par.k8 * t15;
+  const Real t184 = par.k9 * t15;
   const Real t185 = t59 * t184;
   const Real t186 = t183 + t185;
-  const Real t187 = t15 * par.k10;
+  const Real t187 = t15 * par.k11;
   const Real t188 = t187 * t62;
   const Real t189 = t186 - t188;
   const Real t190 = t189 * constant<Real>(2.0L);
@@ -7615,7 +10834,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t15 = c_r_p_1_ * R[7];
   const Real t16 = s_r_p_1_ * t7;
   const Real t17 = t15 - t16;
-  const Real t18 = par.k13 * R[6];
+  const Real t18 = par.k14 * R[6];
   const Real t19 = p[2] + t18;
 
   // rear_wheel: pose
@@ -7648,7 +10867,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t44 = par.k1 * R[3];
   const Real t45 = par.k2 * R[5];
   const Real t46 = t44 + t45;
-  const Real t47 = par.k13 * R[0];
+  const Real t47 = par.k14 * R[0];
   const Real t48 = p[0] + t47;
   const Real t49 = R[4] * s_r_p_1_;
   const Real t50 = par.k2 * R[3];
@@ -7668,15 +10887,15 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t64 = R[4] * c_r_p_1_;
   const Real t65 = t52 * s_r_p_1_;
   const Real t66 = t64 - t65;
-  const Real t67 = R[3] * par.k13;
+  const Real t67 = R[3] * par.k14;
   const Real t68 = p[1] + t67;
   const Real t69 = par.k1 * R[0];
   const Real t70 = par.k2 * R[2];
   const Real t71 = t69 + t70;
 
   // front_wheel: pose
-  const Real t72 = t63 * par.k12;
-  const Real t73 = par.k11 * t71;
+  const Real t72 = t63 * par.k13;
+  const Real t73 = par.k12 * t71;
   const Real t74 = t72 - t73;
   const Real t75 = t48 + t74;
   const Real t76 = t54 * par.k2;
@@ -7692,8 +10911,8 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t86 = t4 - t11;
   const Real t87 = t86 * s_r_p_2_;
   const Real t88 = t85 - t87;
-  const Real t89 = t54 * par.k12;
-  const Real t90 = t46 * par.k11;
+  const Real t89 = t54 * par.k13;
+  const Real t90 = t46 * par.k12;
   const Real t91 = t89 - t90;
   const Real t92 = t91 + t68;
   const Real t93 = t78 * c_r_p_2_;
@@ -7711,8 +10930,8 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t105 = t86 * c_r_p_2_;
   const Real t106 = t14 * s_r_p_2_;
   const Real t107 = t105 + t106;
-  const Real t108 = t10 * par.k12;
-  const Real t109 = t3 * par.k11;
+  const Real t108 = t10 * par.k13;
+  const Real t109 = t3 * par.k12;
   const Real t110 = t108 - t109;
   const Real t111 = t110 + t19;
   const Real t112 = t102 * c_r_p_2_;

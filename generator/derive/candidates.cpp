@@ -52,8 +52,9 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
           for (const Route& r : accurate()) add(r.name, without_empty_blocks(r).outputs);
         }
         add_stable_forms(candidates);
+        const std::size_t derived = candidates.size();
         if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
-        add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at);
+        add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at, derived);
       },
       Estimates::hard_states);
   const std::string full_name = prefix_ + name;

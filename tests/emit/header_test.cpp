@@ -136,6 +136,13 @@ std::map<std::string, OperationCount> recount(const std::string& header) {
       ++count.sines;
     else if (value.rfind("cos(", 0) == 0 || value.rfind("cosine[", 0) == 0)
       ++count.cosines;
+    else if (value.rfind("sum_error(", 0) == 0)
+      count += {.additions = 5};
+    else if (value.rfind("product_error(", 0) ==
+             0)  // two halves of 3 additions each, and their four products
+      count += {.additions = 10, .multiplications = 6};
+    else if (value.rfind("quotient_error(", 0) == 0)
+      count += {.additions = 12, .multiplications = 7, .divisions = 1};
     else if (value.find('(') != std::string::npos)
       ++count.other;
     else if (value.find(" * ") != std::string::npos)

@@ -22,6 +22,19 @@ constexpr std::array names = {std::pair{OptimiseFor::accuracy, std::string_view(
 /// Errors that the choice of the states may have turned round: within half an ulp or a quarter of the error.
 bool is_as_small(double error, double least) { return error <= std::max(least + 0.5, 1.25 * least); }
 
+/// How much more the worst of all states shows than the worst of so few as are measured, typically: an
+/// estimate of how much more again the worst of 1e5 will.
+double growth(const std::vector<double>& errors) {
+  std::vector<double> worst;  // of each group
+  for (std::size_t i = 0; i < errors.size(); i += measured_states) {
+    const auto end =
+        errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors.size(), i + measured_states));
+    worst.push_back(*std::max_element(errors.begin() + static_cast<std::ptrdiff_t>(i), end));
+  }
+  std::ranges::sort(worst);
+  return worst.back() / worst[worst.size() / 2];
+}
+
 /// The random states again, those of more where most is to be expected of a program, and what is allowed at
 /// each.
 /// @return nothing where not even there much is to be expected
@@ -40,7 +53,7 @@ std::optional<MeasuredStates> with_hard_states(const Tape& tape, const std::vect
   std::stable_sort(order.begin() + random, order.end(),
                    [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
   order.resize(std::min<std::size_t>(order.size(), measured_states + hard_states));
-  MeasuredStates at{{}, {}, tolerated_excess};
+  MeasuredStates at{{}, {}, std::clamp(allowed_ulps / growth(errors), least_tolerated, tolerated_ulps)};
   for (const std::size_t s : order) at.states.push_back(many[s]);
   at.allowance = rounding_shares(tape, program, at.states).allowance;
   return at;
@@ -117,7 +130,7 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
       at = std::move(*with_hard);
       std::vector<Candidate> one = {candidates[fast]};
       if (is_fine) measure(tape, one, at);
-      is_fine = is_fine && one[0].error.excess <= tolerated_excess;
+      is_fine = is_fine && one[0].error.excess <= at.tolerated;
     }
     if (is_fine) return fast;
   }

@@ -29,8 +29,9 @@ inline constexpr int estimated_states = 2048, hard_states = 16;
 /// Balanced: ulps that the worst of the measured states may show without further question. Generated code is
 /// to stay below 50 ulps at 1e5 states; the worst of so many is seldom more than three times the worst of 32.
 inline constexpr double tolerated_ulps = 16;
-/// The same where the worst of all estimated states are among them, and in units of what is allowed there.
-inline constexpr double tolerated_excess = 25;
+/// What verify allows, and the least that is asked for where the worst states are far worse than others, as
+/// they will be again among 1e5.
+inline constexpr double allowed_ulps = 50, least_tolerated = 2;
 /// Balanced, where no candidate is within that: this many times the least error that any candidate shows;
 /// single digits are chance.
 inline constexpr double tolerated_growth = 4;

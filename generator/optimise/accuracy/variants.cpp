@@ -39,16 +39,15 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
 }
 
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
-                     OptimiseFor mode, const MeasuredStates& at) {
-  constexpr double root_of_two = 1.4142135623730951, least_share = 1;
+                     OptimiseFor mode, const MeasuredStates& at, std::size_t derived) {
+  constexpr double root_of_two = 1.4142135623730951, least_share = 0.5;
   constexpr std::size_t steps = 4;     // over which a bound falls to a quarter,
   constexpr double improvement = 1.5;  // and the error by this much, or the inputs' own rounding is reached
   measure(tape, candidates, at);
-  const auto is_enough = [&](const RoundingError& e) {
-    return mode != OptimiseFor::accuracy && e.excess <= at.tolerated;
-  };
+  const double bound = mode == OptimiseFor::accuracy ? tolerated_ulps / 4 : at.tolerated;
+  const auto is_enough = [&](const RoundingError& e) { return e.excess <= bound; };
   if (std::ranges::any_of(candidates, is_enough, &Candidate::error)) return;
-  std::vector<Candidate> plain = candidates;
+  std::vector<Candidate> plain(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(derived));
   std::ranges::stable_sort(plain, {}, &Candidate::operations);
   std::set<std::vector<NodeId>> seen;
   int shortest = std::numeric_limits<int>::max();  // of those that are within the bound
@@ -57,7 +56,7 @@ void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::
     if (!seen.insert(roots).second) continue;
     const std::vector<double> shares = rounding_shares(tape, from.outputs, at.states).of_node;
     std::vector<double> errors = {from.error.excess};
-    for (double tolerated = at.tolerated; tolerated > least_share / root_of_two; tolerated /= root_of_two) {
+    for (double tolerated = bound; tolerated > least_share / root_of_two; tolerated /= root_of_two) {
       const auto rest_kept = compensated(tape, roots, shares, tolerated);
       if (!rest_kept || seen.contains(*rest_kept)) continue;
       seen.insert(*rest_kept);

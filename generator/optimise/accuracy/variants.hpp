@@ -20,11 +20,10 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
                                         const std::vector<NodeId>& parameters);
 
 /// Adds the candidates with compensated operations (optimise/accuracy/compensation.hpp), each with the fewest
-/// of them that keep it within tolerated_ulps; for OptimiseFor::accuracy, with as many as help. Nothing is
-/// added where a candidate is within them as it is and accuracy is not asked for. Measures those that it
-/// looks at.
-/// @param many  states at which it is seen which operations the errors come from
+/// of them that keep it within what is tolerated, or for OptimiseFor::accuracy within a quarter of
+/// tolerated_ulps. Nothing is added where a candidate is within that as it is. Measures those that it looks
+/// at.
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
-                     OptimiseFor mode, const MeasuredStates& at);
+                     OptimiseFor mode, const MeasuredStates& at, std::size_t derived);
 
 }  // namespace anholon
