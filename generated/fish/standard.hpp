@@ -18,10 +18,10 @@
 //   inverse_torques           179 add, 264 mul, 6 sin, 6 cos, 12 other
 //   torque_driven_kinematics  none
 //   torque_driven_velocities  none
-//   torque_driven_dynamics    2923 add, 1716 mul, 11 div, 65 neg, 6 sin, 6 cos, 16 other
+//   torque_driven_dynamics    2073 add, 1347 mul, 7 div, 48 neg, 6 sin, 6 cos, 16 other
 //   energies                  114 add, 240 mul, 6 sin, 6 cos, 16 other
 //   body_poses                39 add, 56 mul, 4 neg, 7 sin, 7 cos
-//   prepare                   20 add, 134 mul, 7 div, 4 neg, once per set of parameters
+//   prepare                   20 add, 134 mul, 7 div, 1 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -224,69 +224,66 @@ struct Prepared {
   Real k15;  // 0.25 * rho * 3.14159 * h0 * h0 * k14 * 2
   Real k16;  // 1.35847 / lf
   Real k17;  // k6 * 0.333333 * lf * lf
-  Real k18;  // 0.211325 * l3
-  Real k19;  // 0.5 * l3
-  Real k20;  // 0.788675 * l3
-  Real k21;  // k18 * 0.25 * rho * 3.14159 * h3 * h3 * k19 + k20 * 0.25 * rho * 3.14159 * h3 * h3 * k19
-  Real k22;  // -k21
-  Real k23;  // 0.25 * h3 * rho * 3.14159 * w * l3
-  Real k24;  // k23 * (l3 * l3 * 0.0833333 + w * w * 0.0625) + k23 * 0.5 * l3 * 0.5 * l3
-  Real k25;  // l0 * 0.288675
-  Real k26;  // k25 * 0.25 * rho * 3.14159 * h0 * h0 * k14 * k25 * 2
-  Real k27;  // 0.25 * l2 * h2 * rho * 3.14159 * w
-  Real k28;  // k27 * (l2 * l2 * 0.0833333 + w * w * 0.0625) + k27 * l2 * 0.5 * l2 * 0.5
-  Real k29;  // rhoA_f * 0.39272
-  Real k30;  // l2 * 0.788675
-  Real k31;  // l2 * 0.5
-  Real k32;  // l2 * 0.211325
-  Real k33;  // k30 * k31 * 0.25 * rho * 3.14159 * h2 * h2 + k31 * 0.25 * rho * 3.14159 * h2 * h2 * k32
-  Real k34;  // -k33
-  Real k35;  // 0.5 * k6 * lf
-  Real k36;  // k27 * l2 * 0.5
-  Real k37;  // 2 * 0.25 * rho * 3.14159 * h3 * h3 * k19
-  Real k38;  // -l2
-  Real k39;
-  Real k40;  // 0.788675 * l1
-  Real k41;  // 0.211325 * l1
-  Real k42;
-  Real k43;  // 0.391496 * k6
-  Real k44;  // k1 * 0.5 * l1 * 0.5 * l1 + (l1 * l1 * 0.0833333 + w * w * 0.0625) * k1
-  Real k45;  // k23 * 0.5 * l3
-  Real k46;  // -k45
-  Real k47;  // 0.25 * k6
-  Real k48;
-  Real k49;  // 0.211325 * lf
-  Real k50;  // 0.284413 * k6 * lf
-  Real k51;  // 1.16194 / lf
-  Real k52;  // 0.25 * rho * 3.14159 * h1 * h1 * k11 * k40 + k41 * 0.25 * rho * 3.14159 * h1 * h1 * k11
-  Real k53;  // 0.25 * h0 * rho * 3.14159 * w * l0
-  Real k54;  // k53 * (l0 * l0 * 0.0833333 + w * w * 0.0625)
-  Real k55;  // 0.764187 / lf
-  Real k56;  // k31 * 0.25 * rho * 3.14159 * h2 * h2 * 2
-  Real k57;  // k53 + m_x
-  Real k58;  // k15 + k53
-  Real k59;  // k26 + k54
-  Real k60;  // k42 + k44
-  Real k61;  // k28 + k39
-  Real k62;  // k24 + k48
-  Real k63;  // k43 * l3 + k50
-  Real k64;  // k6 * l3
-  Real k65;  // hf * rho * C_n * 0.5
-  Real k66;  // h3 * rho * C_t * 0.5
-  Real k67;  // 0.5 * rho * C_t * h0
-  Real k68;  // 0.5 * h2 * rho * C_n
-  Real k69;  // 0.5 * h3 * rho * C_n
-  Real k70;  // 0.5 * rho * C_t * h2
-  Real k71;  // 0.5 * hf * rho * C_t
-  Real k72;  // 0.5 * h1 * rho * C_n
-  Real k73;  // 0.5 * rho * C_t * h1
-  Real k74;  // 0.5 * h0 * rho * C_n
-  Real k75;  // (EI / (lf * lf * lf)) * 1.5453
-  Real k76;  // eta * k75
+  Real k18;  // 0.25 * h3 * rho * 3.14159 * w * l3
+  Real k19;  // k18 * (l3 * l3 * 0.0833333 + w * w * 0.0625) + k18 * 0.5 * l3 * 0.5 * l3
+  Real k20;  // l0 * 0.288675
+  Real k21;  // k20 * 0.25 * rho * 3.14159 * h0 * h0 * k14 * k20 * 2
+  Real k22;  // 0.25 * l2 * h2 * rho * 3.14159 * w
+  Real k23;  // k22 * (l2 * l2 * 0.0833333 + w * w * 0.0625) + k22 * l2 * 0.5 * l2 * 0.5
+  Real k24;  // rhoA_f * 0.39272
+  Real k25;  // 0.5 * k6 * lf
+  Real k26;  // 0.211325 * l3
+  Real k27;  // 0.5 * l3
+  Real k28;  // 0.788675 * l3
+  Real k29;  // k26 * 0.25 * rho * 3.14159 * h3 * h3 * k27 + k28 * 0.25 * rho * 3.14159 * h3 * h3 * k27
+  Real k30;  // k22 * l2 * 0.5
+  Real k31;  // 2 * 0.25 * rho * 3.14159 * h3 * h3 * k27
+  Real k32;  // -l2
+  Real k33;  // l2 * 0.211325
+  Real k34;  // l2 * 0.5
+  Real k35;  // l2 * 0.788675
+  Real k36;
+  Real k37;  // k18 * 0.5 * l3
+  Real k38;  // 0.788675 * l1
+  Real k39;  // 0.211325 * l1
+  Real k40;
+  Real k41;  // 0.391496 * k6
+  Real k42;  // k1 * 0.5 * l1 * 0.5 * l1 + (l1 * l1 * 0.0833333 + w * w * 0.0625) * k1
+  Real k43;  // k35 * k34 * 0.25 * rho * 3.14159 * h2 * h2 + k34 * 0.25 * rho * 3.14159 * h2 * h2 * k33
+  Real k44;  // 0.25 * k6
+  Real k45;
+  Real k46;  // 0.211325 * lf
+  Real k47;  // 0.284413 * k6 * lf
+  Real k48;  // 1.16194 / lf
+  Real k49;  // 0.25 * rho * 3.14159 * h1 * h1 * k11 * k38 + k39 * 0.25 * rho * 3.14159 * h1 * h1 * k11
+  Real k50;  // 0.25 * h0 * rho * 3.14159 * w * l0
+  Real k51;  // k50 * (l0 * l0 * 0.0833333 + w * w * 0.0625)
+  Real k52;  // 0.764187 / lf
+  Real k53;  // k34 * 0.25 * rho * 3.14159 * h2 * h2 * 2
+  Real k54;  // k50 + m_x
+  Real k55;  // k15 + k50
+  Real k56;  // k21 + k51
+  Real k57;  // k40 + k42
+  Real k58;  // k23 + k36
+  Real k59;  // k19 + k45
+  Real k60;  // k41 * l3 + k47
+  Real k61;  // k6 * l3
+  Real k62;  // hf * rho * C_n * 0.5
+  Real k63;  // h3 * rho * C_t * 0.5
+  Real k64;  // 0.5 * rho * C_t * h0
+  Real k65;  // 0.5 * h2 * rho * C_n
+  Real k66;  // 0.5 * h3 * rho * C_n
+  Real k67;  // 0.5 * rho * C_t * h2
+  Real k68;  // 0.5 * hf * rho * C_t
+  Real k69;  // 0.5 * h1 * rho * C_n
+  Real k70;  // 0.5 * rho * C_t * h1
+  Real k71;  // 0.5 * h0 * rho * C_n
+  Real k72;  // (EI / (lf * lf * lf)) * 1.5453
+  Real k73;  // eta * k72
 };
 
 /// To be called once per set of parameter values.
-/// operations: 20 add, 134 mul, 7 div, 4 neg
+/// operations: 20 add, 134 mul, 7 div, 1 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -326,154 +323,151 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t33 = t14 * constant<Real>(0.333333333333333333333L);
   const Real t34 = t33 * par.lf;
   const Real t35 = t34 * par.lf;
-  const Real t36 = constant<Real>(0.211324865405187117745L) * par.l3;
-  const Real t37 = par.h3 * par.h3;
-  const Real t38 = t1 * t37;
-  const Real t39 = constant<Real>(0.25L) * t38;
-  const Real t40 = constant<Real>(0.5L) * par.l3;
-  const Real t41 = t39 * t40;
-  const Real t42 = t36 * t41;
-  const Real t43 = constant<Real>(0.788675134594812882255L) * par.l3;
-  const Real t44 = t43 * t41;
-  const Real t45 = t42 + t44;
-  const Real t46 = -t45;
-  const Real t47 = par.h3 * t2;
-  const Real t48 = t47 * par.l3;
-  const Real t49 = constant<Real>(0.25L) * t48;
-  const Real t50 = par.l3 * par.l3;
-  const Real t51 = t50 * constant<Real>(0.0833333333333333333333L);
-  const Real t52 = par.w * par.w;
-  const Real t53 = t52 * constant<Real>(0.0625L);
-  const Real t54 = t51 + t53;
-  const Real t55 = t49 * t54;
-  const Real t56 = constant<Real>(0.5L) * par.l3;
-  const Real t57 = t56 * t56;
-  const Real t58 = t49 * t57;
-  const Real t59 = t55 + t58;
-  const Real t60 = par.l0 * constant<Real>(0.288675134594812882255L);
-  const Real t61 = t30 * t60;
-  const Real t62 = t60 * t61;
-  const Real t63 = t62 * constant<Real>(2.0L);
-  const Real t64 = par.h2 * t2;
-  const Real t65 = par.l2 * t64;
-  const Real t66 = constant<Real>(0.25L) * t65;
-  const Real t67 = par.l2 * par.l2;
-  const Real t68 = t67 * constant<Real>(0.0833333333333333333333L);
-  const Real t69 = t68 + t53;
-  const Real t70 = t66 * t69;
-  const Real t71 = par.l2 * constant<Real>(0.5L);
-  const Real t72 = t71 * t71;
-  const Real t73 = t66 * t72;
-  const Real t74 = t70 + t73;
-  const Real t75 = par.rhoA_f * constant<Real>(0.392719547498562540078L);
-  const Real t76 = par.l2 * constant<Real>(0.788675134594812882255L);
-  const Real t77 = par.l2 * constant<Real>(0.5L);
-  const Real t78 = par.h2 * par.h2;
-  const Real t79 = t1 * t78;
-  const Real t80 = constant<Real>(0.25L) * t79;
-  const Real t81 = t77 * t80;
-  const Real t82 = t76 * t81;
-  const Real t83 = par.l2 * constant<Real>(0.211324865405187117745L);
-  const Real t84 = t81 * t83;
-  const Real t85 = t82 + t84;
-  const Real t86 = -t85;
-  const Real t87 = constant<Real>(0.5L) * t14;
-  const Real t88 = t87 * par.lf;
-  const Real t89 = t66 * t71;
-  const Real t90 = constant<Real>(2.0L) * t41;
-  const Real t91 = -par.l2;
-  const Real t92 = t83 * t84;
-  const Real t93 = t76 * t82;
-  const Real t94 = t92 + t93;
-  const Real t95 = constant<Real>(0.788675134594812882255L) * par.l1;
-  const Real t96 = t23 * t95;
-  const Real t97 = t96 * t95;
-  const Real t98 = constant<Real>(0.211324865405187117745L) * par.l1;
-  const Real t99 = t98 * t23;
-  const Real t100 = t98 * t99;
-  const Real t101 = t97 + t100;
-  const Real t102 = constant<Real>(0.391495878019812868251L) * t14;
-  const Real t103 = t6 * t6;
-  const Real t104 = t5 * t103;
-  const Real t105 = par.l1 * par.l1;
-  const Real t106 = t105 * constant<Real>(0.0833333333333333333333L);
-  const Real t107 = t106 + t53;
-  const Real t108 = t107 * t5;
-  const Real t109 = t104 + t108;
-  const Real t110 = t49 * t56;
-  const Real t111 = -t110;
-  const Real t112 = constant<Real>(0.25L) * t14;
-  const Real t113 = t42 * t36;
-  const Real t114 = t43 * t44;
-  const Real t115 = t113 + t114;
-  const Real t116 = constant<Real>(0.211324865405187117745L) * par.lf;
-  const Real t117 = constant<Real>(0.284412871854955370905L) * t14;
-  const Real t118 = t117 * par.lf;
-  const Real t119 = constant<Real>(1.16194457966965985813L) / par.lf;
-  const Real t120 = t96 + t99;
-  const Real t121 = par.h0 * t2;
-  const Real t122 = t121 * par.l0;
-  const Real t123 = constant<Real>(0.25L) * t122;
-  const Real t124 = par.l0 * par.l0;
-  const Real t125 = t124 * constant<Real>(0.0833333333333333333333L);
-  const Real t126 = t125 + t53;
-  const Real t127 = t123 * t126;
-  const Real t128 = constant<Real>(0.764186758340327256893L) / par.lf;
-  const Real t129 = t81 * constant<Real>(2.0L);
+  const Real t36 = par.h3 * t2;
+  const Real t37 = t36 * par.l3;
+  const Real t38 = constant<Real>(0.25L) * t37;
+  const Real t39 = par.l3 * par.l3;
+  const Real t40 = t39 * constant<Real>(0.0833333333333333333333L);
+  const Real t41 = par.w * par.w;
+  const Real t42 = t41 * constant<Real>(0.0625L);
+  const Real t43 = t40 + t42;
+  const Real t44 = t38 * t43;
+  const Real t45 = constant<Real>(0.5L) * par.l3;
+  const Real t46 = t45 * t45;
+  const Real t47 = t38 * t46;
+  const Real t48 = t44 + t47;
+  const Real t49 = par.l0 * constant<Real>(0.288675134594812882255L);
+  const Real t50 = t30 * t49;
+  const Real t51 = t49 * t50;
+  const Real t52 = t51 * constant<Real>(2.0L);
+  const Real t53 = par.h2 * t2;
+  const Real t54 = par.l2 * t53;
+  const Real t55 = constant<Real>(0.25L) * t54;
+  const Real t56 = par.l2 * par.l2;
+  const Real t57 = t56 * constant<Real>(0.0833333333333333333333L);
+  const Real t58 = t57 + t42;
+  const Real t59 = t55 * t58;
+  const Real t60 = par.l2 * constant<Real>(0.5L);
+  const Real t61 = t60 * t60;
+  const Real t62 = t55 * t61;
+  const Real t63 = t59 + t62;
+  const Real t64 = par.rhoA_f * constant<Real>(0.392719547498562540078L);
+  const Real t65 = constant<Real>(0.5L) * t14;
+  const Real t66 = t65 * par.lf;
+  const Real t67 = constant<Real>(0.211324865405187117745L) * par.l3;
+  const Real t68 = par.h3 * par.h3;
+  const Real t69 = t1 * t68;
+  const Real t70 = constant<Real>(0.25L) * t69;
+  const Real t71 = constant<Real>(0.5L) * par.l3;
+  const Real t72 = t70 * t71;
+  const Real t73 = t67 * t72;
+  const Real t74 = constant<Real>(0.788675134594812882255L) * par.l3;
+  const Real t75 = t74 * t72;
+  const Real t76 = t73 + t75;
+  const Real t77 = t55 * t60;
+  const Real t78 = constant<Real>(2.0L) * t72;
+  const Real t79 = -par.l2;
+  const Real t80 = par.l2 * constant<Real>(0.211324865405187117745L);
+  const Real t81 = par.l2 * constant<Real>(0.5L);
+  const Real t82 = par.h2 * par.h2;
+  const Real t83 = t1 * t82;
+  const Real t84 = constant<Real>(0.25L) * t83;
+  const Real t85 = t81 * t84;
+  const Real t86 = t85 * t80;
+  const Real t87 = t80 * t86;
+  const Real t88 = par.l2 * constant<Real>(0.788675134594812882255L);
+  const Real t89 = t88 * t85;
+  const Real t90 = t88 * t89;
+  const Real t91 = t87 + t90;
+  const Real t92 = t38 * t45;
+  const Real t93 = constant<Real>(0.788675134594812882255L) * par.l1;
+  const Real t94 = t23 * t93;
+  const Real t95 = t94 * t93;
+  const Real t96 = constant<Real>(0.211324865405187117745L) * par.l1;
+  const Real t97 = t96 * t23;
+  const Real t98 = t96 * t97;
+  const Real t99 = t95 + t98;
+  const Real t100 = constant<Real>(0.391495878019812868251L) * t14;
+  const Real t101 = t6 * t6;
+  const Real t102 = t5 * t101;
+  const Real t103 = par.l1 * par.l1;
+  const Real t104 = t103 * constant<Real>(0.0833333333333333333333L);
+  const Real t105 = t104 + t42;
+  const Real t106 = t105 * t5;
+  const Real t107 = t102 + t106;
+  const Real t108 = t89 + t86;
+  const Real t109 = constant<Real>(0.25L) * t14;
+  const Real t110 = t73 * t67;
+  const Real t111 = t74 * t75;
+  const Real t112 = t110 + t111;
+  const Real t113 = constant<Real>(0.211324865405187117745L) * par.lf;
+  const Real t114 = constant<Real>(0.284412871854955370905L) * t14;
+  const Real t115 = t114 * par.lf;
+  const Real t116 = constant<Real>(1.16194457966965985813L) / par.lf;
+  const Real t117 = t94 + t97;
+  const Real t118 = par.h0 * t2;
+  const Real t119 = t118 * par.l0;
+  const Real t120 = constant<Real>(0.25L) * t119;
+  const Real t121 = par.l0 * par.l0;
+  const Real t122 = t121 * constant<Real>(0.0833333333333333333333L);
+  const Real t123 = t122 + t42;
+  const Real t124 = t120 * t123;
+  const Real t125 = constant<Real>(0.764186758340327256893L) / par.lf;
+  const Real t126 = t85 * constant<Real>(2.0L);
 
   // head: wrench of the fluid
-  const Real t130 = t123 + par.m_x;
+  const Real t127 = t120 + par.m_x;
 
   // head: wrench of the fluid
-  const Real t131 = t31 + t123;
+  const Real t128 = t31 + t120;
 
   // head: wrench of the fluid
-  const Real t132 = t63 + t127;
+  const Real t129 = t52 + t124;
 
   // trunk: wrench of the fluid
-  const Real t133 = t101 + t109;
+  const Real t130 = t99 + t107;
 
   // rear: wrench of the fluid
-  const Real t134 = t74 + t94;
+  const Real t131 = t63 + t91;
 
   // peduncle: wrench of the fluid
-  const Real t135 = t59 + t115;
+  const Real t132 = t48 + t112;
 
   // fin: wrench
-  const Real t136 = t102 * par.l3;
-  const Real t137 = t136 + t118;
-  const Real t138 = t14 * par.l3;
+  const Real t133 = t100 * par.l3;
+  const Real t134 = t133 + t115;
+  const Real t135 = t14 * par.l3;
 
   // applied wrenches
-  const Real t139 = par.rho * par.C_n;
-  const Real t140 = par.hf * t139;
+  const Real t136 = par.rho * par.C_n;
+  const Real t137 = par.hf * t136;
+  const Real t138 = t137 * constant<Real>(0.5L);
+  const Real t139 = par.rho * par.C_t;
+  const Real t140 = par.h3 * t139;
   const Real t141 = t140 * constant<Real>(0.5L);
-  const Real t142 = par.rho * par.C_t;
-  const Real t143 = par.h3 * t142;
-  const Real t144 = t143 * constant<Real>(0.5L);
-  const Real t145 = t142 * par.h0;
-  const Real t146 = constant<Real>(0.5L) * t145;
-  const Real t147 = par.h2 * t139;
-  const Real t148 = constant<Real>(0.5L) * t147;
-  const Real t149 = par.h3 * t139;
-  const Real t150 = constant<Real>(0.5L) * t149;
-  const Real t151 = t142 * par.h2;
-  const Real t152 = constant<Real>(0.5L) * t151;
-  const Real t153 = par.hf * t142;
-  const Real t154 = constant<Real>(0.5L) * t153;
-  const Real t155 = par.h1 * t139;
-  const Real t156 = constant<Real>(0.5L) * t155;
-  const Real t157 = t142 * par.h1;
-  const Real t158 = constant<Real>(0.5L) * t157;
-  const Real t159 = par.h0 * t139;
-  const Real t160 = constant<Real>(0.5L) * t159;
+  const Real t142 = t139 * par.h0;
+  const Real t143 = constant<Real>(0.5L) * t142;
+  const Real t144 = par.h2 * t136;
+  const Real t145 = constant<Real>(0.5L) * t144;
+  const Real t146 = par.h3 * t136;
+  const Real t147 = constant<Real>(0.5L) * t146;
+  const Real t148 = t139 * par.h2;
+  const Real t149 = constant<Real>(0.5L) * t148;
+  const Real t150 = par.hf * t139;
+  const Real t151 = constant<Real>(0.5L) * t150;
+  const Real t152 = par.h1 * t136;
+  const Real t153 = constant<Real>(0.5L) * t152;
+  const Real t154 = t139 * par.h1;
+  const Real t155 = constant<Real>(0.5L) * t154;
+  const Real t156 = par.h0 * t136;
+  const Real t157 = constant<Real>(0.5L) * t156;
 
   // springs, dampers and generalised forces
-  const Real t161 = par.lf * par.lf;
-  const Real t162 = par.lf * t161;
-  const Real t163 = par.EI / t162;
-  const Real t164 = t163 * constant<Real>(1.54529542104077377734L);
-  const Real t165 = par.eta * t164;
+  const Real t158 = par.lf * par.lf;
+  const Real t159 = par.lf * t158;
+  const Real t160 = par.EI / t159;
+  const Real t161 = t160 * constant<Real>(1.54529542104077377734L);
+  const Real t162 = par.eta * t161;
 
   result.l1 = par.l1;
   result.l2 = par.l2;
@@ -498,65 +492,62 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k15 = t31;
   result.k16 = t32;
   result.k17 = t35;
-  result.k18 = t36;
-  result.k19 = t40;
-  result.k20 = t43;
-  result.k21 = t45;
-  result.k22 = t46;
-  result.k23 = t49;
-  result.k24 = t59;
-  result.k25 = t60;
-  result.k26 = t63;
-  result.k27 = t66;
+  result.k18 = t38;
+  result.k19 = t48;
+  result.k20 = t49;
+  result.k21 = t52;
+  result.k22 = t55;
+  result.k23 = t63;
+  result.k24 = t64;
+  result.k25 = t66;
+  result.k26 = t67;
+  result.k27 = t71;
   result.k28 = t74;
-  result.k29 = t75;
-  result.k30 = t76;
-  result.k31 = t77;
-  result.k32 = t83;
-  result.k33 = t85;
-  result.k34 = t86;
+  result.k29 = t76;
+  result.k30 = t77;
+  result.k31 = t78;
+  result.k32 = t79;
+  result.k33 = t80;
+  result.k34 = t81;
   result.k35 = t88;
-  result.k36 = t89;
-  result.k37 = t90;
-  result.k38 = t91;
-  result.k39 = t94;
-  result.k40 = t95;
-  result.k41 = t98;
-  result.k42 = t101;
-  result.k43 = t102;
+  result.k36 = t91;
+  result.k37 = t92;
+  result.k38 = t93;
+  result.k39 = t96;
+  result.k40 = t99;
+  result.k41 = t100;
+  result.k42 = t107;
+  result.k43 = t108;
   result.k44 = t109;
-  result.k45 = t110;
-  result.k46 = t111;
-  result.k47 = t112;
-  result.k48 = t115;
-  result.k49 = t116;
-  result.k50 = t118;
-  result.k51 = t119;
-  result.k52 = t120;
-  result.k53 = t123;
+  result.k45 = t112;
+  result.k46 = t113;
+  result.k47 = t115;
+  result.k48 = t116;
+  result.k49 = t117;
+  result.k50 = t120;
+  result.k51 = t124;
+  result.k52 = t125;
+  result.k53 = t126;
   result.k54 = t127;
   result.k55 = t128;
   result.k56 = t129;
   result.k57 = t130;
   result.k58 = t131;
   result.k59 = t132;
-  result.k60 = t133;
-  result.k61 = t134;
-  result.k62 = t135;
-  result.k63 = t137;
-  result.k64 = t138;
-  result.k65 = t141;
-  result.k66 = t144;
-  result.k67 = t146;
-  result.k68 = t148;
-  result.k69 = t150;
-  result.k70 = t152;
-  result.k71 = t154;
-  result.k72 = t156;
-  result.k73 = t158;
-  result.k74 = t160;
-  result.k75 = t164;
-  result.k76 = t165;
+  result.k60 = t134;
+  result.k61 = t135;
+  result.k62 = t138;
+  result.k63 = t141;
+  result.k64 = t143;
+  result.k65 = t145;
+  result.k66 = t147;
+  result.k67 = t149;
+  result.k68 = t151;
+  result.k69 = t153;
+  result.k70 = t155;
+  result.k71 = t157;
+  result.k72 = t161;
+  result.k73 = t162;
   return result;
 }
 
@@ -685,19 +676,19 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -706,11 +697,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -755,38 +746,38 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k52;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
 
   // rear: wrench
-  const Real t64 = par.k27 * t37;
-  const Real t65 = par.k36 * t37;
-  const Real t66 = par.k27 * t34;
+  const Real t64 = par.k22 * t37;
+  const Real t65 = par.k30 * t37;
+  const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k56;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k33 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k45;
-  const Real t72 = par.k23 * t43;
-  const Real t73 = par.k23 * t40;
+  const Real t71 = t40 * par.k37;
+  const Real t72 = par.k18 * t43;
+  const Real t73 = par.k18 * t40;
 
   // peduncle: wrench of the fluid
-  const Real t74 = t40 * par.k37;
+  const Real t74 = t40 * par.k31;
   const Real t75 = t74 + t73;
-  const Real t76 = t40 * par.k21;
+  const Real t76 = t40 * par.k29;
   const Real t77 = t76 + t71;
 
   // fin: wrench
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k43;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -868,37 +859,37 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k57;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k52;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
 
   // rear: wrench
-  const Real t153 = par.k36 * t34;
+  const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k33;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k56;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k45;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t159 = par.k37 * t43;
+  const Real t159 = par.k31 * t43;
   const Real t160 = t159 + t72;
-  const Real t161 = par.k21 * t43;
+  const Real t161 = par.k29 * t43;
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k43 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -976,7 +967,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k58 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -1023,46 +1014,46 @@ inline void free_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k44;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k52;
-  const Real t262 = t261 + par.k42;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k52;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
-  const Real t267 = t233 * par.k27;
-  const Real t268 = t267 - par.k36;
-  const Real t269 = t233 * par.k36;
-  const Real t270 = par.k28 - t269;
-  const Real t271 = par.k27 * t236;
+  const Real t267 = t233 * par.k22;
+  const Real t268 = t267 - par.k30;
+  const Real t269 = t233 * par.k30;
+  const Real t270 = par.k23 - t269;
+  const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k56;
-  const Real t273 = t272 - par.k33;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k33;
-  const Real t276 = par.k39 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k45;
-  const Real t279 = par.k24 - t278;
-  const Real t280 = par.k23 * t240;
-  const Real t281 = t280 - par.k45;
-  const Real t282 = par.k23 * t243;
+  const Real t278 = t240 * par.k37;
+  const Real t279 = par.k19 - t278;
+  const Real t280 = par.k18 * t240;
+  const Real t281 = t280 - par.k37;
+  const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
-  const Real t283 = par.k37 * t240;
-  const Real t284 = t283 - par.k21;
+  const Real t283 = par.k31 * t240;
+  const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
-  const Real t286 = par.k21 * t240;
-  const Real t287 = par.k48 - t286;
+  const Real t286 = par.k29 * t240;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -1072,10 +1063,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k43;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k50 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -1152,7 +1143,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k59;
+  const Real t359 = t358 + par.k56;
 
   // rear: acceleration
   const Real t360 = c_r_a_1_ * par.l1;
@@ -1185,33 +1176,33 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t379 = t376 - t378;
 
   // rear: wrench
-  const Real t380 = par.k27 * t361;
-  const Real t381 = par.k36 * t360;
-  const Real t382 = par.k28 + t381;
-  const Real t383 = par.k27 * t360;
-  const Real t384 = par.k36 + t383;
+  const Real t380 = par.k22 * t361;
+  const Real t381 = par.k30 * t360;
+  const Real t382 = par.k23 + t381;
+  const Real t383 = par.k22 * t360;
+  const Real t384 = par.k30 + t383;
 
   // rear: wrench of the fluid
-  const Real t385 = t360 * par.k56;
-  const Real t386 = t385 + par.k33;
+  const Real t385 = t360 * par.k53;
+  const Real t386 = t385 + par.k43;
   const Real t387 = t386 + t384;
-  const Real t388 = t360 * par.k33;
-  const Real t389 = par.k39 + t388;
+  const Real t388 = t360 * par.k43;
+  const Real t389 = par.k36 + t388;
   const Real t390 = t389 + t382;
 
   // peduncle: wrench
-  const Real t391 = par.k45 * t365;
-  const Real t392 = par.k24 - t391;
-  const Real t393 = par.k23 * t365;
-  const Real t394 = t393 - par.k45;
-  const Real t395 = par.k23 * t368;
+  const Real t391 = par.k37 * t365;
+  const Real t392 = par.k19 - t391;
+  const Real t393 = par.k18 * t365;
+  const Real t394 = t393 - par.k37;
+  const Real t395 = par.k18 * t368;
 
   // peduncle: wrench of the fluid
-  const Real t396 = par.k21 * t365;
-  const Real t397 = par.k48 - t396;
+  const Real t396 = par.k29 * t365;
+  const Real t397 = par.k45 - t396;
   const Real t398 = t392 + t397;
-  const Real t399 = par.k37 * t365;
-  const Real t400 = t399 - par.k21;
+  const Real t399 = par.k31 * t365;
+  const Real t400 = t399 - par.k29;
   const Real t401 = t394 + t400;
 
   // fin: wrench
@@ -1219,10 +1210,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t403 = t402 + t19;
   const Real t404 = par.k6 * t368;
   const Real t405 = t404 - t10;
-  const Real t406 = par.k43 * t369;
+  const Real t406 = par.k41 * t369;
   const Real t407 = t16 * t368;
   const Real t408 = t406 - t407;
-  const Real t409 = t408 + par.k50;
+  const Real t409 = t408 + par.k47;
   const Real t410 = t19 * t369;
   const Real t411 = t10 * t368;
   const Real t412 = t410 - t411;
@@ -1288,7 +1279,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t458 = t456 + t457;
   const Real t459 = t458 * par.l1;
   const Real t460 = t450 - t459;
-  const Real t461 = t460 + par.k60;
+  const Real t461 = t460 + par.k57;
 
   // peduncle: acceleration
   const Real t462 = par.l2 * c_r_a_2_;
@@ -1312,25 +1303,25 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t474 = t471 - t473;
 
   // peduncle: wrench
-  const Real t475 = par.k23 * t462;
-  const Real t476 = t475 + par.k45;
-  const Real t477 = t462 * par.k45;
-  const Real t478 = par.k24 + t477;
-  const Real t479 = par.k23 * t463;
+  const Real t475 = par.k18 * t462;
+  const Real t476 = t475 + par.k37;
+  const Real t477 = t462 * par.k37;
+  const Real t478 = par.k19 + t477;
+  const Real t479 = par.k18 * t463;
 
   // peduncle: wrench of the fluid
-  const Real t480 = t462 * par.k37;
-  const Real t481 = par.k21 + t480;
+  const Real t480 = t462 * par.k31;
+  const Real t481 = par.k29 + t480;
   const Real t482 = t476 + t481;
-  const Real t483 = t462 * par.k21;
-  const Real t484 = t483 + par.k48;
+  const Real t483 = t462 * par.k29;
+  const Real t484 = t483 + par.k45;
   const Real t485 = t478 + t484;
 
   // fin: wrench
-  const Real t486 = t464 * par.k43;
+  const Real t486 = t464 * par.k41;
   const Real t487 = t16 * t463;
   const Real t488 = t486 - t487;
-  const Real t489 = t488 + par.k50;
+  const Real t489 = t488 + par.k47;
   const Real t490 = t464 * t19;
   const Real t491 = t10 * t463;
   const Real t492 = t490 - t491;
@@ -1387,7 +1378,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t531 = t529 - t530;
   const Real t532 = par.l2 * t531;
   const Real t533 = t525 - t532;
-  const Real t534 = t533 + par.k61;
+  const Real t534 = t533 + par.k58;
 
   // fin_section_1: acceleration
   const Real t535 = t8 * t24;
@@ -1404,7 +1395,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   // fin: wrench
   const Real t543 = t19 * par.l3;
   const Real t544 = t543 + t15;
-  const Real t545 = t19 + par.k64;
+  const Real t545 = t19 + par.k61;
 
   // fin_section_1: wrench of the fluid
   const Real t546 = t538 * par.k4;
@@ -1423,7 +1414,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t555 = constant<Real>(0.710077701790478711739L) * t548;
   const Real t556 = t29 * t550;
   const Real t557 = t555 + t556;
-  const Real t558 = par.k63 + t557;
+  const Real t558 = par.k60 + t557;
 
   // fin_section_1: joint force
   const Real t559 = t546 * t8;
@@ -1441,7 +1432,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   // fin: joint force
   const Real t570 = t565 * par.l3;
   const Real t571 = t570 + t569;
-  const Real t572 = t571 + par.k62;
+  const Real t572 = t571 + par.k59;
 
   // fin_section_1: acceleration
   const Real t573 = t25 * t8;
@@ -1465,7 +1456,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t583 = t580 * t2;
   const Real t584 = t29 * t583;
   const Real t585 = t582 + t584;
-  const Real t586 = par.k47 + t585;
+  const Real t586 = par.k44 + t585;
 
   // fin_section_1: joint force
   const Real t587 = t9 * t579;
@@ -1638,14 +1629,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t724 = t31 * t696;
   const Real t725 = t699 + t724;
   const Real t726 = t723 + t725;
-  const Real t727 = t700 * par.k55;
+  const Real t727 = t700 * par.k52;
   const Real t728 = t726 + t727;
   const Real t729 = t728 * t2;
   const Real t730 = t721 + t729;
 
   // head: wrench
-  const Real t731 = par.k53 * t669;
-  const Real t732 = par.k53 * t668;
+  const Real t731 = par.k50 * t669;
+  const Real t732 = par.k50 * t668;
 
   // head: wrench of the fluid
   const Real t733 = par.k15 * eta[1];
@@ -1671,57 +1662,57 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t749 = t748 * par.k12;
   const Real t750 = t742 + t749;
   const Real t751 = par.k12 * t600;
-  const Real t752 = t601 * par.k52;
+  const Real t752 = t601 * par.k49;
   const Real t753 = t751 - t752;
   const Real t754 = t753 * t601;
   const Real t755 = t745 - t754;
   const Real t756 = t597 * t753;
-  const Real t757 = t748 * par.k52;
+  const Real t757 = t748 * par.k49;
   const Real t758 = t756 - t757;
   const Real t759 = t758 - t746;
 
   // rear: wrench
-  const Real t760 = par.k36 * t687;
-  const Real t761 = par.k27 * t686;
+  const Real t760 = par.k30 * t687;
+  const Real t761 = par.k22 * t686;
   const Real t762 = t760 + t761;
-  const Real t763 = t683 * par.k36;
-  const Real t764 = par.k27 * t683;
+  const Real t763 = t683 * par.k30;
+  const Real t764 = par.k22 * t683;
 
   // rear: wrench of the fluid
-  const Real t765 = t606 * par.k56;
-  const Real t766 = par.k33 * t607;
+  const Real t765 = t606 * par.k53;
+  const Real t766 = par.k43 * t607;
   const Real t767 = t765 - t766;
   const Real t768 = t767 * t607;
   const Real t769 = t762 - t768;
   const Real t770 = t607 * t610;
   const Real t771 = t683 - t770;
-  const Real t772 = t771 * par.k56;
+  const Real t772 = t771 * par.k53;
   const Real t773 = t764 + t772;
   const Real t774 = t767 * t610;
-  const Real t775 = par.k33 * t771;
+  const Real t775 = par.k43 * t771;
   const Real t776 = t774 - t775;
   const Real t777 = t776 - t763;
 
   // peduncle: wrench
-  const Real t778 = t692 * par.k23;
-  const Real t779 = par.k23 * t695;
-  const Real t780 = par.k45 * t696;
+  const Real t778 = t692 * par.k18;
+  const Real t779 = par.k18 * t695;
+  const Real t780 = par.k37 * t696;
   const Real t781 = t779 + t780;
-  const Real t782 = t692 * par.k45;
+  const Real t782 = t692 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t783 = par.k37 * t619;
-  const Real t784 = par.k21 * t611;
+  const Real t783 = par.k31 * t619;
+  const Real t784 = par.k29 * t611;
   const Real t785 = t783 - t784;
   const Real t786 = t785 * t611;
   const Real t787 = t781 - t786;
   const Real t788 = t785 * t616;
   const Real t789 = t611 * t616;
   const Real t790 = t692 - t789;
-  const Real t791 = par.k21 * t790;
+  const Real t791 = par.k29 * t790;
   const Real t792 = t788 - t791;
   const Real t793 = t792 - t782;
-  const Real t794 = par.k37 * t790;
+  const Real t794 = par.k31 * t790;
   const Real t795 = t778 + t794;
 
   // fin: wrench
@@ -1732,16 +1723,16 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t800 = t799 * t611;
   const Real t801 = t800 * constant<Real>(2.0L);
   const Real t802 = t798 - t801;
-  const Real t803 = r_p_dot[0] * par.k43;
+  const Real t803 = r_p_dot[0] * par.k41;
   const Real t804 = t803 * t611;
   const Real t805 = t804 * constant<Real>(2.0L);
-  const Real t806 = par.k29 * t700;
+  const Real t806 = par.k24 * t700;
   const Real t807 = t805 + t806;
   const Real t808 = t19 * t696;
   const Real t809 = t699 * par.k6;
   const Real t810 = t808 + t809;
   const Real t811 = t807 + t810;
-  const Real t812 = t697 * par.k43;
+  const Real t812 = t697 * par.k41;
   const Real t813 = t16 * t699;
   const Real t814 = t812 + t813;
   const Real t815 = t12 * t696;
@@ -1778,13 +1769,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t840 = t631 * t634;
   const Real t841 = par.m_w * t840;
   const Real t842 = abs(t610);
-  const Real t843 = par.k70 * t842;
-  const Real t844 = t843 * par.k31;
+  const Real t843 = par.k67 * t842;
+  const Real t844 = t843 * par.k34;
   const Real t845 = t844 * t610;
   const Real t846 = t769 + t845;
   const Real t847 = t845 + t846;
   const Real t848 = abs(eta[0]);
-  const Real t849 = par.k67 * t848;
+  const Real t849 = par.k64 * t848;
   const Real t850 = par.k14 * t849;
   const Real t851 = eta[0] * t850;
   const Real t852 = t851 - t735;
@@ -1792,93 +1783,93 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t854 = t631 * t631;
   const Real t855 = par.m_w * t854;
   const Real t856 = constant<Real>(0.5L) * t855;
-  const Real t857 = par.k20 * t611;
+  const Real t857 = par.k28 * t611;
   const Real t858 = t619 - t857;
   const Real t859 = abs(t858);
-  const Real t860 = par.k69 * t859;
-  const Real t861 = t860 * par.k19;
+  const Real t860 = par.k66 * t859;
+  const Real t861 = t860 * par.k27;
   const Real t862 = t861 * t858;
-  const Real t863 = par.k20 * t862;
+  const Real t863 = par.k28 * t862;
   const Real t864 = t793 - t863;
-  const Real t865 = par.k18 * t611;
+  const Real t865 = par.k26 * t611;
   const Real t866 = t619 - t865;
   const Real t867 = abs(t866);
-  const Real t868 = par.k69 * t867;
-  const Real t869 = t868 * par.k19;
+  const Real t868 = par.k66 * t867;
+  const Real t869 = t868 * par.k27;
   const Real t870 = t869 * t866;
-  const Real t871 = par.k18 * t870;
+  const Real t871 = par.k26 * t870;
   const Real t872 = t864 - t871;
-  const Real t873 = par.k30 * t607;
+  const Real t873 = par.k35 * t607;
   const Real t874 = t606 - t873;
   const Real t875 = abs(t874);
-  const Real t876 = par.k68 * t875;
-  const Real t877 = par.k31 * t876;
+  const Real t876 = par.k65 * t875;
+  const Real t877 = par.k34 * t876;
   const Real t878 = t877 * t874;
-  const Real t879 = t878 * par.k30;
+  const Real t879 = t878 * par.k35;
   const Real t880 = t777 - t879;
-  const Real t881 = par.k32 * t607;
+  const Real t881 = par.k33 * t607;
   const Real t882 = t606 - t881;
   const Real t883 = abs(t882);
-  const Real t884 = par.k68 * t883;
-  const Real t885 = t884 * par.k31;
+  const Real t884 = par.k65 * t883;
+  const Real t885 = t884 * par.k34;
   const Real t886 = t882 * t885;
-  const Real t887 = t886 * par.k32;
+  const Real t887 = t886 * par.k33;
   const Real t888 = t880 - t887;
   const Real t889 = abs(t661);
-  const Real t890 = par.k65 * t889;
+  const Real t890 = par.k62 * t889;
   const Real t891 = t890 * par.k3;
   const Real t892 = t661 * t891;
   const Real t893 = t838 + t892;
-  const Real t894 = par.k40 * t601;
+  const Real t894 = par.k38 * t601;
   const Real t895 = t600 - t894;
   const Real t896 = abs(t895);
-  const Real t897 = t896 * par.k72;
+  const Real t897 = t896 * par.k69;
   const Real t898 = par.k11 * t897;
   const Real t899 = t898 * t895;
-  const Real t900 = t899 * par.k40;
+  const Real t900 = t899 * par.k38;
   const Real t901 = t759 - t900;
-  const Real t902 = par.k41 * t601;
+  const Real t902 = par.k39 * t601;
   const Real t903 = t600 - t902;
   const Real t904 = abs(t903);
-  const Real t905 = t904 * par.k72;
+  const Real t905 = t904 * par.k69;
   const Real t906 = par.k11 * t905;
   const Real t907 = t906 * t903;
-  const Real t908 = t907 * par.k41;
+  const Real t908 = t907 * par.k39;
   const Real t909 = t901 - t908;
   const Real t910 = abs(t645);
-  const Real t911 = par.k71 * t910;
+  const Real t911 = par.k68 * t910;
   const Real t912 = par.k3 * t911;
   const Real t913 = t645 * t912;
   const Real t914 = t913 - t832;
   const Real t915 = t878 + t773;
   const Real t916 = t915 + t886;
-  const Real t917 = par.k25 * eta[2];
+  const Real t917 = par.k20 * eta[2];
   const Real t918 = eta[1] - t917;
   const Real t919 = abs(t918);
-  const Real t920 = t919 * par.k74;
+  const Real t920 = t919 * par.k71;
   const Real t921 = par.k14 * t920;
   const Real t922 = t918 * t921;
   const Real t923 = t922 + t741;
   const Real t924 = eta[1] + t917;
   const Real t925 = abs(t924);
-  const Real t926 = t925 * par.k74;
+  const Real t926 = t925 * par.k71;
   const Real t927 = par.k14 * t926;
   const Real t928 = t927 * t924;
   const Real t929 = t923 + t928;
   const Real t930 = t899 + t750;
   const Real t931 = t907 + t930;
   const Real t932 = abs(t650);
-  const Real t933 = par.k65 * t932;
+  const Real t933 = par.k62 * t932;
   const Real t934 = t933 * par.k3;
   const Real t935 = t934 * t650;
   const Real t936 = t830 + t935;
   const Real t937 = abs(t664);
-  const Real t938 = par.k71 * t937;
+  const Real t938 = par.k68 * t937;
   const Real t939 = par.k3 * t938;
   const Real t940 = t939 * t664;
   const Real t941 = t940 - t839;
   const Real t942 = abs(t597);
-  const Real t943 = par.k73 * t942;
+  const Real t943 = par.k70 * t942;
   const Real t944 = par.k11 * t943;
   const Real t945 = t597 * t944;
   const Real t946 = t755 + t945;
@@ -1886,14 +1877,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t948 = t862 + t795;
   const Real t949 = t948 + t870;
   const Real t950 = abs(t616);
-  const Real t951 = par.k66 * t950;
-  const Real t952 = t951 * par.k19;
+  const Real t951 = par.k63 * t950;
+  const Real t952 = t951 * par.k27;
   const Real t953 = t952 * t616;
   const Real t954 = t953 + t787;
   const Real t955 = t954 + t953;
-  const Real t956 = par.k25 * t922;
+  const Real t956 = par.k20 * t922;
   const Real t957 = t739 - t956;
-  const Real t958 = par.k25 * t928;
+  const Real t958 = par.k20 * t928;
   const Real t959 = t957 + t958;
 
   // fin_section_2: joint force
@@ -2009,9 +2000,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t1055 = -t1050;
   const Real t1056 = -t1046;
   const Real t1057 = r_p[0] * constant<Real>(2.0L);
-  const Real t1058 = t1057 * par.k75;
+  const Real t1058 = t1057 * par.k72;
   const Real t1059 = r_p_dot[0] * constant<Real>(2.0L);
-  const Real t1060 = par.k76 * t1059;
+  const Real t1060 = par.k73 * t1059;
   const Real t1061 = t1058 + t1060;
   const Real t1062 = t1008 + t1061;
   const Real t1063 = -t1062;
@@ -2101,19 +2092,19 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -2122,11 +2113,11 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -2171,38 +2162,38 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k52;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
 
   // rear: wrench
-  const Real t64 = par.k27 * t37;
-  const Real t65 = par.k36 * t37;
-  const Real t66 = par.k27 * t34;
+  const Real t64 = par.k22 * t37;
+  const Real t65 = par.k30 * t37;
+  const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k56;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k33 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k45;
-  const Real t72 = par.k23 * t43;
-  const Real t73 = par.k23 * t40;
+  const Real t71 = t40 * par.k37;
+  const Real t72 = par.k18 * t43;
+  const Real t73 = par.k18 * t40;
 
   // peduncle: wrench of the fluid
-  const Real t74 = t40 * par.k37;
+  const Real t74 = t40 * par.k31;
   const Real t75 = t74 + t73;
-  const Real t76 = t40 * par.k21;
+  const Real t76 = t40 * par.k29;
   const Real t77 = t76 + t71;
 
   // fin: wrench
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k43;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -2284,37 +2275,37 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k57;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k52;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
 
   // rear: wrench
-  const Real t153 = par.k36 * t34;
+  const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k33;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k56;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k45;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t159 = par.k37 * t43;
+  const Real t159 = par.k31 * t43;
   const Real t160 = t159 + t72;
-  const Real t161 = par.k21 * t43;
+  const Real t161 = par.k29 * t43;
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k43 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -2392,7 +2383,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k58 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -2439,46 +2430,46 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k44;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k52;
-  const Real t262 = t261 + par.k42;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k52;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
-  const Real t267 = t233 * par.k27;
-  const Real t268 = t267 - par.k36;
-  const Real t269 = t233 * par.k36;
-  const Real t270 = par.k28 - t269;
-  const Real t271 = par.k27 * t236;
+  const Real t267 = t233 * par.k22;
+  const Real t268 = t267 - par.k30;
+  const Real t269 = t233 * par.k30;
+  const Real t270 = par.k23 - t269;
+  const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k56;
-  const Real t273 = t272 - par.k33;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k33;
-  const Real t276 = par.k39 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k45;
-  const Real t279 = par.k24 - t278;
-  const Real t280 = par.k23 * t240;
-  const Real t281 = t280 - par.k45;
-  const Real t282 = par.k23 * t243;
+  const Real t278 = t240 * par.k37;
+  const Real t279 = par.k19 - t278;
+  const Real t280 = par.k18 * t240;
+  const Real t281 = t280 - par.k37;
+  const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
-  const Real t283 = par.k37 * t240;
-  const Real t284 = t283 - par.k21;
+  const Real t283 = par.k31 * t240;
+  const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
-  const Real t286 = par.k21 * t240;
-  const Real t287 = par.k48 - t286;
+  const Real t286 = par.k29 * t240;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -2488,10 +2479,10 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k43;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k50 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -2568,7 +2559,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k59;
+  const Real t359 = t358 + par.k56;
 
   // fin_section_1: acceleration
   const Real t360 = t25 * t8;
@@ -2592,7 +2583,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t370 = t367 * t2;
   const Real t371 = t29 * t370;
   const Real t372 = t369 + t371;
-  const Real t373 = par.k47 + t372;
+  const Real t373 = par.k44 + t372;
 
   // fin_section_1: joint force
   const Real t374 = t9 * t366;
@@ -2604,7 +2595,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t380 = r_p[0] * constant<Real>(2.0L);
-  const Real t381 = t380 * par.k75;
+  const Real t381 = t380 * par.k72;
 
   // trunk: twist
   const Real t382 = r_a_dot[0] + nu[2];
@@ -2777,7 +2768,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t521 = t520 * constant<Real>(2.0L);
   const Real t522 = t519 - t521;
   const Real t523 = t522 * t3;
-  const Real t524 = t496 * par.k55;
+  const Real t524 = t496 * par.k52;
   const Real t525 = t440 * t405;
   const Real t526 = t525 * constant<Real>(2.0L);
   const Real t527 = t31 * t481;
@@ -2790,8 +2781,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t534 = t523 + t533;
 
   // head: wrench
-  const Real t535 = par.k53 * t457;
-  const Real t536 = par.k53 * t458;
+  const Real t535 = par.k50 * t457;
+  const Real t536 = par.k50 * t458;
 
   // head: wrench of the fluid
   const Real t537 = par.k15 * nu[1];
@@ -2811,7 +2802,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t549 = t466 * par.k1;
   const Real t550 = par.k2 * t467;
   const Real t551 = t549 + t550;
-  const Real t552 = par.k44 * r_a_ddot[0];
+  const Real t552 = par.k42 * r_a_ddot[0];
   const Real t553 = par.k2 * t463;
   const Real t554 = t552 - t553;
 
@@ -2819,15 +2810,15 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t555 = t382 * t390;
   const Real t556 = t463 - t555;
   const Real t557 = par.k12 * t556;
-  const Real t558 = par.k52 * r_a_ddot[0];
+  const Real t558 = par.k49 * r_a_ddot[0];
   const Real t559 = t557 - t558;
   const Real t560 = t548 + t559;
   const Real t561 = par.k12 * t387;
-  const Real t562 = t382 * par.k52;
+  const Real t562 = t382 * par.k49;
   const Real t563 = t561 - t562;
   const Real t564 = t563 * t390;
-  const Real t565 = par.k42 * r_a_ddot[0];
-  const Real t566 = t556 * par.k52;
+  const Real t565 = par.k40 * r_a_ddot[0];
+  const Real t566 = t556 * par.k49;
   const Real t567 = t565 - t566;
   const Real t568 = t564 + t567;
   const Real t569 = t568 + t554;
@@ -2835,60 +2826,60 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t571 = t551 - t570;
 
   // rear: wrench
-  const Real t572 = t474 * par.k27;
-  const Real t573 = par.k36 * t478;
+  const Real t572 = t474 * par.k22;
+  const Real t573 = par.k30 * t478;
   const Real t574 = t572 - t573;
-  const Real t575 = par.k27 * t477;
-  const Real t576 = par.k36 * t479;
+  const Real t575 = par.k22 * t477;
+  const Real t576 = par.k30 * t479;
   const Real t577 = t575 + t576;
-  const Real t578 = par.k28 * t478;
-  const Real t579 = t474 * par.k36;
+  const Real t578 = par.k23 * t478;
+  const Real t579 = t474 * par.k30;
   const Real t580 = t578 - t579;
 
   // rear: wrench of the fluid
-  const Real t581 = t395 * par.k56;
-  const Real t582 = t396 * par.k33;
+  const Real t581 = t395 * par.k53;
+  const Real t582 = t396 * par.k43;
   const Real t583 = t581 - t582;
   const Real t584 = t399 * t583;
-  const Real t585 = par.k39 * t478;
+  const Real t585 = par.k36 * t478;
   const Real t586 = t396 * t399;
   const Real t587 = t474 - t586;
-  const Real t588 = par.k33 * t587;
+  const Real t588 = par.k43 * t587;
   const Real t589 = t585 - t588;
   const Real t590 = t584 + t589;
   const Real t591 = t590 + t580;
-  const Real t592 = t587 * par.k56;
-  const Real t593 = par.k33 * t478;
+  const Real t592 = t587 * par.k53;
+  const Real t593 = par.k43 * t478;
   const Real t594 = t592 - t593;
   const Real t595 = t574 + t594;
   const Real t596 = t396 * t583;
   const Real t597 = t577 - t596;
 
   // peduncle: wrench
-  const Real t598 = par.k23 * t491;
-  const Real t599 = t480 * par.k45;
+  const Real t598 = par.k18 * t491;
+  const Real t599 = t480 * par.k37;
   const Real t600 = t598 - t599;
-  const Real t601 = par.k24 * t480;
-  const Real t602 = par.k45 * t491;
+  const Real t601 = par.k19 * t480;
+  const Real t602 = par.k37 * t491;
   const Real t603 = t601 - t602;
-  const Real t604 = t481 * par.k45;
-  const Real t605 = par.k23 * t488;
+  const Real t604 = t481 * par.k37;
+  const Real t605 = par.k18 * t488;
   const Real t606 = t604 + t605;
 
   // peduncle: wrench of the fluid
-  const Real t607 = t480 * par.k48;
+  const Real t607 = t480 * par.k45;
   const Real t608 = t404 * t405;
   const Real t609 = t491 - t608;
-  const Real t610 = par.k21 * t609;
+  const Real t610 = par.k29 * t609;
   const Real t611 = t607 - t610;
-  const Real t612 = par.k37 * t408;
-  const Real t613 = par.k21 * t405;
+  const Real t612 = par.k31 * t408;
+  const Real t613 = par.k29 * t405;
   const Real t614 = t612 - t613;
   const Real t615 = t404 * t614;
   const Real t616 = t611 + t615;
   const Real t617 = t616 + t603;
-  const Real t618 = par.k37 * t609;
-  const Real t619 = t480 * par.k21;
+  const Real t618 = par.k31 * t609;
+  const Real t619 = t480 * par.k29;
   const Real t620 = t618 - t619;
   const Real t621 = t600 + t620;
   const Real t622 = t614 * t405;
@@ -2904,10 +2895,10 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t630 = t629 * t405;
   const Real t631 = t630 * constant<Real>(2.0L);
   const Real t632 = t628 - t631;
-  const Real t633 = nu[3] * par.k43;
+  const Real t633 = nu[3] * par.k41;
   const Real t634 = t633 * t405;
   const Real t635 = t634 * constant<Real>(2.0L);
-  const Real t636 = par.k29 * t496;
+  const Real t636 = par.k24 * t496;
   const Real t637 = t635 + t636;
   const Real t638 = t493 * par.k6;
   const Real t639 = t10 * t480;
@@ -2916,11 +2907,11 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t642 = t638 + t641;
   const Real t643 = t637 + t642;
   const Real t644 = t16 * t493;
-  const Real t645 = par.k43 * t495;
+  const Real t645 = par.k41 * t495;
   const Real t646 = t644 + t645;
   const Real t647 = t12 * t481;
   const Real t648 = t646 + t647;
-  const Real t649 = t480 * par.k50;
+  const Real t649 = t480 * par.k47;
   const Real t650 = t648 + t649;
   const Real t651 = t481 * t11;
   const Real t652 = t650 - t651;
@@ -2954,25 +2945,25 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t676 = abs(t450);
-  const Real t677 = par.k65 * t676;
+  const Real t677 = par.k62 * t676;
   const Real t678 = par.k3 * t677;
   const Real t679 = t678 * t450;
   const Real t680 = t679 + t675;
-  const Real t681 = par.k25 * nu[2];
+  const Real t681 = par.k20 * nu[2];
   const Real t682 = t681 + nu[1];
   const Real t683 = abs(t682);
-  const Real t684 = t683 * par.k74;
+  const Real t684 = t683 * par.k71;
   const Real t685 = par.k14 * t684;
   const Real t686 = t682 * t685;
   const Real t687 = nu[1] - t681;
   const Real t688 = abs(t687);
-  const Real t689 = t688 * par.k74;
+  const Real t689 = t688 * par.k71;
   const Real t690 = par.k14 * t689;
   const Real t691 = t687 * t690;
   const Real t692 = t691 + t542;
   const Real t693 = t686 + t692;
   const Real t694 = abs(t434);
-  const Real t695 = t694 * par.k71;
+  const Real t695 = t694 * par.k68;
   const Real t696 = par.k3 * t695;
   const Real t697 = t434 * t696;
   const Real t698 = t697 - t669;
@@ -2980,98 +2971,98 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t700 = par.m_w * t699;
   const Real t701 = constant<Real>(0.5L) * t700;
   const Real t702 = abs(t404);
-  const Real t703 = par.k66 * t702;
-  const Real t704 = par.k19 * t703;
+  const Real t703 = par.k63 * t702;
+  const Real t704 = par.k27 * t703;
   const Real t705 = t404 * t704;
   const Real t706 = t705 + t623;
   const Real t707 = t706 + t705;
-  const Real t708 = par.k30 * t396;
+  const Real t708 = par.k35 * t396;
   const Real t709 = t395 - t708;
   const Real t710 = abs(t709);
-  const Real t711 = par.k68 * t710;
-  const Real t712 = par.k31 * t711;
+  const Real t711 = par.k65 * t710;
+  const Real t712 = par.k34 * t711;
   const Real t713 = t712 * t709;
-  const Real t714 = par.k30 * t713;
+  const Real t714 = par.k35 * t713;
   const Real t715 = t591 - t714;
-  const Real t716 = t396 * par.k32;
+  const Real t716 = t396 * par.k33;
   const Real t717 = t395 - t716;
   const Real t718 = abs(t717);
-  const Real t719 = t718 * par.k68;
-  const Real t720 = t719 * par.k31;
+  const Real t719 = t718 * par.k65;
+  const Real t720 = t719 * par.k34;
   const Real t721 = t717 * t720;
-  const Real t722 = par.k32 * t721;
+  const Real t722 = par.k33 * t721;
   const Real t723 = t715 - t722;
-  const Real t724 = par.k20 * t405;
+  const Real t724 = par.k28 * t405;
   const Real t725 = t408 - t724;
   const Real t726 = abs(t725);
-  const Real t727 = t726 * par.k69;
-  const Real t728 = par.k19 * t727;
+  const Real t727 = t726 * par.k66;
+  const Real t728 = par.k27 * t727;
   const Real t729 = t725 * t728;
   const Real t730 = t729 + t621;
-  const Real t731 = par.k18 * t405;
+  const Real t731 = par.k26 * t405;
   const Real t732 = t408 - t731;
   const Real t733 = abs(t732);
-  const Real t734 = par.k69 * t733;
-  const Real t735 = t734 * par.k19;
+  const Real t734 = par.k66 * t733;
+  const Real t735 = t734 * par.k27;
   const Real t736 = t735 * t732;
   const Real t737 = t730 + t736;
-  const Real t738 = t382 * par.k40;
+  const Real t738 = t382 * par.k38;
   const Real t739 = t387 - t738;
   const Real t740 = abs(t739);
-  const Real t741 = t740 * par.k72;
+  const Real t741 = t740 * par.k69;
   const Real t742 = par.k11 * t741;
   const Real t743 = t742 * t739;
   const Real t744 = t743 + t560;
-  const Real t745 = t382 * par.k41;
+  const Real t745 = t382 * par.k39;
   const Real t746 = t387 - t745;
   const Real t747 = abs(t746);
-  const Real t748 = t747 * par.k72;
+  const Real t748 = t747 * par.k69;
   const Real t749 = par.k11 * t748;
   const Real t750 = t746 * t749;
   const Real t751 = t744 + t750;
-  const Real t752 = t686 * par.k25;
-  const Real t753 = par.k25 * t691;
+  const Real t752 = t686 * par.k20;
+  const Real t753 = par.k20 * t691;
   const Real t754 = t545 - t753;
   const Real t755 = t752 + t754;
   const Real t756 = t713 + t595;
   const Real t757 = t756 + t721;
   const Real t758 = abs(t399);
-  const Real t759 = par.k70 * t758;
-  const Real t760 = t759 * par.k31;
+  const Real t759 = par.k67 * t758;
+  const Real t760 = t759 * par.k34;
   const Real t761 = t760 * t399;
   const Real t762 = t761 + t597;
   const Real t763 = t761 + t762;
   const Real t764 = abs(t453);
-  const Real t765 = par.k71 * t764;
+  const Real t765 = par.k68 * t764;
   const Real t766 = par.k3 * t765;
   const Real t767 = t453 * t766;
   const Real t768 = t767 - t672;
-  const Real t769 = par.k20 * t729;
+  const Real t769 = par.k28 * t729;
   const Real t770 = t617 - t769;
-  const Real t771 = par.k18 * t736;
+  const Real t771 = par.k26 * t736;
   const Real t772 = t770 - t771;
   const Real t773 = abs(t390);
-  const Real t774 = par.k73 * t773;
+  const Real t774 = par.k70 * t773;
   const Real t775 = par.k11 * t774;
   const Real t776 = t775 * t390;
   const Real t777 = t776 + t571;
   const Real t778 = t776 + t777;
   const Real t779 = abs(t439);
-  const Real t780 = par.k65 * t779;
+  const Real t780 = par.k62 * t779;
   const Real t781 = par.k3 * t780;
   const Real t782 = t439 * t781;
   const Real t783 = t668 + t782;
   const Real t784 = t420 * t423;
   const Real t785 = t784 * par.m_w;
   const Real t786 = abs(nu[0]);
-  const Real t787 = par.k67 * t786;
+  const Real t787 = par.k64 * t786;
   const Real t788 = par.k14 * t787;
   const Real t789 = t788 * nu[0];
   const Real t790 = t789 - t539;
   const Real t791 = t790 + t789;
-  const Real t792 = t743 * par.k40;
+  const Real t792 = t743 * par.k38;
   const Real t793 = t569 - t792;
-  const Real t794 = t750 * par.k41;
+  const Real t794 = t750 * par.k39;
   const Real t795 = t793 - t794;
 
   // fin_section_2: joint force
@@ -3181,7 +3172,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t887 = nu[3] * constant<Real>(2.0L);
-  const Real t888 = par.k76 * t887;
+  const Real t888 = par.k73 * t887;
   const Real t889 = t381 + t888;
   const Real t890 = t846 + t889;
 
@@ -3259,19 +3250,19 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -3280,11 +3271,11 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -3329,38 +3320,38 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k52;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
 
   // rear: wrench
-  const Real t64 = par.k27 * t37;
-  const Real t65 = par.k36 * t37;
-  const Real t66 = par.k27 * t34;
+  const Real t64 = par.k22 * t37;
+  const Real t65 = par.k30 * t37;
+  const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k56;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k33 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k45;
-  const Real t72 = par.k23 * t43;
-  const Real t73 = par.k23 * t40;
+  const Real t71 = t40 * par.k37;
+  const Real t72 = par.k18 * t43;
+  const Real t73 = par.k18 * t40;
 
   // peduncle: wrench of the fluid
-  const Real t74 = t40 * par.k37;
+  const Real t74 = t40 * par.k31;
   const Real t75 = t74 + t73;
-  const Real t76 = t40 * par.k21;
+  const Real t76 = t40 * par.k29;
   const Real t77 = t76 + t71;
 
   // fin: wrench
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k43;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -3442,37 +3433,37 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t144 = t131 * c_r_a_0_;
   const Real t145 = s_r_a_0_ * t135;
   const Real t146 = t144 - t145;
-  const Real t147 = t146 + par.k57;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
   const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t149 = c_r_a_0_ * par.k52;
+  const Real t149 = c_r_a_0_ * par.k49;
   const Real t150 = t149 + t148;
   const Real t151 = par.k12 * c_r_a_0_;
   const Real t152 = t58 + t151;
 
   // rear: wrench
-  const Real t153 = par.k36 * t34;
+  const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t154 = t34 * par.k33;
+  const Real t154 = t34 * par.k43;
   const Real t155 = t153 + t154;
-  const Real t156 = t34 * par.k56;
+  const Real t156 = t34 * par.k53;
   const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t158 = t43 * par.k45;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t159 = par.k37 * t43;
+  const Real t159 = par.k31 * t43;
   const Real t160 = t159 + t72;
-  const Real t161 = par.k21 * t43;
+  const Real t161 = par.k29 * t43;
   const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t163 = par.k43 * t44;
+  const Real t163 = par.k41 * t44;
   const Real t164 = t16 * t40;
   const Real t165 = t163 + t164;
   const Real t166 = t10 * t40;
@@ -3550,7 +3541,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t222 = t217 * c_r_a_0_;
   const Real t223 = s_r_a_0_ * t221;
   const Real t224 = t222 + t223;
-  const Real t225 = par.k58 + t224;
+  const Real t225 = par.k55 + t224;
   const Real t226 = par.k8 * t224;
   const Real t227 = t216 - t226;
 
@@ -3597,46 +3588,46 @@ inline void split_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t256 = t229 * par.k1;
   const Real t257 = par.k2 * t228;
-  const Real t258 = t257 + par.k44;
+  const Real t258 = t257 + par.k42;
   const Real t259 = t228 * par.k1;
   const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t261 = t228 * par.k52;
-  const Real t262 = t261 + par.k42;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
   const Real t263 = t258 + t262;
   const Real t264 = t228 * par.k12;
-  const Real t265 = t264 + par.k52;
+  const Real t265 = t264 + par.k49;
   const Real t266 = t265 + t260;
 
   // rear: wrench
-  const Real t267 = t233 * par.k27;
-  const Real t268 = t267 - par.k36;
-  const Real t269 = t233 * par.k36;
-  const Real t270 = par.k28 - t269;
-  const Real t271 = par.k27 * t236;
+  const Real t267 = t233 * par.k22;
+  const Real t268 = t267 - par.k30;
+  const Real t269 = t233 * par.k30;
+  const Real t270 = par.k23 - t269;
+  const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t272 = t233 * par.k56;
-  const Real t273 = t272 - par.k33;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
   const Real t274 = t268 + t273;
-  const Real t275 = t233 * par.k33;
-  const Real t276 = par.k39 - t275;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
   const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t278 = t240 * par.k45;
-  const Real t279 = par.k24 - t278;
-  const Real t280 = par.k23 * t240;
-  const Real t281 = t280 - par.k45;
-  const Real t282 = par.k23 * t243;
+  const Real t278 = t240 * par.k37;
+  const Real t279 = par.k19 - t278;
+  const Real t280 = par.k18 * t240;
+  const Real t281 = t280 - par.k37;
+  const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
-  const Real t283 = par.k37 * t240;
-  const Real t284 = t283 - par.k21;
+  const Real t283 = par.k31 * t240;
+  const Real t284 = t283 - par.k29;
   const Real t285 = t284 + t281;
-  const Real t286 = par.k21 * t240;
-  const Real t287 = par.k48 - t286;
+  const Real t286 = par.k29 * t240;
+  const Real t287 = par.k45 - t286;
   const Real t288 = t279 + t287;
 
   // fin: wrench
@@ -3646,10 +3637,10 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t292 = t15 + t291;
   const Real t293 = par.k6 * t245;
   const Real t294 = t293 - t10;
-  const Real t295 = t244 * par.k43;
+  const Real t295 = t244 * par.k41;
   const Real t296 = t16 * t245;
   const Real t297 = t295 - t296;
-  const Real t298 = par.k50 + t297;
+  const Real t298 = par.k47 + t297;
   const Real t299 = t244 * par.k6;
   const Real t300 = t299 + t19;
 
@@ -3726,7 +3717,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t356 = t354 + t355;
   const Real t357 = par.k8 * t356;
   const Real t358 = t353 - t357;
-  const Real t359 = t358 + par.k59;
+  const Real t359 = t358 + par.k56;
 
   // fin_section_1: acceleration
   const Real t360 = t25 * t8;
@@ -3750,7 +3741,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t370 = t367 * t2;
   const Real t371 = t29 * t370;
   const Real t372 = t369 + t371;
-  const Real t373 = par.k47 + t372;
+  const Real t373 = par.k44 + t372;
 
   // fin_section_1: joint force
   const Real t374 = t9 * t366;
@@ -3762,7 +3753,7 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t380 = r_p[0] * constant<Real>(2.0L);
-  const Real t381 = t380 * par.k75;
+  const Real t381 = t380 * par.k72;
 
   // trunk: twist
   const Real t382 = r_a_dot[0] + nu[2];
@@ -3935,7 +3926,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t521 = t520 * constant<Real>(2.0L);
   const Real t522 = t519 - t521;
   const Real t523 = t522 * t3;
-  const Real t524 = t496 * par.k55;
+  const Real t524 = t496 * par.k52;
   const Real t525 = t440 * t405;
   const Real t526 = t525 * constant<Real>(2.0L);
   const Real t527 = t31 * t481;
@@ -3948,8 +3939,8 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t534 = t523 + t533;
 
   // head: wrench
-  const Real t535 = par.k53 * t457;
-  const Real t536 = par.k53 * t458;
+  const Real t535 = par.k50 * t457;
+  const Real t536 = par.k50 * t458;
 
   // head: wrench of the fluid
   const Real t537 = par.k15 * nu[1];
@@ -3969,7 +3960,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t549 = t466 * par.k1;
   const Real t550 = par.k2 * t467;
   const Real t551 = t549 + t550;
-  const Real t552 = par.k44 * r_a_ddot[0];
+  const Real t552 = par.k42 * r_a_ddot[0];
   const Real t553 = par.k2 * t463;
   const Real t554 = t552 - t553;
 
@@ -3977,15 +3968,15 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t555 = t382 * t390;
   const Real t556 = t463 - t555;
   const Real t557 = par.k12 * t556;
-  const Real t558 = par.k52 * r_a_ddot[0];
+  const Real t558 = par.k49 * r_a_ddot[0];
   const Real t559 = t557 - t558;
   const Real t560 = t548 + t559;
   const Real t561 = par.k12 * t387;
-  const Real t562 = t382 * par.k52;
+  const Real t562 = t382 * par.k49;
   const Real t563 = t561 - t562;
   const Real t564 = t563 * t390;
-  const Real t565 = par.k42 * r_a_ddot[0];
-  const Real t566 = t556 * par.k52;
+  const Real t565 = par.k40 * r_a_ddot[0];
+  const Real t566 = t556 * par.k49;
   const Real t567 = t565 - t566;
   const Real t568 = t564 + t567;
   const Real t569 = t568 + t554;
@@ -3993,60 +3984,60 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t571 = t551 - t570;
 
   // rear: wrench
-  const Real t572 = t474 * par.k27;
-  const Real t573 = par.k36 * t478;
+  const Real t572 = t474 * par.k22;
+  const Real t573 = par.k30 * t478;
   const Real t574 = t572 - t573;
-  const Real t575 = par.k27 * t477;
-  const Real t576 = par.k36 * t479;
+  const Real t575 = par.k22 * t477;
+  const Real t576 = par.k30 * t479;
   const Real t577 = t575 + t576;
-  const Real t578 = par.k28 * t478;
-  const Real t579 = t474 * par.k36;
+  const Real t578 = par.k23 * t478;
+  const Real t579 = t474 * par.k30;
   const Real t580 = t578 - t579;
 
   // rear: wrench of the fluid
-  const Real t581 = t395 * par.k56;
-  const Real t582 = t396 * par.k33;
+  const Real t581 = t395 * par.k53;
+  const Real t582 = t396 * par.k43;
   const Real t583 = t581 - t582;
   const Real t584 = t399 * t583;
-  const Real t585 = par.k39 * t478;
+  const Real t585 = par.k36 * t478;
   const Real t586 = t396 * t399;
   const Real t587 = t474 - t586;
-  const Real t588 = par.k33 * t587;
+  const Real t588 = par.k43 * t587;
   const Real t589 = t585 - t588;
   const Real t590 = t584 + t589;
   const Real t591 = t590 + t580;
-  const Real t592 = t587 * par.k56;
-  const Real t593 = par.k33 * t478;
+  const Real t592 = t587 * par.k53;
+  const Real t593 = par.k43 * t478;
   const Real t594 = t592 - t593;
   const Real t595 = t574 + t594;
   const Real t596 = t396 * t583;
   const Real t597 = t577 - t596;
 
   // peduncle: wrench
-  const Real t598 = par.k23 * t491;
-  const Real t599 = t480 * par.k45;
+  const Real t598 = par.k18 * t491;
+  const Real t599 = t480 * par.k37;
   const Real t600 = t598 - t599;
-  const Real t601 = par.k24 * t480;
-  const Real t602 = par.k45 * t491;
+  const Real t601 = par.k19 * t480;
+  const Real t602 = par.k37 * t491;
   const Real t603 = t601 - t602;
-  const Real t604 = t481 * par.k45;
-  const Real t605 = par.k23 * t488;
+  const Real t604 = t481 * par.k37;
+  const Real t605 = par.k18 * t488;
   const Real t606 = t604 + t605;
 
   // peduncle: wrench of the fluid
-  const Real t607 = t480 * par.k48;
+  const Real t607 = t480 * par.k45;
   const Real t608 = t404 * t405;
   const Real t609 = t491 - t608;
-  const Real t610 = par.k21 * t609;
+  const Real t610 = par.k29 * t609;
   const Real t611 = t607 - t610;
-  const Real t612 = par.k37 * t408;
-  const Real t613 = par.k21 * t405;
+  const Real t612 = par.k31 * t408;
+  const Real t613 = par.k29 * t405;
   const Real t614 = t612 - t613;
   const Real t615 = t404 * t614;
   const Real t616 = t611 + t615;
   const Real t617 = t616 + t603;
-  const Real t618 = par.k37 * t609;
-  const Real t619 = t480 * par.k21;
+  const Real t618 = par.k31 * t609;
+  const Real t619 = t480 * par.k29;
   const Real t620 = t618 - t619;
   const Real t621 = t600 + t620;
   const Real t622 = t614 * t405;
@@ -4062,10 +4053,10 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t630 = t629 * t405;
   const Real t631 = t630 * constant<Real>(2.0L);
   const Real t632 = t628 - t631;
-  const Real t633 = nu[3] * par.k43;
+  const Real t633 = nu[3] * par.k41;
   const Real t634 = t633 * t405;
   const Real t635 = t634 * constant<Real>(2.0L);
-  const Real t636 = par.k29 * t496;
+  const Real t636 = par.k24 * t496;
   const Real t637 = t635 + t636;
   const Real t638 = t493 * par.k6;
   const Real t639 = t10 * t480;
@@ -4074,11 +4065,11 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t642 = t638 + t641;
   const Real t643 = t637 + t642;
   const Real t644 = t16 * t493;
-  const Real t645 = par.k43 * t495;
+  const Real t645 = par.k41 * t495;
   const Real t646 = t644 + t645;
   const Real t647 = t12 * t481;
   const Real t648 = t646 + t647;
-  const Real t649 = t480 * par.k50;
+  const Real t649 = t480 * par.k47;
   const Real t650 = t648 + t649;
   const Real t651 = t481 * t11;
   const Real t652 = t650 - t651;
@@ -4112,25 +4103,25 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t676 = abs(t450);
-  const Real t677 = par.k65 * t676;
+  const Real t677 = par.k62 * t676;
   const Real t678 = par.k3 * t677;
   const Real t679 = t678 * t450;
   const Real t680 = t679 + t675;
-  const Real t681 = par.k25 * nu[2];
+  const Real t681 = par.k20 * nu[2];
   const Real t682 = t681 + nu[1];
   const Real t683 = abs(t682);
-  const Real t684 = t683 * par.k74;
+  const Real t684 = t683 * par.k71;
   const Real t685 = par.k14 * t684;
   const Real t686 = t682 * t685;
   const Real t687 = nu[1] - t681;
   const Real t688 = abs(t687);
-  const Real t689 = t688 * par.k74;
+  const Real t689 = t688 * par.k71;
   const Real t690 = par.k14 * t689;
   const Real t691 = t687 * t690;
   const Real t692 = t691 + t542;
   const Real t693 = t686 + t692;
   const Real t694 = abs(t434);
-  const Real t695 = t694 * par.k71;
+  const Real t695 = t694 * par.k68;
   const Real t696 = par.k3 * t695;
   const Real t697 = t434 * t696;
   const Real t698 = t697 - t669;
@@ -4138,98 +4129,98 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t700 = par.m_w * t699;
   const Real t701 = constant<Real>(0.5L) * t700;
   const Real t702 = abs(t404);
-  const Real t703 = par.k66 * t702;
-  const Real t704 = par.k19 * t703;
+  const Real t703 = par.k63 * t702;
+  const Real t704 = par.k27 * t703;
   const Real t705 = t404 * t704;
   const Real t706 = t705 + t623;
   const Real t707 = t706 + t705;
-  const Real t708 = par.k30 * t396;
+  const Real t708 = par.k35 * t396;
   const Real t709 = t395 - t708;
   const Real t710 = abs(t709);
-  const Real t711 = par.k68 * t710;
-  const Real t712 = par.k31 * t711;
+  const Real t711 = par.k65 * t710;
+  const Real t712 = par.k34 * t711;
   const Real t713 = t712 * t709;
-  const Real t714 = par.k30 * t713;
+  const Real t714 = par.k35 * t713;
   const Real t715 = t591 - t714;
-  const Real t716 = t396 * par.k32;
+  const Real t716 = t396 * par.k33;
   const Real t717 = t395 - t716;
   const Real t718 = abs(t717);
-  const Real t719 = t718 * par.k68;
-  const Real t720 = t719 * par.k31;
+  const Real t719 = t718 * par.k65;
+  const Real t720 = t719 * par.k34;
   const Real t721 = t717 * t720;
-  const Real t722 = par.k32 * t721;
+  const Real t722 = par.k33 * t721;
   const Real t723 = t715 - t722;
-  const Real t724 = par.k20 * t405;
+  const Real t724 = par.k28 * t405;
   const Real t725 = t408 - t724;
   const Real t726 = abs(t725);
-  const Real t727 = t726 * par.k69;
-  const Real t728 = par.k19 * t727;
+  const Real t727 = t726 * par.k66;
+  const Real t728 = par.k27 * t727;
   const Real t729 = t725 * t728;
   const Real t730 = t729 + t621;
-  const Real t731 = par.k18 * t405;
+  const Real t731 = par.k26 * t405;
   const Real t732 = t408 - t731;
   const Real t733 = abs(t732);
-  const Real t734 = par.k69 * t733;
-  const Real t735 = t734 * par.k19;
+  const Real t734 = par.k66 * t733;
+  const Real t735 = t734 * par.k27;
   const Real t736 = t735 * t732;
   const Real t737 = t730 + t736;
-  const Real t738 = t382 * par.k40;
+  const Real t738 = t382 * par.k38;
   const Real t739 = t387 - t738;
   const Real t740 = abs(t739);
-  const Real t741 = t740 * par.k72;
+  const Real t741 = t740 * par.k69;
   const Real t742 = par.k11 * t741;
   const Real t743 = t742 * t739;
   const Real t744 = t743 + t560;
-  const Real t745 = t382 * par.k41;
+  const Real t745 = t382 * par.k39;
   const Real t746 = t387 - t745;
   const Real t747 = abs(t746);
-  const Real t748 = t747 * par.k72;
+  const Real t748 = t747 * par.k69;
   const Real t749 = par.k11 * t748;
   const Real t750 = t746 * t749;
   const Real t751 = t744 + t750;
-  const Real t752 = t686 * par.k25;
-  const Real t753 = par.k25 * t691;
+  const Real t752 = t686 * par.k20;
+  const Real t753 = par.k20 * t691;
   const Real t754 = t545 - t753;
   const Real t755 = t752 + t754;
   const Real t756 = t713 + t595;
   const Real t757 = t756 + t721;
   const Real t758 = abs(t399);
-  const Real t759 = par.k70 * t758;
-  const Real t760 = t759 * par.k31;
+  const Real t759 = par.k67 * t758;
+  const Real t760 = t759 * par.k34;
   const Real t761 = t760 * t399;
   const Real t762 = t761 + t597;
   const Real t763 = t761 + t762;
   const Real t764 = abs(t453);
-  const Real t765 = par.k71 * t764;
+  const Real t765 = par.k68 * t764;
   const Real t766 = par.k3 * t765;
   const Real t767 = t453 * t766;
   const Real t768 = t767 - t672;
-  const Real t769 = par.k20 * t729;
+  const Real t769 = par.k28 * t729;
   const Real t770 = t617 - t769;
-  const Real t771 = par.k18 * t736;
+  const Real t771 = par.k26 * t736;
   const Real t772 = t770 - t771;
   const Real t773 = abs(t390);
-  const Real t774 = par.k73 * t773;
+  const Real t774 = par.k70 * t773;
   const Real t775 = par.k11 * t774;
   const Real t776 = t775 * t390;
   const Real t777 = t776 + t571;
   const Real t778 = t776 + t777;
   const Real t779 = abs(t439);
-  const Real t780 = par.k65 * t779;
+  const Real t780 = par.k62 * t779;
   const Real t781 = par.k3 * t780;
   const Real t782 = t439 * t781;
   const Real t783 = t668 + t782;
   const Real t784 = t420 * t423;
   const Real t785 = t784 * par.m_w;
   const Real t786 = abs(nu[0]);
-  const Real t787 = par.k67 * t786;
+  const Real t787 = par.k64 * t786;
   const Real t788 = par.k14 * t787;
   const Real t789 = t788 * nu[0];
   const Real t790 = t789 - t539;
   const Real t791 = t790 + t789;
-  const Real t792 = t743 * par.k40;
+  const Real t792 = t743 * par.k38;
   const Real t793 = t569 - t792;
-  const Real t794 = t750 * par.k41;
+  const Real t794 = t750 * par.k39;
   const Real t795 = t793 - t794;
 
   // fin_section_2: joint force
@@ -4339,7 +4330,7 @@ inline void split_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t887 = nu[3] * constant<Real>(2.0L);
-  const Real t888 = par.k76 * t887;
+  const Real t888 = par.k73 * t887;
   const Real t889 = t381 + t888;
   const Real t890 = t846 + t889;
 
@@ -4470,19 +4461,19 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -4491,11 +4482,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -4540,38 +4531,38 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t59 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t60 = s_r_a_0_ * par.k52;
+  const Real t60 = s_r_a_0_ * par.k49;
   const Real t61 = t59 + t60;
   const Real t62 = par.k12 * s_r_a_0_;
   const Real t63 = t57 + t62;
 
   // rear: wrench
-  const Real t64 = par.k27 * t37;
-  const Real t65 = par.k36 * t37;
-  const Real t66 = par.k27 * t34;
+  const Real t64 = par.k22 * t37;
+  const Real t65 = par.k30 * t37;
+  const Real t66 = par.k22 * t34;
 
   // rear: wrench of the fluid
-  const Real t67 = t37 * par.k56;
+  const Real t67 = t37 * par.k53;
   const Real t68 = t64 + t67;
-  const Real t69 = par.k33 * t37;
+  const Real t69 = par.k43 * t37;
   const Real t70 = t65 + t69;
 
   // peduncle: wrench
-  const Real t71 = t40 * par.k45;
-  const Real t72 = par.k23 * t43;
-  const Real t73 = par.k23 * t40;
+  const Real t71 = t40 * par.k37;
+  const Real t72 = par.k18 * t43;
+  const Real t73 = par.k18 * t40;
 
   // peduncle: wrench of the fluid
-  const Real t74 = t40 * par.k37;
+  const Real t74 = t40 * par.k31;
   const Real t75 = t74 + t73;
-  const Real t76 = t40 * par.k21;
+  const Real t76 = t40 * par.k29;
   const Real t77 = t76 + t71;
 
   // fin: wrench
   const Real t78 = t40 * t19;
   const Real t79 = t10 * t44;
   const Real t80 = t78 - t79;
-  const Real t81 = t40 * par.k43;
+  const Real t81 = t40 * par.k41;
   const Real t82 = t16 * t44;
   const Real t83 = t81 - t82;
   const Real t84 = t40 * par.k6;
@@ -4603,31 +4594,31 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t100 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t101 = c_r_a_0_ * par.k52;
+  const Real t101 = c_r_a_0_ * par.k49;
   const Real t102 = t101 + t100;
   const Real t103 = par.k12 * c_r_a_0_;
   const Real t104 = t58 + t103;
 
   // rear: wrench
-  const Real t105 = par.k36 * t34;
+  const Real t105 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t106 = t34 * par.k33;
+  const Real t106 = t34 * par.k43;
   const Real t107 = t105 + t106;
-  const Real t108 = t34 * par.k56;
+  const Real t108 = t34 * par.k53;
   const Real t109 = t108 + t66;
 
   // peduncle: wrench
-  const Real t110 = t43 * par.k45;
+  const Real t110 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t111 = par.k37 * t43;
+  const Real t111 = par.k31 * t43;
   const Real t112 = t111 + t72;
-  const Real t113 = par.k21 * t43;
+  const Real t113 = par.k29 * t43;
   const Real t114 = t110 + t113;
 
   // fin: wrench
-  const Real t115 = par.k43 * t44;
+  const Real t115 = par.k41 * t44;
   const Real t116 = t16 * t40;
   const Real t117 = t115 + t116;
   const Real t118 = t10 * t40;
@@ -4699,46 +4690,46 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // trunk: wrench
   const Real t163 = t136 * par.k1;
   const Real t164 = par.k2 * t135;
-  const Real t165 = t164 + par.k44;
+  const Real t165 = t164 + par.k42;
   const Real t166 = t135 * par.k1;
   const Real t167 = par.k2 + t166;
 
   // trunk: wrench of the fluid
-  const Real t168 = t135 * par.k52;
-  const Real t169 = t168 + par.k42;
+  const Real t168 = t135 * par.k49;
+  const Real t169 = t168 + par.k40;
   const Real t170 = t165 + t169;
   const Real t171 = t135 * par.k12;
-  const Real t172 = t171 + par.k52;
+  const Real t172 = t171 + par.k49;
   const Real t173 = t172 + t167;
 
   // rear: wrench
-  const Real t174 = t140 * par.k27;
-  const Real t175 = t174 - par.k36;
-  const Real t176 = t140 * par.k36;
-  const Real t177 = par.k28 - t176;
-  const Real t178 = par.k27 * t143;
+  const Real t174 = t140 * par.k22;
+  const Real t175 = t174 - par.k30;
+  const Real t176 = t140 * par.k30;
+  const Real t177 = par.k23 - t176;
+  const Real t178 = par.k22 * t143;
 
   // rear: wrench of the fluid
-  const Real t179 = t140 * par.k56;
-  const Real t180 = t179 - par.k33;
+  const Real t179 = t140 * par.k53;
+  const Real t180 = t179 - par.k43;
   const Real t181 = t175 + t180;
-  const Real t182 = t140 * par.k33;
-  const Real t183 = par.k39 - t182;
+  const Real t182 = t140 * par.k43;
+  const Real t183 = par.k36 - t182;
   const Real t184 = t177 + t183;
 
   // peduncle: wrench
-  const Real t185 = t147 * par.k45;
-  const Real t186 = par.k24 - t185;
-  const Real t187 = par.k23 * t147;
-  const Real t188 = t187 - par.k45;
-  const Real t189 = par.k23 * t150;
+  const Real t185 = t147 * par.k37;
+  const Real t186 = par.k19 - t185;
+  const Real t187 = par.k18 * t147;
+  const Real t188 = t187 - par.k37;
+  const Real t189 = par.k18 * t150;
 
   // peduncle: wrench of the fluid
-  const Real t190 = par.k37 * t147;
-  const Real t191 = t190 - par.k21;
+  const Real t190 = par.k31 * t147;
+  const Real t191 = t190 - par.k29;
   const Real t192 = t191 + t188;
-  const Real t193 = par.k21 * t147;
-  const Real t194 = par.k48 - t193;
+  const Real t193 = par.k29 * t147;
+  const Real t194 = par.k45 - t193;
   const Real t195 = t186 + t194;
 
   // fin: wrench
@@ -4748,10 +4739,10 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t199 = t15 + t198;
   const Real t200 = par.k6 * t152;
   const Real t201 = t200 - t10;
-  const Real t202 = t151 * par.k43;
+  const Real t202 = t151 * par.k41;
   const Real t203 = t16 * t152;
   const Real t204 = t202 - t203;
-  const Real t205 = par.k50 + t204;
+  const Real t205 = par.k47 + t204;
   const Real t206 = t151 * par.k6;
   const Real t207 = t206 + t19;
 
@@ -4799,7 +4790,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t232 = t229 * t2;
   const Real t233 = t29 * t232;
   const Real t234 = t231 + t233;
-  const Real t235 = par.k47 + t234;
+  const Real t235 = par.k44 + t234;
 
   // fin_section_1: joint force
   const Real t236 = t9 * t228;
@@ -4811,7 +4802,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t242 = r_p[0] * constant<Real>(2.0L);
-  const Real t243 = t242 * par.k75;
+  const Real t243 = t242 * par.k72;
 
   // trunk: twist
   const Real t244 = r_a_dot[0] + nu[2];
@@ -4984,7 +4975,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t383 = t382 * constant<Real>(2.0L);
   const Real t384 = t381 - t383;
   const Real t385 = t384 * t3;
-  const Real t386 = t358 * par.k55;
+  const Real t386 = t358 * par.k52;
   const Real t387 = t302 * t267;
   const Real t388 = t387 * constant<Real>(2.0L);
   const Real t389 = t31 * t343;
@@ -4997,8 +4988,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t396 = t385 + t395;
 
   // head: wrench
-  const Real t397 = par.k53 * t319;
-  const Real t398 = par.k53 * t320;
+  const Real t397 = par.k50 * t319;
+  const Real t398 = par.k50 * t320;
 
   // head: wrench of the fluid
   const Real t399 = par.k15 * nu[1];
@@ -5018,7 +5009,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t411 = t328 * par.k1;
   const Real t412 = par.k2 * t329;
   const Real t413 = t411 + t412;
-  const Real t414 = par.k44 * r_a_ddot[0];
+  const Real t414 = par.k42 * r_a_ddot[0];
   const Real t415 = par.k2 * t325;
   const Real t416 = t414 - t415;
 
@@ -5026,15 +5017,15 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t417 = t244 * t252;
   const Real t418 = t325 - t417;
   const Real t419 = par.k12 * t418;
-  const Real t420 = par.k52 * r_a_ddot[0];
+  const Real t420 = par.k49 * r_a_ddot[0];
   const Real t421 = t419 - t420;
   const Real t422 = t410 + t421;
   const Real t423 = par.k12 * t249;
-  const Real t424 = t244 * par.k52;
+  const Real t424 = t244 * par.k49;
   const Real t425 = t423 - t424;
   const Real t426 = t425 * t252;
-  const Real t427 = par.k42 * r_a_ddot[0];
-  const Real t428 = t418 * par.k52;
+  const Real t427 = par.k40 * r_a_ddot[0];
+  const Real t428 = t418 * par.k49;
   const Real t429 = t427 - t428;
   const Real t430 = t426 + t429;
   const Real t431 = t430 + t416;
@@ -5042,60 +5033,60 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t433 = t413 - t432;
 
   // rear: wrench
-  const Real t434 = t336 * par.k27;
-  const Real t435 = par.k36 * t340;
+  const Real t434 = t336 * par.k22;
+  const Real t435 = par.k30 * t340;
   const Real t436 = t434 - t435;
-  const Real t437 = par.k27 * t339;
-  const Real t438 = par.k36 * t341;
+  const Real t437 = par.k22 * t339;
+  const Real t438 = par.k30 * t341;
   const Real t439 = t437 + t438;
-  const Real t440 = par.k28 * t340;
-  const Real t441 = t336 * par.k36;
+  const Real t440 = par.k23 * t340;
+  const Real t441 = t336 * par.k30;
   const Real t442 = t440 - t441;
 
   // rear: wrench of the fluid
-  const Real t443 = t257 * par.k56;
-  const Real t444 = t258 * par.k33;
+  const Real t443 = t257 * par.k53;
+  const Real t444 = t258 * par.k43;
   const Real t445 = t443 - t444;
   const Real t446 = t261 * t445;
-  const Real t447 = par.k39 * t340;
+  const Real t447 = par.k36 * t340;
   const Real t448 = t258 * t261;
   const Real t449 = t336 - t448;
-  const Real t450 = par.k33 * t449;
+  const Real t450 = par.k43 * t449;
   const Real t451 = t447 - t450;
   const Real t452 = t446 + t451;
   const Real t453 = t452 + t442;
-  const Real t454 = t449 * par.k56;
-  const Real t455 = par.k33 * t340;
+  const Real t454 = t449 * par.k53;
+  const Real t455 = par.k43 * t340;
   const Real t456 = t454 - t455;
   const Real t457 = t436 + t456;
   const Real t458 = t258 * t445;
   const Real t459 = t439 - t458;
 
   // peduncle: wrench
-  const Real t460 = par.k23 * t353;
-  const Real t461 = t342 * par.k45;
+  const Real t460 = par.k18 * t353;
+  const Real t461 = t342 * par.k37;
   const Real t462 = t460 - t461;
-  const Real t463 = par.k24 * t342;
-  const Real t464 = par.k45 * t353;
+  const Real t463 = par.k19 * t342;
+  const Real t464 = par.k37 * t353;
   const Real t465 = t463 - t464;
-  const Real t466 = t343 * par.k45;
-  const Real t467 = par.k23 * t350;
+  const Real t466 = t343 * par.k37;
+  const Real t467 = par.k18 * t350;
   const Real t468 = t466 + t467;
 
   // peduncle: wrench of the fluid
-  const Real t469 = t342 * par.k48;
+  const Real t469 = t342 * par.k45;
   const Real t470 = t266 * t267;
   const Real t471 = t353 - t470;
-  const Real t472 = par.k21 * t471;
+  const Real t472 = par.k29 * t471;
   const Real t473 = t469 - t472;
-  const Real t474 = par.k37 * t270;
-  const Real t475 = par.k21 * t267;
+  const Real t474 = par.k31 * t270;
+  const Real t475 = par.k29 * t267;
   const Real t476 = t474 - t475;
   const Real t477 = t266 * t476;
   const Real t478 = t473 + t477;
   const Real t479 = t478 + t465;
-  const Real t480 = par.k37 * t471;
-  const Real t481 = t342 * par.k21;
+  const Real t480 = par.k31 * t471;
+  const Real t481 = t342 * par.k29;
   const Real t482 = t480 - t481;
   const Real t483 = t462 + t482;
   const Real t484 = t476 * t267;
@@ -5111,10 +5102,10 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t492 = t491 * t267;
   const Real t493 = t492 * constant<Real>(2.0L);
   const Real t494 = t490 - t493;
-  const Real t495 = nu[3] * par.k43;
+  const Real t495 = nu[3] * par.k41;
   const Real t496 = t495 * t267;
   const Real t497 = t496 * constant<Real>(2.0L);
-  const Real t498 = par.k29 * t358;
+  const Real t498 = par.k24 * t358;
   const Real t499 = t497 + t498;
   const Real t500 = t355 * par.k6;
   const Real t501 = t10 * t342;
@@ -5123,11 +5114,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t504 = t500 + t503;
   const Real t505 = t499 + t504;
   const Real t506 = t16 * t355;
-  const Real t507 = par.k43 * t357;
+  const Real t507 = par.k41 * t357;
   const Real t508 = t506 + t507;
   const Real t509 = t12 * t343;
   const Real t510 = t508 + t509;
-  const Real t511 = t342 * par.k50;
+  const Real t511 = t342 * par.k47;
   const Real t512 = t510 + t511;
   const Real t513 = t343 * t11;
   const Real t514 = t512 - t513;
@@ -5161,25 +5152,25 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t538 = abs(t312);
-  const Real t539 = par.k65 * t538;
+  const Real t539 = par.k62 * t538;
   const Real t540 = par.k3 * t539;
   const Real t541 = t540 * t312;
   const Real t542 = t541 + t537;
-  const Real t543 = par.k25 * nu[2];
+  const Real t543 = par.k20 * nu[2];
   const Real t544 = t543 + nu[1];
   const Real t545 = abs(t544);
-  const Real t546 = t545 * par.k74;
+  const Real t546 = t545 * par.k71;
   const Real t547 = par.k14 * t546;
   const Real t548 = t544 * t547;
   const Real t549 = nu[1] - t543;
   const Real t550 = abs(t549);
-  const Real t551 = t550 * par.k74;
+  const Real t551 = t550 * par.k71;
   const Real t552 = par.k14 * t551;
   const Real t553 = t549 * t552;
   const Real t554 = t553 + t404;
   const Real t555 = t548 + t554;
   const Real t556 = abs(t296);
-  const Real t557 = t556 * par.k71;
+  const Real t557 = t556 * par.k68;
   const Real t558 = par.k3 * t557;
   const Real t559 = t296 * t558;
   const Real t560 = t559 - t531;
@@ -5187,98 +5178,98 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t562 = par.m_w * t561;
   const Real t563 = constant<Real>(0.5L) * t562;
   const Real t564 = abs(t266);
-  const Real t565 = par.k66 * t564;
-  const Real t566 = par.k19 * t565;
+  const Real t565 = par.k63 * t564;
+  const Real t566 = par.k27 * t565;
   const Real t567 = t266 * t566;
   const Real t568 = t567 + t485;
   const Real t569 = t568 + t567;
-  const Real t570 = par.k30 * t258;
+  const Real t570 = par.k35 * t258;
   const Real t571 = t257 - t570;
   const Real t572 = abs(t571);
-  const Real t573 = par.k68 * t572;
-  const Real t574 = par.k31 * t573;
+  const Real t573 = par.k65 * t572;
+  const Real t574 = par.k34 * t573;
   const Real t575 = t574 * t571;
-  const Real t576 = par.k30 * t575;
+  const Real t576 = par.k35 * t575;
   const Real t577 = t453 - t576;
-  const Real t578 = t258 * par.k32;
+  const Real t578 = t258 * par.k33;
   const Real t579 = t257 - t578;
   const Real t580 = abs(t579);
-  const Real t581 = t580 * par.k68;
-  const Real t582 = t581 * par.k31;
+  const Real t581 = t580 * par.k65;
+  const Real t582 = t581 * par.k34;
   const Real t583 = t579 * t582;
-  const Real t584 = par.k32 * t583;
+  const Real t584 = par.k33 * t583;
   const Real t585 = t577 - t584;
-  const Real t586 = par.k20 * t267;
+  const Real t586 = par.k28 * t267;
   const Real t587 = t270 - t586;
   const Real t588 = abs(t587);
-  const Real t589 = t588 * par.k69;
-  const Real t590 = par.k19 * t589;
+  const Real t589 = t588 * par.k66;
+  const Real t590 = par.k27 * t589;
   const Real t591 = t587 * t590;
   const Real t592 = t591 + t483;
-  const Real t593 = par.k18 * t267;
+  const Real t593 = par.k26 * t267;
   const Real t594 = t270 - t593;
   const Real t595 = abs(t594);
-  const Real t596 = par.k69 * t595;
-  const Real t597 = t596 * par.k19;
+  const Real t596 = par.k66 * t595;
+  const Real t597 = t596 * par.k27;
   const Real t598 = t597 * t594;
   const Real t599 = t592 + t598;
-  const Real t600 = t244 * par.k40;
+  const Real t600 = t244 * par.k38;
   const Real t601 = t249 - t600;
   const Real t602 = abs(t601);
-  const Real t603 = t602 * par.k72;
+  const Real t603 = t602 * par.k69;
   const Real t604 = par.k11 * t603;
   const Real t605 = t604 * t601;
   const Real t606 = t605 + t422;
-  const Real t607 = t244 * par.k41;
+  const Real t607 = t244 * par.k39;
   const Real t608 = t249 - t607;
   const Real t609 = abs(t608);
-  const Real t610 = t609 * par.k72;
+  const Real t610 = t609 * par.k69;
   const Real t611 = par.k11 * t610;
   const Real t612 = t608 * t611;
   const Real t613 = t606 + t612;
-  const Real t614 = t548 * par.k25;
-  const Real t615 = par.k25 * t553;
+  const Real t614 = t548 * par.k20;
+  const Real t615 = par.k20 * t553;
   const Real t616 = t407 - t615;
   const Real t617 = t614 + t616;
   const Real t618 = t575 + t457;
   const Real t619 = t618 + t583;
   const Real t620 = abs(t261);
-  const Real t621 = par.k70 * t620;
-  const Real t622 = t621 * par.k31;
+  const Real t621 = par.k67 * t620;
+  const Real t622 = t621 * par.k34;
   const Real t623 = t622 * t261;
   const Real t624 = t623 + t459;
   const Real t625 = t623 + t624;
   const Real t626 = abs(t315);
-  const Real t627 = par.k71 * t626;
+  const Real t627 = par.k68 * t626;
   const Real t628 = par.k3 * t627;
   const Real t629 = t315 * t628;
   const Real t630 = t629 - t534;
-  const Real t631 = par.k20 * t591;
+  const Real t631 = par.k28 * t591;
   const Real t632 = t479 - t631;
-  const Real t633 = par.k18 * t598;
+  const Real t633 = par.k26 * t598;
   const Real t634 = t632 - t633;
   const Real t635 = abs(t252);
-  const Real t636 = par.k73 * t635;
+  const Real t636 = par.k70 * t635;
   const Real t637 = par.k11 * t636;
   const Real t638 = t637 * t252;
   const Real t639 = t638 + t433;
   const Real t640 = t638 + t639;
   const Real t641 = abs(t301);
-  const Real t642 = par.k65 * t641;
+  const Real t642 = par.k62 * t641;
   const Real t643 = par.k3 * t642;
   const Real t644 = t301 * t643;
   const Real t645 = t530 + t644;
   const Real t646 = t282 * t285;
   const Real t647 = t646 * par.m_w;
   const Real t648 = abs(nu[0]);
-  const Real t649 = par.k67 * t648;
+  const Real t649 = par.k64 * t648;
   const Real t650 = par.k14 * t649;
   const Real t651 = t650 * nu[0];
   const Real t652 = t651 - t401;
   const Real t653 = t652 + t651;
-  const Real t654 = t605 * par.k40;
+  const Real t654 = t605 * par.k38;
   const Real t655 = t431 - t654;
-  const Real t656 = t612 * par.k41;
+  const Real t656 = t612 * par.k39;
   const Real t657 = t655 - t656;
 
   // fin_section_2: joint force
@@ -5388,7 +5379,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // springs, dampers and generalised forces
   const Real t749 = nu[3] * constant<Real>(2.0L);
-  const Real t750 = par.k76 * t749;
+  const Real t750 = par.k73 * t749;
   const Real t751 = t243 + t750;
   const Real t752 = t708 + t751;
 
@@ -5418,11 +5409,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t771 = t767 - t770;
 
   // fin: wrench
-  const Real t772 = t754 * par.k43;
+  const Real t772 = t754 * par.k41;
   const Real t773 = t84 - t772;
   const Real t774 = t754 * t16;
   const Real t775 = t774 + t85;
-  const Real t776 = t754 * par.k50;
+  const Real t776 = t754 * par.k47;
   const Real t777 = t80 - t776;
 
   // fin_section_1: wrench of the fluid
@@ -5488,7 +5479,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t823 = c_r_a_0_ * t822;
   const Real t824 = t815 * s_r_a_0_;
   const Real t825 = t823 - t824;
-  const Real t826 = t825 + par.k57;
+  const Real t826 = t825 + par.k54;
   const Real t827 = t815 * c_r_a_0_;
   const Real t828 = s_r_a_0_ * t822;
   const Real t829 = t827 + t828;
@@ -5516,11 +5507,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t847 = t843 - t846;
 
   // fin: wrench
-  const Real t848 = par.k50 * t757;
+  const Real t848 = par.k47 * t757;
   const Real t849 = t120 - t848;
   const Real t850 = t16 * t757;
   const Real t851 = t850 - t84;
-  const Real t852 = par.k43 * t757;
+  const Real t852 = par.k41 * t757;
   const Real t853 = t85 - t852;
 
   // fin_section_1: wrench of the fluid
@@ -5588,7 +5579,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t901 = t899 + t900;
   const Real t902 = par.k8 * t901;
   const Real t903 = t898 - t902;
-  const Real t904 = t901 + par.k58;
+  const Real t904 = t901 + par.k55;
   const Real t905 = t752 * t757;
   const Real t906 = t905 - t741;
 
@@ -5611,11 +5602,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t920 = t916 - t919;
 
   // fin: wrench
-  const Real t921 = t755 * par.k50;
+  const Real t921 = t755 * par.k47;
   const Real t922 = t199 - t921;
   const Real t923 = t16 * t755;
   const Real t924 = t201 + t923;
-  const Real t925 = t755 * par.k43;
+  const Real t925 = t755 * par.k41;
   const Real t926 = t207 - t925;
 
   // fin_section_1: wrench of the fluid
@@ -5700,7 +5691,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t991 = t989 + t990;
   const Real t992 = par.k8 * t991;
   const Real t993 = t966 - t992;
-  const Real t994 = t993 + par.k59;
+  const Real t994 = t993 + par.k56;
   const Real t995 = t831 * t975;
   const Real t996 = t994 - t995;
   const Real t997 = t986 * t985;
@@ -5775,19 +5766,19 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -5796,11 +5787,11 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -5931,33 +5922,33 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t127 = t55 * t97;
   const Real t128 = t127 * constant<Real>(2.0L);
   const Real t129 = t28 * t114;
-  const Real t130 = t116 * par.k55;
+  const Real t130 = t116 * par.k52;
 
   // trunk: wrench of the fluid
   const Real t131 = t32 * t40;
   const Real t132 = par.k12 * t37;
-  const Real t133 = t32 * par.k52;
+  const Real t133 = t32 * par.k49;
   const Real t134 = t132 - t133;
   const Real t135 = t134 * t40;
 
   // rear: wrench
-  const Real t136 = par.k36 * t112;
+  const Real t136 = par.k30 * t112;
 
   // rear: wrench of the fluid
-  const Real t137 = t45 * par.k56;
-  const Real t138 = t46 * par.k33;
+  const Real t137 = t45 * par.k53;
+  const Real t138 = t46 * par.k43;
   const Real t139 = t137 - t138;
   const Real t140 = t49 * t139;
   const Real t141 = t46 * t139;
   const Real t142 = t46 * t49;
 
   // peduncle: wrench
-  const Real t143 = t114 * par.k45;
+  const Real t143 = t114 * par.k37;
 
   // peduncle: wrench of the fluid
   const Real t144 = t54 * t55;
-  const Real t145 = par.k37 * t58;
-  const Real t146 = par.k21 * t55;
+  const Real t145 = par.k31 * t58;
+  const Real t146 = par.k29 * t55;
   const Real t147 = t145 - t146;
   const Real t148 = t147 * t55;
   const Real t149 = t54 * t147;
@@ -5972,11 +5963,11 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t156 = t16 * nu[3];
   const Real t157 = t156 * t55;
   const Real t158 = t157 * constant<Real>(2.0L);
-  const Real t159 = nu[3] * par.k43;
+  const Real t159 = nu[3] * par.k41;
   const Real t160 = t159 * t55;
   const Real t161 = t160 * constant<Real>(2.0L);
   const Real t162 = t114 * t19;
-  const Real t163 = par.k29 * t116;
+  const Real t163 = par.k24 * t116;
 
   // fin_section_1: wrench of the fluid
   const Real t164 = t84 * t86;
@@ -5992,76 +5983,76 @@ inline void inverse_torques(const Prepared<Real>& par,
 
   // applied wrenches
   const Real t172 = abs(t49);
-  const Real t173 = par.k70 * t172;
-  const Real t174 = t173 * par.k31;
+  const Real t173 = par.k67 * t172;
+  const Real t174 = t173 * par.k34;
   const Real t175 = t174 * t49;
-  const Real t176 = par.k18 * t55;
+  const Real t176 = par.k26 * t55;
   const Real t177 = t58 - t176;
   const Real t178 = abs(t177);
-  const Real t179 = par.k69 * t178;
-  const Real t180 = t179 * par.k19;
+  const Real t179 = par.k66 * t178;
+  const Real t180 = t179 * par.k27;
   const Real t181 = t180 * t177;
-  const Real t182 = par.k18 * t181;
-  const Real t183 = t46 * par.k32;
+  const Real t182 = par.k26 * t181;
+  const Real t183 = t46 * par.k33;
   const Real t184 = t45 - t183;
   const Real t185 = abs(t184);
-  const Real t186 = t185 * par.k68;
-  const Real t187 = t186 * par.k31;
+  const Real t186 = t185 * par.k65;
+  const Real t187 = t186 * par.k34;
   const Real t188 = t184 * t187;
-  const Real t189 = par.k32 * t188;
+  const Real t189 = par.k33 * t188;
   const Real t190 = abs(t84);
-  const Real t191 = t190 * par.k71;
+  const Real t191 = t190 * par.k68;
   const Real t192 = par.k3 * t191;
   const Real t193 = t84 * t192;
   const Real t194 = t193 - t167;
-  const Real t195 = t32 * par.k40;
+  const Real t195 = t32 * par.k38;
   const Real t196 = t37 - t195;
   const Real t197 = abs(t196);
-  const Real t198 = t197 * par.k72;
+  const Real t198 = t197 * par.k69;
   const Real t199 = par.k11 * t198;
   const Real t200 = t199 * t196;
-  const Real t201 = t200 * par.k40;
+  const Real t201 = t200 * par.k38;
   const Real t202 = t73 * t73;
   const Real t203 = par.m_w * t202;
   const Real t204 = constant<Real>(0.5L) * t203;
   const Real t205 = abs(t103);
-  const Real t206 = par.k71 * t205;
+  const Real t206 = par.k68 * t205;
   const Real t207 = par.k3 * t206;
   const Real t208 = t103 * t207;
   const Real t209 = t208 - t171;
-  const Real t210 = par.k20 * t55;
+  const Real t210 = par.k28 * t55;
   const Real t211 = t58 - t210;
   const Real t212 = abs(t211);
-  const Real t213 = t212 * par.k69;
-  const Real t214 = par.k19 * t213;
+  const Real t213 = t212 * par.k66;
+  const Real t214 = par.k27 * t213;
   const Real t215 = t211 * t214;
-  const Real t216 = par.k20 * t215;
+  const Real t216 = par.k28 * t215;
   const Real t217 = abs(t54);
-  const Real t218 = par.k66 * t217;
-  const Real t219 = par.k19 * t218;
+  const Real t218 = par.k63 * t217;
+  const Real t219 = par.k27 * t218;
   const Real t220 = t54 * t219;
-  const Real t221 = t32 * par.k41;
+  const Real t221 = t32 * par.k39;
   const Real t222 = t37 - t221;
   const Real t223 = abs(t222);
-  const Real t224 = t223 * par.k72;
+  const Real t224 = t223 * par.k69;
   const Real t225 = par.k11 * t224;
   const Real t226 = t222 * t225;
-  const Real t227 = t226 * par.k41;
+  const Real t227 = t226 * par.k39;
   const Real t228 = abs(t100);
-  const Real t229 = par.k65 * t228;
+  const Real t229 = par.k62 * t228;
   const Real t230 = par.k3 * t229;
   const Real t231 = t230 * t100;
-  const Real t232 = par.k30 * t46;
+  const Real t232 = par.k35 * t46;
   const Real t233 = t45 - t232;
   const Real t234 = abs(t233);
-  const Real t235 = par.k68 * t234;
-  const Real t236 = par.k31 * t235;
+  const Real t235 = par.k65 * t234;
+  const Real t236 = par.k34 * t235;
   const Real t237 = t236 * t233;
-  const Real t238 = par.k30 * t237;
+  const Real t238 = par.k35 * t237;
   const Real t239 = t70 * t73;
   const Real t240 = t239 * par.m_w;
   const Real t241 = abs(t89);
-  const Real t242 = par.k65 * t241;
+  const Real t242 = par.k62 * t241;
   const Real t243 = par.k3 * t242;
   const Real t244 = t89 * t243;
 
@@ -6166,66 +6157,66 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t324 = t315 + t323;
 
   // trunk: wrench
-  const Real t325 = t269 * par.k44;
+  const Real t325 = t269 * par.k42;
   const Real t326 = par.k2 * t265;
   const Real t327 = t325 - t326;
 
   // trunk: wrench of the fluid
-  const Real t328 = t269 * par.k42;
+  const Real t328 = t269 * par.k40;
   const Real t329 = t265 - t131;
-  const Real t330 = t329 * par.k52;
+  const Real t330 = t329 * par.k49;
   const Real t331 = t328 - t330;
   const Real t332 = t331 + t135;
   const Real t333 = t332 + t327;
 
   // rear: wrench
-  const Real t334 = t270 * par.k28;
-  const Real t335 = par.k36 * t279;
+  const Real t334 = t270 * par.k23;
+  const Real t335 = par.k30 * t279;
   const Real t336 = t334 - t335;
-  const Real t337 = par.k27 * t279;
-  const Real t338 = t270 * par.k36;
+  const Real t337 = par.k22 * t279;
+  const Real t338 = t270 * par.k30;
   const Real t339 = t337 - t338;
-  const Real t340 = par.k27 * t276;
+  const Real t340 = par.k22 * t276;
   const Real t341 = t136 + t340;
 
   // rear: wrench of the fluid
   const Real t342 = t279 - t142;
-  const Real t343 = t342 * par.k56;
-  const Real t344 = t270 * par.k33;
+  const Real t343 = t342 * par.k53;
+  const Real t344 = t270 * par.k43;
   const Real t345 = t343 - t344;
   const Real t346 = t345 + t339;
-  const Real t347 = t270 * par.k39;
-  const Real t348 = t342 * par.k33;
+  const Real t347 = t270 * par.k36;
+  const Real t348 = t342 * par.k43;
   const Real t349 = t347 - t348;
   const Real t350 = t140 + t349;
   const Real t351 = t336 + t350;
   const Real t352 = t341 - t141;
 
   // peduncle: wrench
-  const Real t353 = par.k24 * t289;
-  const Real t354 = t285 * par.k45;
+  const Real t353 = par.k19 * t289;
+  const Real t354 = t285 * par.k37;
   const Real t355 = t353 - t354;
-  const Real t356 = par.k23 * t288;
+  const Real t356 = par.k18 * t288;
   const Real t357 = t143 + t356;
-  const Real t358 = par.k23 * t285;
-  const Real t359 = par.k45 * t289;
+  const Real t358 = par.k18 * t285;
+  const Real t359 = par.k37 * t289;
   const Real t360 = t358 - t359;
 
   // peduncle: wrench of the fluid
   const Real t361 = t285 - t144;
-  const Real t362 = par.k37 * t361;
-  const Real t363 = par.k21 * t289;
+  const Real t362 = par.k31 * t361;
+  const Real t363 = par.k29 * t289;
   const Real t364 = t362 - t363;
   const Real t365 = t364 + t360;
-  const Real t366 = t289 * par.k48;
-  const Real t367 = par.k21 * t361;
+  const Real t366 = t289 * par.k45;
+  const Real t367 = par.k29 * t361;
   const Real t368 = t366 - t367;
   const Real t369 = t368 + t149;
   const Real t370 = t355 + t369;
   const Real t371 = t357 - t148;
 
   // fin: wrench
-  const Real t372 = par.k43 * nu_dot[3];
+  const Real t372 = par.k41 * nu_dot[3];
   const Real t373 = t372 - t158;
   const Real t374 = t19 * t289;
   const Real t375 = t374 - t155;
@@ -6245,7 +6236,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t389 = t19 * t292;
   const Real t390 = t388 + t389;
   const Real t391 = t387 + t390;
-  const Real t392 = nu_dot[3] * par.k50;
+  const Real t392 = nu_dot[3] * par.k47;
   const Real t393 = t391 + t392;
   const Real t394 = t154 + t393;
 
@@ -6439,8 +6430,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: modes first, compensated beyond 2.8 ulps
-/// operations: 2923 add, 1716 mul, 11 div, 65 neg, 6 sin, 6 cos, 16 other
+/// route: modes first, compensated beyond 4 ulps
+/// operations: 2073 add, 1347 mul, 7 div, 48 neg, 6 sin, 6 cos, 16 other
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (1) rad or m: e1
 /// @param[in]  r_a           (3) rad or m: r1, r2, r3
@@ -6467,7 +6458,6 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   using std::sin;
   using detail::constant;
   using detail::product_error;
-  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
@@ -6491,3202 +6481,3080 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   // rear: acceleration
   const Real t11 = t10 + par.l1;
   const Real t12 = c_r_a_1_ * t11;
-  const Real t13 = -t12;
 
   // trunk: acceleration
-  const Real t14 = par.k8 * s_r_a_0_;
+  const Real t13 = par.k8 * s_r_a_0_;
 
   // rear: acceleration
-  const Real t15 = t14 * s_r_a_1_;
-
-  // accelerations
-  const Real t16 = sum_error(t15, t13);
-  const Real t17 = sum_error(t10, par.l1);
-  const Real t18 = c_r_a_1_ * t17;
-  const Real t19 = product_error(c_r_a_1_, t11);
-  const Real t20 = t18 + t19;
-  const Real t21 = t16 - t20;
-
-  // rear: acceleration
-  const Real t22 = t15 - t12;
-
-  // accelerations
-  const Real t23 = sum_error(t22, par.k38);
-  const Real t24 = t21 + t23;
-  const Real t25 = t24 * c_r_a_2_;
+  const Real t14 = t13 * s_r_a_1_;
+  const Real t15 = t14 - t12;
 
   // peduncle: acceleration
-  const Real t26 = t22 - par.l2;
+  const Real t16 = t15 - par.l2;
+  const Real t17 = t16 * c_r_a_2_;
 
   // accelerations
-  const Real t27 = product_error(t26, c_r_a_2_);
-  const Real t28 = t25 + t27;
+  const Real t18 = sum_error(t15, par.k32);
+  const Real t19 = c_r_a_2_ * t18;
+  const Real t20 = t17 + t19;
+
+  // rear: acceleration
+  const Real t21 = t11 * s_r_a_1_;
+  const Real t22 = c_r_a_1_ * t13;
+  const Real t23 = t22 + t21;
 
   // peduncle: acceleration
-  const Real t29 = t26 * c_r_a_2_;
+  const Real t24 = t23 * s_r_a_2_;
 
   // accelerations
-  const Real t30 = t17 * s_r_a_1_;
-
-  // rear: acceleration
-  const Real t31 = t11 * s_r_a_1_;
-
-  // accelerations
-  const Real t32 = t30 + t31;
-
-  // rear: acceleration
-  const Real t33 = c_r_a_1_ * t14;
-
-  // accelerations
-  const Real t34 = t32 + t33;
-  const Real t35 = t34 * s_r_a_2_;
-  const Real t36 = sum_error(t29, t35);
-  const Real t37 = t36 + t28;
-  const Real t38 = t29 + t35;
-  const Real t39 = -t38;
-  const Real t40 = sum_error(par.l3, t39);
-  const Real t41 = t40 - t37;
-  const Real t42 = par.l3 - t38;
+  const Real t25 = t24 + t20;
+  const Real t26 = -t25;
+  const Real t27 = sum_error(par.l3, t26);
+  const Real t28 = par.l3 - t25;
 
   // fin_section_2: station
-  const Real t43 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
 
   // fin_tip: station
-  const Real t44 = constant<Real>(0.5L) * r_p[0];
+  const Real t30 = constant<Real>(0.5L) * r_p[0];
 
   // fin_section_2: station
-  const Real t45 = t43 * t44;
-  const Real t46 = par.k10 - t45;
+  const Real t31 = t29 * t30;
+  const Real t32 = par.k10 - t31;
 
   // accelerations
-  const Real t47 = sum_error(t42, t46);
-  const Real t48 = t41 + t47;
-  const Real t49 = t48 * t3;
-  const Real t50 = t46 + t42;
-  const Real t51 = product_error(t50, t3);
-  const Real t52 = t51 + t49;
-  const Real t53 = t24 * s_r_a_2_;
+  const Real t33 = t32 + t28;
+  const Real t34 = t27 + t33;
+  const Real t35 = product_error(t34, t3);
+  const Real t36 = t18 * s_r_a_2_;
 
   // peduncle: acceleration
-  const Real t54 = t26 * s_r_a_2_;
+  const Real t37 = t16 * s_r_a_2_;
 
   // accelerations
-  const Real t55 = t53 + t54;
-  const Real t56 = t34 * c_r_a_2_;
-  const Real t57 = t56 - t55;
+  const Real t38 = t36 + t37;
+
+  // peduncle: acceleration
+  const Real t39 = t23 * c_r_a_2_;
+
+  // accelerations
+  const Real t40 = t39 - t38;
 
   // fin_section_2: station
-  const Real t58 = constant<Real>(0.710077701790478711739L) * r_p[0];
+  const Real t41 = constant<Real>(0.710077701790478711739L) * r_p[0];
 
   // accelerations
-  const Real t59 = t57 - t58;
-  const Real t60 = product_error(t59, t2);
-  const Real t61 = t52 - t60;
-  const Real t62 = t59 * t2;
-  const Real t63 = -t62;
-  const Real t64 = t50 * t3;
-  const Real t65 = sum_error(t64, t63);
-  const Real t66 = t65 + t61;
-  const Real t67 = par.k4 * t66;
-  const Real t68 = t64 - t62;
-  const Real t69 = product_error(par.k4, t68);
-  const Real t70 = t69 + t67;
-  const Real t71 = t70 * t3;
-  const Real t72 = par.k4 * t68;
-  const Real t73 = product_error(t72, t3);
-  const Real t74 = t73 + t71;
-  const Real t75 = constant<Real>(0.710077701790478711739L) * t74;
-  const Real t76 = t72 * t3;
-  const Real t77 = product_error(constant<Real>(0.710077701790478711739L), t76);
-  const Real t78 = t77 + t75;
-  const Real t79 = t70 * t2;
-  const Real t80 = product_error(t72, t2);
-  const Real t81 = t79 + t80;
-  const Real t82 = t43 * t81;
-  const Real t83 = t72 * t2;
-  const Real t84 = product_error(t43, t83);
-  const Real t85 = t82 + t84;
-  const Real t86 = t78 + t85;
-  const Real t87 = constant<Real>(0.710077701790478711739L) * t76;
-  const Real t88 = t43 * t83;
-  const Real t89 = sum_error(t87, t88);
-  const Real t90 = t86 + t89;
-  const Real t91 = t87 + t88;
-  const Real t92 = t41 * par.k43;
-  const Real t93 = t42 * par.k43;
-  const Real t94 = t92 + t93;
+  const Real t42 = t40 - t41;
+  const Real t43 = product_error(t42, t2);
+  const Real t44 = t35 - t43;
+  const Real t45 = t34 * t3;
+  const Real t46 = t42 * t2;
+  const Real t47 = -t46;
+  const Real t48 = sum_error(t45, t47);
+  const Real t49 = t44 + t48;
+  const Real t50 = par.k4 * t49;
+  const Real t51 = t45 - t46;
+  const Real t52 = product_error(par.k4, t51);
+  const Real t53 = t52 + t50;
+  const Real t54 = t53 * t2;
+  const Real t55 = par.k4 * t51;
+  const Real t56 = t55 * t2;
+  const Real t57 = t54 + t56;
+  const Real t58 = t29 * t57;
+  const Real t59 = t55 * t3;
+  const Real t60 = constant<Real>(0.710077701790478711739L) * t59;
+  const Real t61 = t60 + t58;
+  const Real t62 = t27 * par.k41;
+  const Real t63 = par.k41 * t28;
+  const Real t64 = t62 + t63;
 
   // fin: inertia in its present shape
-  const Real t95 = par.k29 * r_p[0];
+  const Real t65 = par.k24 * r_p[0];
 
   // accelerations
-  const Real t96 = t95 * t57;
-  const Real t97 = t94 - t96;
-  const Real t98 = t97 + par.k50;
-  const Real t99 = sum_error(t91, t98);
-  const Real t100 = t99 + t90;
+  const Real t66 = t65 * t40;
+  const Real t67 = t64 - t66;
+  const Real t68 = t67 + par.k47;
+  const Real t69 = t61 + t68;
 
   // fin_section_1: station
-  const Real t101 = constant<Real>(0.0709020735931204697442L) * r_p[0];
+  const Real t70 = par.k9 * r_p[0];
+  const Real t71 = t70 * t30;
+  const Real t72 = par.k46 - t71;
 
   // accelerations
-  const Real t102 = t57 - t101;
-  const Real t103 = t102 * t8;
-  const Real t104 = -t103;
+  const Real t73 = sum_error(t28, t72);
+  const Real t74 = t27 + t73;
+  const Real t75 = t9 * t74;
+  const Real t76 = t72 + t28;
+  const Real t77 = t76 * t9;
+  const Real t78 = t77 + t75;
 
   // fin_section_1: station
-  const Real t105 = par.k9 * r_p[0];
-  const Real t106 = t105 * t44;
-  const Real t107 = par.k49 - t106;
+  const Real t79 = constant<Real>(0.0709020735931204697442L) * r_p[0];
 
   // accelerations
-  const Real t108 = t42 + t107;
-  const Real t109 = t108 * t9;
-  const Real t110 = sum_error(t109, t104);
-  const Real t111 = sum_error(t42, t107);
-  const Real t112 = t41 + t111;
-  const Real t113 = t112 * t9;
-  const Real t114 = product_error(t108, t9);
-  const Real t115 = t114 + t113;
-  const Real t116 = t110 + t115;
-  const Real t117 = par.k4 * t116;
-  const Real t118 = t109 - t103;
-  const Real t119 = product_error(par.k4, t118);
-  const Real t120 = t117 + t119;
-  const Real t121 = t120 * t8;
-  const Real t122 = par.k4 * t118;
-  const Real t123 = t122 * t8;
-  const Real t124 = t121 + t123;
-  const Real t125 = t105 * t124;
-  const Real t126 = t122 * t9;
-  const Real t127 = t126 * constant<Real>(0.0709020735931204697442L);
-  const Real t128 = sum_error(t127, t125);
-  const Real t129 = t120 * t9;
-  const Real t130 = product_error(t122, t9);
-  const Real t131 = t130 + t129;
-  const Real t132 = constant<Real>(0.0709020735931204697442L) * t131;
-  const Real t133 = product_error(constant<Real>(0.0709020735931204697442L), t126);
-  const Real t134 = t133 + t132;
-  const Real t135 = t128 + t134;
-  const Real t136 = t135 + t100;
-  const Real t137 = t125 + t127;
-  const Real t138 = t91 + t98;
-  const Real t139 = sum_error(t138, t137);
-  const Real t140 = t139 + t136;
+  const Real t80 = t40 - t79;
+  const Real t81 = t80 * t8;
+  const Real t82 = t78 - t81;
+  const Real t83 = par.k4 * t82;
+  const Real t84 = t83 * t8;
+  const Real t85 = t70 * t84;
+  const Real t86 = t83 * t9;
+  const Real t87 = constant<Real>(0.0709020735931204697442L) * t86;
+  const Real t88 = t85 + t87;
+  const Real t89 = sum_error(t69, t88);
+  const Real t90 = t53 * t3;
+  const Real t91 = product_error(t55, t3);
+  const Real t92 = t91 + t90;
+  const Real t93 = constant<Real>(0.710077701790478711739L) * t92;
+  const Real t94 = product_error(constant<Real>(0.710077701790478711739L), t59);
+  const Real t95 = t93 + t94;
+  const Real t96 = sum_error(t60, t58);
+  const Real t97 = t95 + t96;
+  const Real t98 = sum_error(t61, t68);
+  const Real t99 = t97 + t98;
+  const Real t100 = t89 + t99;
 
   // fin_section_2: acceleration
-  const Real t141 = t43 * t2;
-  const Real t142 = constant<Real>(0.710077701790478711739L) * t3;
+  const Real t101 = t29 * t2;
+  const Real t102 = constant<Real>(0.710077701790478711739L) * t3;
+  const Real t103 = t101 + t102;
+
+  // fin_section_2: wrench of the fluid
+  const Real t104 = par.k4 * t103;
+
+  // fin_section_2: joint force
+  const Real t105 = t104 * t3;
+  const Real t106 = constant<Real>(0.710077701790478711739L) * t105;
+  const Real t107 = t104 * t2;
+  const Real t108 = t29 * t107;
+  const Real t109 = t106 + t108;
+  const Real t110 = par.k44 + t109;
+
+  // fin_section_1: acceleration
+  const Real t111 = t70 * t8;
+  const Real t112 = constant<Real>(0.0709020735931204697442L) * t9;
+  const Real t113 = t111 + t112;
+
+  // fin_section_1: wrench of the fluid
+  const Real t114 = par.k4 * t113;
+
+  // fin_section_1: joint force
+  const Real t115 = t9 * t114;
+  const Real t116 = constant<Real>(0.0709020735931204697442L) * t115;
+  const Real t117 = t114 * t8;
+  const Real t118 = t117 * t70;
+  const Real t119 = t116 + t118;
+  const Real t120 = t119 + t110;
+
+  // modified blocks
+  const Real t121 = constant<Real>(1.0L) / t120;
 
   // accelerations
-  const Real t143 = sum_error(t141, t142);
-  const Real t144 = product_error(constant<Real>(0.710077701790478711739L), t3);
-  const Real t145 = t143 + t144;
+  const Real t122 = t121 * t100;
+  const Real t123 = t69 + t88;
+  const Real t124 = product_error(t121, t123);
+  const Real t125 = t124 + t122;
+  const Real t126 = constant<Real>(0.0709020735931204697442L) * t125;
+  const Real t127 = t121 * t123;
+  const Real t128 = constant<Real>(0.0709020735931204697442L) * t127;
+  const Real t129 = t128 + t126;
+  const Real t130 = -t129;
+  const Real t131 = sum_error(t76, t130);
+  const Real t132 = t131 + t74;
+  const Real t133 = t9 * t132;
+  const Real t134 = t76 - t129;
+  const Real t135 = product_error(t9, t134);
+  const Real t136 = t133 + t135;
+  const Real t137 = t70 * t125;
+  const Real t138 = t70 * t127;
+  const Real t139 = t137 + t138;
+  const Real t140 = t80 + t139;
+  const Real t141 = t140 * t8;
+  const Real t142 = -t141;
+  const Real t143 = t134 * t9;
+  const Real t144 = sum_error(t143, t142);
+  const Real t145 = t144 + t136;
   const Real t146 = par.k4 * t145;
-
-  // fin_section_2: acceleration
-  const Real t147 = t141 + t142;
-
-  // accelerations
+  const Real t147 = t143 - t141;
   const Real t148 = product_error(par.k4, t147);
   const Real t149 = t148 + t146;
-  const Real t150 = t149 * t2;
-
-  // fin_section_2: wrench of the fluid
+  const Real t150 = t9 * t149;
   const Real t151 = par.k4 * t147;
-
-  // fin_section_2: joint force
-  const Real t152 = t151 * t2;
-
-  // accelerations
+  const Real t152 = product_error(t9, t151);
   const Real t153 = t152 + t150;
-  const Real t154 = t43 * t153;
-
-  // fin_section_2: joint force
-  const Real t155 = t151 * t3;
-  const Real t156 = constant<Real>(0.710077701790478711739L) * t155;
-
-  // accelerations
-  const Real t157 = t156 + t154;
-  const Real t158 = par.k47 + t157;
-
-  // fin_section_1: acceleration
-  const Real t159 = t105 * t8;
-  const Real t160 = constant<Real>(0.0709020735931204697442L) * t9;
-  const Real t161 = t159 + t160;
-
-  // fin_section_1: wrench of the fluid
-  const Real t162 = par.k4 * t161;
-
-  // fin_section_1: joint force
-  const Real t163 = t9 * t162;
-  const Real t164 = constant<Real>(0.0709020735931204697442L) * t163;
-  const Real t165 = t162 * t8;
-  const Real t166 = t165 * t105;
-  const Real t167 = t164 + t166;
-
-  // accelerations
-  const Real t168 = t167 + t158;
-  const Real t169 = constant<Real>(1.0L) / t168;
-  const Real t170 = t140 * t169;
-  const Real t171 = t138 + t137;
-  const Real t172 = sum_error(t167, t158);
-  const Real t173 = sum_error(par.k47, t157);
-  const Real t174 = t149 * t3;
-  const Real t175 = product_error(t151, t3);
-  const Real t176 = t174 + t175;
-  const Real t177 = constant<Real>(0.710077701790478711739L) * t176;
-  const Real t178 = product_error(constant<Real>(0.710077701790478711739L), t155);
-  const Real t179 = t177 + t178;
-  const Real t180 = sum_error(t156, t154);
-  const Real t181 = t179 + t180;
-  const Real t182 = t173 + t181;
-  const Real t183 = t172 + t182;
-  const Real t184 = t183 * t169;
-  const Real t185 = t184 / t168;
-  const Real t186 = quotient_error(constant<Real>(1.0L), t168);
-  const Real t187 = t186 - t185;
-  const Real t188 = t171 * t187;
-  const Real t189 = t188 + t170;
-  const Real t190 = product_error(t169, t171);
-  const Real t191 = t190 + t189;
-  const Real t192 = t43 * t191;
-  const Real t193 = t171 * t169;
-  const Real t194 = product_error(t43, t193);
-  const Real t195 = t194 + t192;
-  const Real t196 = t43 * t193;
-  const Real t197 = t196 + t59;
-  const Real t198 = t197 + t195;
-  const Real t199 = t198 * t2;
-  const Real t200 = -t199;
-  const Real t201 = constant<Real>(0.710077701790478711739L) * t193;
-  const Real t202 = t50 - t201;
-  const Real t203 = t202 * t3;
-  const Real t204 = sum_error(t203, t200);
-  const Real t205 = constant<Real>(0.710077701790478711739L) * t191;
-  const Real t206 = product_error(constant<Real>(0.710077701790478711739L), t193);
-  const Real t207 = t205 + t206;
-  const Real t208 = t48 - t207;
-  const Real t209 = -t201;
-  const Real t210 = sum_error(t50, t209);
-  const Real t211 = t208 + t210;
-  const Real t212 = t211 * t3;
-  const Real t213 = product_error(t202, t3);
-  const Real t214 = t212 + t213;
-  const Real t215 = t204 + t214;
-  const Real t216 = par.k4 * t215;
-  const Real t217 = t203 - t199;
-  const Real t218 = product_error(par.k4, t217);
-  const Real t219 = t218 + t216;
-  const Real t220 = t219 * t3;
-  const Real t221 = par.k4 * t217;
-  const Real t222 = t221 * t3;
-  const Real t223 = t222 + t220;
-  const Real t224 = t191 * par.k43;
-  const Real t225 = par.k43 * t193;
-  const Real t226 = t225 + t224;
-  const Real t227 = t41 * par.k6;
-  const Real t228 = t42 * par.k6;
-  const Real t229 = t228 + t227;
+  const Real t154 = constant<Real>(0.710077701790478711739L) * t125;
+  const Real t155 = product_error(constant<Real>(0.710077701790478711739L), t127);
+  const Real t156 = t155 + t154;
+  const Real t157 = constant<Real>(0.710077701790478711739L) * t127;
+  const Real t158 = t34 - t157;
+  const Real t159 = t158 - t156;
+  const Real t160 = t159 * t3;
+  const Real t161 = t29 * t125;
+  const Real t162 = t29 * t127;
+  const Real t163 = t161 + t162;
+  const Real t164 = t163 + t42;
+  const Real t165 = t164 * t2;
+  const Real t166 = t160 - t165;
+  const Real t167 = par.k4 * t166;
+  const Real t168 = t167 * t3;
+  const Real t169 = t125 * par.k41;
+  const Real t170 = t127 * par.k41;
+  const Real t171 = t169 + t170;
+  const Real t172 = t27 * par.k6;
+  const Real t173 = par.k6 * t28;
+  const Real t174 = t172 + t173;
 
   // fin: inertia in its present shape
-  const Real t230 = constant<Real>(0.5L) * t95;
-  const Real t231 = t230 * r_p[0];
-  const Real t232 = par.k35 - t231;
+  const Real t175 = constant<Real>(0.5L) * t65;
+  const Real t176 = t175 * r_p[0];
+  const Real t177 = par.k25 - t176;
 
   // accelerations
-  const Real t233 = t229 + t232;
-  const Real t234 = t233 - t226;
-  const Real t235 = t223 + t234;
-  const Real t236 = constant<Real>(0.0709020735931204697442L) * t191;
-  const Real t237 = constant<Real>(0.0709020735931204697442L) * t193;
-  const Real t238 = t237 + t236;
-  const Real t239 = t108 - t238;
-  const Real t240 = t9 * t239;
-  const Real t241 = t105 * t191;
-  const Real t242 = t105 * t193;
-  const Real t243 = t242 + t241;
-  const Real t244 = t102 + t243;
-  const Real t245 = t244 * t8;
-  const Real t246 = t240 - t245;
-  const Real t247 = t246 * par.k4;
-  const Real t248 = t247 * t9;
-  const Real t249 = sum_error(t235, t248);
-  const Real t250 = -t238;
-  const Real t251 = sum_error(t108, t250);
-  const Real t252 = t251 + t112;
-  const Real t253 = t252 * t9;
-  const Real t254 = product_error(t9, t239);
-  const Real t255 = t254 + t253;
-  const Real t256 = -t245;
-  const Real t257 = sum_error(t240, t256);
-  const Real t258 = t257 + t255;
-  const Real t259 = par.k4 * t258;
-  const Real t260 = product_error(par.k4, t246);
-  const Real t261 = t260 + t259;
-  const Real t262 = t9 * t261;
-  const Real t263 = product_error(t9, t247);
-  const Real t264 = t262 + t263;
-  const Real t265 = t264 + t249;
-  const Real t266 = t37 * par.k37;
-  const Real t267 = t38 * par.k37;
-  const Real t268 = t267 + t266;
-  const Real t269 = t268 - par.k21;
-  const Real t270 = par.k23 * t37;
-  const Real t271 = t38 * par.k23;
-  const Real t272 = t271 + t270;
-  const Real t273 = t272 - par.k45;
-  const Real t274 = sum_error(t269, t273);
-  const Real t275 = t274 - t265;
-  const Real t276 = t235 + t248;
-  const Real t277 = -t276;
-  const Real t278 = t273 + t269;
-  const Real t279 = sum_error(t278, t277);
-  const Real t280 = t275 + t279;
-  const Real t281 = c_r_a_2_ * t280;
-  const Real t282 = t278 - t276;
-  const Real t283 = product_error(t282, c_r_a_2_);
-  const Real t284 = t283 + t281;
-  const Real t285 = t261 * t8;
-  const Real t286 = t247 * t8;
-  const Real t287 = t286 + t285;
-  const Real t288 = t219 * t2;
-  const Real t289 = t221 * t2;
-  const Real t290 = t288 + t289;
-  const Real t291 = t95 * t191;
-  const Real t292 = t95 * t193;
-  const Real t293 = t291 + t292;
-  const Real t294 = t57 * par.k6;
+  const Real t178 = t174 + t177;
+  const Real t179 = t178 - t171;
+  const Real t180 = t168 + t179;
+  const Real t181 = t151 * t9;
+  const Real t182 = sum_error(t180, t181);
+  const Real t183 = t182 + t153;
+  const Real t184 = t181 + t180;
+  const Real t185 = -t184;
+  const Real t186 = t25 * par.k31;
+  const Real t187 = t186 - par.k29;
+  const Real t188 = par.k18 * t25;
+  const Real t189 = t188 - par.k37;
+  const Real t190 = t187 + t189;
+  const Real t191 = sum_error(t190, t185);
+  const Real t192 = t191 - t183;
+  const Real t193 = t192 * c_r_a_2_;
+  const Real t194 = t190 - t184;
+  const Real t195 = product_error(t194, c_r_a_2_);
+  const Real t196 = t195 + t193;
+  const Real t197 = t8 * t149;
+  const Real t198 = t151 * t8;
+  const Real t199 = t197 + t198;
+  const Real t200 = t167 * t2;
+  const Real t201 = t65 * t125;
+  const Real t202 = t65 * t127;
+  const Real t203 = t202 + t201;
+  const Real t204 = par.k6 * t40;
 
   // fin: inertia in its present shape
-  const Real t295 = r_p[0] * par.k43;
+  const Real t205 = r_p[0] * par.k41;
 
   // accelerations
-  const Real t296 = t294 - t295;
-  const Real t297 = t293 + t296;
-  const Real t298 = t297 - t290;
-  const Real t299 = t287 - t298;
-  const Real t300 = t55 - t56;
-  const Real t301 = par.k23 * t300;
-  const Real t302 = t301 + t299;
-  const Real t303 = t302 * s_r_a_2_;
-  const Real t304 = t282 * c_r_a_2_;
-  const Real t305 = sum_error(t303, t304);
-  const Real t306 = t305 + t284;
-  const Real t307 = par.k27 * t21;
+  const Real t206 = t204 - t205;
+  const Real t207 = t203 + t206;
+  const Real t208 = t207 - t200;
+  const Real t209 = t199 - t208;
+  const Real t210 = t38 - t39;
+  const Real t211 = par.k18 * t210;
+  const Real t212 = t211 + t209;
+  const Real t213 = t212 * s_r_a_2_;
+  const Real t214 = c_r_a_2_ * t194;
+  const Real t215 = sum_error(t213, t214);
+  const Real t216 = t196 + t215;
 
   // rear: wrench
-  const Real t308 = t22 * par.k27;
-
-  // accelerations
-  const Real t309 = t307 + t308;
-  const Real t310 = t309 - par.k36;
-  const Real t311 = t21 * par.k56;
+  const Real t217 = t15 * par.k22;
+  const Real t218 = t217 - par.k30;
 
   // rear: wrench of the fluid
-  const Real t312 = t22 * par.k56;
+  const Real t219 = t15 * par.k53;
+  const Real t220 = t219 - par.k43;
 
   // accelerations
-  const Real t313 = t311 + t312;
-  const Real t314 = t313 - par.k33;
-  const Real t315 = sum_error(t310, t314);
-  const Real t316 = sum_error(t313, par.k34);
-  const Real t317 = t315 + t316;
-  const Real t318 = t306 + t317;
-  const Real t319 = t304 + t303;
-  const Real t320 = t310 + t314;
-  const Real t321 = sum_error(t320, t319);
-  const Real t322 = t321 + t318;
-  const Real t323 = c_r_a_1_ * t322;
-  const Real t324 = t319 + t320;
-  const Real t325 = product_error(c_r_a_1_, t324);
-  const Real t326 = t325 + t323;
-  const Real t327 = s_r_a_2_ * t280;
-  const Real t328 = t282 * s_r_a_2_;
-  const Real t329 = t328 + t327;
-  const Real t330 = t302 * c_r_a_2_;
-  const Real t331 = t330 - t329;
-  const Real t332 = par.k27 * t34;
-  const Real t333 = t331 - t332;
-  const Real t334 = t333 * s_r_a_1_;
-  const Real t335 = c_r_a_1_ * t324;
-  const Real t336 = sum_error(t335, t334);
-  const Real t337 = t336 + t326;
-  const Real t338 = par.l1 * t337;
-  const Real t339 = t335 + t334;
-  const Real t340 = product_error(t339, par.l1);
-  const Real t341 = t338 + t340;
-  const Real t342 = par.l2 * t306;
-  const Real t343 = product_error(par.l2, t319);
-  const Real t344 = t343 + t342;
-  const Real t345 = par.l3 * t265;
-  const Real t346 = product_error(par.l3, t276);
-  const Real t347 = t345 + t346;
-  const Real t348 = t287 * t101;
-  const Real t349 = t248 * t107;
-  const Real t350 = t348 + t349;
-  const Real t351 = t58 * t290;
-  const Real t352 = t223 * t46;
-  const Real t353 = t351 + t352;
-  const Real t354 = t191 * par.k50;
-  const Real t355 = par.k50 * t193;
-  const Real t356 = t355 + t354;
-  const Real t357 = t41 * t232;
-  const Real t358 = t42 * t232;
-  const Real t359 = t358 + t357;
-  const Real t360 = t295 * t57;
-  const Real t361 = t359 - t360;
-
-  // fin: inertia in its present shape
-  const Real t362 = r_p[0] * par.k47;
-  const Real t363 = par.k7 * r_p[0];
-  const Real t364 = t362 - t363;
-  const Real t365 = t364 * r_p[0];
-  const Real t366 = par.k17 + t365;
-
-  // accelerations
-  const Real t367 = t366 + t361;
-  const Real t368 = t367 - t356;
-  const Real t369 = t368 + t353;
-  const Real t370 = sum_error(t350, t369);
-  const Real t371 = sum_error(t349, t348);
-  const Real t372 = t264 * t107;
-  const Real t373 = product_error(t248, t107);
-  const Real t374 = t372 + t373;
-  const Real t375 = t371 + t374;
-  const Real t376 = t370 + t375;
-  const Real t377 = t347 + t376;
-  const Real t378 = t350 + t369;
-  const Real t379 = t276 * par.l3;
-  const Real t380 = sum_error(t378, t379);
-  const Real t381 = t380 + t377;
-  const Real t382 = t378 + t379;
-  const Real t383 = t37 * par.k45;
-  const Real t384 = t38 * par.k45;
-  const Real t385 = t384 + t383;
-  const Real t386 = par.k24 - t385;
-  const Real t387 = par.k21 * t37;
-  const Real t388 = t38 * par.k21;
-  const Real t389 = t388 + t387;
-  const Real t390 = par.k48 - t389;
-  const Real t391 = t386 + t390;
-  const Real t392 = sum_error(t391, t382);
-  const Real t393 = t381 + t392;
-  const Real t394 = t393 - t344;
-  const Real t395 = par.l2 * t319;
-  const Real t396 = -t395;
-  const Real t397 = t391 + t382;
-  const Real t398 = sum_error(t397, t396);
-  const Real t399 = t398 + t394;
-  const Real t400 = t21 * par.k33;
+  const Real t221 = sum_error(t218, t220);
+  const Real t222 = t221 + t216;
+  const Real t223 = t213 + t214;
 
   // rear: wrench of the fluid
-  const Real t401 = t22 * par.k33;
+  const Real t224 = t218 + t220;
 
   // accelerations
-  const Real t402 = t400 + t401;
-  const Real t403 = -t402;
-  const Real t404 = sum_error(par.k39, t403);
-  const Real t405 = t21 * par.k36;
+  const Real t225 = sum_error(t224, t223);
+  const Real t226 = t225 + t222;
+  const Real t227 = c_r_a_1_ * t226;
+  const Real t228 = t224 + t223;
+  const Real t229 = product_error(c_r_a_1_, t228);
+  const Real t230 = t227 + t229;
+  const Real t231 = t192 * s_r_a_2_;
+  const Real t232 = t194 * s_r_a_2_;
+  const Real t233 = t232 + t231;
+  const Real t234 = t212 * c_r_a_2_;
+  const Real t235 = t234 - t233;
 
   // rear: wrench
-  const Real t406 = t22 * par.k36;
+  const Real t236 = par.k22 * t23;
 
   // accelerations
-  const Real t407 = t405 + t406;
-  const Real t408 = par.k28 - t407;
-  const Real t409 = par.k39 - t402;
-  const Real t410 = sum_error(t408, t409);
-  const Real t411 = t404 + t410;
-  const Real t412 = t399 + t411;
-  const Real t413 = t397 - t395;
-  const Real t414 = t409 + t408;
-  const Real t415 = sum_error(t413, t414);
-  const Real t416 = t415 + t412;
-  const Real t417 = t416 - t341;
-  const Real t418 = t339 * par.l1;
-  const Real t419 = -t418;
-  const Real t420 = t413 + t414;
-  const Real t421 = sum_error(t420, t419);
-  const Real t422 = t421 + t417;
+  const Real t237 = t235 - t236;
+  const Real t238 = s_r_a_1_ * t237;
+  const Real t239 = c_r_a_1_ * t228;
+  const Real t240 = sum_error(t239, t238);
+  const Real t241 = t240 + t230;
+  const Real t242 = t239 + t238;
+
+  // trunk: wrench of the fluid
+  const Real t243 = t10 * par.k12;
+  const Real t244 = t243 + par.k49;
 
   // trunk: wrench
-  const Real t423 = par.k2 * t10;
-  const Real t424 = t423 + par.k44;
+  const Real t245 = t10 * par.k1;
+  const Real t246 = par.k2 + t245;
 
   // trunk: wrench of the fluid
-  const Real t425 = t10 * par.k52;
-  const Real t426 = t425 + par.k42;
+  const Real t247 = t244 + t246;
 
   // accelerations
-  const Real t427 = sum_error(t424, t426);
-  const Real t428 = t427 + t422;
-  const Real t429 = t420 - t418;
-
-  // trunk: wrench of the fluid
-  const Real t430 = t424 + t426;
-
-  // accelerations
-  const Real t431 = sum_error(t430, t429);
-  const Real t432 = t428 + t431;
-
-  // trunk: wrench of the fluid
-  const Real t433 = t10 * par.k12;
-  const Real t434 = t433 + par.k52;
+  const Real t248 = t242 - t247;
+  const Real t249 = t248 + t241;
+  const Real t250 = t249 * c_r_a_0_;
+  const Real t251 = s_r_a_1_ * t226;
+  const Real t252 = s_r_a_1_ * t228;
+  const Real t253 = t251 + t252;
+  const Real t254 = c_r_a_1_ * t237;
+  const Real t255 = t254 - t253;
 
   // trunk: wrench
-  const Real t435 = t10 * par.k1;
-  const Real t436 = par.k2 + t435;
-
-  // trunk: wrench of the fluid
-  const Real t437 = t434 + t436;
+  const Real t256 = t13 * par.k1;
 
   // accelerations
-  const Real t438 = t339 - t437;
-  const Real t439 = t438 + t337;
-  const Real t440 = c_r_a_0_ * t439;
-  const Real t441 = t322 * s_r_a_1_;
-  const Real t442 = s_r_a_1_ * t324;
-  const Real t443 = t442 + t441;
-  const Real t444 = c_r_a_1_ * t333;
-  const Real t445 = t444 - t443;
+  const Real t257 = t255 - t256;
+  const Real t258 = t257 * s_r_a_0_;
+  const Real t259 = t250 + t258;
+  const Real t260 = par.k8 * t259;
+  const Real t261 = -t260;
+  const Real t262 = par.l1 * t242;
+  const Real t263 = t153 * t72;
+  const Real t264 = t181 * t72;
+  const Real t265 = t264 + t263;
+  const Real t266 = t199 * t79;
+  const Real t267 = t266 + t265;
+  const Real t268 = t32 * t168;
+  const Real t269 = t200 * t41;
+  const Real t270 = t268 + t269;
+  const Real t271 = t125 * par.k47;
+  const Real t272 = t127 * par.k47;
+  const Real t273 = t271 + t272;
+  const Real t274 = t27 * t177;
+  const Real t275 = t177 * t28;
+  const Real t276 = t274 + t275;
+  const Real t277 = t205 * t40;
+  const Real t278 = t276 - t277;
+
+  // fin: inertia in its present shape
+  const Real t279 = r_p[0] * par.k44;
+  const Real t280 = par.k7 * r_p[0];
+  const Real t281 = t279 - t280;
+  const Real t282 = t281 * r_p[0];
+  const Real t283 = par.k17 + t282;
+
+  // accelerations
+  const Real t284 = t283 + t278;
+  const Real t285 = t284 - t273;
+  const Real t286 = t285 + t270;
+  const Real t287 = t286 + t267;
+  const Real t288 = t184 * par.l3;
+  const Real t289 = t287 + t288;
+  const Real t290 = t25 * par.k37;
+  const Real t291 = par.k19 - t290;
+  const Real t292 = t25 * par.k29;
+  const Real t293 = par.k45 - t292;
+  const Real t294 = t291 + t293;
+  const Real t295 = t289 + t294;
+  const Real t296 = par.l2 * t223;
+  const Real t297 = t295 - t296;
+
+  // rear: wrench
+  const Real t298 = t15 * par.k30;
+  const Real t299 = par.k23 - t298;
+
+  // rear: wrench of the fluid
+  const Real t300 = t15 * par.k43;
+  const Real t301 = par.k36 - t300;
+  const Real t302 = t299 + t301;
+
+  // accelerations
+  const Real t303 = t297 + t302;
+  const Real t304 = t303 - t262;
 
   // trunk: wrench
-  const Real t446 = t14 * par.k1;
+  const Real t305 = par.k2 * t10;
+  const Real t306 = t305 + par.k42;
+
+  // trunk: wrench of the fluid
+  const Real t307 = t10 * par.k49;
+  const Real t308 = t307 + par.k40;
+  const Real t309 = t306 + t308;
 
   // accelerations
-  const Real t447 = t445 - t446;
-  const Real t448 = t447 * s_r_a_0_;
-  const Real t449 = t440 + t448;
-  const Real t450 = par.k8 * t449;
-  const Real t451 = -t450;
-  const Real t452 = t430 + t429;
-  const Real t453 = sum_error(t452, t451);
-  const Real t454 = t432 + t453;
-  const Real t455 = t452 - t450;
-  const Real t456 = sum_error(t455, par.k59);
-  const Real t457 = t454 + t456;
-  const Real t458 = par.k59 + t455;
+  const Real t310 = t309 + t304;
+  const Real t311 = sum_error(t310, t261);
+  const Real t312 = t241 * par.l1;
+  const Real t313 = product_error(t242, par.l1);
+  const Real t314 = t313 + t312;
+  const Real t315 = sum_error(t294, t289);
+  const Real t316 = sum_error(t287, t288);
+  const Real t317 = t183 * par.l3;
+  const Real t318 = product_error(par.l3, t184);
+  const Real t319 = t317 + t318;
+  const Real t320 = t316 + t319;
+  const Real t321 = t315 + t320;
+  const Real t322 = par.l2 * t216;
+  const Real t323 = product_error(par.l2, t223);
+  const Real t324 = t323 + t322;
+  const Real t325 = t321 - t324;
+  const Real t326 = -t296;
+  const Real t327 = sum_error(t295, t326);
+  const Real t328 = t325 + t327;
+  const Real t329 = sum_error(t299, t301);
+  const Real t330 = t328 + t329;
+  const Real t331 = sum_error(t297, t302);
+  const Real t332 = t331 + t330;
+  const Real t333 = t332 - t314;
+  const Real t334 = -t262;
+  const Real t335 = sum_error(t303, t334);
+  const Real t336 = t335 + t333;
+  const Real t337 = sum_error(t309, t304);
+  const Real t338 = t336 + t337;
+  const Real t339 = t338 + t311;
+  const Real t340 = t310 - t260;
+  const Real t341 = sum_error(t340, par.k56);
+  const Real t342 = t339 + t341;
+  const Real t343 = par.k56 + t340;
 
   // rear: acceleration
-  const Real t459 = s_r_a_1_ * c_r_a_0_;
-  const Real t460 = c_r_a_1_ * s_r_a_0_;
-  const Real t461 = t459 + t460;
+  const Real t344 = s_r_a_1_ * c_r_a_0_;
+  const Real t345 = c_r_a_1_ * s_r_a_0_;
+  const Real t346 = t344 + t345;
 
   // peduncle: acceleration
-  const Real t462 = c_r_a_2_ * t461;
+  const Real t347 = c_r_a_2_ * t346;
 
   // rear: acceleration
-  const Real t463 = c_r_a_1_ * c_r_a_0_;
-  const Real t464 = s_r_a_0_ * s_r_a_1_;
-  const Real t465 = t463 - t464;
+  const Real t348 = c_r_a_1_ * c_r_a_0_;
+  const Real t349 = s_r_a_0_ * s_r_a_1_;
+  const Real t350 = t348 - t349;
 
   // peduncle: acceleration
-  const Real t466 = t465 * s_r_a_2_;
-  const Real t467 = t462 + t466;
+  const Real t351 = t350 * s_r_a_2_;
+  const Real t352 = t347 + t351;
 
   // fin_section_2: acceleration
-  const Real t468 = t467 * t3;
+  const Real t353 = t352 * t3;
 
   // peduncle: acceleration
-  const Real t469 = s_r_a_2_ * t461;
-  const Real t470 = t465 * c_r_a_2_;
+  const Real t354 = s_r_a_2_ * t346;
+  const Real t355 = t350 * c_r_a_2_;
 
   // fin: acceleration
-  const Real t471 = t469 - t470;
+  const Real t356 = t354 - t355;
 
   // fin_section_2: acceleration
-  const Real t472 = t471 * t2;
-  const Real t473 = t468 - t472;
+  const Real t357 = t356 * t2;
+  const Real t358 = t353 - t357;
 
   // fin_section_2: wrench of the fluid
-  const Real t474 = par.k4 * t473;
+  const Real t359 = par.k4 * t358;
 
   // fin_section_2: joint force
-  const Real t475 = t474 * t2;
-  const Real t476 = t43 * t475;
-  const Real t477 = t474 * t3;
-  const Real t478 = constant<Real>(0.710077701790478711739L) * t477;
-  const Real t479 = t476 + t478;
+  const Real t360 = t359 * t2;
+  const Real t361 = t29 * t360;
+  const Real t362 = t359 * t3;
+  const Real t363 = constant<Real>(0.710077701790478711739L) * t362;
+  const Real t364 = t361 + t363;
 
   // fin: wrench
-  const Real t480 = t467 * par.k43;
-  const Real t481 = t95 * t471;
-  const Real t482 = t480 - t481;
+  const Real t365 = t352 * par.k41;
+  const Real t366 = t65 * t356;
+  const Real t367 = t365 - t366;
 
   // fin_section_2: joint force
-  const Real t483 = t482 + t479;
+  const Real t368 = t367 + t364;
 
   // fin_section_1: acceleration
-  const Real t484 = t467 * t9;
-  const Real t485 = t8 * t471;
-  const Real t486 = t484 - t485;
+  const Real t369 = t352 * t9;
+  const Real t370 = t8 * t356;
+  const Real t371 = t369 - t370;
 
   // fin_section_1: wrench of the fluid
-  const Real t487 = par.k4 * t486;
+  const Real t372 = par.k4 * t371;
 
   // fin_section_1: joint force
-  const Real t488 = t9 * t487;
-  const Real t489 = constant<Real>(0.0709020735931204697442L) * t488;
-  const Real t490 = t487 * t8;
-  const Real t491 = t490 * t105;
-  const Real t492 = t489 + t491;
-  const Real t493 = t483 + t492;
+  const Real t373 = t9 * t372;
+  const Real t374 = constant<Real>(0.0709020735931204697442L) * t373;
+  const Real t375 = t372 * t8;
+  const Real t376 = t375 * t70;
+  const Real t377 = t374 + t376;
+  const Real t378 = t368 + t377;
 
-  // accelerations
-  const Real t494 = t187 * t493;
-  const Real t495 = t493 * t169;
-  const Real t496 = t494 + t495;
-  const Real t497 = constant<Real>(0.710077701790478711739L) * t496;
-  const Real t498 = t467 - t497;
-  const Real t499 = t498 * t3;
-  const Real t500 = t43 * t496;
-  const Real t501 = t500 + t471;
-  const Real t502 = t501 * t2;
-  const Real t503 = t499 - t502;
-  const Real t504 = par.k4 * t503;
-  const Real t505 = t504 * t3;
-  const Real t506 = t496 * par.k43;
+  // modified blocks
+  const Real t379 = t121 * t378;
 
-  // fin: wrench
-  const Real t507 = t467 * par.k6;
+  // fin_section_2: acceleration
+  const Real t380 = t379 * constant<Real>(0.710077701790478711739L);
+  const Real t381 = t352 - t380;
+  const Real t382 = t381 * t3;
+  const Real t383 = t379 * t29;
+  const Real t384 = t383 + t356;
+  const Real t385 = t384 * t2;
+  const Real t386 = t382 - t385;
 
-  // accelerations
-  const Real t508 = t507 - t506;
-  const Real t509 = t508 + t505;
-  const Real t510 = t496 * constant<Real>(0.0709020735931204697442L);
-  const Real t511 = t467 - t510;
-  const Real t512 = t511 * t9;
-  const Real t513 = t105 * t496;
-  const Real t514 = t513 + t471;
-  const Real t515 = t514 * t8;
-  const Real t516 = t512 - t515;
-  const Real t517 = par.k4 * t516;
-  const Real t518 = t517 * t9;
-  const Real t519 = t518 + t509;
+  // fin_section_2: wrench of the fluid
+  const Real t387 = par.k4 * t386;
 
-  // peduncle: wrench of the fluid
-  const Real t520 = t467 * par.k37;
-
-  // peduncle: wrench
-  const Real t521 = par.k23 * t467;
-
-  // peduncle: wrench of the fluid
-  const Real t522 = t520 + t521;
-
-  // accelerations
-  const Real t523 = t522 + t519;
-  const Real t524 = t523 * s_r_a_2_;
-  const Real t525 = t504 * t2;
-  const Real t526 = t95 * t496;
+  // fin_section_2: joint force
+  const Real t388 = t387 * t2;
 
   // fin: wrench
-  const Real t527 = par.k6 * t471;
+  const Real t389 = t379 * t65;
 
-  // accelerations
-  const Real t528 = t526 + t527;
-  const Real t529 = t528 - t525;
-  const Real t530 = t517 * t8;
-  const Real t531 = t530 - t529;
+  // fin: wrench
+  const Real t390 = par.k6 * t356;
+
+  // fin: wrench
+  const Real t391 = t389 + t390;
+
+  // fin_section_2: joint force
+  const Real t392 = t391 - t388;
+
+  // fin_section_1: acceleration
+  const Real t393 = t379 * constant<Real>(0.0709020735931204697442L);
+  const Real t394 = t352 - t393;
+  const Real t395 = t9 * t394;
+  const Real t396 = t379 * t70;
+  const Real t397 = t396 + t356;
+  const Real t398 = t397 * t8;
+  const Real t399 = t395 - t398;
+
+  // fin_section_1: wrench of the fluid
+  const Real t400 = par.k4 * t399;
+
+  // fin_section_1: joint force
+  const Real t401 = t400 * t8;
+
+  // fin: joint force
+  const Real t402 = t401 - t392;
 
   // peduncle: acceleration
-  const Real t532 = t470 - t469;
+  const Real t403 = t355 - t354;
 
   // peduncle: wrench
-  const Real t533 = par.k23 * t532;
+  const Real t404 = par.k18 * t403;
 
-  // accelerations
-  const Real t534 = t531 + t533;
-  const Real t535 = c_r_a_2_ * t534;
-  const Real t536 = t524 + t535;
+  // fin: joint force
+  const Real t405 = t402 + t404;
 
-  // rear: wrench
-  const Real t537 = par.k27 * t465;
-
-  // accelerations
-  const Real t538 = t536 + t537;
-  const Real t539 = c_r_a_1_ * t538;
-  const Real t540 = t534 * s_r_a_2_;
-  const Real t541 = t523 * c_r_a_2_;
-  const Real t542 = t540 - t541;
-
-  // rear: wrench
-  const Real t543 = par.k27 * t461;
-
-  // rear: wrench of the fluid
-  const Real t544 = t461 * par.k56;
-  const Real t545 = t543 + t544;
-
-  // accelerations
-  const Real t546 = t542 - t545;
-  const Real t547 = t546 * s_r_a_1_;
-  const Real t548 = t539 - t547;
-
-  // trunk: wrench
-  const Real t549 = par.k1 * c_r_a_0_;
-
-  // accelerations
-  const Real t550 = t549 + t548;
-  const Real t551 = c_r_a_0_ * t550;
-  const Real t552 = t538 * s_r_a_1_;
-  const Real t553 = c_r_a_1_ * t546;
-  const Real t554 = t552 + t553;
-
-  // trunk: wrench
-  const Real t555 = s_r_a_0_ * par.k1;
-
-  // trunk: wrench of the fluid
-  const Real t556 = par.k12 * s_r_a_0_;
-  const Real t557 = t555 + t556;
-
-  // accelerations
-  const Real t558 = t554 - t557;
-  const Real t559 = t558 * s_r_a_0_;
-  const Real t560 = t551 - t559;
-  const Real t561 = t560 + par.k57;
-  const Real t562 = constant<Real>(1.0L) / t561;
-  const Real t563 = s_r_a_0_ * t550;
-  const Real t564 = t558 * c_r_a_0_;
-  const Real t565 = t563 + t564;
-  const Real t566 = par.k8 * t565;
-  const Real t567 = par.l1 * t554;
-  const Real t568 = t58 * t525;
-  const Real t569 = t46 * t505;
-  const Real t570 = t568 + t569;
-  const Real t571 = t496 * par.k50;
-
-  // fin: wrench
-  const Real t572 = t467 * t232;
-  const Real t573 = t295 * t471;
-  const Real t574 = t572 - t573;
-
-  // accelerations
-  const Real t575 = t574 - t571;
-  const Real t576 = t570 + t575;
-  const Real t577 = t530 * t101;
-  const Real t578 = t518 * t107;
-  const Real t579 = t577 + t578;
-  const Real t580 = t579 + t576;
-  const Real t581 = t519 * par.l3;
-  const Real t582 = t580 + t581;
-
-  // peduncle: wrench of the fluid
-  const Real t583 = t467 * par.k21;
-
-  // peduncle: wrench
-  const Real t584 = t467 * par.k45;
-
-  // peduncle: wrench of the fluid
-  const Real t585 = t583 + t584;
-
-  // accelerations
-  const Real t586 = t585 + t582;
-  const Real t587 = par.l2 * t542;
-  const Real t588 = t586 - t587;
-
-  // rear: wrench
-  const Real t589 = par.k36 * t461;
-
-  // rear: wrench of the fluid
-  const Real t590 = par.k33 * t461;
-  const Real t591 = t589 + t590;
-
-  // accelerations
-  const Real t592 = t588 + t591;
-  const Real t593 = t592 - t567;
-
-  // trunk: wrench
-  const Real t594 = par.k2 * s_r_a_0_;
-
-  // trunk: wrench of the fluid
-  const Real t595 = s_r_a_0_ * par.k52;
-  const Real t596 = t594 + t595;
-
-  // accelerations
-  const Real t597 = t596 + t593;
-  const Real t598 = t597 - t566;
-  const Real t599 = t562 * t598;
-  const Real t600 = t598 * t599;
-  const Real t601 = product_error(t598, t562);
-  const Real t602 = t598 * t601;
-  const Real t603 = t600 + t602;
-  const Real t604 = -t603;
-  const Real t605 = sum_error(t458, t604);
-  const Real t606 = t457 + t605;
-  const Real t607 = t458 - t603;
-  const Real t608 = t565 * t562;
-  const Real t609 = t565 * t608;
-
-  // fin_section_2: acceleration
-  const Real t610 = t467 * t2;
-  const Real t611 = t471 * t3;
-  const Real t612 = t610 + t611;
-
-  // fin_section_2: wrench of the fluid
-  const Real t613 = par.k4 * t612;
+  // peduncle: joint force
+  const Real t406 = t405 * s_r_a_2_;
 
   // fin_section_2: joint force
-  const Real t614 = t613 * t3;
-  const Real t615 = constant<Real>(0.710077701790478711739L) * t614;
-  const Real t616 = t613 * t2;
-  const Real t617 = t616 * t43;
-  const Real t618 = t615 + t617;
+  const Real t407 = t387 * t3;
 
   // fin: wrench
-  const Real t619 = par.k43 * t471;
-  const Real t620 = t95 * t467;
-  const Real t621 = t619 + t620;
+  const Real t408 = t379 * par.k41;
+
+  // fin: wrench
+  const Real t409 = t352 * par.k6;
+
+  // fin: wrench
+  const Real t410 = t409 - t408;
 
   // fin_section_2: joint force
-  const Real t622 = t621 + t618;
-
-  // fin_section_1: acceleration
-  const Real t623 = t9 * t471;
-  const Real t624 = t467 * t8;
-  const Real t625 = t623 + t624;
-
-  // fin_section_1: wrench of the fluid
-  const Real t626 = par.k4 * t625;
+  const Real t411 = t407 + t410;
 
   // fin_section_1: joint force
-  const Real t627 = t626 * t9;
-  const Real t628 = constant<Real>(0.0709020735931204697442L) * t627;
-  const Real t629 = t626 * t8;
-  const Real t630 = t105 * t629;
-  const Real t631 = t628 + t630;
-  const Real t632 = t631 + t622;
-
-  // accelerations
-  const Real t633 = t187 * t632;
-  const Real t634 = t632 * t169;
-  const Real t635 = t633 + t634;
-  const Real t636 = constant<Real>(0.710077701790478711739L) * t635;
-  const Real t637 = t471 - t636;
-  const Real t638 = t637 * t3;
-  const Real t639 = t43 * t635;
-  const Real t640 = t639 - t467;
-  const Real t641 = t640 * t2;
-  const Real t642 = t638 - t641;
-  const Real t643 = par.k4 * t642;
-  const Real t644 = t643 * t2;
-  const Real t645 = t95 * t635;
-  const Real t646 = t645 - t507;
-  const Real t647 = t646 - t644;
-  const Real t648 = t635 * constant<Real>(0.0709020735931204697442L);
-  const Real t649 = t471 - t648;
-  const Real t650 = t9 * t649;
-  const Real t651 = t635 * t105;
-  const Real t652 = t651 - t467;
-  const Real t653 = t652 * t8;
-  const Real t654 = t650 - t653;
-  const Real t655 = par.k4 * t654;
-  const Real t656 = t8 * t655;
-  const Real t657 = t656 - t647;
-  const Real t658 = t657 + t521;
-  const Real t659 = t658 * s_r_a_2_;
-  const Real t660 = t643 * t3;
-  const Real t661 = t635 * par.k43;
-  const Real t662 = t527 - t661;
-  const Real t663 = t660 + t662;
-  const Real t664 = t9 * t655;
-  const Real t665 = t664 + t663;
+  const Real t412 = t9 * t400;
+  const Real t413 = t412 + t411;
 
   // peduncle: wrench of the fluid
-  const Real t666 = par.k37 * t532;
-  const Real t667 = t666 + t533;
-
-  // accelerations
-  const Real t668 = t667 - t665;
-  const Real t669 = c_r_a_2_ * t668;
-  const Real t670 = t659 + t669;
-
-  // rear: wrench of the fluid
-  const Real t671 = t465 * par.k56;
-  const Real t672 = t671 + t537;
-
-  // accelerations
-  const Real t673 = t672 + t670;
-  const Real t674 = c_r_a_1_ * t673;
-  const Real t675 = t658 * c_r_a_2_;
-  const Real t676 = s_r_a_2_ * t668;
-  const Real t677 = t675 - t676;
-  const Real t678 = t543 + t677;
-  const Real t679 = t678 * s_r_a_1_;
-  const Real t680 = t674 + t679;
-
-  // trunk: wrench of the fluid
-  const Real t681 = par.k12 * c_r_a_0_;
-  const Real t682 = t549 + t681;
-
-  // accelerations
-  const Real t683 = t680 + t682;
-  const Real t684 = c_r_a_0_ * t683;
-  const Real t685 = c_r_a_1_ * t678;
-  const Real t686 = t673 * s_r_a_1_;
-  const Real t687 = t685 - t686;
-  const Real t688 = t555 + t687;
-  const Real t689 = t688 * s_r_a_0_;
-  const Real t690 = t684 + t689;
-  const Real t691 = t690 + par.k58;
-  const Real t692 = t691 - t609;
-  const Real t693 = constant<Real>(1.0L) / t692;
-  const Real t694 = t598 * t608;
-  const Real t695 = par.k8 * t690;
-  const Real t696 = t680 * par.l1;
-  const Real t697 = t58 * t644;
-  const Real t698 = t660 * t46;
-  const Real t699 = t697 + t698;
-  const Real t700 = t635 * par.k50;
-
-  // fin: wrench
-  const Real t701 = t295 * t467;
-  const Real t702 = t232 * t471;
-  const Real t703 = t701 + t702;
-
-  // accelerations
-  const Real t704 = t703 - t700;
-  const Real t705 = t699 + t704;
-  const Real t706 = t664 * t107;
-  const Real t707 = t656 * t101;
-  const Real t708 = t706 + t707;
-  const Real t709 = t708 + t705;
-  const Real t710 = t665 * par.l3;
-  const Real t711 = t710 + t709;
+  const Real t414 = t352 * par.k31;
 
   // peduncle: wrench
-  const Real t712 = t532 * par.k45;
+  const Real t415 = par.k18 * t352;
 
   // peduncle: wrench of the fluid
-  const Real t713 = par.k21 * t532;
-  const Real t714 = t712 + t713;
+  const Real t416 = t414 + t415;
 
-  // accelerations
-  const Real t715 = t711 - t714;
-  const Real t716 = par.l2 * t670;
-  const Real t717 = t715 - t716;
+  // fin: joint force
+  const Real t417 = t416 + t413;
+
+  // peduncle: joint force
+  const Real t418 = t417 * c_r_a_2_;
+  const Real t419 = t406 - t418;
 
   // rear: wrench
-  const Real t718 = par.k36 * t465;
+  const Real t420 = par.k22 * t346;
 
   // rear: wrench of the fluid
-  const Real t719 = t465 * par.k33;
-  const Real t720 = t718 + t719;
+  const Real t421 = t346 * par.k53;
+  const Real t422 = t420 + t421;
 
-  // accelerations
-  const Real t721 = t717 - t720;
-  const Real t722 = t721 - t696;
+  // peduncle: joint force
+  const Real t423 = t419 - t422;
 
-  // trunk: wrench of the fluid
-  const Real t723 = c_r_a_0_ * par.k52;
+  // rear: joint force
+  const Real t424 = c_r_a_1_ * t423;
+
+  // peduncle: joint force
+  const Real t425 = t405 * c_r_a_2_;
+  const Real t426 = t417 * s_r_a_2_;
+  const Real t427 = t425 + t426;
+
+  // rear: wrench
+  const Real t428 = par.k22 * t350;
+
+  // peduncle: joint force
+  const Real t429 = t427 + t428;
+
+  // rear: joint force
+  const Real t430 = t429 * s_r_a_1_;
+  const Real t431 = t424 + t430;
 
   // trunk: wrench
-  const Real t724 = par.k2 * c_r_a_0_;
+  const Real t432 = s_r_a_0_ * par.k1;
 
   // trunk: wrench of the fluid
-  const Real t725 = t723 + t724;
+  const Real t433 = par.k12 * s_r_a_0_;
+  const Real t434 = t432 + t433;
+
+  // rear: joint force
+  const Real t435 = t431 - t434;
+
+  // trunk: joint force
+  const Real t436 = t435 * c_r_a_0_;
+
+  // rear: joint force
+  const Real t437 = c_r_a_1_ * t429;
+  const Real t438 = t423 * s_r_a_1_;
+  const Real t439 = t437 - t438;
+
+  // trunk: wrench
+  const Real t440 = par.k1 * c_r_a_0_;
+
+  // rear: joint force
+  const Real t441 = t440 + t439;
+
+  // trunk: joint force
+  const Real t442 = s_r_a_0_ * t441;
+  const Real t443 = t436 + t442;
+  const Real t444 = par.k8 * t443;
+
+  // rear: joint force
+  const Real t445 = par.l1 * t431;
+
+  // fin_section_2: joint force
+  const Real t446 = t407 * t32;
+  const Real t447 = t388 * t41;
+  const Real t448 = t446 + t447;
+
+  // fin: wrench
+  const Real t449 = t379 * par.k47;
+
+  // fin: wrench
+  const Real t450 = t352 * t177;
+  const Real t451 = t205 * t356;
+  const Real t452 = t450 - t451;
+
+  // fin: wrench
+  const Real t453 = t452 - t449;
+
+  // fin_section_2: joint force
+  const Real t454 = t448 + t453;
+
+  // fin_section_1: joint force
+  const Real t455 = t401 * t79;
+  const Real t456 = t412 * t72;
+  const Real t457 = t455 + t456;
+  const Real t458 = t457 + t454;
+
+  // fin: joint force
+  const Real t459 = par.l3 * t413;
+  const Real t460 = t458 + t459;
+
+  // peduncle: wrench of the fluid
+  const Real t461 = t352 * par.k29;
+
+  // peduncle: wrench
+  const Real t462 = t352 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t463 = t461 + t462;
+
+  // fin: joint force
+  const Real t464 = t463 + t460;
+
+  // peduncle: joint force
+  const Real t465 = par.l2 * t419;
+  const Real t466 = t464 - t465;
+
+  // rear: wrench
+  const Real t467 = par.k30 * t346;
+
+  // rear: wrench of the fluid
+  const Real t468 = par.k43 * t346;
+  const Real t469 = t467 + t468;
+
+  // peduncle: joint force
+  const Real t470 = t466 + t469;
+
+  // rear: joint force
+  const Real t471 = t470 - t445;
+
+  // trunk: wrench
+  const Real t472 = par.k2 * s_r_a_0_;
+
+  // trunk: wrench of the fluid
+  const Real t473 = s_r_a_0_ * par.k49;
+  const Real t474 = t472 + t473;
+
+  // rear: joint force
+  const Real t475 = t474 + t471;
+
+  // trunk: joint force
+  const Real t476 = t475 - t444;
+  const Real t477 = c_r_a_0_ * t441;
+  const Real t478 = t435 * s_r_a_0_;
+  const Real t479 = t477 - t478;
+  const Real t480 = t479 + par.k54;
+
+  // trunk: joint force
+  const Real t481 = constant<Real>(1.0L) / t480;
+  const Real t482 = t476 * t481;
+  const Real t483 = t476 * t482;
 
   // accelerations
-  const Real t726 = t722 - t725;
-  const Real t727 = t726 - t695;
-  const Real t728 = t727 - t694;
-  const Real t729 = t728 * t693;
-  const Real t730 = t728 * t729;
-  const Real t731 = product_error(t693, t728);
-  const Real t732 = t728 * t731;
-  const Real t733 = t730 + t732;
-  const Real t734 = -t733;
-  const Real t735 = sum_error(t607, t734);
-  const Real t736 = t606 + t735;
-  const Real t737 = t607 - t733;
-  const Real t738 = constant<Real>(1.0L) / t737;
-  const Real t739 = t736 * t738;
-  const Real t740 = t739 / t737;
-  const Real t741 = quotient_error(constant<Real>(1.0L), t737);
-  const Real t742 = t741 - t740;
-  const Real t743 = t599 * t597;
-  const Real t744 = t452 - t743;
-  const Real t745 = t608 * t597;
-  const Real t746 = t726 - t745;
-  const Real t747 = t746 * t729;
-  const Real t748 = t744 - t747;
-  const Real t749 = t748 * t742;
-  const Real t750 = product_error(t597, t599);
-  const Real t751 = t601 * t597;
-  const Real t752 = t750 + t751;
-  const Real t753 = t432 - t752;
-  const Real t754 = -t743;
-  const Real t755 = sum_error(t452, t754);
-  const Real t756 = t755 + t753;
-  const Real t757 = t746 * t731;
-  const Real t758 = product_error(t729, t746);
-  const Real t759 = t757 + t758;
-  const Real t760 = t756 - t759;
-  const Real t761 = -t747;
-  const Real t762 = sum_error(t744, t761);
-  const Real t763 = t762 + t760;
-  const Real t764 = t763 * t738;
-  const Real t765 = t764 + t749;
-  const Real t766 = product_error(t748, t738);
-  const Real t767 = t765 + t766;
-  const Real t768 = t748 * t767;
-  const Real t769 = t748 * t738;
-  const Real t770 = t769 * t763;
-  const Real t771 = t768 + t770;
-  const Real t772 = product_error(t748, t769);
-  const Real t773 = t772 + t771;
+  const Real t484 = -t483;
+  const Real t485 = sum_error(t343, t484);
+  const Real t486 = t342 + t485;
+  const Real t487 = t343 - t483;
+
+  // trunk: joint force
+  const Real t488 = t443 * t481;
+  const Real t489 = t443 * t488;
+
+  // fin_section_2: acceleration
+  const Real t490 = t352 * t2;
+  const Real t491 = t356 * t3;
+  const Real t492 = t490 + t491;
+
+  // fin_section_2: wrench of the fluid
+  const Real t493 = par.k4 * t492;
+
+  // fin_section_2: joint force
+  const Real t494 = t493 * t3;
+  const Real t495 = constant<Real>(0.710077701790478711739L) * t494;
+  const Real t496 = t493 * t2;
+  const Real t497 = t496 * t29;
+  const Real t498 = t495 + t497;
+
+  // fin: wrench
+  const Real t499 = par.k41 * t356;
+  const Real t500 = t65 * t352;
+  const Real t501 = t499 + t500;
+
+  // fin_section_2: joint force
+  const Real t502 = t501 + t498;
+
+  // fin_section_1: acceleration
+  const Real t503 = t9 * t356;
+  const Real t504 = t352 * t8;
+  const Real t505 = t503 + t504;
+
+  // fin_section_1: wrench of the fluid
+  const Real t506 = par.k4 * t505;
+
+  // fin_section_1: joint force
+  const Real t507 = t506 * t9;
+  const Real t508 = constant<Real>(0.0709020735931204697442L) * t507;
+  const Real t509 = t506 * t8;
+  const Real t510 = t70 * t509;
+  const Real t511 = t508 + t510;
+  const Real t512 = t511 + t502;
+
+  // modified blocks
+  const Real t513 = t121 * t512;
+
+  // fin_section_2: acceleration
+  const Real t514 = constant<Real>(0.710077701790478711739L) * t513;
+  const Real t515 = t356 - t514;
+  const Real t516 = t515 * t3;
+  const Real t517 = t29 * t513;
+  const Real t518 = t517 - t352;
+  const Real t519 = t518 * t2;
+  const Real t520 = t516 - t519;
+
+  // fin_section_2: wrench of the fluid
+  const Real t521 = par.k4 * t520;
+
+  // fin_section_2: joint force
+  const Real t522 = t521 * t2;
+
+  // fin: wrench
+  const Real t523 = t65 * t513;
+  const Real t524 = t523 - t409;
+
+  // fin_section_2: joint force
+  const Real t525 = t524 - t522;
+
+  // fin_section_1: acceleration
+  const Real t526 = constant<Real>(0.0709020735931204697442L) * t513;
+  const Real t527 = t356 - t526;
+  const Real t528 = t527 * t9;
+  const Real t529 = t70 * t513;
+  const Real t530 = t529 - t352;
+  const Real t531 = t530 * t8;
+  const Real t532 = t528 - t531;
+
+  // fin_section_1: wrench of the fluid
+  const Real t533 = par.k4 * t532;
+
+  // fin_section_1: joint force
+  const Real t534 = t533 * t8;
+
+  // fin: joint force
+  const Real t535 = t534 - t525;
+  const Real t536 = t535 + t415;
+
+  // peduncle: joint force
+  const Real t537 = t536 * c_r_a_2_;
+
+  // fin_section_2: joint force
+  const Real t538 = t521 * t3;
+
+  // fin: wrench
+  const Real t539 = par.k41 * t513;
+  const Real t540 = t390 - t539;
+
+  // fin_section_2: joint force
+  const Real t541 = t540 + t538;
+
+  // fin_section_1: joint force
+  const Real t542 = t533 * t9;
+  const Real t543 = t542 + t541;
+
+  // peduncle: wrench of the fluid
+  const Real t544 = par.k31 * t403;
+  const Real t545 = t544 + t404;
+
+  // fin: joint force
+  const Real t546 = t545 - t543;
+
+  // peduncle: joint force
+  const Real t547 = t546 * s_r_a_2_;
+  const Real t548 = t537 - t547;
+  const Real t549 = t420 + t548;
+
+  // rear: joint force
+  const Real t550 = c_r_a_1_ * t549;
+
+  // peduncle: joint force
+  const Real t551 = t546 * c_r_a_2_;
+  const Real t552 = t536 * s_r_a_2_;
+  const Real t553 = t551 + t552;
+
+  // rear: wrench of the fluid
+  const Real t554 = t350 * par.k53;
+  const Real t555 = t554 + t428;
+
+  // peduncle: joint force
+  const Real t556 = t553 + t555;
+
+  // rear: joint force
+  const Real t557 = t556 * s_r_a_1_;
+  const Real t558 = t550 - t557;
+  const Real t559 = t432 + t558;
+
+  // trunk: joint force
+  const Real t560 = t559 * s_r_a_0_;
+
+  // rear: joint force
+  const Real t561 = c_r_a_1_ * t556;
+  const Real t562 = t549 * s_r_a_1_;
+  const Real t563 = t561 + t562;
+
+  // trunk: wrench of the fluid
+  const Real t564 = par.k12 * c_r_a_0_;
+  const Real t565 = t440 + t564;
+
+  // rear: joint force
+  const Real t566 = t563 + t565;
+
+  // trunk: joint force
+  const Real t567 = t566 * c_r_a_0_;
+  const Real t568 = t560 + t567;
+  const Real t569 = t568 + par.k55;
+
+  // trunk: joint force
+  const Real t570 = t569 - t489;
+  const Real t571 = constant<Real>(1.0L) / t570;
+  const Real t572 = t476 * t488;
+
+  // trunk: joint force
+  const Real t573 = par.k8 * t568;
+
+  // rear: joint force
+  const Real t574 = par.l1 * t563;
+
+  // fin_section_2: joint force
+  const Real t575 = t32 * t538;
+  const Real t576 = t41 * t522;
+  const Real t577 = t575 + t576;
+
+  // fin: wrench
+  const Real t578 = par.k47 * t513;
+
+  // fin: wrench
+  const Real t579 = t205 * t352;
+  const Real t580 = t177 * t356;
+  const Real t581 = t579 + t580;
+
+  // fin: wrench
+  const Real t582 = t581 - t578;
+
+  // fin_section_2: joint force
+  const Real t583 = t582 + t577;
+
+  // fin_section_1: joint force
+  const Real t584 = t534 * t79;
+  const Real t585 = t542 * t72;
+  const Real t586 = t584 + t585;
+  const Real t587 = t586 + t583;
+
+  // fin: joint force
+  const Real t588 = t543 * par.l3;
+  const Real t589 = t587 + t588;
+
+  // peduncle: wrench
+  const Real t590 = t403 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t591 = par.k29 * t403;
+  const Real t592 = t590 + t591;
+
+  // fin: joint force
+  const Real t593 = t589 - t592;
+
+  // peduncle: joint force
+  const Real t594 = par.l2 * t553;
+  const Real t595 = t593 - t594;
+
+  // rear: wrench
+  const Real t596 = par.k30 * t350;
+
+  // rear: wrench of the fluid
+  const Real t597 = t350 * par.k43;
+  const Real t598 = t596 + t597;
+
+  // peduncle: joint force
+  const Real t599 = t595 - t598;
+
+  // rear: joint force
+  const Real t600 = t599 - t574;
+
+  // trunk: wrench of the fluid
+  const Real t601 = c_r_a_0_ * par.k49;
+
+  // trunk: wrench
+  const Real t602 = par.k2 * c_r_a_0_;
+
+  // trunk: wrench of the fluid
+  const Real t603 = t601 + t602;
+
+  // rear: joint force
+  const Real t604 = t600 - t603;
+
+  // trunk: joint force
+  const Real t605 = t604 - t573;
+
+  // trunk: joint force
+  const Real t606 = t605 - t572;
+  const Real t607 = t571 * t606;
+  const Real t608 = t607 * t606;
+
+  // accelerations
+  const Real t609 = t487 - t608;
+  const Real t610 = t609 + t486;
+  const Real t611 = constant<Real>(1.0L) / t610;
+
+  // trunk: joint force
+  const Real t612 = t475 * t482;
+
+  // accelerations
+  const Real t613 = t310 - t612;
+
+  // trunk: joint force
+  const Real t614 = t488 * t475;
+  const Real t615 = t604 - t614;
+  const Real t616 = t607 * t615;
+
+  // accelerations
+  const Real t617 = t613 - t616;
+  const Real t618 = t611 * t617;
+  const Real t619 = product_error(t475, t482);
+  const Real t620 = t338 - t619;
+  const Real t621 = -t612;
+  const Real t622 = sum_error(t310, t621);
+  const Real t623 = t622 + t620;
+  const Real t624 = product_error(t607, t615);
+  const Real t625 = t623 - t624;
+  const Real t626 = -t616;
+  const Real t627 = sum_error(t613, t626);
+  const Real t628 = t627 + t625;
+  const Real t629 = t628 * t611;
+  const Real t630 = t618 + t629;
+  const Real t631 = product_error(t617, t630);
+  const Real t632 = t628 * t630;
+  const Real t633 = t631 + t632;
 
   // rear: acceleration
-  const Real t774 = c_r_a_1_ * par.l1;
-
-  // accelerations
-  const Real t775 = sum_error(par.l2, t774);
-  const Real t776 = product_error(c_r_a_1_, par.l1);
-  const Real t777 = t776 + t775;
-  const Real t778 = t777 * c_r_a_2_;
+  const Real t634 = c_r_a_1_ * par.l1;
 
   // peduncle: acceleration
-  const Real t779 = par.l2 + t774;
+  const Real t635 = par.l2 + t634;
+  const Real t636 = c_r_a_2_ * t635;
+
+  // rear: acceleration
+  const Real t637 = par.l1 * s_r_a_1_;
+
+  // peduncle: acceleration
+  const Real t638 = t637 * s_r_a_2_;
+  const Real t639 = t638 - t636;
+
+  // fin: acceleration
+  const Real t640 = par.l3 - t639;
 
   // accelerations
-  const Real t780 = product_error(c_r_a_2_, t779);
+  const Real t641 = sum_error(t32, t640);
+  const Real t642 = t636 - t638;
+  const Real t643 = sum_error(par.l3, t642);
+  const Real t644 = t643 + t641;
+  const Real t645 = t644 * t3;
+
+  // fin_section_2: acceleration
+  const Real t646 = t32 + t640;
+
+  // accelerations
+  const Real t647 = product_error(t646, t3);
+  const Real t648 = t645 + t647;
+
+  // peduncle: acceleration
+  const Real t649 = t635 * s_r_a_2_;
+  const Real t650 = t637 * c_r_a_2_;
+  const Real t651 = t649 + t650;
+
+  // fin_section_2: acceleration
+  const Real t652 = t651 - t41;
+
+  // accelerations
+  const Real t653 = product_error(t652, t2);
+  const Real t654 = t648 - t653;
+
+  // fin_section_2: acceleration
+  const Real t655 = t646 * t3;
+  const Real t656 = t652 * t2;
+
+  // accelerations
+  const Real t657 = -t656;
+  const Real t658 = sum_error(t655, t657);
+  const Real t659 = t658 + t654;
+  const Real t660 = par.k4 * t659;
+
+  // fin_section_2: acceleration
+  const Real t661 = t655 - t656;
+
+  // accelerations
+  const Real t662 = product_error(par.k4, t661);
+  const Real t663 = t660 + t662;
+  const Real t664 = t663 * t3;
+
+  // fin_section_2: wrench of the fluid
+  const Real t665 = par.k4 * t661;
+
+  // accelerations
+  const Real t666 = product_error(t665, t3);
+  const Real t667 = t664 + t666;
+  const Real t668 = t667 * constant<Real>(0.710077701790478711739L);
+
+  // fin_section_2: joint force
+  const Real t669 = t665 * t3;
+
+  // accelerations
+  const Real t670 = product_error(constant<Real>(0.710077701790478711739L), t669);
+  const Real t671 = t670 + t668;
+  const Real t672 = t663 * t2;
+
+  // fin_section_2: joint force
+  const Real t673 = t665 * t2;
+
+  // accelerations
+  const Real t674 = t673 + t672;
+  const Real t675 = t29 * t674;
+
+  // fin_section_2: joint force
+  const Real t676 = constant<Real>(0.710077701790478711739L) * t669;
+
+  // accelerations
+  const Real t677 = sum_error(t675, t676);
+  const Real t678 = t671 + t677;
+  const Real t679 = t675 + t676;
+  const Real t680 = t643 * par.k41;
+
+  // fin: wrench
+  const Real t681 = par.k41 * t640;
+
+  // accelerations
+  const Real t682 = t680 + t681;
+
+  // fin: wrench
+  const Real t683 = t65 * t651;
+
+  // accelerations
+  const Real t684 = t682 - t683;
+  const Real t685 = t684 + par.k47;
+  const Real t686 = sum_error(t679, t685);
+  const Real t687 = t678 + t686;
+  const Real t688 = t685 + t679;
+  const Real t689 = sum_error(t72, t640);
+  const Real t690 = t643 + t689;
+  const Real t691 = t690 * t9;
+
+  // fin_section_1: acceleration
+  const Real t692 = t72 + t640;
+  const Real t693 = t9 * t692;
+
+  // accelerations
+  const Real t694 = t691 + t693;
+
+  // fin_section_1: acceleration
+  const Real t695 = t651 - t79;
+  const Real t696 = t695 * t8;
+
+  // accelerations
+  const Real t697 = t694 - t696;
+  const Real t698 = par.k4 * t697;
+  const Real t699 = t698 * t9;
+  const Real t700 = t699 * constant<Real>(0.0709020735931204697442L);
+  const Real t701 = t698 * t8;
+  const Real t702 = t70 * t701;
+  const Real t703 = t700 + t702;
+  const Real t704 = sum_error(t703, t688);
+  const Real t705 = t687 + t704;
+  const Real t706 = t121 * t705;
+  const Real t707 = t703 + t688;
+  const Real t708 = product_error(t121, t707);
+  const Real t709 = t708 + t706;
+  const Real t710 = constant<Real>(0.0709020735931204697442L) * t709;
+  const Real t711 = t707 * t121;
+  const Real t712 = constant<Real>(0.0709020735931204697442L) * t711;
+  const Real t713 = t710 + t712;
+  const Real t714 = -t713;
+  const Real t715 = sum_error(t692, t714);
+  const Real t716 = t690 + t715;
+  const Real t717 = t716 * t9;
+  const Real t718 = t692 - t713;
+  const Real t719 = product_error(t9, t718);
+  const Real t720 = t717 + t719;
+  const Real t721 = t70 * t709;
+  const Real t722 = t70 * t711;
+  const Real t723 = t721 + t722;
+  const Real t724 = t695 + t723;
+  const Real t725 = t724 * t8;
+  const Real t726 = -t725;
+  const Real t727 = t718 * t9;
+  const Real t728 = sum_error(t727, t726);
+  const Real t729 = t720 + t728;
+  const Real t730 = par.k4 * t729;
+  const Real t731 = t727 - t725;
+  const Real t732 = product_error(par.k4, t731);
+  const Real t733 = t730 + t732;
+  const Real t734 = t733 * t8;
+  const Real t735 = par.k4 * t731;
+  const Real t736 = t735 * t8;
+  const Real t737 = t734 + t736;
+  const Real t738 = constant<Real>(0.710077701790478711739L) * t709;
+  const Real t739 = product_error(constant<Real>(0.710077701790478711739L), t711);
+  const Real t740 = t739 + t738;
+  const Real t741 = t644 - t740;
+  const Real t742 = constant<Real>(0.710077701790478711739L) * t711;
+  const Real t743 = t646 - t742;
+  const Real t744 = t743 + t741;
+  const Real t745 = t744 * t3;
+  const Real t746 = t29 * t709;
+  const Real t747 = t29 * t711;
+  const Real t748 = t746 + t747;
+  const Real t749 = t652 + t748;
+  const Real t750 = t749 * t2;
+  const Real t751 = t745 - t750;
+  const Real t752 = par.k4 * t751;
+  const Real t753 = t752 * t2;
+  const Real t754 = t65 * t709;
+  const Real t755 = t65 * t711;
+  const Real t756 = t754 + t755;
+
+  // fin: wrench
+  const Real t757 = par.k6 * t651;
+  const Real t758 = t757 - t205;
+
+  // accelerations
+  const Real t759 = t756 + t758;
+  const Real t760 = t759 - t753;
+  const Real t761 = t737 - t760;
+
+  // peduncle: wrench
+  const Real t762 = par.k18 * t651;
+
+  // accelerations
+  const Real t763 = t761 - t762;
+  const Real t764 = t763 * s_r_a_2_;
+  const Real t765 = t752 * t3;
+  const Real t766 = par.k41 * t709;
+  const Real t767 = par.k41 * t711;
+  const Real t768 = t766 + t767;
+
+  // fin: wrench
+  const Real t769 = par.k6 * t640;
+
+  // accelerations
+  const Real t770 = t643 * par.k6;
+  const Real t771 = t769 + t770;
+  const Real t772 = t771 + t177;
+  const Real t773 = t772 - t768;
+  const Real t774 = t773 + t765;
+  const Real t775 = t735 * t9;
+  const Real t776 = t775 + t774;
+
+  // peduncle: wrench
+  const Real t777 = par.k18 * t639;
+  const Real t778 = t777 - par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t779 = par.k31 * t639;
+  const Real t780 = t779 - par.k29;
   const Real t781 = t778 + t780;
 
-  // peduncle: acceleration
-  const Real t782 = c_r_a_2_ * t779;
-  const Real t783 = -t782;
+  // accelerations
+  const Real t782 = t781 - t776;
+  const Real t783 = t782 * c_r_a_2_;
+  const Real t784 = sum_error(t764, t783);
+  const Real t785 = t733 * t9;
+  const Real t786 = product_error(t735, t9);
+  const Real t787 = t786 + t785;
+  const Real t788 = sum_error(t775, t774);
+  const Real t789 = t787 + t788;
+  const Real t790 = -t776;
+  const Real t791 = sum_error(t781, t790);
+  const Real t792 = t791 - t789;
+  const Real t793 = t792 * c_r_a_2_;
+  const Real t794 = product_error(t782, c_r_a_2_);
+  const Real t795 = t793 + t794;
+  const Real t796 = t784 + t795;
 
-  // rear: acceleration
-  const Real t784 = par.l1 * s_r_a_1_;
+  // rear: wrench of the fluid
+  const Real t797 = t634 * par.k53;
+  const Real t798 = t797 + par.k43;
 
-  // peduncle: acceleration
-  const Real t785 = t784 * s_r_a_2_;
+  // rear: wrench
+  const Real t799 = par.k22 * t634;
+  const Real t800 = par.k30 + t799;
 
   // accelerations
-  const Real t786 = sum_error(t785, t783);
-  const Real t787 = t781 - t786;
-  const Real t788 = t782 - t785;
-  const Real t789 = sum_error(par.l3, t788);
-  const Real t790 = t787 + t789;
+  const Real t801 = sum_error(t798, t800);
+  const Real t802 = t796 - t801;
+  const Real t803 = t783 + t764;
+
+  // rear: wrench of the fluid
+  const Real t804 = t798 + t800;
+  const Real t805 = -t804;
+
+  // accelerations
+  const Real t806 = sum_error(t803, t805);
+  const Real t807 = t802 + t806;
+  const Real t808 = c_r_a_1_ * t807;
+  const Real t809 = t803 - t804;
+  const Real t810 = product_error(t809, c_r_a_1_);
+  const Real t811 = t810 + t808;
+  const Real t812 = t792 * s_r_a_2_;
+  const Real t813 = t782 * s_r_a_2_;
+  const Real t814 = t812 + t813;
+  const Real t815 = t763 * c_r_a_2_;
+  const Real t816 = t815 - t814;
+
+  // rear: wrench
+  const Real t817 = par.k22 * t637;
+
+  // accelerations
+  const Real t818 = t816 - t817;
+  const Real t819 = t818 * s_r_a_1_;
+  const Real t820 = t809 * c_r_a_1_;
+  const Real t821 = sum_error(t820, t819);
+  const Real t822 = t811 + t821;
+  const Real t823 = t822 * par.l1;
+  const Real t824 = t820 + t819;
+  const Real t825 = product_error(t824, par.l1);
+  const Real t826 = t823 + t825;
+  const Real t827 = t737 * t79;
+  const Real t828 = t775 * t72;
+  const Real t829 = sum_error(t828, t827);
+  const Real t830 = t787 * t72;
+  const Real t831 = product_error(t775, t72);
+  const Real t832 = t830 + t831;
+  const Real t833 = t829 + t832;
+  const Real t834 = t827 + t828;
+  const Real t835 = t753 * t41;
+  const Real t836 = t32 * t765;
+  const Real t837 = t835 + t836;
+  const Real t838 = par.k47 * t709;
+  const Real t839 = par.k47 * t711;
+  const Real t840 = t839 + t838;
+  const Real t841 = t643 * t177;
+
+  // fin: wrench
+  const Real t842 = t177 * t640;
+
+  // accelerations
+  const Real t843 = t841 + t842;
+
+  // fin: wrench
+  const Real t844 = t205 * t651;
+
+  // accelerations
+  const Real t845 = t843 - t844;
+  const Real t846 = t283 + t845;
+  const Real t847 = t846 - t840;
+  const Real t848 = t847 + t837;
+  const Real t849 = t834 + t848;
+  const Real t850 = t833 + t849;
+  const Real t851 = par.l3 * t776;
+  const Real t852 = sum_error(t850, t851);
+  const Real t853 = t789 * par.l3;
+  const Real t854 = product_error(t776, par.l3);
+  const Real t855 = t854 + t853;
+  const Real t856 = t852 + t855;
+  const Real t857 = t851 + t850;
+
+  // peduncle: wrench
+  const Real t858 = par.k37 * t639;
+  const Real t859 = par.k19 - t858;
+
+  // peduncle: wrench of the fluid
+  const Real t860 = par.k29 * t639;
+  const Real t861 = par.k45 - t860;
+  const Real t862 = t859 + t861;
+
+  // accelerations
+  const Real t863 = sum_error(t862, t857);
+  const Real t864 = t856 + t863;
+  const Real t865 = par.l2 * t796;
+  const Real t866 = product_error(par.l2, t803);
+  const Real t867 = t865 + t866;
+  const Real t868 = t864 - t867;
+  const Real t869 = t862 + t857;
+  const Real t870 = par.l2 * t803;
+  const Real t871 = -t870;
+  const Real t872 = sum_error(t869, t871);
+  const Real t873 = t868 + t872;
+
+  // rear: wrench of the fluid
+  const Real t874 = t634 * par.k43;
+  const Real t875 = par.k36 + t874;
+
+  // rear: wrench
+  const Real t876 = par.k30 * t634;
+  const Real t877 = par.k23 + t876;
+
+  // accelerations
+  const Real t878 = sum_error(t875, t877);
+  const Real t879 = sum_error(par.k36, t874);
+  const Real t880 = t879 + t878;
+  const Real t881 = t873 + t880;
+  const Real t882 = t869 - t870;
+
+  // rear: wrench of the fluid
+  const Real t883 = t875 + t877;
+
+  // accelerations
+  const Real t884 = sum_error(t882, t883);
+  const Real t885 = t881 + t884;
+  const Real t886 = t885 - t826;
+  const Real t887 = t824 * par.l1;
+  const Real t888 = -t887;
+  const Real t889 = t882 + t883;
+  const Real t890 = sum_error(t889, t888);
+  const Real t891 = t890 + t886;
+  const Real t892 = t889 - t887;
+  const Real t893 = sum_error(t892, par.k57);
+  const Real t894 = t893 + t891;
+
+  // trunk: joint force
+  const Real t895 = t481 * t475;
+
+  // accelerations
+  const Real t896 = product_error(t475, t895);
+  const Real t897 = t894 - t896;
+  const Real t898 = t892 + par.k57;
+
+  // trunk: joint force
+  const Real t899 = t475 * t895;
+
+  // accelerations
+  const Real t900 = -t899;
+  const Real t901 = sum_error(t898, t900);
+  const Real t902 = t901 + t897;
+
+  // trunk: joint force
+  const Real t903 = t571 * t615;
+
+  // accelerations
+  const Real t904 = product_error(t903, t615);
+  const Real t905 = t902 - t904;
+  const Real t906 = t898 - t899;
+
+  // trunk: joint force
+  const Real t907 = t903 * t615;
+
+  // accelerations
+  const Real t908 = -t907;
+  const Real t909 = sum_error(t906, t908);
+  const Real t910 = t905 + t909;
+  const Real t911 = t910 - t633;
+  const Real t912 = t617 * t630;
+  const Real t913 = t906 - t907;
+  const Real t914 = t913 - t912;
+  const Real t915 = t914 + t911;
+  const Real t916 = constant<Real>(1.0L) / t915;
+
+  // trunk: joint force
+  const Real t917 = t470 * t482;
+
+  // accelerations
+  const Real t918 = t303 - t917;
+
+  // trunk: joint force
+  const Real t919 = t470 * t488;
+  const Real t920 = t599 - t919;
+  const Real t921 = t920 * t607;
+
+  // accelerations
+  const Real t922 = t918 - t921;
+  const Real t923 = t922 * t630;
+  const Real t924 = -t923;
+
+  // trunk: joint force
+  const Real t925 = t470 * t895;
+
+  // accelerations
+  const Real t926 = t889 - t925;
+
+  // trunk: joint force
+  const Real t927 = t903 * t920;
+
+  // accelerations
+  const Real t928 = t926 - t927;
+  const Real t929 = sum_error(t928, t924);
+  const Real t930 = product_error(t470, t482);
+  const Real t931 = t332 - t930;
+  const Real t932 = -t917;
+  const Real t933 = sum_error(t303, t932);
+  const Real t934 = t933 + t931;
+  const Real t935 = product_error(t920, t607);
+  const Real t936 = t934 - t935;
+  const Real t937 = -t921;
+  const Real t938 = sum_error(t918, t937);
+  const Real t939 = t938 + t936;
+  const Real t940 = t939 * t630;
+  const Real t941 = product_error(t922, t630);
+  const Real t942 = t940 + t941;
+  const Real t943 = product_error(t470, t895);
+  const Real t944 = t885 - t943;
+  const Real t945 = -t925;
+  const Real t946 = sum_error(t889, t945);
+  const Real t947 = t946 + t944;
+  const Real t948 = product_error(t903, t920);
+  const Real t949 = t947 - t948;
+  const Real t950 = -t927;
+  const Real t951 = sum_error(t926, t950);
+  const Real t952 = t949 + t951;
+  const Real t953 = t952 - t942;
+  const Real t954 = t929 + t953;
+  const Real t955 = t916 * t954;
+  const Real t956 = t928 - t923;
+  const Real t957 = product_error(t916, t956);
+  const Real t958 = t955 + t957;
+  const Real t959 = t958 * t956;
+  const Real t960 = t916 * t956;
+  const Real t961 = t960 * t954;
+  const Real t962 = t959 + t961;
+  const Real t963 = t960 * t956;
+  const Real t964 = t963 + t962;
+  const Real t965 = t922 * t611;
+  const Real t966 = t939 * t611;
+  const Real t967 = t965 + t966;
+  const Real t968 = t967 * t922;
 
   // peduncle: acceleration
-  const Real t791 = t785 - t782;
+  const Real t969 = par.l2 * c_r_a_2_;
 
   // fin: acceleration
-  const Real t792 = par.l3 - t791;
-
-  // accelerations
-  const Real t793 = sum_error(t46, t792);
-  const Real t794 = t793 + t790;
-  const Real t795 = t3 * t794;
+  const Real t970 = t969 + par.l3;
 
   // fin_section_2: acceleration
-  const Real t796 = t46 + t792;
-
-  // accelerations
-  const Real t797 = product_error(t796, t3);
-  const Real t798 = t795 + t797;
-  const Real t799 = t777 * s_r_a_2_;
+  const Real t971 = t970 + t32;
+  const Real t972 = t971 * t3;
 
   // peduncle: acceleration
-  const Real t800 = t779 * s_r_a_2_;
-
-  // accelerations
-  const Real t801 = t800 + t799;
-
-  // peduncle: acceleration
-  const Real t802 = t784 * c_r_a_2_;
-
-  // accelerations
-  const Real t803 = t801 + t802;
-  const Real t804 = t803 - t58;
-  const Real t805 = product_error(t804, t2);
-  const Real t806 = t798 - t805;
-  const Real t807 = t804 * t2;
-  const Real t808 = -t807;
+  const Real t973 = par.l2 * s_r_a_2_;
 
   // fin_section_2: acceleration
-  const Real t809 = t796 * t3;
+  const Real t974 = t973 - t41;
+  const Real t975 = t974 * t2;
 
   // accelerations
-  const Real t810 = sum_error(t809, t808);
-  const Real t811 = t810 + t806;
-  const Real t812 = par.k4 * t811;
-  const Real t813 = t809 - t807;
-  const Real t814 = product_error(par.k4, t813);
-  const Real t815 = t812 + t814;
-  const Real t816 = t815 * t2;
-  const Real t817 = par.k4 * t813;
-  const Real t818 = product_error(t817, t2);
-  const Real t819 = t818 + t816;
-  const Real t820 = t43 * t819;
-  const Real t821 = t817 * t2;
-  const Real t822 = product_error(t821, t43);
-  const Real t823 = t822 + t820;
-  const Real t824 = t815 * t3;
-  const Real t825 = product_error(t817, t3);
-  const Real t826 = t824 + t825;
-  const Real t827 = t826 * constant<Real>(0.710077701790478711739L);
-  const Real t828 = t817 * t3;
-  const Real t829 = product_error(constant<Real>(0.710077701790478711739L), t828);
-  const Real t830 = t829 + t827;
-  const Real t831 = t823 + t830;
-  const Real t832 = t43 * t821;
-  const Real t833 = constant<Real>(0.710077701790478711739L) * t828;
-  const Real t834 = sum_error(t832, t833);
-  const Real t835 = t834 + t831;
-  const Real t836 = t833 + t832;
-  const Real t837 = par.k43 * t790;
-
-  // fin: wrench
-  const Real t838 = par.k43 * t792;
-
-  // accelerations
-  const Real t839 = t838 + t837;
-  const Real t840 = t95 * t803;
-  const Real t841 = t839 - t840;
-  const Real t842 = par.k50 + t841;
-  const Real t843 = sum_error(t836, t842);
-  const Real t844 = t843 + t835;
-  const Real t845 = sum_error(t107, t792);
-  const Real t846 = t845 + t790;
-  const Real t847 = t846 * t9;
-
-  // fin_section_1: acceleration
-  const Real t848 = t107 + t792;
-
-  // accelerations
-  const Real t849 = product_error(t9, t848);
-  const Real t850 = t847 + t849;
-  const Real t851 = t803 - t101;
-  const Real t852 = t851 * t8;
-  const Real t853 = -t852;
-
-  // fin_section_1: acceleration
-  const Real t854 = t9 * t848;
-
-  // accelerations
-  const Real t855 = sum_error(t854, t853);
-  const Real t856 = t850 + t855;
-  const Real t857 = par.k4 * t856;
-  const Real t858 = t854 - t852;
-  const Real t859 = product_error(par.k4, t858);
-  const Real t860 = t857 + t859;
-  const Real t861 = t9 * t860;
-  const Real t862 = par.k4 * t858;
-  const Real t863 = product_error(t862, t9);
-  const Real t864 = t863 + t861;
-  const Real t865 = constant<Real>(0.0709020735931204697442L) * t864;
-  const Real t866 = t862 * t9;
-  const Real t867 = product_error(constant<Real>(0.0709020735931204697442L), t866);
-  const Real t868 = t867 + t865;
-  const Real t869 = t860 * t8;
-  const Real t870 = t862 * t8;
-  const Real t871 = t870 + t869;
-  const Real t872 = t105 * t871;
-  const Real t873 = constant<Real>(0.0709020735931204697442L) * t866;
-  const Real t874 = sum_error(t872, t873);
-  const Real t875 = t868 + t874;
-  const Real t876 = t875 + t844;
-  const Real t877 = t873 + t872;
-  const Real t878 = t842 + t836;
-  const Real t879 = sum_error(t877, t878);
-  const Real t880 = t876 + t879;
-  const Real t881 = t880 * t169;
-  const Real t882 = t877 + t878;
-  const Real t883 = t187 * t882;
-  const Real t884 = t881 + t883;
-  const Real t885 = product_error(t169, t882);
-  const Real t886 = t885 + t884;
-  const Real t887 = constant<Real>(0.710077701790478711739L) * t886;
-  const Real t888 = t882 * t169;
-  const Real t889 = product_error(constant<Real>(0.710077701790478711739L), t888);
-  const Real t890 = t889 + t887;
-  const Real t891 = t794 - t890;
-  const Real t892 = constant<Real>(0.710077701790478711739L) * t888;
-  const Real t893 = -t892;
-  const Real t894 = sum_error(t796, t893);
-  const Real t895 = t894 + t891;
-  const Real t896 = t895 * t3;
-  const Real t897 = t796 - t892;
-  const Real t898 = product_error(t897, t3);
-  const Real t899 = t898 + t896;
-  const Real t900 = t43 * t886;
-  const Real t901 = product_error(t43, t888);
-  const Real t902 = t901 + t900;
-  const Real t903 = t43 * t888;
-  const Real t904 = t903 + t804;
-  const Real t905 = t904 + t902;
-  const Real t906 = t905 * t2;
-  const Real t907 = -t906;
-  const Real t908 = t897 * t3;
-  const Real t909 = sum_error(t908, t907);
-  const Real t910 = t899 + t909;
-  const Real t911 = par.k4 * t910;
-  const Real t912 = t908 - t906;
-  const Real t913 = product_error(par.k4, t912);
-  const Real t914 = t911 + t913;
-  const Real t915 = t914 * t3;
-  const Real t916 = par.k4 * t912;
-  const Real t917 = t916 * t3;
-  const Real t918 = t915 + t917;
-  const Real t919 = par.k43 * t886;
-  const Real t920 = par.k43 * t888;
-  const Real t921 = t919 + t920;
-  const Real t922 = par.k6 * t790;
-
-  // fin: wrench
-  const Real t923 = par.k6 * t792;
-
-  // accelerations
-  const Real t924 = t923 + t922;
-  const Real t925 = t924 + t232;
-  const Real t926 = t925 - t921;
-  const Real t927 = t926 + t918;
-  const Real t928 = constant<Real>(0.0709020735931204697442L) * t886;
-  const Real t929 = constant<Real>(0.0709020735931204697442L) * t888;
-  const Real t930 = t928 + t929;
-  const Real t931 = t848 - t930;
-  const Real t932 = t931 * t9;
-  const Real t933 = t105 * t886;
-  const Real t934 = t105 * t888;
-  const Real t935 = t933 + t934;
-  const Real t936 = t851 + t935;
-  const Real t937 = t936 * t8;
-  const Real t938 = t932 - t937;
-  const Real t939 = par.k4 * t938;
-  const Real t940 = t939 * t9;
-  const Real t941 = sum_error(t940, t927);
-  const Real t942 = -t930;
-  const Real t943 = sum_error(t848, t942);
-  const Real t944 = t943 + t846;
-  const Real t945 = t944 * t9;
-  const Real t946 = product_error(t9, t931);
-  const Real t947 = t946 + t945;
-  const Real t948 = -t937;
-  const Real t949 = sum_error(t932, t948);
-  const Real t950 = t949 + t947;
-  const Real t951 = par.k4 * t950;
-  const Real t952 = product_error(par.k4, t938);
-  const Real t953 = t952 + t951;
-  const Real t954 = t953 * t9;
-  const Real t955 = product_error(t939, t9);
-  const Real t956 = t954 + t955;
-  const Real t957 = t941 + t956;
-  const Real t958 = t786 - t781;
-  const Real t959 = par.k37 * t958;
-
-  // peduncle: wrench of the fluid
-  const Real t960 = par.k37 * t791;
-
-  // accelerations
-  const Real t961 = t959 + t960;
-  const Real t962 = sum_error(t961, par.k22);
-  const Real t963 = par.k23 * t958;
-
-  // peduncle: wrench
-  const Real t964 = par.k23 * t791;
-
-  // accelerations
-  const Real t965 = t963 + t964;
-  const Real t966 = sum_error(t965, par.k46);
-  const Real t967 = t962 + t966;
-  const Real t968 = t965 - par.k45;
-  const Real t969 = t961 - par.k21;
-  const Real t970 = sum_error(t968, t969);
-  const Real t971 = t967 + t970;
-  const Real t972 = t971 - t957;
-  const Real t973 = t927 + t940;
-  const Real t974 = -t973;
-  const Real t975 = t968 + t969;
-  const Real t976 = sum_error(t975, t974);
-  const Real t977 = t972 + t976;
-  const Real t978 = t977 * c_r_a_2_;
-  const Real t979 = t975 - t973;
-  const Real t980 = product_error(t979, c_r_a_2_);
-  const Real t981 = t980 + t978;
-  const Real t982 = t953 * t8;
-  const Real t983 = t939 * t8;
-  const Real t984 = t982 + t983;
-  const Real t985 = t914 * t2;
-  const Real t986 = t916 * t2;
-  const Real t987 = t985 + t986;
-  const Real t988 = t95 * t886;
-  const Real t989 = t95 * t888;
-  const Real t990 = t989 + t988;
-  const Real t991 = par.k6 * t803;
-  const Real t992 = t991 - t295;
-  const Real t993 = t990 + t992;
-  const Real t994 = t993 - t987;
-  const Real t995 = t984 - t994;
-  const Real t996 = par.k23 * t803;
-  const Real t997 = t995 - t996;
-  const Real t998 = t997 * s_r_a_2_;
-  const Real t999 = t979 * c_r_a_2_;
-  const Real t1000 = sum_error(t998, t999);
-  const Real t1001 = t981 + t1000;
-  const Real t1002 = t776 * par.k56;
-
-  // rear: wrench of the fluid
-  const Real t1003 = t774 * par.k56;
-
-  // accelerations
-  const Real t1004 = t1002 + t1003;
-  const Real t1005 = par.k33 + t1004;
-  const Real t1006 = par.k27 * t776;
-
-  // rear: wrench
-  const Real t1007 = par.k27 * t774;
-
-  // accelerations
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = par.k36 + t1008;
-  const Real t1010 = sum_error(t1005, t1009);
-  const Real t1011 = sum_error(t1004, par.k33);
-  const Real t1012 = t1010 + t1011;
-  const Real t1013 = t1001 - t1012;
-  const Real t1014 = t999 + t998;
-  const Real t1015 = t1009 + t1005;
-  const Real t1016 = -t1015;
-  const Real t1017 = sum_error(t1014, t1016);
-  const Real t1018 = t1013 + t1017;
-  const Real t1019 = c_r_a_1_ * t1018;
-  const Real t1020 = t1014 - t1015;
-  const Real t1021 = product_error(t1020, c_r_a_1_);
-  const Real t1022 = t1019 + t1021;
-  const Real t1023 = t977 * s_r_a_2_;
-  const Real t1024 = t979 * s_r_a_2_;
-  const Real t1025 = t1024 + t1023;
-  const Real t1026 = t997 * c_r_a_2_;
-  const Real t1027 = t1026 - t1025;
-
-  // rear: wrench
-  const Real t1028 = par.k27 * t784;
-
-  // accelerations
-  const Real t1029 = t1027 - t1028;
-  const Real t1030 = s_r_a_1_ * t1029;
-  const Real t1031 = c_r_a_1_ * t1020;
-  const Real t1032 = sum_error(t1031, t1030);
-  const Real t1033 = t1032 + t1022;
-  const Real t1034 = t1033 * par.l1;
-  const Real t1035 = t1030 + t1031;
-  const Real t1036 = product_error(t1035, par.l1);
-  const Real t1037 = t1034 + t1036;
-  const Real t1038 = t956 * t107;
-  const Real t1039 = product_error(t940, t107);
-  const Real t1040 = t1038 + t1039;
-  const Real t1041 = t984 * t101;
-  const Real t1042 = t107 * t940;
-  const Real t1043 = sum_error(t1042, t1041);
-  const Real t1044 = t1040 + t1043;
-  const Real t1045 = t46 * t918;
-  const Real t1046 = t987 * t58;
-  const Real t1047 = t1045 + t1046;
-  const Real t1048 = par.k50 * t886;
-  const Real t1049 = par.k50 * t888;
-  const Real t1050 = t1048 + t1049;
-  const Real t1051 = t232 * t790;
-
-  // fin: wrench
-  const Real t1052 = t232 * t792;
-
-  // accelerations
-  const Real t1053 = t1052 + t1051;
-  const Real t1054 = t295 * t803;
-  const Real t1055 = t1053 - t1054;
-  const Real t1056 = t366 + t1055;
-  const Real t1057 = t1056 - t1050;
-  const Real t1058 = sum_error(t1057, t1047);
-  const Real t1059 = sum_error(t1045, t1046);
-  const Real t1060 = t1059 + t1058;
-  const Real t1061 = t1044 + t1060;
-  const Real t1062 = t1047 + t1057;
-  const Real t1063 = t1041 + t1042;
-  const Real t1064 = sum_error(t1062, t1063);
-  const Real t1065 = t1064 + t1061;
-  const Real t1066 = t957 * par.l3;
-  const Real t1067 = product_error(t973, par.l3);
-  const Real t1068 = t1066 + t1067;
-  const Real t1069 = t1065 + t1068;
-  const Real t1070 = t1062 + t1063;
-  const Real t1071 = t973 * par.l3;
-  const Real t1072 = sum_error(t1070, t1071);
-  const Real t1073 = t1072 + t1069;
-  const Real t1074 = par.k45 * t958;
-
-  // peduncle: wrench
-  const Real t1075 = par.k45 * t791;
-
-  // accelerations
-  const Real t1076 = t1074 + t1075;
-  const Real t1077 = par.k24 - t1076;
-  const Real t1078 = par.k21 * t958;
-
-  // peduncle: wrench of the fluid
-  const Real t1079 = par.k21 * t791;
-
-  // accelerations
-  const Real t1080 = t1078 + t1079;
-  const Real t1081 = par.k48 - t1080;
-  const Real t1082 = sum_error(t1077, t1081);
-  const Real t1083 = t1082 + t1073;
-  const Real t1084 = t1070 + t1071;
-  const Real t1085 = t1077 + t1081;
-  const Real t1086 = sum_error(t1085, t1084);
-  const Real t1087 = t1086 + t1083;
-  const Real t1088 = par.l2 * t1001;
-  const Real t1089 = product_error(par.l2, t1014);
-  const Real t1090 = t1088 + t1089;
-  const Real t1091 = t1087 - t1090;
-  const Real t1092 = par.l2 * t1014;
-  const Real t1093 = -t1092;
-  const Real t1094 = t1084 + t1085;
-  const Real t1095 = sum_error(t1094, t1093);
-  const Real t1096 = t1095 + t1091;
-
-  // rear: wrench
-  const Real t1097 = par.k36 * t774;
-
-  // accelerations
-  const Real t1098 = t776 * par.k36;
-  const Real t1099 = t1097 + t1098;
-  const Real t1100 = sum_error(par.k28, t1099);
-  const Real t1101 = product_error(t774, par.k33);
-  const Real t1102 = t776 * par.k33;
-  const Real t1103 = t1101 + t1102;
-
-  // rear: wrench of the fluid
-  const Real t1104 = t774 * par.k33;
-
-  // accelerations
-  const Real t1105 = sum_error(par.k39, t1104);
-  const Real t1106 = t1103 + t1105;
-  const Real t1107 = t1100 + t1106;
-  const Real t1108 = par.k28 + t1099;
-
-  // rear: wrench of the fluid
-  const Real t1109 = par.k39 + t1104;
-
-  // accelerations
-  const Real t1110 = sum_error(t1109, t1108);
-  const Real t1111 = t1107 + t1110;
-  const Real t1112 = t1111 + t1096;
-  const Real t1113 = t1094 - t1092;
-  const Real t1114 = t1109 + t1108;
-  const Real t1115 = sum_error(t1113, t1114);
-  const Real t1116 = t1112 + t1115;
-  const Real t1117 = t1116 - t1037;
-  const Real t1118 = t1035 * par.l1;
-  const Real t1119 = -t1118;
-  const Real t1120 = t1113 + t1114;
-  const Real t1121 = sum_error(t1120, t1119);
-  const Real t1122 = t1117 + t1121;
-  const Real t1123 = t1120 - t1118;
-  const Real t1124 = sum_error(t1123, par.k60);
-  const Real t1125 = t1122 + t1124;
-  const Real t1126 = t562 * t597;
-  const Real t1127 = product_error(t597, t1126);
-  const Real t1128 = t1125 - t1127;
-  const Real t1129 = par.k60 + t1123;
-  const Real t1130 = t1126 * t597;
-  const Real t1131 = -t1130;
-  const Real t1132 = sum_error(t1129, t1131);
-  const Real t1133 = t1132 + t1128;
-  const Real t1134 = t746 * t693;
-  const Real t1135 = product_error(t1134, t746);
-  const Real t1136 = t1133 - t1135;
-  const Real t1137 = t1129 - t1130;
-  const Real t1138 = t746 * t1134;
-  const Real t1139 = -t1138;
-  const Real t1140 = sum_error(t1137, t1139);
-  const Real t1141 = t1140 + t1136;
-  const Real t1142 = t1141 - t773;
-  const Real t1143 = t769 * t748;
-  const Real t1144 = t1137 - t1138;
-  const Real t1145 = t1144 - t1143;
-  const Real t1146 = t1145 + t1142;
-  const Real t1147 = constant<Real>(1.0L) / t1146;
-  const Real t1148 = t592 * t599;
-  const Real t1149 = t420 - t1148;
-  const Real t1150 = t592 * t608;
-  const Real t1151 = t721 - t1150;
-  const Real t1152 = t729 * t1151;
-  const Real t1153 = t1149 - t1152;
-  const Real t1154 = t1153 * t767;
-  const Real t1155 = product_error(t592, t599);
-  const Real t1156 = t592 * t601;
-  const Real t1157 = t1155 + t1156;
-  const Real t1158 = t416 - t1157;
-  const Real t1159 = -t1148;
-  const Real t1160 = sum_error(t420, t1159);
-  const Real t1161 = t1160 + t1158;
-  const Real t1162 = t731 * t1151;
-  const Real t1163 = product_error(t1151, t729);
-  const Real t1164 = t1162 + t1163;
-  const Real t1165 = t1161 - t1164;
-  const Real t1166 = -t1152;
-  const Real t1167 = sum_error(t1149, t1166);
-  const Real t1168 = t1167 + t1165;
-  const Real t1169 = t769 * t1168;
-  const Real t1170 = t1154 + t1169;
-  const Real t1171 = product_error(t1153, t769);
-  const Real t1172 = t1171 + t1170;
-  const Real t1173 = product_error(t592, t1126);
-  const Real t1174 = t1116 - t1173;
-  const Real t1175 = t592 * t1126;
-  const Real t1176 = -t1175;
-  const Real t1177 = sum_error(t1120, t1176);
-  const Real t1178 = t1174 + t1177;
-  const Real t1179 = product_error(t1134, t1151);
-  const Real t1180 = t1178 - t1179;
-  const Real t1181 = t1120 - t1175;
-  const Real t1182 = t1151 * t1134;
-  const Real t1183 = -t1182;
-  const Real t1184 = sum_error(t1181, t1183);
-  const Real t1185 = t1184 + t1180;
-  const Real t1186 = t1185 - t1172;
-  const Real t1187 = t769 * t1153;
-  const Real t1188 = -t1187;
-  const Real t1189 = t1181 - t1182;
-  const Real t1190 = sum_error(t1189, t1188);
-  const Real t1191 = t1186 + t1190;
-  const Real t1192 = t1191 * t1147;
-  const Real t1193 = t1189 - t1187;
-  const Real t1194 = product_error(t1147, t1193);
-  const Real t1195 = t1192 + t1194;
-  const Real t1196 = t1195 * t1193;
-  const Real t1197 = t1193 * t1147;
-  const Real t1198 = t1191 * t1197;
-  const Real t1199 = t1196 + t1198;
-  const Real t1200 = product_error(t1197, t1193);
-  const Real t1201 = t1200 + t1199;
-  const Real t1202 = t1153 * t742;
-  const Real t1203 = t738 * t1168;
-  const Real t1204 = t1203 + t1202;
-  const Real t1205 = t1153 * t738;
-  const Real t1206 = t1204 + t1205;
-  const Real t1207 = t1206 * t1168;
-  const Real t1208 = product_error(t1206, t1153);
-  const Real t1209 = t1207 + t1208;
-  const Real t1210 = t693 * t1151;
-  const Real t1211 = t1210 * t1151;
-  const Real t1212 = -t1211;
-
-  // peduncle: acceleration
-  const Real t1213 = par.l2 * c_r_a_2_;
-
-  // fin: acceleration
-  const Real t1214 = t1213 + par.l3;
+  const Real t976 = -t975;
+  const Real t977 = sum_error(t972, t976);
+  const Real t978 = product_error(t971, t3);
+  const Real t979 = t978 + t977;
+  const Real t980 = par.k4 * t979;
 
   // fin_section_2: acceleration
-  const Real t1215 = t1214 + t46;
+  const Real t981 = t972 - t975;
 
   // accelerations
-  const Real t1216 = sum_error(t1213, par.l3);
-  const Real t1217 = product_error(par.l2, c_r_a_2_);
-  const Real t1218 = t1217 + t1216;
-  const Real t1219 = t1215 + t1218;
-  const Real t1220 = t1219 * t3;
-
-  // peduncle: acceleration
-  const Real t1221 = par.l2 * s_r_a_2_;
-
-  // fin_section_2: acceleration
-  const Real t1222 = t1221 - t58;
-  const Real t1223 = t1222 * t2;
-
-  // accelerations
-  const Real t1224 = -t1223;
-  const Real t1225 = sum_error(t1220, t1224);
-  const Real t1226 = product_error(t1219, t3);
-  const Real t1227 = t1226 + t1225;
-  const Real t1228 = par.k4 * t1227;
-  const Real t1229 = t1220 - t1223;
-  const Real t1230 = product_error(par.k4, t1229);
-  const Real t1231 = t1230 + t1228;
-  const Real t1232 = t1231 * t2;
-  const Real t1233 = par.k4 * t1229;
-  const Real t1234 = t1233 * t2;
-  const Real t1235 = t1234 + t1232;
-  const Real t1236 = t43 * t1235;
-  const Real t1237 = t1233 * t3;
-  const Real t1238 = constant<Real>(0.710077701790478711739L) * t1237;
-  const Real t1239 = t1238 + t1236;
-  const Real t1240 = t1218 * par.k43;
-
-  // fin: wrench
-  const Real t1241 = t1214 * par.k43;
-
-  // accelerations
-  const Real t1242 = t1241 + t1240;
-
-  // fin: wrench
-  const Real t1243 = t95 * t1221;
-
-  // accelerations
-  const Real t1244 = t1242 - t1243;
-  const Real t1245 = t1244 + par.k50;
-  const Real t1246 = t1245 + t1239;
-  const Real t1247 = sum_error(t1214, t107);
-  const Real t1248 = t1218 + t1247;
-  const Real t1249 = t1248 * t9;
-
-  // fin_section_1: acceleration
-  const Real t1250 = t1214 + t107;
-  const Real t1251 = t9 * t1250;
-
-  // accelerations
-  const Real t1252 = t1249 + t1251;
-
-  // fin_section_1: acceleration
-  const Real t1253 = t1221 - t101;
-  const Real t1254 = t8 * t1253;
-
-  // accelerations
-  const Real t1255 = t1252 - t1254;
-  const Real t1256 = par.k4 * t1255;
-  const Real t1257 = t1256 * t8;
-  const Real t1258 = t105 * t1257;
-  const Real t1259 = t9 * t1256;
-  const Real t1260 = constant<Real>(0.0709020735931204697442L) * t1259;
-  const Real t1261 = t1258 + t1260;
-  const Real t1262 = sum_error(t1246, t1261);
-  const Real t1263 = t1231 * t3;
-  const Real t1264 = product_error(t3, t1233);
-  const Real t1265 = t1263 + t1264;
-  const Real t1266 = constant<Real>(0.710077701790478711739L) * t1265;
-  const Real t1267 = product_error(constant<Real>(0.710077701790478711739L), t1237);
-  const Real t1268 = t1267 + t1266;
-  const Real t1269 = sum_error(t1238, t1236);
-  const Real t1270 = t1268 + t1269;
-  const Real t1271 = sum_error(t1239, t1245);
-  const Real t1272 = t1270 + t1271;
-  const Real t1273 = t1262 + t1272;
-  const Real t1274 = t1273 * t169;
-  const Real t1275 = t1261 + t1246;
-  const Real t1276 = t187 * t1275;
-  const Real t1277 = t1276 + t1274;
-  const Real t1278 = product_error(t169, t1275);
-  const Real t1279 = t1277 + t1278;
-  const Real t1280 = t1279 * constant<Real>(0.0709020735931204697442L);
-  const Real t1281 = t1275 * t169;
-  const Real t1282 = constant<Real>(0.0709020735931204697442L) * t1281;
-  const Real t1283 = t1282 + t1280;
-  const Real t1284 = -t1283;
-  const Real t1285 = sum_error(t1250, t1284);
-  const Real t1286 = t1285 + t1248;
-  const Real t1287 = t1286 * t9;
-  const Real t1288 = t1250 - t1283;
-  const Real t1289 = product_error(t1288, t9);
-  const Real t1290 = t1289 + t1287;
-  const Real t1291 = t1279 * t105;
-  const Real t1292 = t105 * t1281;
-  const Real t1293 = t1292 + t1291;
-  const Real t1294 = t1293 + t1253;
-  const Real t1295 = t1294 * t8;
-  const Real t1296 = -t1295;
-  const Real t1297 = t1288 * t9;
-  const Real t1298 = sum_error(t1297, t1296);
-  const Real t1299 = t1298 + t1290;
-  const Real t1300 = par.k4 * t1299;
-  const Real t1301 = t1297 - t1295;
-  const Real t1302 = product_error(par.k4, t1301);
-  const Real t1303 = t1302 + t1300;
-  const Real t1304 = t1303 * t8;
-  const Real t1305 = par.k4 * t1301;
-  const Real t1306 = t1305 * t8;
-  const Real t1307 = t1306 + t1304;
-  const Real t1308 = t1307 * t101;
-  const Real t1309 = t1305 * t9;
-  const Real t1310 = t1309 * t107;
-  const Real t1311 = t1308 + t1310;
-  const Real t1312 = constant<Real>(0.710077701790478711739L) * t1279;
-  const Real t1313 = product_error(t1281, constant<Real>(0.710077701790478711739L));
-  const Real t1314 = t1313 + t1312;
-  const Real t1315 = constant<Real>(0.710077701790478711739L) * t1281;
-  const Real t1316 = t1219 - t1315;
-  const Real t1317 = t1316 - t1314;
-  const Real t1318 = t1317 * t3;
-  const Real t1319 = t1279 * t43;
-  const Real t1320 = t43 * t1281;
-  const Real t1321 = t1319 + t1320;
-  const Real t1322 = t1222 + t1321;
-  const Real t1323 = t1322 * t2;
-  const Real t1324 = t1318 - t1323;
-  const Real t1325 = par.k4 * t1324;
-  const Real t1326 = t2 * t1325;
-  const Real t1327 = t1326 * t58;
-  const Real t1328 = t3 * t1325;
-  const Real t1329 = t1328 * t46;
-  const Real t1330 = t1327 + t1329;
-  const Real t1331 = t1279 * par.k50;
-  const Real t1332 = t1281 * par.k50;
-  const Real t1333 = t1331 + t1332;
-
-  // fin: wrench
-  const Real t1334 = t1214 * t232;
-
-  // accelerations
-  const Real t1335 = t1218 * t232;
-  const Real t1336 = t1334 + t1335;
-
-  // fin: wrench
-  const Real t1337 = t295 * t1221;
-
-  // accelerations
-  const Real t1338 = t1336 - t1337;
-  const Real t1339 = t1338 + t366;
-  const Real t1340 = t1339 - t1333;
-  const Real t1341 = t1330 + t1340;
-  const Real t1342 = t1341 + t1311;
-  const Real t1343 = sum_error(t1308, t1310);
-  const Real t1344 = t1303 * t9;
-  const Real t1345 = product_error(t1305, t9);
-  const Real t1346 = t1345 + t1344;
-  const Real t1347 = t1346 * t107;
-  const Real t1348 = product_error(t1309, t107);
-  const Real t1349 = t1348 + t1347;
-  const Real t1350 = t1343 + t1349;
-  const Real t1351 = t1342 + t1350;
-  const Real t1352 = t1279 * par.k43;
-  const Real t1353 = t1281 * par.k43;
-  const Real t1354 = t1353 + t1352;
-  const Real t1355 = t1218 * par.k6;
-
-  // fin: wrench
-  const Real t1356 = t1214 * par.k6;
-
-  // accelerations
-  const Real t1357 = t1356 + t1355;
-  const Real t1358 = t1357 + t232;
-  const Real t1359 = t1358 - t1354;
-  const Real t1360 = t1328 + t1359;
-  const Real t1361 = t1309 + t1360;
-  const Real t1362 = t1361 * par.l3;
-  const Real t1363 = t1351 + t1362;
-
-  // peduncle: wrench of the fluid
-  const Real t1364 = t1213 * par.k21;
-
-  // accelerations
-  const Real t1365 = par.k21 * t1217;
-  const Real t1366 = t1364 + t1365;
-  const Real t1367 = t1366 + par.k48;
-
-  // peduncle: wrench
-  const Real t1368 = t1213 * par.k45;
-
-  // accelerations
-  const Real t1369 = t1217 * par.k45;
-  const Real t1370 = t1368 + t1369;
-  const Real t1371 = par.k24 + t1370;
-  const Real t1372 = t1367 + t1371;
-  const Real t1373 = t1363 + t1372;
-  const Real t1374 = t1279 * t95;
-  const Real t1375 = t95 * t1281;
-  const Real t1376 = t1375 + t1374;
-
-  // fin: wrench
-  const Real t1377 = t1221 * par.k6;
-  const Real t1378 = t1377 - t295;
-
-  // accelerations
-  const Real t1379 = t1376 + t1378;
-  const Real t1380 = t1379 - t1326;
-  const Real t1381 = t1307 - t1380;
-
-  // peduncle: wrench
-  const Real t1382 = par.k23 * t1221;
-
-  // accelerations
-  const Real t1383 = t1381 - t1382;
-  const Real t1384 = t1383 * s_r_a_2_;
-
-  // peduncle: wrench of the fluid
-  const Real t1385 = t1213 * par.k37;
-
-  // accelerations
-  const Real t1386 = t1217 * par.k37;
-  const Real t1387 = t1385 + t1386;
-  const Real t1388 = par.k21 + t1387;
-
-  // peduncle: wrench
-  const Real t1389 = par.k23 * t1213;
-
-  // accelerations
-  const Real t1390 = par.k23 * t1217;
-  const Real t1391 = t1389 + t1390;
-  const Real t1392 = t1391 + par.k45;
-  const Real t1393 = t1388 + t1392;
-  const Real t1394 = t1393 + t1361;
-  const Real t1395 = t1394 * c_r_a_2_;
-  const Real t1396 = t1384 - t1395;
-  const Real t1397 = par.l2 * t1396;
-  const Real t1398 = t1373 - t1397;
-  const Real t1399 = t1398 + par.k61;
-  const Real t1400 = t562 * t592;
-  const Real t1401 = t1400 * t592;
-  const Real t1402 = t1399 - t1401;
-  const Real t1403 = sum_error(t1402, t1212);
-  const Real t1404 = sum_error(t1363, t1372);
-  const Real t1405 = sum_error(t1351, t1362);
-  const Real t1406 = sum_error(t1309, t1360);
-  const Real t1407 = t1406 + t1346;
-  const Real t1408 = t1407 * par.l3;
-  const Real t1409 = product_error(t1361, par.l3);
-  const Real t1410 = t1408 + t1409;
-  const Real t1411 = t1405 + t1410;
-  const Real t1412 = t1404 + t1411;
-  const Real t1413 = -t1395;
-  const Real t1414 = sum_error(t1384, t1413);
-  const Real t1415 = sum_error(t1393, t1361);
-  const Real t1416 = t1415 + t1407;
-  const Real t1417 = c_r_a_2_ * t1416;
-  const Real t1418 = product_error(t1394, c_r_a_2_);
-  const Real t1419 = t1417 + t1418;
-  const Real t1420 = t1414 - t1419;
-  const Real t1421 = par.l2 * t1420;
-  const Real t1422 = product_error(par.l2, t1396);
-  const Real t1423 = t1422 + t1421;
-  const Real t1424 = t1412 - t1423;
-  const Real t1425 = -t1397;
-  const Real t1426 = sum_error(t1373, t1425);
-  const Real t1427 = t1426 + t1424;
-  const Real t1428 = sum_error(t1398, par.k61);
-  const Real t1429 = t1427 + t1428;
-  const Real t1430 = product_error(t592, t1400);
-  const Real t1431 = t1429 - t1430;
-  const Real t1432 = -t1401;
-  const Real t1433 = sum_error(t1399, t1432);
-  const Real t1434 = t1431 + t1433;
-  const Real t1435 = product_error(t1151, t1210);
-  const Real t1436 = t1434 - t1435;
-  const Real t1437 = t1403 + t1436;
-  const Real t1438 = t1437 - t1209;
-  const Real t1439 = t1153 * t1206;
-  const Real t1440 = -t1439;
-  const Real t1441 = t1402 - t1211;
-  const Real t1442 = sum_error(t1441, t1440);
-  const Real t1443 = t1438 + t1442;
-  const Real t1444 = t1443 - t1201;
-  const Real t1445 = t1193 * t1197;
-  const Real t1446 = t1441 - t1439;
-  const Real t1447 = t1446 - t1445;
-  const Real t1448 = t1444 + t1447;
-  const Real t1449 = constant<Real>(1.0L) / t1448;
-  const Real t1450 = t599 * t586;
-  const Real t1451 = t397 - t1450;
-  const Real t1452 = t608 * t586;
-  const Real t1453 = t715 - t1452;
-  const Real t1454 = t1453 * t729;
-  const Real t1455 = t1451 - t1454;
-  const Real t1456 = t769 * t1455;
-  const Real t1457 = t586 * t1126;
-  const Real t1458 = t1094 - t1457;
-  const Real t1459 = t1453 * t1134;
-  const Real t1460 = t1458 - t1459;
-  const Real t1461 = t1460 - t1456;
-  const Real t1462 = t1195 * t1461;
-  const Real t1463 = t1455 * t767;
-  const Real t1464 = t586 * t601;
-  const Real t1465 = product_error(t599, t586);
-  const Real t1466 = t1464 + t1465;
-  const Real t1467 = t393 - t1466;
-  const Real t1468 = -t1450;
-  const Real t1469 = sum_error(t397, t1468);
-  const Real t1470 = t1467 + t1469;
-  const Real t1471 = product_error(t1453, t729);
-  const Real t1472 = t1453 * t731;
-  const Real t1473 = t1471 + t1472;
-  const Real t1474 = t1470 - t1473;
-  const Real t1475 = -t1454;
-  const Real t1476 = sum_error(t1451, t1475);
-  const Real t1477 = t1476 + t1474;
-  const Real t1478 = t769 * t1477;
-  const Real t1479 = t1478 + t1463;
-  const Real t1480 = product_error(t1455, t769);
-  const Real t1481 = t1479 + t1480;
-  const Real t1482 = product_error(t586, t1126);
-  const Real t1483 = t1087 - t1482;
-  const Real t1484 = -t1457;
-  const Real t1485 = sum_error(t1094, t1484);
-  const Real t1486 = t1485 + t1483;
-  const Real t1487 = product_error(t1453, t1134);
-  const Real t1488 = t1486 - t1487;
-  const Real t1489 = -t1459;
-  const Real t1490 = sum_error(t1458, t1489);
-  const Real t1491 = t1490 + t1488;
-  const Real t1492 = t1491 - t1481;
-  const Real t1493 = -t1456;
-  const Real t1494 = sum_error(t1460, t1493);
-  const Real t1495 = t1492 + t1494;
-  const Real t1496 = t1495 * t1197;
-  const Real t1497 = t1462 + t1496;
-  const Real t1498 = product_error(t1461, t1197);
-  const Real t1499 = t1498 + t1497;
-  const Real t1500 = product_error(t1455, t1206);
-  const Real t1501 = t1206 * t1477;
-  const Real t1502 = t1500 + t1501;
-  const Real t1503 = t1210 * t1453;
-  const Real t1504 = -t1503;
-  const Real t1505 = t1400 * t586;
-  const Real t1506 = t1373 - t1505;
-  const Real t1507 = sum_error(t1506, t1504);
-  const Real t1508 = product_error(t1453, t1210);
-  const Real t1509 = -t1505;
-  const Real t1510 = sum_error(t1373, t1509);
-  const Real t1511 = product_error(t1400, t586);
-  const Real t1512 = t1412 - t1511;
-  const Real t1513 = t1512 + t1510;
-  const Real t1514 = t1513 - t1508;
-  const Real t1515 = t1514 + t1507;
-  const Real t1516 = t1515 - t1502;
-  const Real t1517 = t1455 * t1206;
-  const Real t1518 = -t1517;
-  const Real t1519 = t1506 - t1503;
-  const Real t1520 = sum_error(t1519, t1518);
-  const Real t1521 = t1516 + t1520;
-  const Real t1522 = t1521 - t1499;
-  const Real t1523 = t1461 * t1197;
-  const Real t1524 = t1519 - t1517;
-  const Real t1525 = t1524 - t1523;
-  const Real t1526 = t1522 + t1525;
-  const Real t1527 = t1526 * t1449;
-  const Real t1528 = t1526 * t1527;
-  const Real t1529 = product_error(t1461, t1147);
-  const Real t1530 = t1147 * t1495;
-  const Real t1531 = t1529 + t1530;
-  const Real t1532 = t1461 * t1531;
-  const Real t1533 = t1461 * t1147;
-  const Real t1534 = t1533 * t1495;
-  const Real t1535 = t1534 + t1532;
-  const Real t1536 = t1461 * t1533;
-  const Real t1537 = t1536 + t1535;
-  const Real t1538 = t1455 * t742;
-  const Real t1539 = t738 * t1477;
-  const Real t1540 = t1538 + t1539;
-  const Real t1541 = product_error(t1455, t738);
-  const Real t1542 = t1540 + t1541;
-  const Real t1543 = t1455 * t1542;
-  const Real t1544 = t1455 * t738;
-  const Real t1545 = t1544 * t1477;
-  const Real t1546 = t1545 + t1543;
-  const Real t1547 = t1455 * t1544;
-  const Real t1548 = t1546 + t1547;
-  const Real t1549 = t693 * t1453;
-  const Real t1550 = t1549 * t1453;
-  const Real t1551 = t562 * t586;
-  const Real t1552 = t1551 * t586;
-
-  // fin_section_2: acceleration
-  const Real t1553 = t46 + par.l3;
-  const Real t1554 = t1553 * t3;
-  const Real t1555 = t58 * t2;
-
-  // accelerations
-  const Real t1556 = sum_error(t1555, t1554);
-  const Real t1557 = product_error(t1553, t3);
-  const Real t1558 = t1556 + t1557;
-  const Real t1559 = par.k4 * t1558;
-
-  // fin_section_2: acceleration
-  const Real t1560 = t1555 + t1554;
-
-  // accelerations
-  const Real t1561 = product_error(par.k4, t1560);
-  const Real t1562 = t1559 + t1561;
-  const Real t1563 = t1562 * t2;
+  const Real t982 = product_error(par.k4, t981);
+  const Real t983 = t982 + t980;
+  const Real t984 = t983 * t3;
 
   // fin_section_2: wrench of the fluid
-  const Real t1564 = par.k4 * t1560;
+  const Real t985 = par.k4 * t981;
+
+  // accelerations
+  const Real t986 = product_error(t3, t985);
+  const Real t987 = t984 + t986;
+  const Real t988 = constant<Real>(0.710077701790478711739L) * t987;
 
   // fin_section_2: joint force
-  const Real t1565 = t1564 * t2;
+  const Real t989 = t3 * t985;
 
   // accelerations
-  const Real t1566 = t1563 + t1565;
-  const Real t1567 = t43 * t1566;
+  const Real t990 = product_error(constant<Real>(0.710077701790478711739L), t989);
+  const Real t991 = t990 + t988;
+  const Real t992 = t983 * t2;
 
   // fin_section_2: joint force
-  const Real t1568 = t1564 * t3;
-  const Real t1569 = constant<Real>(0.710077701790478711739L) * t1568;
+  const Real t993 = t985 * t2;
 
   // accelerations
-  const Real t1570 = t1569 + t1567;
-  const Real t1571 = par.k63 + t1570;
+  const Real t994 = t993 + t992;
+  const Real t995 = t29 * t994;
 
-  // fin_section_1: acceleration
-  const Real t1572 = t107 + par.l3;
-  const Real t1573 = t9 * t1572;
-
-  // accelerations
-  const Real t1574 = sum_error(t107, par.l3);
-  const Real t1575 = t9 * t1574;
-  const Real t1576 = t1573 + t1575;
-
-  // fin_section_1: acceleration
-  const Real t1577 = t8 * t101;
+  // fin_section_2: joint force
+  const Real t996 = constant<Real>(0.710077701790478711739L) * t989;
 
   // accelerations
-  const Real t1578 = t1577 + t1576;
-  const Real t1579 = par.k4 * t1578;
-  const Real t1580 = t1579 * t8;
-  const Real t1581 = t105 * t1580;
-  const Real t1582 = t1579 * t9;
-  const Real t1583 = t1582 * constant<Real>(0.0709020735931204697442L);
-  const Real t1584 = t1581 + t1583;
-  const Real t1585 = t1571 + t1584;
-  const Real t1586 = t187 * t1585;
-  const Real t1587 = sum_error(t1571, t1584);
-  const Real t1588 = sum_error(par.k63, t1570);
-  const Real t1589 = sum_error(t1569, t1567);
-  const Real t1590 = t1562 * t3;
-  const Real t1591 = product_error(t1564, t3);
-  const Real t1592 = t1591 + t1590;
-  const Real t1593 = constant<Real>(0.710077701790478711739L) * t1592;
-  const Real t1594 = product_error(constant<Real>(0.710077701790478711739L), t1568);
-  const Real t1595 = t1594 + t1593;
-  const Real t1596 = t1589 + t1595;
-  const Real t1597 = t1588 + t1596;
-  const Real t1598 = t1587 + t1597;
-  const Real t1599 = t1598 * t169;
-  const Real t1600 = t1586 + t1599;
-  const Real t1601 = product_error(t169, t1585);
-  const Real t1602 = t1601 + t1600;
-  const Real t1603 = constant<Real>(0.0709020735931204697442L) * t1602;
-  const Real t1604 = t1585 * t169;
-  const Real t1605 = constant<Real>(0.0709020735931204697442L) * t1604;
-  const Real t1606 = t1603 + t1605;
-  const Real t1607 = -t1606;
-  const Real t1608 = sum_error(t1572, t1607);
-  const Real t1609 = t1574 + t1608;
-  const Real t1610 = t1609 * t9;
-  const Real t1611 = t1572 - t1606;
-  const Real t1612 = product_error(t9, t1611);
-  const Real t1613 = t1612 + t1610;
-  const Real t1614 = t105 * t1602;
-  const Real t1615 = t105 * t1604;
-  const Real t1616 = t1615 + t1614;
-  const Real t1617 = t1616 - t101;
-  const Real t1618 = t1617 * t8;
-  const Real t1619 = -t1618;
-  const Real t1620 = t1611 * t9;
-  const Real t1621 = sum_error(t1620, t1619);
-  const Real t1622 = t1613 + t1621;
-  const Real t1623 = par.k4 * t1622;
-  const Real t1624 = t1620 - t1618;
-  const Real t1625 = product_error(par.k4, t1624);
-  const Real t1626 = t1623 + t1625;
-  const Real t1627 = t1626 * t9;
-  const Real t1628 = par.k4 * t1624;
-  const Real t1629 = product_error(t9, t1628);
-  const Real t1630 = t1627 + t1629;
-  const Real t1631 = t1630 * t107;
-  const Real t1632 = t1628 * t9;
-  const Real t1633 = t1632 * t107;
-  const Real t1634 = t1631 + t1633;
-  const Real t1635 = t1626 * t8;
-  const Real t1636 = t1628 * t8;
-  const Real t1637 = t1635 + t1636;
-  const Real t1638 = t1637 * t101;
-  const Real t1639 = t1638 + t1634;
-  const Real t1640 = constant<Real>(0.710077701790478711739L) * t1602;
-  const Real t1641 = product_error(constant<Real>(0.710077701790478711739L), t1604);
-  const Real t1642 = t1641 + t1640;
-  const Real t1643 = constant<Real>(0.710077701790478711739L) * t1604;
-  const Real t1644 = t1553 - t1643;
-  const Real t1645 = t1644 - t1642;
-  const Real t1646 = t3 * t1645;
-  const Real t1647 = t43 * t1602;
-  const Real t1648 = t43 * t1604;
-  const Real t1649 = t1648 + t1647;
-  const Real t1650 = t1649 - t58;
-  const Real t1651 = t1650 * t2;
-  const Real t1652 = t1646 - t1651;
-  const Real t1653 = par.k4 * t1652;
-  const Real t1654 = t1653 * t3;
-  const Real t1655 = t46 * t1654;
-  const Real t1656 = t1653 * t2;
-  const Real t1657 = t58 * t1656;
-  const Real t1658 = t1655 + t1657;
-  const Real t1659 = t1602 * par.k50;
-  const Real t1660 = t1604 * par.k50;
-  const Real t1661 = t1659 + t1660;
+  const Real t997 = sum_error(t996, t995);
+  const Real t998 = t991 + t997;
+  const Real t999 = t996 + t995;
 
   // fin: wrench
-  const Real t1662 = t232 * par.l3;
-  const Real t1663 = t1662 + t366;
+  const Real t1000 = t970 * par.k41;
+  const Real t1001 = t65 * t973;
+  const Real t1002 = t1000 - t1001;
+  const Real t1003 = t1002 + par.k47;
 
   // accelerations
-  const Real t1664 = t1663 - t1661;
-  const Real t1665 = t1664 + t1658;
-  const Real t1666 = t1639 + t1665;
-  const Real t1667 = par.k43 * t1602;
-  const Real t1668 = t1604 * par.k43;
-  const Real t1669 = t1667 + t1668;
+  const Real t1004 = sum_error(t999, t1003);
+  const Real t1005 = t998 + t1004;
+  const Real t1006 = t1003 + t999;
+  const Real t1007 = sum_error(t970, t72);
+  const Real t1008 = t9 * t1007;
+
+  // fin_section_1: acceleration
+  const Real t1009 = t970 + t72;
+  const Real t1010 = t9 * t1009;
+
+  // accelerations
+  const Real t1011 = t1008 + t1010;
+
+  // fin_section_1: acceleration
+  const Real t1012 = t973 - t79;
+  const Real t1013 = t8 * t1012;
+
+  // accelerations
+  const Real t1014 = t1011 - t1013;
+  const Real t1015 = par.k4 * t1014;
+  const Real t1016 = t1015 * t8;
+  const Real t1017 = t70 * t1016;
+  const Real t1018 = t1015 * t9;
+  const Real t1019 = constant<Real>(0.0709020735931204697442L) * t1018;
+  const Real t1020 = t1017 + t1019;
+  const Real t1021 = sum_error(t1006, t1020);
+  const Real t1022 = t1005 + t1021;
+  const Real t1023 = t121 * t1022;
+  const Real t1024 = t1006 + t1020;
+  const Real t1025 = product_error(t121, t1024);
+  const Real t1026 = t1025 + t1023;
+  const Real t1027 = constant<Real>(0.0709020735931204697442L) * t1026;
+  const Real t1028 = t1024 * t121;
+  const Real t1029 = constant<Real>(0.0709020735931204697442L) * t1028;
+  const Real t1030 = t1029 + t1027;
+  const Real t1031 = -t1030;
+  const Real t1032 = sum_error(t1009, t1031);
+  const Real t1033 = t1032 + t1007;
+  const Real t1034 = t9 * t1033;
+  const Real t1035 = t1009 - t1030;
+  const Real t1036 = product_error(t1035, t9);
+  const Real t1037 = t1034 + t1036;
+  const Real t1038 = t70 * t1026;
+  const Real t1039 = t70 * t1028;
+  const Real t1040 = t1038 + t1039;
+  const Real t1041 = t1040 + t1012;
+  const Real t1042 = t8 * t1041;
+  const Real t1043 = -t1042;
+  const Real t1044 = t9 * t1035;
+  const Real t1045 = sum_error(t1044, t1043);
+  const Real t1046 = t1037 + t1045;
+  const Real t1047 = par.k4 * t1046;
+  const Real t1048 = t1044 - t1042;
+  const Real t1049 = product_error(par.k4, t1048);
+  const Real t1050 = t1047 + t1049;
+  const Real t1051 = t1050 * t9;
+  const Real t1052 = par.k4 * t1048;
+  const Real t1053 = product_error(t1052, t9);
+  const Real t1054 = t1053 + t1051;
+  const Real t1055 = t1054 * t72;
+  const Real t1056 = t1052 * t9;
+  const Real t1057 = t72 * t1056;
+  const Real t1058 = t1055 + t1057;
+  const Real t1059 = t1050 * t8;
+  const Real t1060 = t1052 * t8;
+  const Real t1061 = t1060 + t1059;
+  const Real t1062 = t1061 * t79;
+  const Real t1063 = t1058 + t1062;
+  const Real t1064 = constant<Real>(0.710077701790478711739L) * t1026;
+  const Real t1065 = product_error(t1028, constant<Real>(0.710077701790478711739L));
+  const Real t1066 = t1065 + t1064;
+  const Real t1067 = constant<Real>(0.710077701790478711739L) * t1028;
+  const Real t1068 = t971 - t1067;
+  const Real t1069 = t1068 - t1066;
+  const Real t1070 = t1069 * t3;
+  const Real t1071 = t29 * t1026;
+  const Real t1072 = t29 * t1028;
+  const Real t1073 = t1072 + t1071;
+  const Real t1074 = t974 + t1073;
+  const Real t1075 = t1074 * t2;
+  const Real t1076 = t1070 - t1075;
+  const Real t1077 = par.k4 * t1076;
+  const Real t1078 = t1077 * t2;
+  const Real t1079 = t41 * t1078;
+  const Real t1080 = t1077 * t3;
+  const Real t1081 = t32 * t1080;
+  const Real t1082 = t1079 + t1081;
+  const Real t1083 = t1026 * par.k47;
+  const Real t1084 = par.k47 * t1028;
+  const Real t1085 = t1083 + t1084;
 
   // fin: wrench
-  const Real t1670 = t232 + par.k64;
+  const Real t1086 = t970 * t177;
+  const Real t1087 = t205 * t973;
+  const Real t1088 = t1086 - t1087;
+  const Real t1089 = t283 + t1088;
 
   // accelerations
-  const Real t1671 = t1670 - t1669;
-  const Real t1672 = t1671 + t1654;
-  const Real t1673 = t1632 + t1672;
-  const Real t1674 = t1673 * par.l3;
-  const Real t1675 = t1666 + t1674;
-  const Real t1676 = t1675 + par.k62;
-  const Real t1677 = t1676 - t1552;
-  const Real t1678 = t1677 - t1550;
-  const Real t1679 = t1678 - t1548;
-  const Real t1680 = -t1550;
-  const Real t1681 = sum_error(t1677, t1680);
-  const Real t1682 = -t1552;
-  const Real t1683 = sum_error(t1676, t1682);
-  const Real t1684 = sum_error(t1674, t1666);
-  const Real t1685 = sum_error(t1632, t1672);
-  const Real t1686 = t1685 + t1630;
-  const Real t1687 = t1686 * par.l3;
-  const Real t1688 = product_error(t1673, par.l3);
-  const Real t1689 = t1688 + t1687;
-  const Real t1690 = t1684 + t1689;
-  const Real t1691 = sum_error(par.k62, t1675);
-  const Real t1692 = t1690 + t1691;
-  const Real t1693 = t1692 + t1683;
-  const Real t1694 = t1693 + t1681;
-  const Real t1695 = t1679 + t1694;
-  const Real t1696 = t1695 - t1537;
-  const Real t1697 = t1696 - t1528;
-  const Real t1698 = constant<Real>(1.0L) / t1697;
+  const Real t1090 = t1089 - t1085;
+  const Real t1091 = t1090 + t1082;
+  const Real t1092 = t1091 + t1063;
+  const Real t1093 = t1026 * par.k41;
+  const Real t1094 = par.k41 * t1028;
+  const Real t1095 = t1094 + t1093;
+
+  // fin: wrench
+  const Real t1096 = t970 * par.k6;
+  const Real t1097 = t1096 + t177;
+
+  // accelerations
+  const Real t1098 = t1097 - t1095;
+  const Real t1099 = t1080 + t1098;
+  const Real t1100 = t1099 + t1056;
+  const Real t1101 = t1100 * par.l3;
+  const Real t1102 = t1101 + t1092;
+
+  // peduncle: wrench
+  const Real t1103 = t969 * par.k37;
+  const Real t1104 = par.k19 + t1103;
+
+  // peduncle: wrench of the fluid
+  const Real t1105 = t969 * par.k29;
+  const Real t1106 = t1105 + par.k45;
+  const Real t1107 = t1104 + t1106;
+
+  // accelerations
+  const Real t1108 = t1102 + t1107;
+  const Real t1109 = t65 * t1026;
+  const Real t1110 = t65 * t1028;
+  const Real t1111 = t1110 + t1109;
+
+  // fin: wrench
+  const Real t1112 = t973 * par.k6;
+  const Real t1113 = t1112 - t205;
+
+  // accelerations
+  const Real t1114 = t1111 + t1113;
+  const Real t1115 = t1114 - t1078;
+  const Real t1116 = t1061 - t1115;
+
+  // peduncle: wrench
+  const Real t1117 = par.k18 * t973;
+
+  // accelerations
+  const Real t1118 = t1116 - t1117;
+  const Real t1119 = t1118 * s_r_a_2_;
+
+  // peduncle: wrench
+  const Real t1120 = par.k18 * t969;
+  const Real t1121 = t1120 + par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t1122 = t969 * par.k31;
+  const Real t1123 = par.k29 + t1122;
+  const Real t1124 = t1121 + t1123;
+
+  // accelerations
+  const Real t1125 = t1100 + t1124;
+  const Real t1126 = c_r_a_2_ * t1125;
+  const Real t1127 = t1119 - t1126;
+  const Real t1128 = par.l2 * t1127;
+  const Real t1129 = t1108 - t1128;
+  const Real t1130 = par.k58 + t1129;
+
+  // trunk: joint force
+  const Real t1131 = t470 * t481;
+  const Real t1132 = t470 * t1131;
+
+  // accelerations
+  const Real t1133 = t1130 - t1132;
+
+  // trunk: joint force
+  const Real t1134 = t571 * t920;
+  const Real t1135 = t920 * t1134;
+
+  // accelerations
+  const Real t1136 = t1133 - t1135;
+  const Real t1137 = t1136 - t968;
+  const Real t1138 = t1137 - t964;
+  const Real t1139 = product_error(t967, t922);
+  const Real t1140 = t939 * t967;
+  const Real t1141 = t1139 + t1140;
+  const Real t1142 = sum_error(t1092, t1101);
+  const Real t1143 = sum_error(t1056, t1099);
+  const Real t1144 = t1143 + t1054;
+  const Real t1145 = t1144 * par.l3;
+  const Real t1146 = product_error(t1100, par.l3);
+  const Real t1147 = t1145 + t1146;
+  const Real t1148 = t1147 + t1142;
+  const Real t1149 = sum_error(t1102, t1107);
+  const Real t1150 = t1148 + t1149;
+  const Real t1151 = -t1126;
+  const Real t1152 = sum_error(t1119, t1151);
+  const Real t1153 = sum_error(t1124, t1100);
+  const Real t1154 = t1144 + t1153;
+  const Real t1155 = t1154 * c_r_a_2_;
+  const Real t1156 = product_error(t1125, c_r_a_2_);
+  const Real t1157 = t1156 + t1155;
+  const Real t1158 = t1152 - t1157;
+  const Real t1159 = par.l2 * t1158;
+  const Real t1160 = product_error(par.l2, t1127);
+  const Real t1161 = t1159 + t1160;
+  const Real t1162 = t1150 - t1161;
+  const Real t1163 = -t1128;
+  const Real t1164 = sum_error(t1108, t1163);
+  const Real t1165 = t1164 + t1162;
+  const Real t1166 = sum_error(t1129, par.k58);
+  const Real t1167 = t1166 + t1165;
+  const Real t1168 = product_error(t470, t1131);
+  const Real t1169 = t1167 - t1168;
+  const Real t1170 = -t1132;
+  const Real t1171 = sum_error(t1130, t1170);
+  const Real t1172 = t1169 + t1171;
+  const Real t1173 = product_error(t920, t1134);
+  const Real t1174 = t1172 - t1173;
+  const Real t1175 = -t1135;
+  const Real t1176 = sum_error(t1133, t1175);
+  const Real t1177 = t1176 + t1174;
+  const Real t1178 = t1177 - t1141;
+  const Real t1179 = -t968;
+  const Real t1180 = sum_error(t1136, t1179);
+  const Real t1181 = t1178 + t1180;
+  const Real t1182 = t1138 + t1181;
+  const Real t1183 = constant<Real>(1.0L) / t1182;
+
+  // trunk: joint force
+  const Real t1184 = t482 * t464;
+
+  // accelerations
+  const Real t1185 = t295 - t1184;
+
+  // trunk: joint force
+  const Real t1186 = t488 * t464;
+  const Real t1187 = t593 - t1186;
+  const Real t1188 = t1187 * t607;
+
+  // accelerations
+  const Real t1189 = t1185 - t1188;
+  const Real t1190 = t1189 * t630;
+
+  // trunk: joint force
+  const Real t1191 = t464 * t895;
+
+  // accelerations
+  const Real t1192 = t869 - t1191;
+
+  // trunk: joint force
+  const Real t1193 = t1187 * t903;
+
+  // accelerations
+  const Real t1194 = t1192 - t1193;
+  const Real t1195 = t1194 - t1190;
+  const Real t1196 = t1195 * t958;
+  const Real t1197 = -t1190;
+  const Real t1198 = sum_error(t1194, t1197);
+  const Real t1199 = product_error(t1189, t630);
+  const Real t1200 = product_error(t482, t464);
+  const Real t1201 = t321 - t1200;
+  const Real t1202 = -t1184;
+  const Real t1203 = sum_error(t295, t1202);
+  const Real t1204 = t1201 + t1203;
+  const Real t1205 = product_error(t1187, t607);
+  const Real t1206 = t1204 - t1205;
+  const Real t1207 = -t1188;
+  const Real t1208 = sum_error(t1185, t1207);
+  const Real t1209 = t1206 + t1208;
+  const Real t1210 = t1209 * t630;
+  const Real t1211 = t1199 + t1210;
+  const Real t1212 = product_error(t464, t895);
+  const Real t1213 = t864 - t1212;
+  const Real t1214 = -t1191;
+  const Real t1215 = sum_error(t869, t1214);
+  const Real t1216 = t1215 + t1213;
+  const Real t1217 = product_error(t1187, t903);
+  const Real t1218 = t1216 - t1217;
+  const Real t1219 = -t1193;
+  const Real t1220 = sum_error(t1192, t1219);
+  const Real t1221 = t1218 + t1220;
+  const Real t1222 = t1221 - t1211;
+  const Real t1223 = t1198 + t1222;
+  const Real t1224 = t960 * t1223;
+  const Real t1225 = t1196 + t1224;
+  const Real t1226 = t960 * t1195;
+  const Real t1227 = t1225 + t1226;
+  const Real t1228 = t1189 * t967;
+
+  // trunk: joint force
+  const Real t1229 = t1187 * t1134;
+  const Real t1230 = t1131 * t464;
+
+  // accelerations
+  const Real t1231 = t1108 - t1230;
+  const Real t1232 = t1231 - t1229;
+  const Real t1233 = t1232 - t1228;
+  const Real t1234 = t1233 - t1227;
+  const Real t1235 = t967 * t1209;
+  const Real t1236 = product_error(t1189, t967);
+  const Real t1237 = t1235 + t1236;
+  const Real t1238 = -t1229;
+  const Real t1239 = sum_error(t1231, t1238);
+  const Real t1240 = -t1230;
+  const Real t1241 = sum_error(t1108, t1240);
+  const Real t1242 = t1150 + t1241;
+  const Real t1243 = t1242 + t1239;
+  const Real t1244 = t1243 - t1237;
+  const Real t1245 = -t1228;
+  const Real t1246 = sum_error(t1232, t1245);
+  const Real t1247 = t1244 + t1246;
+  const Real t1248 = t1234 + t1247;
+  const Real t1249 = t1248 * t1183;
+  const Real t1250 = t1248 * t1249;
+  const Real t1251 = t916 * t1195;
+  const Real t1252 = t1223 * t916;
+  const Real t1253 = t1251 + t1252;
+  const Real t1254 = t1253 * t1195;
+  const Real t1255 = t1253 * t1223;
+  const Real t1256 = t1254 + t1255;
+  const Real t1257 = t1189 * t611;
+  const Real t1258 = t1209 * t611;
+  const Real t1259 = t1257 + t1258;
+  const Real t1260 = t1189 * t1259;
+  const Real t1261 = t1259 * t1209;
+  const Real t1262 = t1260 + t1261;
+
+  // trunk: joint force
+  const Real t1263 = t1187 * t571;
+  const Real t1264 = t1187 * t1263;
+
+  // fin_section_2: acceleration
+  const Real t1265 = t32 + par.l3;
+  const Real t1266 = t1265 * t3;
+  const Real t1267 = t41 * t2;
+
+  // accelerations
+  const Real t1268 = sum_error(t1267, t1266);
+  const Real t1269 = product_error(t1265, t3);
+  const Real t1270 = t1268 + t1269;
+  const Real t1271 = par.k4 * t1270;
+
+  // fin_section_2: acceleration
+  const Real t1272 = t1267 + t1266;
+
+  // accelerations
+  const Real t1273 = product_error(par.k4, t1272);
+  const Real t1274 = t1271 + t1273;
+  const Real t1275 = t1274 * t2;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1276 = par.k4 * t1272;
+
+  // fin_section_2: joint force
+  const Real t1277 = t1276 * t2;
+
+  // accelerations
+  const Real t1278 = t1275 + t1277;
+  const Real t1279 = t29 * t1278;
+
+  // fin_section_2: joint force
+  const Real t1280 = t1276 * t3;
+  const Real t1281 = constant<Real>(0.710077701790478711739L) * t1280;
+
+  // accelerations
+  const Real t1282 = t1281 + t1279;
+  const Real t1283 = par.k60 + t1282;
+
+  // fin_section_1: acceleration
+  const Real t1284 = t72 + par.l3;
+  const Real t1285 = t9 * t1284;
+
+  // accelerations
+  const Real t1286 = sum_error(t72, par.l3);
+  const Real t1287 = t9 * t1286;
+  const Real t1288 = t1285 + t1287;
+
+  // fin_section_1: acceleration
+  const Real t1289 = t8 * t79;
+
+  // accelerations
+  const Real t1290 = t1289 + t1288;
+  const Real t1291 = par.k4 * t1290;
+  const Real t1292 = t1291 * t8;
+  const Real t1293 = t70 * t1292;
+  const Real t1294 = t1291 * t9;
+  const Real t1295 = t1294 * constant<Real>(0.0709020735931204697442L);
+  const Real t1296 = t1293 + t1295;
+  const Real t1297 = sum_error(t1283, t1296);
+  const Real t1298 = sum_error(par.k60, t1282);
+  const Real t1299 = sum_error(t1281, t1279);
+  const Real t1300 = t1274 * t3;
+  const Real t1301 = product_error(t1276, t3);
+  const Real t1302 = t1301 + t1300;
+  const Real t1303 = constant<Real>(0.710077701790478711739L) * t1302;
+  const Real t1304 = product_error(constant<Real>(0.710077701790478711739L), t1280);
+  const Real t1305 = t1304 + t1303;
+  const Real t1306 = t1299 + t1305;
+  const Real t1307 = t1298 + t1306;
+  const Real t1308 = t1297 + t1307;
+  const Real t1309 = t121 * t1308;
+  const Real t1310 = t1283 + t1296;
+  const Real t1311 = product_error(t121, t1310);
+  const Real t1312 = t1309 + t1311;
+  const Real t1313 = constant<Real>(0.0709020735931204697442L) * t1312;
+  const Real t1314 = t121 * t1310;
+  const Real t1315 = constant<Real>(0.0709020735931204697442L) * t1314;
+  const Real t1316 = t1315 + t1313;
+  const Real t1317 = -t1316;
+  const Real t1318 = sum_error(t1284, t1317);
+  const Real t1319 = t1318 + t1286;
+  const Real t1320 = t9 * t1319;
+  const Real t1321 = t1284 - t1316;
+  const Real t1322 = product_error(t9, t1321);
+  const Real t1323 = t1322 + t1320;
+  const Real t1324 = t70 * t1312;
+  const Real t1325 = t70 * t1314;
+  const Real t1326 = t1325 + t1324;
+  const Real t1327 = t1326 - t79;
+  const Real t1328 = t1327 * t8;
+  const Real t1329 = -t1328;
+  const Real t1330 = t1321 * t9;
+  const Real t1331 = sum_error(t1330, t1329);
+  const Real t1332 = t1331 + t1323;
+  const Real t1333 = par.k4 * t1332;
+  const Real t1334 = t1330 - t1328;
+  const Real t1335 = product_error(par.k4, t1334);
+  const Real t1336 = t1335 + t1333;
+  const Real t1337 = t1336 * t9;
+  const Real t1338 = par.k4 * t1334;
+  const Real t1339 = product_error(t9, t1338);
+  const Real t1340 = t1339 + t1337;
+  const Real t1341 = t1340 * t72;
+  const Real t1342 = t9 * t1338;
+  const Real t1343 = t1342 * t72;
+  const Real t1344 = t1343 + t1341;
+  const Real t1345 = t1336 * t8;
+  const Real t1346 = t1338 * t8;
+  const Real t1347 = t1345 + t1346;
+  const Real t1348 = t1347 * t79;
+  const Real t1349 = t1344 + t1348;
+  const Real t1350 = constant<Real>(0.710077701790478711739L) * t1312;
+  const Real t1351 = product_error(constant<Real>(0.710077701790478711739L), t1314);
+  const Real t1352 = t1351 + t1350;
+  const Real t1353 = constant<Real>(0.710077701790478711739L) * t1314;
+  const Real t1354 = t1265 - t1353;
+  const Real t1355 = t1354 - t1352;
+  const Real t1356 = t1355 * t3;
+  const Real t1357 = t29 * t1312;
+  const Real t1358 = t29 * t1314;
+  const Real t1359 = t1357 + t1358;
+  const Real t1360 = t1359 - t41;
+  const Real t1361 = t1360 * t2;
+  const Real t1362 = t1356 - t1361;
+  const Real t1363 = par.k4 * t1362;
+  const Real t1364 = t1363 * t3;
+  const Real t1365 = t1364 * t32;
+  const Real t1366 = t1363 * t2;
+  const Real t1367 = t41 * t1366;
+  const Real t1368 = t1365 + t1367;
+  const Real t1369 = t1312 * par.k47;
+  const Real t1370 = t1314 * par.k47;
+  const Real t1371 = t1370 + t1369;
+
+  // fin: wrench
+  const Real t1372 = t177 * par.l3;
+  const Real t1373 = t1372 + t283;
+
+  // accelerations
+  const Real t1374 = t1373 - t1371;
+  const Real t1375 = t1374 + t1368;
+  const Real t1376 = t1349 + t1375;
+  const Real t1377 = t1312 * par.k41;
+  const Real t1378 = t1314 * par.k41;
+  const Real t1379 = t1378 + t1377;
+
+  // fin: wrench
+  const Real t1380 = t177 + par.k61;
+
+  // accelerations
+  const Real t1381 = t1380 - t1379;
+  const Real t1382 = t1364 + t1381;
+  const Real t1383 = t1342 + t1382;
+  const Real t1384 = t1383 + t1340;
+  const Real t1385 = t1384 * par.l3;
+  const Real t1386 = t1385 + t1376;
+  const Real t1387 = t1386 + par.k59;
+
+  // trunk: joint force
+  const Real t1388 = t481 * t464;
+  const Real t1389 = t1388 * t464;
+
+  // accelerations
+  const Real t1390 = t1387 - t1389;
+  const Real t1391 = t1390 - t1264;
+  const Real t1392 = t1391 - t1262;
+  const Real t1393 = -t1264;
+  const Real t1394 = sum_error(t1390, t1393);
+  const Real t1395 = -t1389;
+  const Real t1396 = sum_error(t1387, t1395);
+  const Real t1397 = sum_error(par.k59, t1386);
+  const Real t1398 = sum_error(t1385, t1376);
+  const Real t1399 = t1397 + t1398;
+  const Real t1400 = t1396 + t1399;
+  const Real t1401 = t1400 + t1394;
+  const Real t1402 = t1401 + t1392;
+  const Real t1403 = t1402 - t1256;
+  const Real t1404 = t1403 - t1250;
+  const Real t1405 = constant<Real>(1.0L) / t1404;
 
   // trunk: twist
-  const Real t1699 = par.k8 * w[2];
-  const Real t1700 = w[1] - t1699;
-  const Real t1701 = t1700 * c_r_a_0_;
-  const Real t1702 = s_r_a_0_ * w[0];
-  const Real t1703 = t1701 - t1702;
-  const Real t1704 = w[2] + w[4];
+  const Real t1406 = par.k8 * w[2];
+  const Real t1407 = w[1] - t1406;
+  const Real t1408 = t1407 * c_r_a_0_;
+  const Real t1409 = s_r_a_0_ * w[0];
+  const Real t1410 = t1408 - t1409;
+  const Real t1411 = w[2] + w[4];
 
   // rear: twist
-  const Real t1705 = t1704 * par.l1;
-  const Real t1706 = t1703 - t1705;
-  const Real t1707 = c_r_a_1_ * t1706;
+  const Real t1412 = t1411 * par.l1;
+  const Real t1413 = t1410 - t1412;
+  const Real t1414 = c_r_a_1_ * t1413;
 
   // trunk: twist
-  const Real t1708 = t1700 * s_r_a_0_;
-  const Real t1709 = w[0] * c_r_a_0_;
-  const Real t1710 = t1709 + t1708;
+  const Real t1415 = t1407 * s_r_a_0_;
+  const Real t1416 = w[0] * c_r_a_0_;
+  const Real t1417 = t1416 + t1415;
 
   // rear: twist
-  const Real t1711 = t1710 * s_r_a_1_;
-  const Real t1712 = t1707 - t1711;
-  const Real t1713 = w[5] + t1704;
+  const Real t1418 = t1417 * s_r_a_1_;
+  const Real t1419 = t1414 - t1418;
+  const Real t1420 = w[5] + t1411;
 
   // peduncle: twist
-  const Real t1714 = par.l2 * t1713;
-  const Real t1715 = t1712 - t1714;
-  const Real t1716 = t1715 * c_r_a_2_;
+  const Real t1421 = par.l2 * t1420;
+  const Real t1422 = t1419 - t1421;
+  const Real t1423 = t1422 * c_r_a_2_;
 
   // rear: twist
-  const Real t1717 = s_r_a_1_ * t1706;
-  const Real t1718 = c_r_a_1_ * t1710;
-  const Real t1719 = t1718 + t1717;
+  const Real t1424 = s_r_a_1_ * t1413;
+  const Real t1425 = c_r_a_1_ * t1417;
+  const Real t1426 = t1425 + t1424;
 
   // peduncle: twist
-  const Real t1720 = t1719 * s_r_a_2_;
-  const Real t1721 = t1716 - t1720;
-  const Real t1722 = t1713 + w[6];
+  const Real t1427 = t1426 * s_r_a_2_;
+  const Real t1428 = t1423 - t1427;
+  const Real t1429 = t1420 + w[6];
 
   // fin: twist
-  const Real t1723 = t1722 * par.l3;
-  const Real t1724 = t1723 - t1721;
+  const Real t1430 = t1429 * par.l3;
+  const Real t1431 = t1430 - t1428;
 
   // fin_section_2: twist
-  const Real t1725 = t46 * t1722;
-  const Real t1726 = t1724 + t1725;
-  const Real t1727 = constant<Real>(0.710077701790478711739L) * w[3];
-  const Real t1728 = t1726 + t1727;
-  const Real t1729 = t1728 * t2;
+  const Real t1432 = t32 * t1429;
+  const Real t1433 = t1431 + t1432;
+  const Real t1434 = constant<Real>(0.710077701790478711739L) * w[3];
+  const Real t1435 = t1433 + t1434;
+  const Real t1436 = t1435 * t2;
 
   // peduncle: twist
-  const Real t1730 = t1715 * s_r_a_2_;
-  const Real t1731 = t1719 * c_r_a_2_;
-  const Real t1732 = t1731 + t1730;
+  const Real t1437 = t1422 * s_r_a_2_;
+  const Real t1438 = t1426 * c_r_a_2_;
+  const Real t1439 = t1438 + t1437;
 
   // fin_section_2: twist
-  const Real t1733 = t58 * t1722;
-  const Real t1734 = t1733 + t1732;
-  const Real t1735 = t43 * w[3];
-  const Real t1736 = t1735 + t1734;
-  const Real t1737 = t1736 * t3;
-  const Real t1738 = t1729 - t1737;
+  const Real t1440 = t41 * t1429;
+  const Real t1441 = t1440 + t1439;
+  const Real t1442 = t29 * w[3];
+  const Real t1443 = t1442 + t1441;
+  const Real t1444 = t1443 * t3;
+  const Real t1445 = t1436 - t1444;
 
   // applied wrenches
-  const Real t1739 = abs(t1738);
-  const Real t1740 = t1739 * par.k71;
-  const Real t1741 = t1740 * par.k3;
-  const Real t1742 = t1741 * t1738;
+  const Real t1446 = abs(t1445);
+  const Real t1447 = t1446 * par.k68;
+  const Real t1448 = t1447 * par.k3;
+  const Real t1449 = t1448 * t1445;
 
   // fin_section_2: twist
-  const Real t1743 = t1728 * t3;
-  const Real t1744 = t1736 * t2;
-  const Real t1745 = t1743 + t1744;
+  const Real t1450 = t1435 * t3;
+  const Real t1451 = t1443 * t2;
+  const Real t1452 = t1450 + t1451;
 
   // fin_section_2: wrench of the fluid
-  const Real t1746 = par.k4 * t1745;
+  const Real t1453 = par.k4 * t1452;
 
   // fin_section_2: twist
-  const Real t1747 = par.k16 * w[3];
-  const Real t1748 = t1747 + t1722;
+  const Real t1454 = par.k16 * w[3];
+  const Real t1455 = t1454 + t1429;
 
   // fin_section_2: wrench of the fluid
-  const Real t1749 = t1748 * t1746;
+  const Real t1456 = t1455 * t1453;
 
   // applied wrenches
-  const Real t1750 = t1742 - t1749;
+  const Real t1457 = t1449 - t1456;
 
   // fin_section_2: joint force
-  const Real t1751 = t1750 * t3;
+  const Real t1458 = t1457 * t3;
 
   // head: acceleration
-  const Real t1752 = w[2] * w[2];
+  const Real t1459 = w[2] * w[2];
 
   // trunk: acceleration
-  const Real t1753 = par.k8 * t1752;
+  const Real t1460 = par.k8 * t1459;
 
   // head: acceleration
-  const Real t1754 = w[2] * w[1];
+  const Real t1461 = w[2] * w[1];
 
   // trunk: acceleration
-  const Real t1755 = t1753 - t1754;
-  const Real t1756 = c_r_a_0_ * t1755;
+  const Real t1462 = t1460 - t1461;
+  const Real t1463 = c_r_a_0_ * t1462;
 
   // head: acceleration
-  const Real t1757 = w[2] * w[0];
+  const Real t1464 = w[2] * w[0];
 
   // trunk: acceleration
-  const Real t1758 = s_r_a_0_ * t1757;
-  const Real t1759 = t1758 + t1756;
-  const Real t1760 = t1704 * t1704;
+  const Real t1465 = s_r_a_0_ * t1464;
+  const Real t1466 = t1465 + t1463;
+  const Real t1467 = t1411 * t1411;
 
   // rear: acceleration
-  const Real t1761 = t1760 * par.l1;
-  const Real t1762 = t1761 + t1759;
-  const Real t1763 = c_r_a_1_ * t1762;
+  const Real t1468 = t1467 * par.l1;
+  const Real t1469 = t1468 + t1466;
+  const Real t1470 = c_r_a_1_ * t1469;
 
   // trunk: acceleration
-  const Real t1764 = s_r_a_0_ * t1755;
-  const Real t1765 = t1757 * c_r_a_0_;
-  const Real t1766 = t1765 - t1764;
+  const Real t1471 = s_r_a_0_ * t1462;
+  const Real t1472 = t1464 * c_r_a_0_;
+  const Real t1473 = t1472 - t1471;
 
   // rear: acceleration
-  const Real t1767 = s_r_a_1_ * t1766;
-  const Real t1768 = t1767 + t1763;
-  const Real t1769 = t1713 * t1713;
+  const Real t1474 = s_r_a_1_ * t1473;
+  const Real t1475 = t1474 + t1470;
+  const Real t1476 = t1420 * t1420;
 
   // peduncle: acceleration
-  const Real t1770 = par.l2 * t1769;
-  const Real t1771 = t1770 + t1768;
-  const Real t1772 = t1771 * c_r_a_2_;
+  const Real t1477 = par.l2 * t1476;
+  const Real t1478 = t1477 + t1475;
+  const Real t1479 = t1478 * c_r_a_2_;
 
   // rear: acceleration
-  const Real t1773 = t1762 * s_r_a_1_;
-  const Real t1774 = c_r_a_1_ * t1766;
-  const Real t1775 = t1774 - t1773;
+  const Real t1480 = t1469 * s_r_a_1_;
+  const Real t1481 = c_r_a_1_ * t1473;
+  const Real t1482 = t1481 - t1480;
 
   // peduncle: acceleration
-  const Real t1776 = t1775 * s_r_a_2_;
-  const Real t1777 = t1772 + t1776;
-  const Real t1778 = t1722 * t1722;
+  const Real t1483 = t1482 * s_r_a_2_;
+  const Real t1484 = t1479 + t1483;
+  const Real t1485 = t1429 * t1429;
 
   // fin: acceleration
-  const Real t1779 = t1778 * par.l3;
-  const Real t1780 = t1779 + t1777;
+  const Real t1486 = t1485 * par.l3;
+  const Real t1487 = t1486 + t1484;
 
   // fin_section_2: acceleration
-  const Real t1781 = t46 * t1778;
-  const Real t1782 = t1781 + t1780;
-  const Real t1783 = t1727 * t1722;
-  const Real t1784 = t1783 * constant<Real>(2.0L);
-  const Real t1785 = t1784 + t1782;
+  const Real t1488 = t32 * t1485;
+  const Real t1489 = t1488 + t1487;
+  const Real t1490 = t1434 * t1429;
+  const Real t1491 = t1490 * constant<Real>(2.0L);
+  const Real t1492 = t1491 + t1489;
 
   // fin_tip: acceleration
-  const Real t1786 = w[3] * w[3];
+  const Real t1493 = w[3] * w[3];
 
   // fin_section_2: acceleration
-  const Real t1787 = t1786 * par.k55;
-  const Real t1788 = t1787 + t1785;
-  const Real t1789 = t1788 * t2;
+  const Real t1494 = t1493 * par.k52;
+  const Real t1495 = t1494 + t1492;
+  const Real t1496 = t1495 * t2;
 
   // peduncle: acceleration
-  const Real t1790 = t1771 * s_r_a_2_;
-  const Real t1791 = t1775 * c_r_a_2_;
+  const Real t1497 = t1478 * s_r_a_2_;
+  const Real t1498 = t1482 * c_r_a_2_;
 
   // fin: acceleration
-  const Real t1792 = t1790 - t1791;
+  const Real t1499 = t1497 - t1498;
 
   // fin_section_2: acceleration
-  const Real t1793 = t58 * t1778;
-  const Real t1794 = t1792 - t1793;
-  const Real t1795 = t1735 * t1722;
-  const Real t1796 = t1795 * constant<Real>(2.0L);
-  const Real t1797 = t1794 - t1796;
-  const Real t1798 = t1797 * t3;
-  const Real t1799 = t1789 + t1798;
+  const Real t1500 = t41 * t1485;
+  const Real t1501 = t1499 - t1500;
+  const Real t1502 = t1442 * t1429;
+  const Real t1503 = t1502 * constant<Real>(2.0L);
+  const Real t1504 = t1501 - t1503;
+  const Real t1505 = t1504 * t3;
+  const Real t1506 = t1496 + t1505;
 
   // fin_section_2: wrench of the fluid
-  const Real t1800 = t1748 * t1738;
-  const Real t1801 = t1799 - t1800;
-  const Real t1802 = par.k4 * t1801;
+  const Real t1507 = t1455 * t1445;
+  const Real t1508 = t1506 - t1507;
+  const Real t1509 = par.k4 * t1508;
 
   // applied wrenches
-  const Real t1803 = abs(t1745);
-  const Real t1804 = par.k65 * t1803;
-  const Real t1805 = par.k3 * t1804;
-  const Real t1806 = t1745 * t1805;
-  const Real t1807 = t1802 + t1806;
+  const Real t1510 = abs(t1452);
+  const Real t1511 = par.k62 * t1510;
+  const Real t1512 = par.k3 * t1511;
+  const Real t1513 = t1452 * t1512;
+  const Real t1514 = t1509 + t1513;
 
   // fin_section_2: joint force
-  const Real t1808 = t1807 * t2;
-  const Real t1809 = t1751 - t1808;
+  const Real t1515 = t1514 * t2;
+  const Real t1516 = t1458 - t1515;
 
   // fin: wrench
-  const Real t1810 = t1780 * par.k6;
-  const Real t1811 = t1778 * t232;
-  const Real t1812 = t1810 + t1811;
-  const Real t1813 = w[3] * par.k43;
-  const Real t1814 = t1813 * t1722;
-  const Real t1815 = t1814 * constant<Real>(2.0L);
-  const Real t1816 = t1786 * par.k29;
-  const Real t1817 = t1816 + t1815;
-  const Real t1818 = t1817 + t1812;
+  const Real t1517 = t1487 * par.k6;
+  const Real t1518 = t1485 * t177;
+  const Real t1519 = t1517 + t1518;
+  const Real t1520 = w[3] * par.k41;
+  const Real t1521 = t1520 * t1429;
+  const Real t1522 = t1521 * constant<Real>(2.0L);
+  const Real t1523 = t1493 * par.k24;
+  const Real t1524 = t1523 + t1522;
+  const Real t1525 = t1524 + t1519;
 
   // fin_section_2: joint force
-  const Real t1819 = t1809 - t1818;
+  const Real t1526 = t1516 - t1525;
 
   // fin_section_1: twist
-  const Real t1820 = t1722 * t107;
-  const Real t1821 = t1820 + t1724;
-  const Real t1822 = constant<Real>(0.0709020735931204697442L) * w[3];
-  const Real t1823 = t1822 + t1821;
-  const Real t1824 = t1823 * t8;
-  const Real t1825 = t1722 * t101;
-  const Real t1826 = t1825 + t1732;
-  const Real t1827 = t105 * w[3];
-  const Real t1828 = t1826 + t1827;
-  const Real t1829 = t9 * t1828;
-  const Real t1830 = t1824 - t1829;
+  const Real t1527 = t1429 * t72;
+  const Real t1528 = t1527 + t1431;
+  const Real t1529 = constant<Real>(0.0709020735931204697442L) * w[3];
+  const Real t1530 = t1529 + t1528;
+  const Real t1531 = t1530 * t8;
+  const Real t1532 = t1429 * t79;
+  const Real t1533 = t1532 + t1439;
+  const Real t1534 = t70 * w[3];
+  const Real t1535 = t1533 + t1534;
+  const Real t1536 = t9 * t1535;
+  const Real t1537 = t1531 - t1536;
 
   // applied wrenches
-  const Real t1831 = abs(t1830);
-  const Real t1832 = t1831 * par.k71;
-  const Real t1833 = par.k3 * t1832;
-  const Real t1834 = t1833 * t1830;
+  const Real t1538 = abs(t1537);
+  const Real t1539 = t1538 * par.k68;
+  const Real t1540 = par.k3 * t1539;
+  const Real t1541 = t1540 * t1537;
 
   // fin_section_1: twist
-  const Real t1835 = t9 * t1823;
-  const Real t1836 = t1828 * t8;
-  const Real t1837 = t1836 + t1835;
+  const Real t1542 = t9 * t1530;
+  const Real t1543 = t1535 * t8;
+  const Real t1544 = t1543 + t1542;
 
   // fin_section_1: wrench of the fluid
-  const Real t1838 = par.k4 * t1837;
+  const Real t1545 = par.k4 * t1544;
 
   // fin_section_1: twist
-  const Real t1839 = par.k5 * w[3];
-  const Real t1840 = t1839 + t1722;
+  const Real t1546 = par.k5 * w[3];
+  const Real t1547 = t1546 + t1429;
 
   // fin_section_1: wrench of the fluid
-  const Real t1841 = t1840 * t1838;
+  const Real t1548 = t1547 * t1545;
 
   // applied wrenches
-  const Real t1842 = t1834 - t1841;
+  const Real t1549 = t1541 - t1548;
 
   // fin_section_1: joint force
-  const Real t1843 = t9 * t1842;
+  const Real t1550 = t9 * t1549;
 
   // applied wrenches
-  const Real t1844 = abs(t1837);
-  const Real t1845 = par.k65 * t1844;
-  const Real t1846 = par.k3 * t1845;
-  const Real t1847 = t1837 * t1846;
+  const Real t1551 = abs(t1544);
+  const Real t1552 = par.k62 * t1551;
+  const Real t1553 = par.k3 * t1552;
+  const Real t1554 = t1544 * t1553;
 
   // fin_section_1: acceleration
-  const Real t1848 = t1778 * t107;
-  const Real t1849 = t1848 + t1780;
-  const Real t1850 = t1822 * t1722;
-  const Real t1851 = t1850 * constant<Real>(2.0L);
-  const Real t1852 = t1851 + t1849;
-  const Real t1853 = par.k9 * t1786;
-  const Real t1854 = t1853 + t1852;
-  const Real t1855 = t1854 * t8;
-  const Real t1856 = t1778 * t101;
-  const Real t1857 = t1792 - t1856;
-  const Real t1858 = t1722 * t1827;
-  const Real t1859 = constant<Real>(2.0L) * t1858;
-  const Real t1860 = t1857 - t1859;
-  const Real t1861 = t1860 * t9;
-  const Real t1862 = t1855 + t1861;
+  const Real t1555 = t1485 * t72;
+  const Real t1556 = t1555 + t1487;
+  const Real t1557 = t1529 * t1429;
+  const Real t1558 = t1557 * constant<Real>(2.0L);
+  const Real t1559 = t1558 + t1556;
+  const Real t1560 = par.k9 * t1493;
+  const Real t1561 = t1560 + t1559;
+  const Real t1562 = t1561 * t8;
+  const Real t1563 = t1485 * t79;
+  const Real t1564 = t1499 - t1563;
+  const Real t1565 = t1429 * t1534;
+  const Real t1566 = constant<Real>(2.0L) * t1565;
+  const Real t1567 = t1564 - t1566;
+  const Real t1568 = t1567 * t9;
+  const Real t1569 = t1562 + t1568;
 
   // fin_section_1: wrench of the fluid
-  const Real t1863 = t1840 * t1830;
-  const Real t1864 = t1862 - t1863;
-  const Real t1865 = t1864 * par.k4;
+  const Real t1570 = t1547 * t1537;
+  const Real t1571 = t1569 - t1570;
+  const Real t1572 = t1571 * par.k4;
 
   // applied wrenches
-  const Real t1866 = t1847 + t1865;
+  const Real t1573 = t1554 + t1572;
 
   // fin_section_1: joint force
-  const Real t1867 = t1866 * t8;
-  const Real t1868 = t1843 - t1867;
-  const Real t1869 = t1868 + t1819;
+  const Real t1574 = t1573 * t8;
+  const Real t1575 = t1550 - t1574;
+  const Real t1576 = t1575 + t1526;
 
   // fin_tip: station
-  const Real t1870 = r_p[0] * par.k51;
-  const Real t1871 = t1870 * t44;
-  const Real t1872 = par.lf - t1871;
+  const Real t1577 = r_p[0] * par.k48;
+  const Real t1578 = t1577 * t30;
+  const Real t1579 = par.lf - t1578;
 
   // fin_tip: twist
-  const Real t1873 = t1722 * t1872;
-  const Real t1874 = t1724 + t1873;
-  const Real t1875 = t1874 + w[3];
-  const Real t1876 = t6 * t1875;
-  const Real t1877 = t1722 * r_p[0];
-  const Real t1878 = t1732 + t1877;
-  const Real t1879 = t1870 * w[3];
-  const Real t1880 = t1878 + t1879;
-  const Real t1881 = t1880 * t5;
-  const Real t1882 = t1876 + t1881;
+  const Real t1580 = t1429 * t1579;
+  const Real t1581 = t1431 + t1580;
+  const Real t1582 = t1581 + w[3];
+  const Real t1583 = t6 * t1582;
+  const Real t1584 = t1429 * r_p[0];
+  const Real t1585 = t1439 + t1584;
+  const Real t1586 = t1577 * w[3];
+  const Real t1587 = t1585 + t1586;
+  const Real t1588 = t1587 * t5;
+  const Real t1589 = t1583 + t1588;
 
   // applied wrenches
-  const Real t1883 = t1882 * t1882;
-  const Real t1884 = par.m_w * t1883;
-  const Real t1885 = t1884 * constant<Real>(0.5L);
+  const Real t1590 = t1589 * t1589;
+  const Real t1591 = par.m_w * t1590;
+  const Real t1592 = t1591 * constant<Real>(0.5L);
 
   // fin_tip: joint force
-  const Real t1886 = t6 * t1885;
+  const Real t1593 = t6 * t1592;
 
   // fin_tip: twist
-  const Real t1887 = t1875 * t5;
-  const Real t1888 = t1880 * t6;
-  const Real t1889 = t1887 - t1888;
+  const Real t1594 = t1582 * t5;
+  const Real t1595 = t1587 * t6;
+  const Real t1596 = t1594 - t1595;
 
   // applied wrenches
-  const Real t1890 = t1882 * t1889;
-  const Real t1891 = par.m_w * t1890;
+  const Real t1597 = t1589 * t1596;
+  const Real t1598 = par.m_w * t1597;
 
   // fin_tip: joint force
-  const Real t1892 = t1891 * t5;
-  const Real t1893 = t1886 + t1892;
-  const Real t1894 = t1869 + t1893;
+  const Real t1599 = t1598 * t5;
+  const Real t1600 = t1593 + t1599;
+  const Real t1601 = t1576 + t1600;
 
   // peduncle: wrench
-  const Real t1895 = t1777 * par.k23;
-  const Real t1896 = t1778 * par.k45;
-  const Real t1897 = t1895 + t1896;
+  const Real t1602 = t1484 * par.k18;
+  const Real t1603 = t1485 * par.k37;
+  const Real t1604 = t1602 + t1603;
 
   // peduncle: wrench of the fluid
-  const Real t1898 = t1721 * par.k37;
-  const Real t1899 = par.k21 * t1722;
-  const Real t1900 = t1898 - t1899;
-  const Real t1901 = t1722 * t1900;
-  const Real t1902 = t1897 - t1901;
+  const Real t1605 = t1428 * par.k31;
+  const Real t1606 = par.k29 * t1429;
+  const Real t1607 = t1605 - t1606;
+  const Real t1608 = t1429 * t1607;
+  const Real t1609 = t1604 - t1608;
 
   // applied wrenches
-  const Real t1903 = abs(t1732);
-  const Real t1904 = par.k66 * t1903;
-  const Real t1905 = t1904 * par.k19;
-  const Real t1906 = t1732 * t1905;
-  const Real t1907 = t1902 + t1906;
-  const Real t1908 = t1907 + t1906;
+  const Real t1610 = abs(t1439);
+  const Real t1611 = par.k63 * t1610;
+  const Real t1612 = t1611 * par.k27;
+  const Real t1613 = t1439 * t1612;
+  const Real t1614 = t1609 + t1613;
+  const Real t1615 = t1614 + t1613;
 
   // fin: joint force
-  const Real t1909 = t1908 - t1894;
+  const Real t1616 = t1615 - t1601;
 
   // peduncle: joint force
-  const Real t1910 = c_r_a_2_ * t1909;
+  const Real t1617 = c_r_a_2_ * t1616;
 
   // fin_section_2: joint force
-  const Real t1911 = t1750 * t2;
-  const Real t1912 = t1807 * t3;
-  const Real t1913 = t1911 + t1912;
+  const Real t1618 = t1457 * t2;
+  const Real t1619 = t1514 * t3;
+  const Real t1620 = t1618 + t1619;
 
   // fin: wrench
-  const Real t1914 = par.k6 * t1792;
-  const Real t1915 = t295 * t1778;
-  const Real t1916 = t1914 - t1915;
-  const Real t1917 = t95 * w[3];
-  const Real t1918 = t1722 * t1917;
-  const Real t1919 = constant<Real>(2.0L) * t1918;
-  const Real t1920 = t1916 - t1919;
+  const Real t1621 = par.k6 * t1499;
+  const Real t1622 = t205 * t1485;
+  const Real t1623 = t1621 - t1622;
+  const Real t1624 = t65 * w[3];
+  const Real t1625 = t1429 * t1624;
+  const Real t1626 = constant<Real>(2.0L) * t1625;
+  const Real t1627 = t1623 - t1626;
 
   // fin_section_2: joint force
-  const Real t1921 = t1920 + t1913;
+  const Real t1628 = t1627 + t1620;
 
   // fin_section_1: joint force
-  const Real t1922 = t8 * t1842;
-  const Real t1923 = t1866 * t9;
-  const Real t1924 = t1922 + t1923;
-  const Real t1925 = t1921 + t1924;
+  const Real t1629 = t8 * t1549;
+  const Real t1630 = t1573 * t9;
+  const Real t1631 = t1629 + t1630;
+  const Real t1632 = t1628 + t1631;
 
   // fin_tip: joint force
-  const Real t1926 = t1885 * t5;
-  const Real t1927 = t6 * t1891;
-  const Real t1928 = t1926 - t1927;
-  const Real t1929 = t1928 + t1925;
+  const Real t1633 = t1592 * t5;
+  const Real t1634 = t6 * t1598;
+  const Real t1635 = t1633 - t1634;
+  const Real t1636 = t1635 + t1632;
 
   // applied wrenches
-  const Real t1930 = par.k20 * t1722;
-  const Real t1931 = t1721 - t1930;
-  const Real t1932 = abs(t1931);
-  const Real t1933 = par.k69 * t1932;
-  const Real t1934 = t1933 * par.k19;
-  const Real t1935 = t1934 * t1931;
+  const Real t1637 = par.k28 * t1429;
+  const Real t1638 = t1428 - t1637;
+  const Real t1639 = abs(t1638);
+  const Real t1640 = par.k66 * t1639;
+  const Real t1641 = t1640 * par.k27;
+  const Real t1642 = t1641 * t1638;
 
   // peduncle: acceleration
-  const Real t1936 = t1791 - t1790;
+  const Real t1643 = t1498 - t1497;
 
   // peduncle: wrench of the fluid
-  const Real t1937 = t1732 * t1722;
-  const Real t1938 = t1936 - t1937;
-  const Real t1939 = t1938 * par.k37;
+  const Real t1644 = t1439 * t1429;
+  const Real t1645 = t1643 - t1644;
+  const Real t1646 = t1645 * par.k31;
 
   // peduncle: wrench
-  const Real t1940 = par.k23 * t1936;
+  const Real t1647 = par.k18 * t1643;
 
   // peduncle: wrench of the fluid
-  const Real t1941 = t1940 + t1939;
+  const Real t1648 = t1647 + t1646;
 
   // applied wrenches
-  const Real t1942 = t1941 + t1935;
-  const Real t1943 = par.k18 * t1722;
-  const Real t1944 = t1721 - t1943;
-  const Real t1945 = abs(t1944);
-  const Real t1946 = t1945 * par.k69;
-  const Real t1947 = par.k19 * t1946;
-  const Real t1948 = t1947 * t1944;
-  const Real t1949 = t1942 + t1948;
+  const Real t1649 = t1648 + t1642;
+  const Real t1650 = par.k26 * t1429;
+  const Real t1651 = t1428 - t1650;
+  const Real t1652 = abs(t1651);
+  const Real t1653 = t1652 * par.k66;
+  const Real t1654 = par.k27 * t1653;
+  const Real t1655 = t1654 * t1651;
+  const Real t1656 = t1649 + t1655;
 
   // fin: joint force
-  const Real t1950 = t1949 - t1929;
+  const Real t1657 = t1656 - t1636;
 
   // peduncle: joint force
-  const Real t1951 = t1950 * s_r_a_2_;
-  const Real t1952 = t1910 - t1951;
+  const Real t1658 = t1657 * s_r_a_2_;
+  const Real t1659 = t1617 - t1658;
 
   // rear: wrench
-  const Real t1953 = par.k27 * t1768;
-  const Real t1954 = par.k36 * t1769;
-  const Real t1955 = t1954 + t1953;
+  const Real t1660 = par.k22 * t1475;
+  const Real t1661 = par.k30 * t1476;
+  const Real t1662 = t1661 + t1660;
 
   // rear: wrench of the fluid
-  const Real t1956 = t1712 * par.k56;
-  const Real t1957 = t1713 * par.k33;
-  const Real t1958 = t1956 - t1957;
-  const Real t1959 = t1713 * t1958;
-  const Real t1960 = t1955 - t1959;
+  const Real t1663 = t1419 * par.k53;
+  const Real t1664 = t1420 * par.k43;
+  const Real t1665 = t1663 - t1664;
+  const Real t1666 = t1420 * t1665;
+  const Real t1667 = t1662 - t1666;
 
   // applied wrenches
-  const Real t1961 = abs(t1719);
-  const Real t1962 = t1961 * par.k70;
-  const Real t1963 = t1962 * par.k31;
-  const Real t1964 = t1719 * t1963;
-  const Real t1965 = t1960 + t1964;
-  const Real t1966 = t1965 + t1964;
+  const Real t1668 = abs(t1426);
+  const Real t1669 = t1668 * par.k67;
+  const Real t1670 = t1669 * par.k34;
+  const Real t1671 = t1426 * t1670;
+  const Real t1672 = t1667 + t1671;
+  const Real t1673 = t1672 + t1671;
 
   // peduncle: joint force
-  const Real t1967 = t1952 + t1966;
+  const Real t1674 = t1659 + t1673;
 
   // rear: joint force
-  const Real t1968 = t1967 * c_r_a_1_;
+  const Real t1675 = t1674 * c_r_a_1_;
 
   // peduncle: joint force
-  const Real t1969 = t1950 * c_r_a_2_;
-  const Real t1970 = t1909 * s_r_a_2_;
-  const Real t1971 = t1969 + t1970;
+  const Real t1676 = t1657 * c_r_a_2_;
+  const Real t1677 = t1616 * s_r_a_2_;
+  const Real t1678 = t1676 + t1677;
 
   // applied wrenches
-  const Real t1972 = t1713 * par.k30;
-  const Real t1973 = t1712 - t1972;
-  const Real t1974 = abs(t1973);
-  const Real t1975 = par.k68 * t1974;
-  const Real t1976 = t1975 * par.k31;
-  const Real t1977 = t1973 * t1976;
+  const Real t1679 = t1420 * par.k35;
+  const Real t1680 = t1419 - t1679;
+  const Real t1681 = abs(t1680);
+  const Real t1682 = par.k65 * t1681;
+  const Real t1683 = t1682 * par.k34;
+  const Real t1684 = t1680 * t1683;
 
   // rear: wrench of the fluid
-  const Real t1978 = t1719 * t1713;
-  const Real t1979 = t1775 - t1978;
-  const Real t1980 = t1979 * par.k56;
+  const Real t1685 = t1426 * t1420;
+  const Real t1686 = t1482 - t1685;
+  const Real t1687 = t1686 * par.k53;
 
   // rear: wrench
-  const Real t1981 = par.k27 * t1775;
+  const Real t1688 = par.k22 * t1482;
 
   // rear: wrench of the fluid
-  const Real t1982 = t1980 + t1981;
+  const Real t1689 = t1687 + t1688;
 
   // applied wrenches
-  const Real t1983 = t1982 + t1977;
-  const Real t1984 = t1713 * par.k32;
-  const Real t1985 = t1712 - t1984;
-  const Real t1986 = abs(t1985);
-  const Real t1987 = par.k68 * t1986;
-  const Real t1988 = t1987 * par.k31;
-  const Real t1989 = t1985 * t1988;
-  const Real t1990 = t1989 + t1983;
+  const Real t1690 = t1689 + t1684;
+  const Real t1691 = t1420 * par.k33;
+  const Real t1692 = t1419 - t1691;
+  const Real t1693 = abs(t1692);
+  const Real t1694 = par.k65 * t1693;
+  const Real t1695 = t1694 * par.k34;
+  const Real t1696 = t1692 * t1695;
+  const Real t1697 = t1696 + t1690;
 
   // peduncle: joint force
-  const Real t1991 = t1990 + t1971;
+  const Real t1698 = t1697 + t1678;
 
   // rear: joint force
-  const Real t1992 = s_r_a_1_ * t1991;
-  const Real t1993 = t1968 - t1992;
+  const Real t1699 = s_r_a_1_ * t1698;
+  const Real t1700 = t1675 - t1699;
 
   // applied wrenches
-  const Real t1994 = abs(t1710);
-  const Real t1995 = t1994 * par.k73;
-  const Real t1996 = par.k11 * t1995;
-  const Real t1997 = t1710 * t1996;
+  const Real t1701 = abs(t1417);
+  const Real t1702 = t1701 * par.k70;
+  const Real t1703 = par.k11 * t1702;
+  const Real t1704 = t1417 * t1703;
 
   // trunk: wrench
-  const Real t1998 = par.k1 * t1759;
-  const Real t1999 = par.k2 * t1760;
-  const Real t2000 = t1998 + t1999;
+  const Real t1705 = par.k1 * t1466;
+  const Real t1706 = par.k2 * t1467;
+  const Real t1707 = t1705 + t1706;
 
   // trunk: wrench of the fluid
-  const Real t2001 = t1703 * par.k12;
-  const Real t2002 = t1704 * par.k52;
-  const Real t2003 = t2001 - t2002;
-  const Real t2004 = t2003 * t1704;
-  const Real t2005 = t2000 - t2004;
+  const Real t1708 = t1410 * par.k12;
+  const Real t1709 = t1411 * par.k49;
+  const Real t1710 = t1708 - t1709;
+  const Real t1711 = t1710 * t1411;
+  const Real t1712 = t1707 - t1711;
 
   // applied wrenches
-  const Real t2006 = t1997 + t2005;
-  const Real t2007 = t2006 + t1997;
+  const Real t1713 = t1704 + t1712;
+  const Real t1714 = t1713 + t1704;
 
   // rear: joint force
-  const Real t2008 = t1993 + t2007;
+  const Real t1715 = t1700 + t1714;
 
   // trunk: joint force
-  const Real t2009 = t2008 * c_r_a_0_;
+  const Real t1716 = s_r_a_0_ * t1715;
 
   // rear: joint force
-  const Real t2010 = c_r_a_1_ * t1991;
-  const Real t2011 = t1967 * s_r_a_1_;
-  const Real t2012 = t2010 + t2011;
+  const Real t1717 = c_r_a_1_ * t1698;
+  const Real t1718 = t1674 * s_r_a_1_;
+  const Real t1719 = t1717 + t1718;
 
   // applied wrenches
-  const Real t2013 = t1704 * par.k40;
-  const Real t2014 = t1703 - t2013;
-  const Real t2015 = abs(t2014);
-  const Real t2016 = t2015 * par.k72;
-  const Real t2017 = par.k11 * t2016;
-  const Real t2018 = t2017 * t2014;
+  const Real t1720 = t1411 * par.k38;
+  const Real t1721 = t1410 - t1720;
+  const Real t1722 = abs(t1721);
+  const Real t1723 = t1722 * par.k69;
+  const Real t1724 = par.k11 * t1723;
+  const Real t1725 = t1724 * t1721;
 
   // trunk: wrench of the fluid
-  const Real t2019 = t1704 * t1710;
-  const Real t2020 = t1766 - t2019;
-  const Real t2021 = t2020 * par.k12;
+  const Real t1726 = t1411 * t1417;
+  const Real t1727 = t1473 - t1726;
+  const Real t1728 = t1727 * par.k12;
 
   // trunk: wrench
-  const Real t2022 = par.k1 * t1766;
+  const Real t1729 = par.k1 * t1473;
 
   // trunk: wrench of the fluid
-  const Real t2023 = t2021 + t2022;
+  const Real t1730 = t1728 + t1729;
 
   // applied wrenches
-  const Real t2024 = t2018 + t2023;
-  const Real t2025 = t1704 * par.k41;
-  const Real t2026 = t1703 - t2025;
-  const Real t2027 = abs(t2026);
-  const Real t2028 = par.k72 * t2027;
-  const Real t2029 = par.k11 * t2028;
-  const Real t2030 = t2026 * t2029;
-  const Real t2031 = t2030 + t2024;
+  const Real t1731 = t1725 + t1730;
+  const Real t1732 = t1411 * par.k39;
+  const Real t1733 = t1410 - t1732;
+  const Real t1734 = abs(t1733);
+  const Real t1735 = par.k69 * t1734;
+  const Real t1736 = par.k11 * t1735;
+  const Real t1737 = t1733 * t1736;
+  const Real t1738 = t1737 + t1731;
 
   // rear: joint force
-  const Real t2032 = t2031 + t2012;
+  const Real t1739 = t1738 + t1719;
 
   // trunk: joint force
-  const Real t2033 = t2032 * s_r_a_0_;
-  const Real t2034 = t2009 - t2033;
-
-  // applied wrenches
-  const Real t2035 = abs(w[0]);
-  const Real t2036 = par.k67 * t2035;
-  const Real t2037 = par.k14 * t2036;
-  const Real t2038 = t2037 * w[0];
-
-  // head: wrench
-  const Real t2039 = par.k53 * t1754;
-
-  // head: wrench of the fluid
-  const Real t2040 = par.k15 * w[1];
-  const Real t2041 = w[2] * t2040;
-  const Real t2042 = t2039 + t2041;
-
-  // applied wrenches
-  const Real t2043 = t2038 - t2042;
-  const Real t2044 = t2038 + t2043;
-
-  // trunk: joint force
-  const Real t2045 = t2034 + t2044;
+  const Real t1740 = t1739 * c_r_a_0_;
+  const Real t1741 = t1716 + t1740;
+  const Real t1742 = t1741 * par.k8;
 
   // fin_section_2: joint force
-  const Real t2046 = constant<Real>(0.710077701790478711739L) * t1913;
-  const Real t2047 = t43 * t1809;
-  const Real t2048 = t2046 - t2047;
+  const Real t1743 = t32 * t1620;
+  const Real t1744 = t41 * t1516;
+  const Real t1745 = t1743 - t1744;
 
   // fin_section_2: wrench of the fluid
-  const Real t2049 = t1738 * t1746;
+  const Real t1746 = t1445 * t1453;
 
   // fin_section_2: joint force
-  const Real t2050 = par.k16 * t2049;
-  const Real t2051 = t2048 + t2050;
+  const Real t1747 = t1745 + t1746;
 
   // fin: wrench
-  const Real t2052 = t95 * t1780;
-  const Real t2053 = par.k43 * t1792;
-  const Real t2054 = t2053 + t2052;
-  const Real t2055 = t363 * t1778;
-  const Real t2056 = t2055 + t2054;
-  const Real t2057 = t1778 * t362;
-  const Real t2058 = t2056 - t2057;
+  const Real t1748 = t205 * t1487;
+  const Real t1749 = t177 * t1499;
+  const Real t1750 = t1748 + t1749;
+  const Real t1751 = w[3] * t279;
+  const Real t1752 = t280 * w[3];
+  const Real t1753 = t1751 - t1752;
+  const Real t1754 = t1429 * t1753;
+  const Real t1755 = constant<Real>(2.0L) * t1754;
+  const Real t1756 = t1750 + t1755;
 
   // fin_section_2: joint force
-  const Real t2059 = t2051 + t2058;
+  const Real t1757 = t1747 + t1756;
 
   // fin_section_1: joint force
-  const Real t2060 = constant<Real>(0.0709020735931204697442L) * t1924;
-  const Real t2061 = t105 * t1868;
-  const Real t2062 = t2060 - t2061;
+  const Real t1758 = t72 * t1631;
+  const Real t1759 = t1575 * t79;
+  const Real t1760 = t1758 - t1759;
 
   // fin_section_1: wrench of the fluid
-  const Real t2063 = t1830 * t1838;
+  const Real t1761 = t1537 * t1545;
 
   // fin_section_1: joint force
-  const Real t2064 = par.k5 * t2063;
-  const Real t2065 = t2064 + t2062;
-  const Real t2066 = t2059 + t2065;
+  const Real t1762 = t1761 + t1760;
+  const Real t1763 = t1762 + t1757;
 
   // fin_tip: joint force
-  const Real t2067 = t1893 * t1870;
-  const Real t2068 = t1928 - t2067;
-  const Real t2069 = t2068 + t2066;
-
-  // springs, dampers and generalised forces
-  const Real t2070 = r_p[0] * constant<Real>(2.0L);
-  const Real t2071 = t2070 * par.k75;
-
-  // springs, dampers and generalised forces
-  const Real t2072 = w[3] * constant<Real>(2.0L);
-  const Real t2073 = par.k76 * t2072;
-  const Real t2074 = t2071 + t2073;
-  const Real t2075 = t2069 + t2074;
-
-  // accelerations
-  const Real t2076 = t2075 * t496;
-  const Real t2077 = t2076 - t2045;
-  const Real t2078 = t2077 * t608;
-
-  // trunk: joint force
-  const Real t2079 = s_r_a_0_ * t2008;
-  const Real t2080 = t2032 * c_r_a_0_;
-  const Real t2081 = t2079 + t2080;
-
-  // applied wrenches
-  const Real t2082 = w[2] * par.k25;
-  const Real t2083 = w[1] - t2082;
-  const Real t2084 = abs(t2083);
-  const Real t2085 = t2084 * par.k74;
-  const Real t2086 = par.k14 * t2085;
-  const Real t2087 = t2083 * t2086;
-
-  // head: wrench
-  const Real t2088 = par.k53 * t1757;
-
-  // head: wrench of the fluid
-  const Real t2089 = par.m_x * w[0];
-  const Real t2090 = t2089 * w[2];
-  const Real t2091 = t2088 + t2090;
-
-  // applied wrenches
-  const Real t2092 = t2091 + t2087;
-  const Real t2093 = t2082 + w[1];
-  const Real t2094 = abs(t2093);
-  const Real t2095 = t2094 * par.k74;
-  const Real t2096 = par.k14 * t2095;
-  const Real t2097 = t2093 * t2096;
-  const Real t2098 = t2097 + t2092;
-
-  // trunk: joint force
-  const Real t2099 = t2081 + t2098;
-
-  // accelerations
-  const Real t2100 = t635 * t2075;
-  const Real t2101 = t2100 - t2099;
-  const Real t2102 = t2101 - t2078;
-  const Real t2103 = t2102 * t729;
-  const Real t2104 = t2102 * t731;
-  const Real t2105 = t2103 + t2104;
-  const Real t2106 = t2077 * t599;
-  const Real t2107 = t2077 * t601;
-  const Real t2108 = t2106 + t2107;
-
-  // trunk: joint force
-  const Real t2109 = t2081 * par.k8;
-
-  // fin_section_2: joint force
-  const Real t2110 = t46 * t1913;
-  const Real t2111 = t58 * t1809;
-  const Real t2112 = t2110 - t2111;
-  const Real t2113 = t2112 + t2049;
-
-  // fin: wrench
-  const Real t2114 = t295 * t1780;
-  const Real t2115 = t232 * t1792;
-  const Real t2116 = t2114 + t2115;
-  const Real t2117 = w[3] * t362;
-  const Real t2118 = t363 * w[3];
-  const Real t2119 = t2117 - t2118;
-  const Real t2120 = t1722 * t2119;
-  const Real t2121 = constant<Real>(2.0L) * t2120;
-  const Real t2122 = t2116 + t2121;
-
-  // fin_section_2: joint force
-  const Real t2123 = t2113 + t2122;
-
-  // fin_section_1: joint force
-  const Real t2124 = t107 * t1924;
-  const Real t2125 = t1868 * t101;
-  const Real t2126 = t2124 - t2125;
-  const Real t2127 = t2063 + t2126;
-  const Real t2128 = t2127 + t2123;
-
-  // fin_tip: joint force
-  const Real t2129 = t1928 * t1872;
-  const Real t2130 = t1893 * r_p[0];
-  const Real t2131 = t2129 - t2130;
-  const Real t2132 = t2131 + t2128;
+  const Real t1764 = t1635 * t1579;
+  const Real t1765 = t1600 * r_p[0];
+  const Real t1766 = t1764 - t1765;
+  const Real t1767 = t1766 + t1763;
 
   // fin: joint force
-  const Real t2133 = t1929 * par.l3;
-  const Real t2134 = t2133 + t2132;
+  const Real t1768 = t1636 * par.l3;
+  const Real t1769 = t1768 + t1767;
 
   // applied wrenches
-  const Real t2135 = par.k20 * t1935;
+  const Real t1770 = par.k28 * t1642;
 
   // peduncle: wrench of the fluid
-  const Real t2136 = t1732 * t1900;
-  const Real t2137 = par.k21 * t1938;
-  const Real t2138 = t2136 - t2137;
+  const Real t1771 = t1439 * t1607;
+  const Real t1772 = par.k29 * t1645;
+  const Real t1773 = t1771 - t1772;
 
   // peduncle: wrench
-  const Real t2139 = t1936 * par.k45;
+  const Real t1774 = t1643 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t2140 = t2138 - t2139;
+  const Real t1775 = t1773 - t1774;
 
   // applied wrenches
-  const Real t2141 = t2140 - t2135;
-  const Real t2142 = par.k18 * t1948;
-  const Real t2143 = t2141 - t2142;
+  const Real t1776 = t1775 - t1770;
+  const Real t1777 = par.k26 * t1655;
+  const Real t1778 = t1776 - t1777;
 
   // fin: joint force
-  const Real t2144 = t2134 + t2143;
+  const Real t1779 = t1769 + t1778;
 
   // peduncle: joint force
-  const Real t2145 = par.l2 * t1971;
-  const Real t2146 = t2144 - t2145;
+  const Real t1780 = par.l2 * t1678;
+  const Real t1781 = t1779 - t1780;
 
   // applied wrenches
-  const Real t2147 = t1977 * par.k30;
+  const Real t1782 = t1684 * par.k35;
 
   // rear: wrench of the fluid
-  const Real t2148 = t1719 * t1958;
-  const Real t2149 = t1979 * par.k33;
-  const Real t2150 = t2148 - t2149;
+  const Real t1783 = t1426 * t1665;
+  const Real t1784 = t1686 * par.k43;
+  const Real t1785 = t1783 - t1784;
 
   // rear: wrench
-  const Real t2151 = par.k36 * t1775;
+  const Real t1786 = par.k30 * t1482;
 
   // rear: wrench of the fluid
-  const Real t2152 = t2150 - t2151;
+  const Real t1787 = t1785 - t1786;
 
   // applied wrenches
-  const Real t2153 = t2152 - t2147;
-  const Real t2154 = t1989 * par.k32;
-  const Real t2155 = t2153 - t2154;
+  const Real t1788 = t1787 - t1782;
+  const Real t1789 = t1696 * par.k33;
+  const Real t1790 = t1788 - t1789;
 
   // peduncle: joint force
-  const Real t2156 = t2146 + t2155;
+  const Real t1791 = t1781 + t1790;
 
   // rear: joint force
-  const Real t2157 = t2012 * par.l1;
-  const Real t2158 = t2156 - t2157;
+  const Real t1792 = t1719 * par.l1;
+  const Real t1793 = t1791 - t1792;
 
   // applied wrenches
-  const Real t2159 = t2018 * par.k40;
+  const Real t1794 = t1725 * par.k38;
 
   // trunk: wrench of the fluid
-  const Real t2160 = t2003 * t1710;
-  const Real t2161 = t2020 * par.k52;
-  const Real t2162 = t2160 - t2161;
+  const Real t1795 = t1710 * t1417;
+  const Real t1796 = t1727 * par.k49;
+  const Real t1797 = t1795 - t1796;
 
   // trunk: wrench
-  const Real t2163 = par.k2 * t1766;
+  const Real t1798 = par.k2 * t1473;
 
   // trunk: wrench of the fluid
-  const Real t2164 = t2162 - t2163;
+  const Real t1799 = t1797 - t1798;
 
   // applied wrenches
-  const Real t2165 = t2164 - t2159;
-  const Real t2166 = t2030 * par.k41;
-  const Real t2167 = t2165 - t2166;
+  const Real t1800 = t1799 - t1794;
+  const Real t1801 = t1737 * par.k39;
+  const Real t1802 = t1800 - t1801;
 
   // rear: joint force
-  const Real t2168 = t2167 + t2158;
+  const Real t1803 = t1802 + t1793;
 
   // trunk: joint force
-  const Real t2169 = t2168 - t2109;
+  const Real t1804 = t1803 - t1742;
 
   // applied wrenches
-  const Real t2170 = t2087 * par.k25;
+  const Real t1805 = w[2] * par.k20;
+  const Real t1806 = w[1] - t1805;
+  const Real t1807 = abs(t1806);
+  const Real t1808 = t1807 * par.k71;
+  const Real t1809 = par.k14 * t1808;
+  const Real t1810 = t1806 * t1809;
+  const Real t1811 = t1810 * par.k20;
 
   // head: wrench of the fluid
-  const Real t2171 = t2040 * w[0];
-  const Real t2172 = t2089 * w[1];
-  const Real t2173 = t2171 - t2172;
+  const Real t1812 = par.k15 * w[1];
+  const Real t1813 = t1812 * w[0];
+  const Real t1814 = par.m_x * w[0];
+  const Real t1815 = t1814 * w[1];
+  const Real t1816 = t1813 - t1815;
 
   // applied wrenches
-  const Real t2174 = t2173 - t2170;
-  const Real t2175 = t2097 * par.k25;
-  const Real t2176 = t2174 + t2175;
+  const Real t1817 = t1816 - t1811;
+  const Real t1818 = t1805 + w[1];
+  const Real t1819 = abs(t1818);
+  const Real t1820 = t1819 * par.k71;
+  const Real t1821 = par.k14 * t1820;
+  const Real t1822 = t1818 * t1821;
+  const Real t1823 = t1822 * par.k20;
+  const Real t1824 = t1817 + t1823;
 
   // trunk: joint force
-  const Real t2177 = t2176 + t2169;
+  const Real t1825 = t1824 + t1804;
 
-  // accelerations
-  const Real t2178 = t2075 * t193;
-  const Real t2179 = t2178 - t2177;
-  const Real t2180 = t2179 - t2108;
-  const Real t2181 = t2180 - t2105;
-  const Real t2182 = t2181 * t767;
-  const Real t2183 = -t2105;
-  const Real t2184 = sum_error(t2180, t2183);
-  const Real t2185 = -t2108;
-  const Real t2186 = sum_error(t2179, t2185);
+  // fin_section_2: joint force
+  const Real t1826 = constant<Real>(0.710077701790478711739L) * t1620;
+  const Real t1827 = t29 * t1516;
+  const Real t1828 = t1826 - t1827;
+  const Real t1829 = par.k16 * t1746;
+  const Real t1830 = t1828 + t1829;
 
-  // trunk: joint force
-  const Real t2187 = -t2109;
+  // fin: wrench
+  const Real t1831 = t65 * t1487;
+  const Real t1832 = par.k41 * t1499;
+  const Real t1833 = t1832 + t1831;
+  const Real t1834 = t280 * t1485;
+  const Real t1835 = t1834 + t1833;
+  const Real t1836 = t1485 * t279;
+  const Real t1837 = t1835 - t1836;
 
-  // accelerations
-  const Real t2188 = sum_error(t2168, t2187);
+  // fin_section_2: joint force
+  const Real t1838 = t1830 + t1837;
 
-  // rear: joint force
-  const Real t2189 = -t2157;
+  // fin_section_1: joint force
+  const Real t1839 = constant<Real>(0.0709020735931204697442L) * t1631;
+  const Real t1840 = t70 * t1575;
+  const Real t1841 = t1839 - t1840;
+  const Real t1842 = par.k5 * t1761;
+  const Real t1843 = t1842 + t1841;
+  const Real t1844 = t1838 + t1843;
 
-  // accelerations
-  const Real t2190 = sum_error(t2156, t2189);
-  const Real t2191 = sum_error(t2167, t2158);
-  const Real t2192 = t2190 + t2191;
-  const Real t2193 = t2192 + t2188;
-  const Real t2194 = sum_error(t2176, t2169);
-  const Real t2195 = t2193 + t2194;
-  const Real t2196 = t2075 * t191;
-  const Real t2197 = product_error(t193, t2075);
-  const Real t2198 = t2197 + t2196;
-  const Real t2199 = t2198 - t2195;
-
-  // reduced forces
-  const Real t2200 = -t2177;
-
-  // accelerations
-  const Real t2201 = sum_error(t2178, t2200);
-  const Real t2202 = t2201 + t2199;
-  const Real t2203 = t2186 + t2202;
-  const Real t2204 = t2203 + t2184;
-  const Real t2205 = t769 * t2204;
-  const Real t2206 = t2182 + t2205;
-  const Real t2207 = product_error(t2181, t769);
-  const Real t2208 = t2206 + t2207;
-  const Real t2209 = t2102 * t1134;
-  const Real t2210 = -t2209;
-  const Real t2211 = t2077 * t1126;
-
-  // reduced forces
-  const Real t2212 = tau_a[0] - t2168;
-
-  // accelerations
-  const Real t2213 = t2075 * t888;
-  const Real t2214 = t2212 + t2213;
-  const Real t2215 = t2214 - t2211;
-  const Real t2216 = sum_error(t2215, t2210);
-  const Real t2217 = -t2211;
-  const Real t2218 = sum_error(t2214, t2217);
+  // fin_tip: joint force
+  const Real t1845 = t1600 * t1577;
+  const Real t1846 = t1635 - t1845;
+  const Real t1847 = t1846 + t1844;
 
   // springs, dampers and generalised forces
-  const Real t2219 = -t2168;
+  const Real t1848 = r_p[0] * constant<Real>(2.0L);
+  const Real t1849 = t1848 * par.k72;
+
+  // springs, dampers and generalised forces
+  const Real t1850 = w[3] * constant<Real>(2.0L);
+  const Real t1851 = par.k73 * t1850;
+  const Real t1852 = t1849 + t1851;
+  const Real t1853 = t1847 + t1852;
 
   // accelerations
-  const Real t2220 = sum_error(tau_a[0], t2219);
-  const Real t2221 = t2220 - t2192;
-  const Real t2222 = product_error(t2075, t888);
-  const Real t2223 = t2075 * t886;
-  const Real t2224 = t2222 + t2223;
-  const Real t2225 = t2224 + t2221;
-  const Real t2226 = sum_error(t2212, t2213);
-  const Real t2227 = t2225 + t2226;
-  const Real t2228 = t2218 + t2227;
-  const Real t2229 = t2216 + t2228;
-  const Real t2230 = t2229 - t2208;
-  const Real t2231 = t769 * t2181;
-  const Real t2232 = t2215 - t2209;
-  const Real t2233 = t2232 - t2231;
-  const Real t2234 = t2233 + t2230;
-  const Real t2235 = t1195 * t2234;
-  const Real t2236 = t2234 * t1197;
-  const Real t2237 = t2236 + t2235;
-  const Real t2238 = t2204 * t1206;
-  const Real t2239 = t2181 * t1206;
-  const Real t2240 = t2238 + t2239;
-  const Real t2241 = t1210 * t2102;
-  const Real t2242 = t1400 * t2077;
+  const Real t1854 = t1853 * t127;
+  const Real t1855 = t1853 * t125;
+  const Real t1856 = t1854 + t1855;
+  const Real t1857 = t1856 - t1825;
+
+  // trunk: joint force
+  const Real t1858 = t1715 * c_r_a_0_;
+  const Real t1859 = t1739 * s_r_a_0_;
+  const Real t1860 = t1858 - t1859;
+
+  // applied wrenches
+  const Real t1861 = abs(w[0]);
+  const Real t1862 = par.k64 * t1861;
+  const Real t1863 = par.k14 * t1862;
+  const Real t1864 = t1863 * w[0];
+
+  // head: wrench
+  const Real t1865 = par.k50 * t1461;
+
+  // head: wrench of the fluid
+  const Real t1866 = w[2] * t1812;
+  const Real t1867 = t1865 + t1866;
+
+  // applied wrenches
+  const Real t1868 = t1864 - t1867;
+  const Real t1869 = t1864 + t1868;
+
+  // trunk: joint force
+  const Real t1870 = t1860 + t1869;
+
+  // trunk: joint force
+  const Real t1871 = t379 * t1853;
+  const Real t1872 = t1871 - t1870;
+
+  // trunk: joint force
+  const Real t1873 = t1872 * t482;
+
+  // accelerations
+  const Real t1874 = t1857 - t1873;
+
+  // trunk: joint force
+  const Real t1875 = t1872 * t488;
+
+  // head: wrench
+  const Real t1876 = par.k50 * t1464;
+
+  // head: wrench of the fluid
+  const Real t1877 = t1814 * w[2];
+  const Real t1878 = t1876 + t1877;
+
+  // applied wrenches
+  const Real t1879 = t1878 + t1810;
+  const Real t1880 = t1822 + t1879;
+
+  // trunk: joint force
+  const Real t1881 = t1741 + t1880;
+
+  // trunk: joint force
+  const Real t1882 = t1853 * t513;
+  const Real t1883 = t1882 - t1881;
+
+  // trunk: joint force
+  const Real t1884 = t1883 - t1875;
+  const Real t1885 = t607 * t1884;
+
+  // accelerations
+  const Real t1886 = t1874 - t1885;
+  const Real t1887 = t1886 * t630;
+
+  // springs, dampers and generalised forces
+  const Real t1888 = -t1803;
+
+  // accelerations
+  const Real t1889 = sum_error(tau_a[0], t1888);
+  const Real t1890 = t1853 * t709;
+  const Real t1891 = product_error(t1853, t711);
+  const Real t1892 = t1890 + t1891;
+  const Real t1893 = t1889 + t1892;
 
   // reduced forces
-  const Real t2243 = tau_a[1] - t2156;
+  const Real t1894 = tau_a[0] - t1803;
 
   // accelerations
-  const Real t2244 = t1279 * t2075;
-  const Real t2245 = t2075 * t1281;
-  const Real t2246 = t2244 + t2245;
-  const Real t2247 = t2246 + t2243;
-  const Real t2248 = t2247 - t2242;
-  const Real t2249 = t2248 - t2241;
-  const Real t2250 = t2249 - t2240;
-  const Real t2251 = t2250 - t2237;
-  const Real t2252 = t2251 * t1527;
-  const Real t2253 = t2234 * t1531;
-  const Real t2254 = t1533 * t2234;
-  const Real t2255 = t2253 + t2254;
-  const Real t2256 = t1542 * t2181;
-  const Real t2257 = t2204 * t1544;
-  const Real t2258 = t2257 + t2256;
-  const Real t2259 = t2181 * t1544;
-  const Real t2260 = t2259 + t2258;
-  const Real t2261 = t1549 * t2102;
-  const Real t2262 = t2077 * t1551;
+  const Real t1895 = t1853 * t711;
+  const Real t1896 = sum_error(t1894, t1895);
+  const Real t1897 = t1893 + t1896;
+
+  // trunk: joint force
+  const Real t1898 = t1872 * t895;
+
+  // accelerations
+  const Real t1899 = t1894 + t1895;
+  const Real t1900 = t1899 - t1898;
+  const Real t1901 = t1897 + t1900;
+
+  // trunk: joint force
+  const Real t1902 = t903 * t1884;
+
+  // accelerations
+  const Real t1903 = t1901 - t1902;
+  const Real t1904 = t1903 - t1887;
+  const Real t1905 = t958 * t1904;
+  const Real t1906 = t960 * t1904;
+  const Real t1907 = t1906 + t1905;
+  const Real t1908 = t967 * t1886;
+
+  // trunk: joint force
+  const Real t1909 = t1884 * t1134;
+  const Real t1910 = t1872 * t1131;
 
   // reduced forces
-  const Real t2263 = tau_a[2] - t2144;
+  const Real t1911 = tau_a[1] - t1791;
 
   // accelerations
-  const Real t2264 = t2075 * t1604;
-  const Real t2265 = t2075 * t1602;
-  const Real t2266 = t2264 + t2265;
-  const Real t2267 = t2263 + t2266;
-  const Real t2268 = t2267 - t2262;
-  const Real t2269 = t2268 - t2261;
-  const Real t2270 = t2269 - t2260;
-  const Real t2271 = t2270 - t2255;
-  const Real t2272 = t2271 - t2252;
-  const Real t2273 = t1698 * t2272;
-  const Real t2274 = t2273 * t1527;
-  const Real t2275 = t1449 * t2251;
-  const Real t2276 = t2275 - t2274;
-  const Real t2277 = t2276 * t1197;
-  const Real t2278 = -t2277;
-  const Real t2279 = t1147 * t2234;
-  const Real t2280 = sum_error(t2279, t2278);
-  const Real t2281 = t1195 * t2276;
-  const Real t2282 = product_error(t1197, t2276);
-  const Real t2283 = t2281 + t2282;
-  const Real t2284 = t2280 - t2283;
-  const Real t2285 = product_error(t1533, t2273);
-  const Real t2286 = t2273 * t1531;
-  const Real t2287 = t2285 + t2286;
-  const Real t2288 = t2284 - t2287;
-  const Real t2289 = t2279 - t2277;
-  const Real t2290 = t1533 * t2273;
-  const Real t2291 = t2289 - t2290;
-  const Real t2292 = t2291 + t2288;
-  const Real t2293 = t769 * t2292;
-  const Real t2294 = t2292 * t767;
-  const Real t2295 = t2293 + t2294;
-  const Real t2296 = t2181 * t742;
-  const Real t2297 = t2204 * t738;
-  const Real t2298 = t2296 + t2297;
-  const Real t2299 = t2181 * t738;
-  const Real t2300 = t2298 + t2299;
-  const Real t2301 = t2300 - t2295;
-  const Real t2302 = t1206 * t2276;
-  const Real t2303 = t2301 - t2302;
-  const Real t2304 = product_error(t1206, t2276);
-  const Real t2305 = t2303 - t2304;
-  const Real t2306 = t1542 * t2273;
-  const Real t2307 = t1544 * t2273;
-  const Real t2308 = t2306 + t2307;
-  const Real t2309 = t2305 - t2308;
-  const Real t2310 = t2309 * t729;
-  const Real t2311 = t2309 * t731;
-  const Real t2312 = t2310 + t2311;
-  const Real t2313 = t693 * t2102;
-  const Real t2314 = t2313 - t2312;
-  const Real t2315 = t2292 * t1134;
-  const Real t2316 = t2314 - t2315;
-  const Real t2317 = t2276 * t1210;
-  const Real t2318 = t2316 - t2317;
-  const Real t2319 = t1549 * t2273;
-  const Real t2320 = t2318 - t2319;
-  const Real t2321 = t608 * t2320;
-  const Real t2322 = t2077 * t562;
-  const Real t2323 = t2322 - t2321;
-  const Real t2324 = t2309 * t601;
-  const Real t2325 = t2309 * t599;
-  const Real t2326 = t2324 + t2325;
-  const Real t2327 = t2323 - t2326;
-  const Real t2328 = t2292 * t1126;
-  const Real t2329 = t2327 - t2328;
-  const Real t2330 = t1400 * t2276;
-  const Real t2331 = t2329 - t2330;
-  const Real t2332 = t1551 * t2273;
-  const Real t2333 = t2331 - t2332;
-  const Real t2334 = t496 * t2333;
-  const Real t2335 = t2075 * t169;
-  const Real t2336 = t187 * t2075;
-  const Real t2337 = t2335 + t2336;
-  const Real t2338 = t2337 + t2334;
-  const Real t2339 = t635 * t2320;
-  const Real t2340 = t2338 + t2339;
-  const Real t2341 = t2309 * t191;
-  const Real t2342 = t2309 * t193;
-  const Real t2343 = t2341 + t2342;
-  const Real t2344 = t2340 + t2343;
-  const Real t2345 = t2292 * t886;
-  const Real t2346 = t2292 * t888;
-  const Real t2347 = t2345 + t2346;
-  const Real t2348 = t2344 + t2347;
-  const Real t2349 = t1279 * t2276;
-  const Real t2350 = t2276 * t1281;
-  const Real t2351 = t2349 + t2350;
-  const Real t2352 = t2348 + t2351;
-  const Real t2353 = t2273 * t1604;
-  const Real t2354 = t2273 * t1602;
-  const Real t2355 = t2353 + t2354;
-  const Real t2356 = t2355 + t2352;
-  const Real t2357 = -t2356;
+  const Real t1912 = t1853 * t1028;
+  const Real t1913 = t1853 * t1026;
+  const Real t1914 = t1912 + t1913;
+  const Real t1915 = t1911 + t1914;
+  const Real t1916 = t1915 - t1910;
+  const Real t1917 = t1916 - t1909;
+  const Real t1918 = t1917 - t1908;
+  const Real t1919 = t1918 - t1907;
+  const Real t1920 = t1919 * t1249;
+  const Real t1921 = t1253 * t1904;
+  const Real t1922 = t1259 * t1886;
 
-  w_dot[0] = t2333;
-  w_dot[1] = t2320;
-  w_dot[2] = t2309;
-  w_dot[3] = t2357;
-  w_dot[4] = t2292;
-  w_dot[5] = t2276;
-  w_dot[6] = t2273;
-  eta_dot[0] = t2333;
-  eta_dot[1] = t2320;
-  eta_dot[2] = t2309;
-  r_p_ddot[0] = t2357;
-  r_a_ddot_out[0] = t2292;
-  r_a_ddot_out[1] = t2276;
-  r_a_ddot_out[2] = t2273;
+  // trunk: joint force
+  const Real t1923 = t1263 * t1884;
+  const Real t1924 = t1872 * t1388;
+
+  // accelerations
+  const Real t1925 = t1853 * t1312;
+  const Real t1926 = t1853 * t1314;
+  const Real t1927 = t1925 + t1926;
+
+  // reduced forces
+  const Real t1928 = tau_a[2] - t1779;
+
+  // accelerations
+  const Real t1929 = t1927 + t1928;
+  const Real t1930 = t1929 - t1924;
+  const Real t1931 = t1930 - t1923;
+  const Real t1932 = t1931 - t1922;
+  const Real t1933 = t1932 - t1921;
+  const Real t1934 = t1933 - t1920;
+  const Real t1935 = t1934 * t1405;
+  const Real t1936 = t1935 * t1249;
+  const Real t1937 = t1919 * t1183;
+  const Real t1938 = t1937 - t1936;
+  const Real t1939 = t960 * t1938;
+  const Real t1940 = -t1939;
+  const Real t1941 = t916 * t1904;
+  const Real t1942 = sum_error(t1941, t1940);
+  const Real t1943 = t958 * t1938;
+  const Real t1944 = product_error(t960, t1938);
+  const Real t1945 = t1943 + t1944;
+  const Real t1946 = t1942 - t1945;
+  const Real t1947 = t1941 - t1939;
+  const Real t1948 = t1253 * t1935;
+  const Real t1949 = t1947 - t1948;
+  const Real t1950 = t1949 + t1946;
+  const Real t1951 = t1950 * t630;
+  const Real t1952 = t1886 * t611;
+  const Real t1953 = t1952 - t1951;
+  const Real t1954 = t967 * t1938;
+  const Real t1955 = t1953 - t1954;
+  const Real t1956 = t1259 * t1935;
+  const Real t1957 = t1955 - t1956;
+  const Real t1958 = t1957 * t607;
+
+  // trunk: joint force
+  const Real t1959 = t571 * t1884;
+
+  // accelerations
+  const Real t1960 = t1959 - t1958;
+  const Real t1961 = t903 * t1950;
+  const Real t1962 = t1960 - t1961;
+  const Real t1963 = t1938 * t1134;
+  const Real t1964 = t1962 - t1963;
+  const Real t1965 = t1263 * t1935;
+  const Real t1966 = t1964 - t1965;
+  const Real t1967 = t488 * t1966;
+
+  // trunk: joint force
+  const Real t1968 = t1872 * t481;
+
+  // accelerations
+  const Real t1969 = t1968 - t1967;
+  const Real t1970 = t1957 * t482;
+  const Real t1971 = t1969 - t1970;
+  const Real t1972 = t1950 * t895;
+  const Real t1973 = t1971 - t1972;
+  const Real t1974 = t1131 * t1938;
+  const Real t1975 = t1973 - t1974;
+  const Real t1976 = t1388 * t1935;
+  const Real t1977 = t1975 - t1976;
+  const Real t1978 = t379 * t1977;
+
+  // trunk: joint force
+  const Real t1979 = t121 * t1853;
+
+  // accelerations
+  const Real t1980 = t1979 + t1978;
+  const Real t1981 = t1966 * t513;
+  const Real t1982 = t1981 + t1980;
+  const Real t1983 = t1957 * t125;
+  const Real t1984 = t1957 * t127;
+  const Real t1985 = t1983 + t1984;
+  const Real t1986 = t1982 + t1985;
+  const Real t1987 = t1950 * t709;
+  const Real t1988 = t1950 * t711;
+  const Real t1989 = t1987 + t1988;
+  const Real t1990 = t1986 + t1989;
+  const Real t1991 = t1026 * t1938;
+  const Real t1992 = t1938 * t1028;
+  const Real t1993 = t1991 + t1992;
+  const Real t1994 = t1990 + t1993;
+  const Real t1995 = t1314 * t1935;
+  const Real t1996 = t1312 * t1935;
+  const Real t1997 = t1995 + t1996;
+  const Real t1998 = t1997 + t1994;
+  const Real t1999 = -t1998;
+
+  w_dot[0] = t1977;
+  w_dot[1] = t1966;
+  w_dot[2] = t1957;
+  w_dot[3] = t1999;
+  w_dot[4] = t1950;
+  w_dot[5] = t1938;
+  w_dot[6] = t1935;
+  eta_dot[0] = t1977;
+  eta_dot[1] = t1966;
+  eta_dot[2] = t1957;
+  r_p_ddot[0] = t1999;
+  r_a_ddot_out[0] = t1950;
+  r_a_ddot_out[1] = t1938;
+  r_a_ddot_out[2] = t1935;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;
@@ -9738,19 +9606,19 @@ inline void energies(const Prepared<Real>& par,
   const Real t9 = cos(t7);
 
   // fin: inertia in its present shape
-  const Real t10 = r_p[0] * par.k43;
-  const Real t11 = r_p[0] * par.k47;
+  const Real t10 = r_p[0] * par.k41;
+  const Real t11 = r_p[0] * par.k44;
   const Real t12 = par.k7 * r_p[0];
   const Real t13 = t11 - t12;
   const Real t14 = t13 * r_p[0];
   const Real t15 = par.k17 + t14;
-  const Real t16 = par.k29 * r_p[0];
+  const Real t16 = par.k24 * r_p[0];
   const Real t17 = constant<Real>(0.5L) * t16;
   const Real t18 = t17 * r_p[0];
-  const Real t19 = par.k35 - t18;
+  const Real t19 = par.k25 - t18;
 
   // fin_tip: station
-  const Real t20 = r_p[0] * par.k51;
+  const Real t20 = r_p[0] * par.k48;
   const Real t21 = constant<Real>(0.5L) * r_p[0];
   const Real t22 = t20 * t21;
   const Real t23 = par.lf - t22;
@@ -9759,11 +9627,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t24 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t25 = par.k9 * r_p[0];
   const Real t26 = t25 * t21;
-  const Real t27 = par.k49 - t26;
+  const Real t27 = par.k46 - t26;
 
   // fin_section_2: station
   const Real t28 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t29 = r_p[0] * par.k55;
+  const Real t29 = r_p[0] * par.k52;
   const Real t30 = t29 * t21;
   const Real t31 = par.k10 - t30;
 
@@ -9856,31 +9724,31 @@ inline void energies(const Prepared<Real>& par,
 
   // head: wrench of the fluid
   const Real t103 = eta[0] * par.m_x;
-  const Real t104 = par.k26 * eta[2];
+  const Real t104 = par.k21 * eta[2];
   const Real t105 = par.k15 * eta[1];
 
   // trunk: wrench of the fluid
   const Real t106 = par.k12 * t39;
-  const Real t107 = t40 * par.k52;
+  const Real t107 = t40 * par.k49;
   const Real t108 = t106 - t107;
-  const Real t109 = par.k42 * t40;
-  const Real t110 = t39 * par.k52;
+  const Real t109 = par.k40 * t40;
+  const Real t110 = t39 * par.k49;
   const Real t111 = t109 - t110;
 
   // rear: wrench of the fluid
-  const Real t112 = par.k39 * t46;
-  const Real t113 = t45 * par.k33;
+  const Real t112 = par.k36 * t46;
+  const Real t113 = t45 * par.k43;
   const Real t114 = t112 - t113;
-  const Real t115 = t45 * par.k56;
-  const Real t116 = par.k33 * t46;
+  const Real t115 = t45 * par.k53;
+  const Real t116 = par.k43 * t46;
   const Real t117 = t115 - t116;
 
   // peduncle: wrench of the fluid
-  const Real t118 = par.k37 * t58;
-  const Real t119 = par.k21 * t50;
+  const Real t118 = par.k31 * t58;
+  const Real t119 = par.k29 * t50;
   const Real t120 = t118 - t119;
-  const Real t121 = t50 * par.k48;
-  const Real t122 = par.k21 * t58;
+  const Real t121 = t50 * par.k45;
+  const Real t122 = par.k29 * t58;
   const Real t123 = t121 - t122;
 
   // fin_section_1: wrench of the fluid
@@ -9892,108 +9760,108 @@ inline void energies(const Prepared<Real>& par,
   // applied wrenches
   const Real t126 = t70 * t73;
   const Real t127 = par.m_w * t126;
-  const Real t128 = par.k18 * t50;
+  const Real t128 = par.k26 * t50;
   const Real t129 = t58 - t128;
   const Real t130 = abs(t129);
-  const Real t131 = par.k69 * t130;
-  const Real t132 = t131 * par.k19;
+  const Real t131 = par.k66 * t130;
+  const Real t132 = t131 * par.k27;
   const Real t133 = t132 * t129;
-  const Real t134 = par.k18 * t133;
+  const Real t134 = par.k26 * t133;
   const Real t135 = t70 * t70;
   const Real t136 = par.m_w * t135;
   const Real t137 = constant<Real>(0.5L) * t136;
   const Real t138 = abs(t98);
-  const Real t139 = par.k65 * t138;
+  const Real t139 = par.k62 * t138;
   const Real t140 = t139 * par.k3;
   const Real t141 = t98 * t140;
   const Real t142 = abs(t84);
-  const Real t143 = par.k71 * t142;
+  const Real t143 = par.k68 * t142;
   const Real t144 = par.k3 * t143;
   const Real t145 = t84 * t144;
-  const Real t146 = par.k41 * t40;
+  const Real t146 = par.k39 * t40;
   const Real t147 = t39 - t146;
   const Real t148 = abs(t147);
-  const Real t149 = t148 * par.k72;
+  const Real t149 = t148 * par.k69;
   const Real t150 = par.k11 * t149;
   const Real t151 = t150 * t147;
-  const Real t152 = t151 * par.k41;
+  const Real t152 = t151 * par.k39;
   const Real t153 = abs(t87);
-  const Real t154 = par.k65 * t153;
+  const Real t154 = par.k62 * t153;
   const Real t155 = t154 * par.k3;
   const Real t156 = t155 * t87;
-  const Real t157 = par.k32 * t46;
+  const Real t157 = par.k33 * t46;
   const Real t158 = t45 - t157;
   const Real t159 = abs(t158);
-  const Real t160 = par.k68 * t159;
-  const Real t161 = t160 * par.k31;
+  const Real t160 = par.k65 * t159;
+  const Real t161 = t160 * par.k34;
   const Real t162 = t158 * t161;
-  const Real t163 = t162 * par.k32;
-  const Real t164 = par.k25 * eta[2];
+  const Real t163 = t162 * par.k33;
+  const Real t164 = par.k20 * eta[2];
   const Real t165 = eta[1] - t164;
   const Real t166 = abs(t165);
-  const Real t167 = t166 * par.k74;
+  const Real t167 = t166 * par.k71;
   const Real t168 = par.k14 * t167;
   const Real t169 = t165 * t168;
-  const Real t170 = par.k25 * t169;
-  const Real t171 = par.k40 * t40;
+  const Real t170 = par.k20 * t169;
+  const Real t171 = par.k38 * t40;
   const Real t172 = t39 - t171;
   const Real t173 = abs(t172);
-  const Real t174 = t173 * par.k72;
+  const Real t174 = t173 * par.k69;
   const Real t175 = par.k11 * t174;
   const Real t176 = t175 * t172;
-  const Real t177 = t176 * par.k40;
+  const Real t177 = t176 * par.k38;
   const Real t178 = abs(t36);
-  const Real t179 = par.k73 * t178;
+  const Real t179 = par.k70 * t178;
   const Real t180 = par.k11 * t179;
   const Real t181 = t36 * t180;
   const Real t182 = abs(t101);
-  const Real t183 = par.k71 * t182;
+  const Real t183 = par.k68 * t182;
   const Real t184 = par.k3 * t183;
   const Real t185 = t184 * t101;
   const Real t186 = abs(t55);
-  const Real t187 = par.k66 * t186;
-  const Real t188 = t187 * par.k19;
+  const Real t187 = par.k63 * t186;
+  const Real t188 = t187 * par.k27;
   const Real t189 = t188 * t55;
-  const Real t190 = par.k30 * t46;
+  const Real t190 = par.k35 * t46;
   const Real t191 = t45 - t190;
   const Real t192 = abs(t191);
-  const Real t193 = par.k68 * t192;
-  const Real t194 = par.k31 * t193;
+  const Real t193 = par.k65 * t192;
+  const Real t194 = par.k34 * t193;
   const Real t195 = t194 * t191;
-  const Real t196 = t195 * par.k30;
+  const Real t196 = t195 * par.k35;
   const Real t197 = abs(t49);
-  const Real t198 = par.k70 * t197;
-  const Real t199 = t198 * par.k31;
+  const Real t198 = par.k67 * t197;
+  const Real t199 = t198 * par.k34;
   const Real t200 = t199 * t49;
-  const Real t201 = par.k20 * t50;
+  const Real t201 = par.k28 * t50;
   const Real t202 = t58 - t201;
   const Real t203 = abs(t202);
-  const Real t204 = par.k69 * t203;
-  const Real t205 = t204 * par.k19;
+  const Real t204 = par.k66 * t203;
+  const Real t205 = t204 * par.k27;
   const Real t206 = t205 * t202;
-  const Real t207 = par.k20 * t206;
+  const Real t207 = par.k28 * t206;
   const Real t208 = eta[1] + t164;
   const Real t209 = abs(t208);
-  const Real t210 = t209 * par.k74;
+  const Real t210 = t209 * par.k71;
   const Real t211 = par.k14 * t210;
   const Real t212 = t211 * t208;
-  const Real t213 = par.k25 * t212;
+  const Real t213 = par.k20 * t212;
   const Real t214 = abs(eta[0]);
-  const Real t215 = par.k67 * t214;
+  const Real t215 = par.k64 * t214;
   const Real t216 = par.k14 * t215;
   const Real t217 = eta[0] * t216;
 
   // springs, dampers and generalised forces
   const Real t218 = r_p_dot[0] * constant<Real>(2.0L);
-  const Real t219 = par.k76 * t218;
+  const Real t219 = par.k73 * t218;
 
   // head: energy
-  const Real t220 = eta[2] * par.k54;
+  const Real t220 = eta[2] * par.k51;
   const Real t221 = eta[2] * t220;
   const Real t222 = eta[0] * eta[0];
   const Real t223 = eta[1] * eta[1];
   const Real t224 = t222 + t223;
-  const Real t225 = par.k53 * t224;
+  const Real t225 = par.k50 * t224;
   const Real t226 = t221 + t225;
   const Real t227 = t226 * constant<Real>(0.5L);
   const Real t228 = t103 * eta[0];
@@ -10005,7 +9873,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t234 = t227 + t233;
 
   // trunk: energy
-  const Real t235 = par.k44 * t40;
+  const Real t235 = par.k42 * t40;
   const Real t236 = t235 * t40;
   const Real t237 = t36 * t36;
   const Real t238 = t39 * t39;
@@ -10032,12 +9900,12 @@ inline void energies(const Prepared<Real>& par,
   const Real t257 = t49 * t49;
   const Real t258 = t45 * t45;
   const Real t259 = t257 + t258;
-  const Real t260 = t259 * par.k27;
-  const Real t261 = par.k36 * t46;
+  const Real t260 = t259 * par.k22;
+  const Real t261 = par.k30 * t46;
   const Real t262 = t45 * t261;
   const Real t263 = t262 * constant<Real>(2.0L);
   const Real t264 = t260 - t263;
-  const Real t265 = par.k28 * t46;
+  const Real t265 = par.k23 * t46;
   const Real t266 = t265 * t46;
   const Real t267 = t264 + t266;
   const Real t268 = constant<Real>(0.5L) * t267;
@@ -10049,13 +9917,13 @@ inline void energies(const Prepared<Real>& par,
   const Real t272 = t50 * t123;
   const Real t273 = t271 + t272;
   const Real t274 = constant<Real>(0.5L) * t273;
-  const Real t275 = par.k24 * t50;
+  const Real t275 = par.k19 * t50;
   const Real t276 = t275 * t50;
   const Real t277 = t58 * t58;
   const Real t278 = t55 * t55;
   const Real t279 = t277 + t278;
-  const Real t280 = par.k23 * t279;
-  const Real t281 = par.k45 * t50;
+  const Real t280 = par.k18 * t279;
+  const Real t281 = par.k37 * t50;
   const Real t282 = t58 * t281;
   const Real t283 = t282 * constant<Real>(2.0L);
   const Real t284 = t280 - t283;
@@ -10065,10 +9933,10 @@ inline void energies(const Prepared<Real>& par,
   const Real t288 = t274 + t287;
 
   // fin: energy
-  const Real t289 = t102 * par.k47;
-  const Real t290 = t50 * par.k50;
+  const Real t289 = t102 * par.k44;
+  const Real t290 = t50 * par.k47;
   const Real t291 = t16 * t55;
-  const Real t292 = t60 * par.k43;
+  const Real t292 = t60 * par.k41;
   const Real t293 = t291 + t292;
   const Real t294 = t290 + t293;
   const Real t295 = t294 * t218;
@@ -10097,7 +9965,7 @@ inline void energies(const Prepared<Real>& par,
 
   // fin_section_2: energy
   const Real t316 = r_p[0] * r_p[0];
-  const Real t317 = t316 * par.k75;
+  const Real t317 = t316 * par.k72;
   const Real t318 = t98 * t125;
   const Real t319 = constant<Real>(0.5L) * t318;
   const Real t320 = t315 + t319;
@@ -10234,7 +10102,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t10 = -s_g_2_;
 
   // fin_tip: station
-  const Real t11 = r_p[0] * par.k51;
+  const Real t11 = r_p[0] * par.k48;
   const Real t12 = constant<Real>(0.5L) * r_p[0];
   const Real t13 = t11 * t12;
   const Real t14 = par.lf - t13;
@@ -10243,11 +10111,11 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t15 = constant<Real>(0.0709020735931204697442L) * r_p[0];
   const Real t16 = par.k9 * r_p[0];
   const Real t17 = t16 * t12;
-  const Real t18 = par.k49 - t17;
+  const Real t18 = par.k46 - t17;
 
   // fin_section_2: station
   const Real t19 = constant<Real>(0.710077701790478711739L) * r_p[0];
-  const Real t20 = r_p[0] * par.k55;
+  const Real t20 = r_p[0] * par.k52;
   const Real t21 = t20 * t12;
   const Real t22 = par.k10 - t21;
 

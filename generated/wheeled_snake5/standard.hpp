@@ -15,14 +15,14 @@
 //   forward_dynamics           211 add, 275 mul, 3 div, 1 neg, 4 sin, 4 cos
 //   inverse_torques            352 add, 437 mul, 3 div, 1 neg, 4 sin, 4 cos
 //   multipliers                334 add, 430 mul, 3 div, 4 sin, 4 cos
-//   compatibility              904 add, 609 mul, 7 div, 23 neg, 4 sin, 4 cos
+//   compatibility              238 add, 320 mul, 3 div, 4 sin, 4 cos
 //   torque_driven_kinematics   20 add, 33 mul, 4 neg, 4 sin, 4 cos
 //   torque_driven_velocities   38 add, 51 mul, 2 div, 4 sin, 4 cos
 //   torque_driven_dynamics     232 add, 315 mul, 2 div, 4 sin, 4 cos
 //   torque_driven_multipliers  161 add, 219 mul, 1 div, 4 neg, 4 sin, 4 cos
 //   energies                   34 add, 62 mul, 4 sin, 4 cos
 //   body_poses                 16 add, 24 mul, 5 neg, 5 sin, 5 cos
-//   prepare                    1 add, 4 mul, 1 div, 2 neg, once per set of parameters
+//   prepare                    1 add, 4 mul, 1 div, 1 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -172,31 +172,29 @@ struct Prepared {
   Real a;
   Real m;
   Real J;
-  Real k1;  // -a
-  Real k2;  // a * m
-  Real k3;  // a * 2
-  Real k4;  // -k3
-  Real k5;  // a * a
-  Real k6;  // J + m * k5
-  Real k7;  // 1 / a
+  Real k1;  // a * 2
+  Real k2;  // -a
+  Real k3;  // a * m
+  Real k4;  // a * a
+  Real k5;  // J + m * k4
+  Real k6;  // 1 / a
 };
 
 /// To be called once per set of parameter values.
-/// operations: 1 add, 4 mul, 1 div, 2 neg
+/// operations: 1 add, 4 mul, 1 div, 1 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using detail::constant;
-  const Real t1 = -par.a;
-  const Real t2 = par.a * par.m;
-  const Real t3 = par.a * constant<Real>(2.0L);
-  const Real t4 = -t3;
-  const Real t5 = par.a * par.a;
-  const Real t6 = par.m * t5;
-  const Real t7 = par.J + t6;
+  const Real t1 = par.a * constant<Real>(2.0L);
+  const Real t2 = -par.a;
+  const Real t3 = par.a * par.m;
+  const Real t4 = par.a * par.a;
+  const Real t5 = par.m * t4;
+  const Real t6 = par.J + t5;
 
   // kernel
-  const Real t8 = constant<Real>(1.0L) / par.a;
+  const Real t7 = constant<Real>(1.0L) / par.a;
 
   result.a = par.a;
   result.m = par.m;
@@ -205,9 +203,8 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k2 = t2;
   result.k3 = t3;
   result.k4 = t4;
-  result.k5 = t5;
+  result.k5 = t6;
   result.k6 = t7;
-  result.k7 = t8;
   return result;
 }
 
@@ -267,7 +264,7 @@ inline void kinematics(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -275,7 +272,7 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -286,7 +283,7 @@ inline void kinematics(const Prepared<Real>& par,
   // link_5: twist
   const Real t35 = t19 + par.a;
   const Real t36 = t31 - par.a;
-  const Real t37 = t31 - par.k3;
+  const Real t37 = t31 - par.k1;
   const Real t38 = t37 * c_r_a_3_;
   const Real t39 = s_r_a_3_ * t34;
   const Real t40 = t38 - t39;
@@ -294,12 +291,12 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t42 = t27 - par.a;
 
   // link_3: twist
-  const Real t43 = par.k3 * c_r_a_1_;
-  const Real t44 = par.k3 * s_r_a_1_;
+  const Real t43 = par.k1 * c_r_a_1_;
+  const Real t44 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t45 = s_r_a_2_ * t44;
-  const Real t46 = par.k3 + t43;
+  const Real t46 = par.k1 + t43;
   const Real t47 = c_r_a_2_ * t46;
   const Real t48 = t45 - t47;
   const Real t49 = c_r_a_2_ * t44;
@@ -309,26 +306,26 @@ inline void kinematics(const Prepared<Real>& par,
   // link_5: twist
   const Real t52 = t48 - par.a;
   const Real t53 = s_r_a_3_ * t51;
-  const Real t54 = t48 - par.k3;
+  const Real t54 = t48 - par.k1;
   const Real t55 = t54 * c_r_a_3_;
   const Real t56 = t53 + t55;
   const Real t57 = t56 - par.a;
   const Real t58 = par.a + t43;
 
   // link_4: twist
-  const Real t59 = par.k3 * s_r_a_2_;
-  const Real t60 = par.k3 * c_r_a_2_;
+  const Real t59 = par.k1 * s_r_a_2_;
+  const Real t60 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t61 = par.a + t60;
   const Real t62 = s_r_a_3_ * t59;
-  const Real t63 = par.k3 + t60;
+  const Real t63 = par.k1 + t60;
   const Real t64 = t63 * c_r_a_3_;
   const Real t65 = t62 - t64;
   const Real t66 = t65 - par.a;
 
   // link_5: twist
-  const Real t67 = par.k3 * c_r_a_3_;
+  const Real t67 = par.k1 * c_r_a_3_;
   const Real t68 = par.a + t67;
 
   // kernel
@@ -698,7 +695,7 @@ inline void constraints(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t25 = c_r_a_1_ * t24;
-  const Real t26 = t23 + par.k3;
+  const Real t26 = t23 + par.k1;
   const Real t27 = t26 * s_r_a_1_;
   const Real t28 = t25 + t27;
   const Real t29 = s_r_a_1_ * t24;
@@ -706,7 +703,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t31 = t29 - t30;
 
   // link_4: twist
-  const Real t32 = t31 - par.k3;
+  const Real t32 = t31 - par.k1;
   const Real t33 = c_r_a_2_ * t32;
   const Real t34 = s_r_a_2_ * t28;
   const Real t35 = t33 + t34;
@@ -718,7 +715,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t39 = t23 + par.a;
   const Real t40 = -t39;
   const Real t41 = t35 - par.a;
-  const Real t42 = t35 - par.k3;
+  const Real t42 = t35 - par.k1;
   const Real t43 = t42 * c_r_a_3_;
   const Real t44 = s_r_a_3_ * t38;
   const Real t45 = t43 - t44;
@@ -726,12 +723,12 @@ inline void constraints(const Prepared<Real>& par,
   const Real t47 = t31 - par.a;
 
   // link_3: twist
-  const Real t48 = par.k3 * c_r_a_1_;
-  const Real t49 = par.k3 * s_r_a_1_;
+  const Real t48 = par.k1 * c_r_a_1_;
+  const Real t49 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t50 = s_r_a_2_ * t49;
-  const Real t51 = par.k3 + t48;
+  const Real t51 = par.k1 + t48;
   const Real t52 = c_r_a_2_ * t51;
   const Real t53 = t50 - t52;
   const Real t54 = c_r_a_2_ * t49;
@@ -743,26 +740,26 @@ inline void constraints(const Prepared<Real>& par,
   const Real t58 = -t57;
   const Real t59 = t53 - par.a;
   const Real t60 = s_r_a_3_ * t56;
-  const Real t61 = t53 - par.k3;
+  const Real t61 = t53 - par.k1;
   const Real t62 = t61 * c_r_a_3_;
   const Real t63 = t60 + t62;
   const Real t64 = t63 - par.a;
 
   // link_4: twist
-  const Real t65 = par.k3 * s_r_a_2_;
-  const Real t66 = par.k3 * c_r_a_2_;
+  const Real t65 = par.k1 * s_r_a_2_;
+  const Real t66 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t67 = par.a + t66;
   const Real t68 = -t67;
   const Real t69 = s_r_a_3_ * t65;
-  const Real t70 = par.k3 + t66;
+  const Real t70 = par.k1 + t66;
   const Real t71 = t70 * c_r_a_3_;
   const Real t72 = t69 - t71;
   const Real t73 = t72 - par.a;
 
   // link_5: twist
-  const Real t74 = par.k3 * c_r_a_3_;
+  const Real t74 = par.k1 * c_r_a_3_;
   const Real t75 = par.a + t74;
   const Real t76 = -t75;
 
@@ -946,7 +943,7 @@ inline void constraints(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t251 = c_r_a_1_ * t250;
-  const Real t252 = par.k3 * t242;
+  const Real t252 = par.k1 * t242;
   const Real t253 = t247 - t252;
   const Real t254 = t253 * s_r_a_1_;
   const Real t255 = t251 + t254;
@@ -956,7 +953,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t259 = t242 + r_a_dot[1];
 
   // link_4: twist
-  const Real t260 = par.k3 * t259;
+  const Real t260 = par.k1 * t259;
   const Real t261 = t258 - t260;
   const Real t262 = c_r_a_2_ * t261;
   const Real t263 = t255 * s_r_a_2_;
@@ -969,7 +966,7 @@ inline void constraints(const Prepared<Real>& par,
   // link_5: twist
   const Real t269 = r_a_dot[3] + t268;
   const Real t270 = c_r_a_3_ * t267;
-  const Real t271 = par.k3 * t268;
+  const Real t271 = par.k1 * t268;
   const Real t272 = t264 - t271;
   const Real t273 = s_r_a_3_ * t272;
   const Real t274 = t270 + t273;
@@ -992,7 +989,7 @@ inline void constraints(const Prepared<Real>& par,
 
   // link_3: acceleration
   const Real t287 = s_r_a_1_ * t286;
-  const Real t288 = par.k3 * t278;
+  const Real t288 = par.k1 * t278;
   const Real t289 = t288 + t283;
   const Real t290 = c_r_a_1_ * t289;
   const Real t291 = t287 + t290;
@@ -1003,7 +1000,7 @@ inline void constraints(const Prepared<Real>& par,
 
   // link_4: acceleration
   const Real t296 = c_r_a_2_ * t295;
-  const Real t297 = par.k3 * t292;
+  const Real t297 = par.k1 * t292;
   const Real t298 = t291 + t297;
   const Real t299 = s_r_a_2_ * t298;
   const Real t300 = t296 - t299;
@@ -1018,7 +1015,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t307 = t267 * t268;
   const Real t308 = t300 - t307;
   const Real t309 = t300 * c_r_a_3_;
-  const Real t310 = par.k3 * t304;
+  const Real t310 = par.k1 * t304;
   const Real t311 = t303 + t310;
   const Real t312 = s_r_a_3_ * t311;
   const Real t313 = t309 - t312;
@@ -1046,22 +1043,22 @@ inline void constraints(const Prepared<Real>& par,
   B_a[1] = constant<Real>(0.0L);
   B_a[2] = constant<Real>(0.0L);
   B_a[3] = constant<Real>(0.0L);
-  B_a[4] = par.k1;
+  B_a[4] = par.k2;
   B_a[5] = constant<Real>(0.0L);
   B_a[6] = constant<Real>(0.0L);
   B_a[7] = constant<Real>(0.0L);
   B_a[8] = t58;
-  B_a[9] = par.k1;
+  B_a[9] = par.k2;
   B_a[10] = constant<Real>(0.0L);
   B_a[11] = constant<Real>(0.0L);
   B_a[12] = t59;
   B_a[13] = t68;
-  B_a[14] = par.k1;
+  B_a[14] = par.k2;
   B_a[15] = constant<Real>(0.0L);
   B_a[16] = t64;
   B_a[17] = t73;
   B_a[18] = t76;
-  B_a[19] = par.k1;
+  B_a[19] = par.k2;
   bias[0] = constant<Real>(0.0L);
   bias[1] = t317;
   bias[2] = t306;
@@ -1142,7 +1139,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -1150,7 +1147,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -1159,7 +1156,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t34 = t32 - t33;
 
   // link_5: twist
-  const Real t35 = t31 - par.k3;
+  const Real t35 = t31 - par.k1;
   const Real t36 = s_r_a_3_ * t35;
   const Real t37 = c_r_a_3_ * t34;
   const Real t38 = t36 + t37;
@@ -1168,12 +1165,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t41 = t39 - t40;
 
   // link_3: twist
-  const Real t42 = par.k3 * c_r_a_1_;
-  const Real t43 = par.k3 * s_r_a_1_;
+  const Real t42 = par.k1 * c_r_a_1_;
+  const Real t43 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t44 = s_r_a_2_ * t43;
-  const Real t45 = par.k3 + t42;
+  const Real t45 = par.k1 + t42;
   const Real t46 = c_r_a_2_ * t45;
   const Real t47 = t44 - t46;
   const Real t48 = c_r_a_2_ * t43;
@@ -1181,7 +1178,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t50 = t48 + t49;
 
   // link_5: twist
-  const Real t51 = t47 - par.k3;
+  const Real t51 = t47 - par.k1;
   const Real t52 = t51 * s_r_a_3_;
   const Real t53 = t50 * c_r_a_3_;
   const Real t54 = t52 - t53;
@@ -1190,11 +1187,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t57 = t55 + t56;
 
   // link_4: twist
-  const Real t58 = par.k3 * s_r_a_2_;
-  const Real t59 = par.k3 * c_r_a_2_;
+  const Real t58 = par.k1 * s_r_a_2_;
+  const Real t59 = par.k1 * c_r_a_2_;
 
   // link_5: twist
-  const Real t60 = par.k3 + t59;
+  const Real t60 = par.k1 + t59;
   const Real t61 = s_r_a_3_ * t60;
   const Real t62 = c_r_a_3_ * t58;
   const Real t63 = t61 + t62;
@@ -1203,8 +1200,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t66 = t64 - t65;
 
   // link_5: twist
-  const Real t67 = par.k3 * c_r_a_3_;
-  const Real t68 = s_r_a_3_ * par.k3;
+  const Real t67 = par.k1 * c_r_a_3_;
+  const Real t68 = s_r_a_3_ * par.k1;
 
   // link_2: twist
   const Real t69 = eta[2] + r_a_dot[0];
@@ -1236,7 +1233,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // link_3: acceleration
   const Real t85 = s_r_a_1_ * t84;
-  const Real t86 = par.k3 * t76;
+  const Real t86 = par.k1 * t76;
   const Real t87 = t86 + t81;
   const Real t88 = c_r_a_1_ * t87;
   const Real t89 = t85 + t88;
@@ -1247,7 +1244,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // link_4: acceleration
   const Real t94 = c_r_a_2_ * t93;
-  const Real t95 = par.k3 * t90;
+  const Real t95 = par.k1 * t90;
   const Real t96 = t89 + t95;
   const Real t97 = s_r_a_2_ * t96;
   const Real t98 = t94 - t97;
@@ -1257,7 +1254,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t102 = t71 * t71;
 
   // link_5: acceleration
-  const Real t103 = par.k3 * t102;
+  const Real t103 = par.k1 * t102;
   const Real t104 = t101 + t103;
   const Real t105 = t104 * c_r_a_3_;
   const Real t106 = s_r_a_3_ * t98;
@@ -1268,22 +1265,22 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t111 = t72 * t72;
 
   // link_2: wrench
-  const Real t112 = s_r_a_0_ * par.k2;
+  const Real t112 = s_r_a_0_ * par.k3;
   const Real t113 = c_r_a_0_ * par.m;
   const Real t114 = s_r_a_0_ * par.m;
 
   // link_3: wrench
   const Real t115 = par.m * t3;
   const Real t116 = par.m * t6;
-  const Real t117 = par.k2 * t3;
+  const Real t117 = par.k3 * t3;
 
   // link_4: wrench
   const Real t118 = par.m * t12;
   const Real t119 = t9 * par.m;
-  const Real t120 = t9 * par.k2;
+  const Real t120 = t9 * par.k3;
 
   // link_5: wrench
-  const Real t121 = par.k2 * t18;
+  const Real t121 = par.k3 * t18;
   const Real t122 = par.m * t18;
   const Real t123 = par.m * t15;
 
@@ -1296,7 +1293,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t129 = c_r_a_3_ * t123;
   const Real t130 = t128 + t129;
   const Real t131 = t118 + t130;
-  const Real t132 = par.k3 * t126;
+  const Real t132 = par.k1 * t126;
   const Real t133 = t121 - t132;
   const Real t134 = t120 + t133;
 
@@ -1308,7 +1305,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t139 = t127 * c_r_a_2_;
   const Real t140 = t131 * s_r_a_2_;
   const Real t141 = t139 + t140;
-  const Real t142 = par.k3 * t141;
+  const Real t142 = par.k1 * t141;
   const Real t143 = t134 - t142;
   const Real t144 = t143 + t117;
   const Real t145 = t141 - t115;
@@ -1322,7 +1319,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t151 = t145 * c_r_a_1_;
   const Real t152 = t150 + t151;
   const Real t153 = t152 - t114;
-  const Real t154 = par.k3 * t152;
+  const Real t154 = par.k1 * t152;
   const Real t155 = t144 - t154;
   const Real t156 = t112 + t155;
 
@@ -1338,20 +1335,20 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t165 = t156 - t164;
 
   // link_2: wrench
-  const Real t166 = c_r_a_0_ * par.k2;
+  const Real t166 = c_r_a_0_ * par.k3;
 
   // link_3: wrench
-  const Real t167 = par.k2 * t6;
+  const Real t167 = par.k3 * t6;
 
   // link_4: wrench
-  const Real t168 = t12 * par.k2;
+  const Real t168 = t12 * par.k3;
 
   // link_5: wrench
-  const Real t169 = t15 * par.k2;
+  const Real t169 = t15 * par.k3;
   const Real t170 = -t169;
 
   // link_5: joint force
-  const Real t171 = par.k3 * t130;
+  const Real t171 = par.k1 * t130;
   const Real t172 = t171 + t169;
   const Real t173 = t168 + t172;
   const Real t174 = -t173;
@@ -1362,7 +1359,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t177 = s_r_a_2_ * t176;
   const Real t178 = t177 + t135;
   const Real t179 = t178 + t116;
-  const Real t180 = par.k3 * t178;
+  const Real t180 = par.k1 * t178;
   const Real t181 = t173 + t180;
   const Real t182 = t167 + t181;
   const Real t183 = -t182;
@@ -1374,7 +1371,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t187 = s_r_a_1_ * t186;
   const Real t188 = t179 * c_r_a_1_;
   const Real t189 = t187 + t188;
-  const Real t190 = par.k3 * t189;
+  const Real t190 = par.k1 * t189;
   const Real t191 = t182 + t190;
   const Real t192 = t166 + t191;
   const Real t193 = -t192;
@@ -1395,37 +1392,37 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // link_2: wrench
   const Real t206 = t19 * par.m;
-  const Real t207 = t206 + par.k2;
-  const Real t208 = t19 * par.k2;
-  const Real t209 = t208 + par.k6;
+  const Real t207 = t206 + par.k3;
+  const Real t208 = t19 * par.k3;
+  const Real t209 = t208 + par.k5;
   const Real t210 = par.m * t20;
 
   // link_3: wrench
-  const Real t211 = par.k2 * t27;
-  const Real t212 = par.k6 - t211;
+  const Real t211 = par.k3 * t27;
+  const Real t212 = par.k5 - t211;
   const Real t213 = t24 * par.m;
   const Real t214 = par.m * t27;
-  const Real t215 = t214 - par.k2;
+  const Real t215 = t214 - par.k3;
 
   // link_4: wrench
-  const Real t216 = t31 * par.k2;
-  const Real t217 = par.k6 - t216;
+  const Real t216 = t31 * par.k3;
+  const Real t217 = par.k5 - t216;
   const Real t218 = t31 * par.m;
-  const Real t219 = t218 - par.k2;
+  const Real t219 = t218 - par.k3;
   const Real t220 = par.m * t34;
 
   // link_5: wrench
   const Real t221 = par.m * t41;
-  const Real t222 = t221 - par.k2;
+  const Real t222 = t221 - par.k3;
   const Real t223 = par.m * t38;
-  const Real t224 = par.k2 * t41;
-  const Real t225 = par.k6 - t224;
+  const Real t224 = par.k3 * t41;
+  const Real t225 = par.k5 - t224;
 
   // link_5: joint force
   const Real t226 = t222 * c_r_a_3_;
   const Real t227 = s_r_a_3_ * t223;
   const Real t228 = t226 + t227;
-  const Real t229 = par.k3 * t228;
+  const Real t229 = par.k1 * t228;
   const Real t230 = t225 - t229;
   const Real t231 = t230 + t217;
   const Real t232 = t219 + t228;
@@ -1443,7 +1440,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t242 = s_r_a_2_ * t232;
   const Real t243 = t241 - t242;
   const Real t244 = t243 - t213;
-  const Real t245 = par.k3 * t239;
+  const Real t245 = par.k1 * t239;
   const Real t246 = t231 - t245;
   const Real t247 = t212 + t246;
 
@@ -1455,7 +1452,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t252 = t244 * s_r_a_1_;
   const Real t253 = t240 * c_r_a_1_;
   const Real t254 = t252 + t253;
-  const Real t255 = par.k3 * t254;
+  const Real t255 = par.k1 * t254;
   const Real t256 = t247 - t255;
   const Real t257 = t209 + t256;
   const Real t258 = t254 - t207;
@@ -1469,32 +1466,32 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t264 = t263 + par.J;
 
   // link_3: wrench
-  const Real t265 = t42 * par.k2;
-  const Real t266 = t265 + par.k6;
+  const Real t265 = t42 * par.k3;
+  const Real t266 = t265 + par.k5;
   const Real t267 = t42 * par.m;
-  const Real t268 = t267 + par.k2;
+  const Real t268 = t267 + par.k3;
   const Real t269 = par.m * t43;
 
   // link_4: wrench
-  const Real t270 = t47 * par.k2;
-  const Real t271 = par.k6 - t270;
+  const Real t270 = t47 * par.k3;
+  const Real t271 = par.k5 - t270;
   const Real t272 = t50 * par.m;
   const Real t273 = t47 * par.m;
-  const Real t274 = t273 - par.k2;
+  const Real t274 = t273 - par.k3;
 
   // link_5: wrench
   const Real t275 = t54 * par.m;
-  const Real t276 = t57 * par.k2;
-  const Real t277 = par.k6 - t276;
+  const Real t276 = t57 * par.k3;
+  const Real t277 = par.k5 - t276;
   const Real t278 = t57 * par.m;
-  const Real t279 = t278 - par.k2;
+  const Real t279 = t278 - par.k3;
 
   // link_5: joint force
   const Real t280 = c_r_a_3_ * t279;
   const Real t281 = s_r_a_3_ * t275;
   const Real t282 = t280 + t281;
   const Real t283 = t282 + t274;
-  const Real t284 = par.k3 * t282;
+  const Real t284 = par.k1 * t282;
   const Real t285 = t277 - t284;
   const Real t286 = t285 + t271;
   const Real t287 = c_r_a_3_ * t275;
@@ -1511,7 +1508,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t296 = c_r_a_2_ * t283;
   const Real t297 = t295 + t296;
   const Real t298 = t297 - t268;
-  const Real t299 = par.k3 * t297;
+  const Real t299 = par.k1 * t297;
   const Real t300 = t286 - t299;
   const Real t301 = t266 + t300;
 
@@ -1519,29 +1516,29 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t302 = t294 * s_r_a_1_;
   const Real t303 = t298 * c_r_a_1_;
   const Real t304 = t302 + t303;
-  const Real t305 = par.k3 * t304;
+  const Real t305 = par.k1 * t304;
   const Real t306 = t301 - t305;
-  const Real t307 = t306 + par.k6;
+  const Real t307 = t306 + par.k5;
 
   // link_4: wrench
-  const Real t308 = par.k2 * t59;
-  const Real t309 = t308 + par.k6;
+  const Real t308 = par.k3 * t59;
+  const Real t309 = t308 + par.k5;
   const Real t310 = par.m * t59;
-  const Real t311 = par.k2 + t310;
+  const Real t311 = par.k3 + t310;
   const Real t312 = par.m * t58;
 
   // link_5: wrench
-  const Real t313 = par.k2 * t66;
-  const Real t314 = par.k6 - t313;
+  const Real t313 = par.k3 * t66;
+  const Real t314 = par.k5 - t313;
   const Real t315 = par.m * t66;
-  const Real t316 = t315 - par.k2;
+  const Real t316 = t315 - par.k3;
   const Real t317 = par.m * t63;
 
   // link_5: joint force
   const Real t318 = t316 * c_r_a_3_;
   const Real t319 = s_r_a_3_ * t317;
   const Real t320 = t318 - t319;
-  const Real t321 = par.k3 * t320;
+  const Real t321 = par.k1 * t320;
   const Real t322 = t314 - t321;
   const Real t323 = t309 + t322;
   const Real t324 = t320 - t311;
@@ -1554,24 +1551,24 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t329 = c_r_a_2_ * t324;
   const Real t330 = s_r_a_2_ * t328;
   const Real t331 = t329 - t330;
-  const Real t332 = par.k3 * t331;
+  const Real t332 = par.k1 * t331;
   const Real t333 = t323 - t332;
-  const Real t334 = t333 + par.k6;
+  const Real t334 = t333 + par.k5;
 
   // link_5: wrench
   const Real t335 = t68 * par.m;
-  const Real t336 = t67 * par.k2;
-  const Real t337 = t336 + par.k6;
+  const Real t336 = t67 * par.k3;
+  const Real t337 = t336 + par.k5;
   const Real t338 = t67 * par.m;
-  const Real t339 = t338 + par.k2;
+  const Real t339 = t338 + par.k3;
 
   // link_5: joint force
   const Real t340 = s_r_a_3_ * t335;
   const Real t341 = t339 * c_r_a_3_;
   const Real t342 = t340 + t341;
-  const Real t343 = par.k3 * t342;
+  const Real t343 = par.k1 * t342;
   const Real t344 = t337 + t343;
-  const Real t345 = t344 + par.k6;
+  const Real t345 = t344 + par.k5;
 
   // link_1: wrench
   const Real t346 = t73 * par.m;
@@ -1579,37 +1576,37 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // link_2: wrench
   const Real t348 = par.m * t84;
-  const Real t349 = par.k2 * t84;
+  const Real t349 = par.k3 * t84;
   const Real t350 = par.m * t81;
-  const Real t351 = t76 * par.k2;
+  const Real t351 = t76 * par.k3;
   const Real t352 = t350 + t351;
 
   // link_3: wrench
   const Real t353 = par.m * t93;
-  const Real t354 = par.k2 * t93;
-  const Real t355 = t90 * par.k2;
+  const Real t354 = par.k3 * t93;
+  const Real t355 = t90 * par.k3;
   const Real t356 = t89 * par.m;
   const Real t357 = t355 + t356;
 
   // link_4: wrench
   const Real t358 = t98 * par.m;
   const Real t359 = t101 * par.m;
-  const Real t360 = par.k2 * t102;
+  const Real t360 = par.k3 * t102;
   const Real t361 = t359 + t360;
-  const Real t362 = t98 * par.k2;
+  const Real t362 = t98 * par.k3;
 
   // link_5: wrench
   const Real t363 = par.m * t107;
-  const Real t364 = par.k2 * t111;
+  const Real t364 = par.k3 * t111;
   const Real t365 = t363 + t364;
   const Real t366 = par.m * t110;
-  const Real t367 = par.k2 * t110;
+  const Real t367 = par.k3 * t110;
 
   // link_5: joint force
   const Real t368 = t366 * c_r_a_3_;
   const Real t369 = s_r_a_3_ * t365;
   const Real t370 = t368 + t369;
-  const Real t371 = par.k3 * t370;
+  const Real t371 = par.k1 * t370;
   const Real t372 = t367 + t371;
   const Real t373 = t372 + t362;
   const Real t374 = t365 * c_r_a_3_;
@@ -1626,7 +1623,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t383 = c_r_a_2_ * t378;
   const Real t384 = s_r_a_2_ * t377;
   const Real t385 = t383 + t384;
-  const Real t386 = par.k3 * t385;
+  const Real t386 = par.k1 * t385;
   const Real t387 = t386 + t373;
   const Real t388 = t387 + t354;
   const Real t389 = t353 + t385;
@@ -1640,7 +1637,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t395 = t382 * s_r_a_1_;
   const Real t396 = t394 + t395;
   const Real t397 = t348 + t396;
-  const Real t398 = par.k3 * t396;
+  const Real t398 = par.k1 * t396;
   const Real t399 = t388 + t398;
   const Real t400 = t349 + t399;
 
@@ -1693,7 +1690,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   m_aa[12] = t277;
   m_aa[13] = t314;
   m_aa[14] = t337;
-  m_aa[15] = par.k6;
+  m_aa[15] = par.k5;
   f[0] = t409;
   f[1] = t405;
   f[2] = t411;
@@ -1759,7 +1756,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -1767,7 +1764,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -1778,7 +1775,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // link_5: twist
   const Real t35 = t19 + par.a;
   const Real t36 = t31 - par.a;
-  const Real t37 = t31 - par.k3;
+  const Real t37 = t31 - par.k1;
   const Real t38 = t37 * c_r_a_3_;
   const Real t39 = s_r_a_3_ * t34;
   const Real t40 = t38 - t39;
@@ -1786,12 +1783,12 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t42 = t27 - par.a;
 
   // link_3: twist
-  const Real t43 = par.k3 * c_r_a_1_;
-  const Real t44 = par.k3 * s_r_a_1_;
+  const Real t43 = par.k1 * c_r_a_1_;
+  const Real t44 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t45 = s_r_a_2_ * t44;
-  const Real t46 = par.k3 + t43;
+  const Real t46 = par.k1 + t43;
   const Real t47 = c_r_a_2_ * t46;
   const Real t48 = t45 - t47;
   const Real t49 = c_r_a_2_ * t44;
@@ -1801,26 +1798,26 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // link_5: twist
   const Real t52 = t48 - par.a;
   const Real t53 = s_r_a_3_ * t51;
-  const Real t54 = t48 - par.k3;
+  const Real t54 = t48 - par.k1;
   const Real t55 = t54 * c_r_a_3_;
   const Real t56 = t53 + t55;
   const Real t57 = t56 - par.a;
   const Real t58 = par.a + t43;
 
   // link_4: twist
-  const Real t59 = par.k3 * s_r_a_2_;
-  const Real t60 = par.k3 * c_r_a_2_;
+  const Real t59 = par.k1 * s_r_a_2_;
+  const Real t60 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t61 = par.a + t60;
   const Real t62 = s_r_a_3_ * t59;
-  const Real t63 = par.k3 + t60;
+  const Real t63 = par.k1 + t60;
   const Real t64 = t63 * c_r_a_3_;
   const Real t65 = t62 - t64;
   const Real t66 = t65 - par.a;
 
   // link_5: twist
-  const Real t67 = par.k3 * c_r_a_3_;
+  const Real t67 = par.k1 * c_r_a_3_;
   const Real t68 = par.a + t67;
 
   // kernel
@@ -2111,7 +2108,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t351 = t342 + r_a_dot[1];
-  const Real t352 = t342 * par.k3;
+  const Real t352 = t342 * par.k1;
   const Real t353 = t347 - t352;
   const Real t354 = c_r_a_1_ * t353;
   const Real t355 = s_r_a_1_ * t350;
@@ -2123,7 +2120,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // link_4: twist
   const Real t360 = r_a_dot[2] + t351;
   const Real t361 = c_r_a_2_ * t359;
-  const Real t362 = par.k3 * t351;
+  const Real t362 = par.k1 * t351;
   const Real t363 = t356 - t362;
   const Real t364 = s_r_a_2_ * t363;
   const Real t365 = t361 + t364;
@@ -2134,7 +2131,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // link_5: twist
   const Real t369 = t360 + r_a_dot[3];
   const Real t370 = t365 * c_r_a_3_;
-  const Real t371 = par.k3 * t360;
+  const Real t371 = par.k1 * t360;
   const Real t372 = t368 - t371;
   const Real t373 = t372 * s_r_a_3_;
   const Real t374 = t370 + t373;
@@ -2157,7 +2154,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // link_3: acceleration
   const Real t387 = t351 * t351;
-  const Real t388 = par.k3 * t383;
+  const Real t388 = par.k1 * t383;
   const Real t389 = t388 + t386;
   const Real t390 = t389 * c_r_a_1_;
   const Real t391 = t382 * s_r_a_1_;
@@ -2167,7 +2164,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t395 = t393 + t394;
 
   // link_4: acceleration
-  const Real t396 = par.k3 * t387;
+  const Real t396 = par.k1 * t387;
   const Real t397 = t392 + t396;
   const Real t398 = s_r_a_2_ * t397;
   const Real t399 = c_r_a_2_ * t395;
@@ -2181,7 +2178,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t405 = t342 * t350;
   const Real t406 = t382 + t405;
   const Real t407 = t400 * c_r_a_3_;
-  const Real t408 = par.k3 * t401;
+  const Real t408 = par.k1 * t401;
   const Real t409 = t408 + t404;
   const Real t410 = s_r_a_3_ * t409;
   const Real t411 = t407 + t410;
@@ -2334,7 +2331,7 @@ inline void inverse_torques(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -2342,7 +2339,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -2353,7 +2350,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   // link_5: twist
   const Real t35 = t19 + par.a;
   const Real t36 = t31 - par.a;
-  const Real t37 = t31 - par.k3;
+  const Real t37 = t31 - par.k1;
   const Real t38 = t37 * c_r_a_3_;
   const Real t39 = s_r_a_3_ * t34;
   const Real t40 = t38 - t39;
@@ -2361,12 +2358,12 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t42 = t27 - par.a;
 
   // link_3: twist
-  const Real t43 = par.k3 * c_r_a_1_;
-  const Real t44 = par.k3 * s_r_a_1_;
+  const Real t43 = par.k1 * c_r_a_1_;
+  const Real t44 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t45 = s_r_a_2_ * t44;
-  const Real t46 = par.k3 + t43;
+  const Real t46 = par.k1 + t43;
   const Real t47 = c_r_a_2_ * t46;
   const Real t48 = t45 - t47;
   const Real t49 = c_r_a_2_ * t44;
@@ -2376,26 +2373,26 @@ inline void inverse_torques(const Prepared<Real>& par,
   // link_5: twist
   const Real t52 = t48 - par.a;
   const Real t53 = s_r_a_3_ * t51;
-  const Real t54 = t48 - par.k3;
+  const Real t54 = t48 - par.k1;
   const Real t55 = t54 * c_r_a_3_;
   const Real t56 = t53 + t55;
   const Real t57 = t56 - par.a;
   const Real t58 = par.a + t43;
 
   // link_4: twist
-  const Real t59 = par.k3 * s_r_a_2_;
-  const Real t60 = par.k3 * c_r_a_2_;
+  const Real t59 = par.k1 * s_r_a_2_;
+  const Real t60 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t61 = par.a + t60;
   const Real t62 = s_r_a_3_ * t59;
-  const Real t63 = par.k3 + t60;
+  const Real t63 = par.k1 + t60;
   const Real t64 = t63 * c_r_a_3_;
   const Real t65 = t62 - t64;
   const Real t66 = t65 - par.a;
 
   // link_5: twist
-  const Real t67 = par.k3 * c_r_a_3_;
+  const Real t67 = par.k1 * c_r_a_3_;
   const Real t68 = par.a + t67;
 
   // kernel
@@ -2699,7 +2696,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t364 = t338 + t363;
   const Real t365 = r_a_dot[0] - t364;
   const Real t366 = t365 * t365;
-  const Real t367 = par.k2 * t366;
+  const Real t367 = par.k3 * t366;
   const Real t368 = t364 * t364;
   const Real t369 = par.a * t368;
   const Real t370 = t337 * t291;
@@ -2717,7 +2714,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t382 = t378 + t381;
   const Real t383 = t372 + t382;
   const Real t384 = t364 * t383;
-  const Real t385 = par.k3 * t366;
+  const Real t385 = par.k1 * t366;
   const Real t386 = t384 + t369;
   const Real t387 = c_r_a_0_ * t386;
   const Real t388 = t208 * t348;
@@ -2761,7 +2758,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t426 = c_r_a_2_ * t425;
   const Real t427 = r_a_dot[1] + t365;
   const Real t428 = t427 * t427;
-  const Real t429 = par.k3 * t428;
+  const Real t429 = par.k1 * t428;
   const Real t430 = c_r_a_1_ * t419;
   const Real t431 = s_r_a_1_ * t423;
   const Real t432 = t430 - t431;
@@ -2774,7 +2771,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t439 = c_r_a_0_ * t438;
   const Real t440 = t415 * s_r_a_0_;
   const Real t441 = t439 - t440;
-  const Real t442 = par.k3 * t365;
+  const Real t442 = par.k1 * t365;
   const Real t443 = t441 - t442;
   const Real t444 = s_r_a_1_ * t443;
   const Real t445 = t415 * c_r_a_0_;
@@ -2786,7 +2783,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t451 = c_r_a_1_ * t443;
   const Real t452 = s_r_a_1_ * t447;
   const Real t453 = t451 - t452;
-  const Real t454 = par.k3 * t427;
+  const Real t454 = par.k1 * t427;
   const Real t455 = t453 - t454;
   const Real t456 = s_r_a_2_ * t455;
   const Real t457 = t450 + t456;
@@ -2806,14 +2803,14 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t471 = s_r_a_2_ * t425;
   const Real t472 = t470 - t471;
   const Real t473 = t436 * t436;
-  const Real t474 = par.k3 * t473;
+  const Real t474 = par.k1 * t473;
   const Real t475 = t472 + t474;
   const Real t476 = s_r_a_3_ * t475;
   const Real t477 = t469 + t476;
   const Real t478 = c_r_a_2_ * t455;
   const Real t479 = s_r_a_2_ * t449;
   const Real t480 = t478 - t479;
-  const Real t481 = par.k3 * t436;
+  const Real t481 = par.k1 * t436;
   const Real t482 = t480 - t481;
   const Real t483 = s_r_a_3_ * t482;
   const Real t484 = c_r_a_3_ * t457;
@@ -2900,25 +2897,25 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t565 = t544 + t564;
   const Real t566 = par.m * t565;
   const Real t567 = t367 + t566;
-  const Real t568 = par.k2 * t428;
+  const Real t568 = par.k3 * t428;
   const Real t569 = t385 + t565;
   const Real t570 = t569 * c_r_a_1_;
   const Real t571 = c_r_a_0_ * t563;
   const Real t572 = s_r_a_0_ * t543;
   const Real t573 = t571 - t572;
   const Real t574 = r_a_ddot[0] - t552;
-  const Real t575 = par.k3 * t574;
+  const Real t575 = par.k1 * t574;
   const Real t576 = t573 - t575;
   const Real t577 = t576 * s_r_a_1_;
   const Real t578 = t570 + t577;
   const Real t579 = par.m * t578;
   const Real t580 = t568 + t579;
-  const Real t581 = par.k2 * t473;
+  const Real t581 = par.k3 * t473;
   const Real t582 = t576 * c_r_a_1_;
   const Real t583 = t569 * s_r_a_1_;
   const Real t584 = t582 - t583;
   const Real t585 = t574 + r_a_ddot[1];
-  const Real t586 = par.k3 * t585;
+  const Real t586 = par.k1 * t585;
   const Real t587 = t584 - t586;
   const Real t588 = s_r_a_2_ * t587;
   const Real t589 = t429 + t578;
@@ -2927,14 +2924,14 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t592 = par.m * t591;
   const Real t593 = t581 + t592;
   const Real t594 = t486 * t486;
-  const Real t595 = par.k2 * t594;
+  const Real t595 = par.k3 * t594;
   const Real t596 = t591 + t474;
   const Real t597 = c_r_a_3_ * t596;
   const Real t598 = c_r_a_2_ * t587;
   const Real t599 = s_r_a_2_ * t589;
   const Real t600 = t598 - t599;
   const Real t601 = t585 + r_a_ddot[2];
-  const Real t602 = par.k3 * t601;
+  const Real t602 = par.k1 * t601;
   const Real t603 = t600 - t602;
   const Real t604 = s_r_a_3_ * t603;
   const Real t605 = t597 + t604;
@@ -2946,14 +2943,14 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t611 = t609 - t610;
   const Real t612 = par.m * t611;
   const Real t613 = r_a_ddot[3] + t601;
-  const Real t614 = par.k2 * t613;
+  const Real t614 = par.k3 * t613;
   const Real t615 = t612 - t614;
   const Real t616 = s_r_a_3_ * t615;
   const Real t617 = t608 - t616;
   const Real t618 = t593 + t617;
   const Real t619 = c_r_a_2_ * t618;
   const Real t620 = par.m * t600;
-  const Real t621 = par.k2 * t601;
+  const Real t621 = par.k3 * t601;
   const Real t622 = t620 - t621;
   const Real t623 = c_r_a_3_ * t615;
   const Real t624 = s_r_a_3_ * t607;
@@ -2964,7 +2961,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t629 = t580 + t628;
   const Real t630 = t629 * c_r_a_1_;
   const Real t631 = t584 * par.m;
-  const Real t632 = t585 * par.k2;
+  const Real t632 = t585 * par.k3;
   const Real t633 = t631 - t632;
   const Real t634 = c_r_a_2_ * t626;
   const Real t635 = s_r_a_2_ * t618;
@@ -2975,7 +2972,7 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t640 = t567 + t639;
   const Real t641 = c_r_a_0_ * t640;
   const Real t642 = par.m * t573;
-  const Real t643 = t574 * par.k2;
+  const Real t643 = t574 * par.k3;
   const Real t644 = t642 - t643;
   const Real t645 = c_r_a_1_ * t637;
   const Real t646 = t629 * s_r_a_1_;
@@ -2993,25 +2990,25 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t658 = t656 + t657;
   const Real t659 = t658 * t373;
   const Real t660 = t653 + t659;
-  const Real t661 = t613 * par.k6;
-  const Real t662 = t611 * par.k2;
+  const Real t661 = t613 * par.k5;
+  const Real t662 = t611 * par.k3;
   const Real t663 = t661 - t662;
-  const Real t664 = par.k3 * t625;
+  const Real t664 = par.k1 * t625;
   const Real t665 = t663 - t664;
-  const Real t666 = t601 * par.k6;
-  const Real t667 = par.k2 * t600;
+  const Real t666 = t601 * par.k5;
+  const Real t667 = par.k3 * t600;
   const Real t668 = t666 - t667;
   const Real t669 = t665 + t668;
-  const Real t670 = par.k3 * t636;
+  const Real t670 = par.k1 * t636;
   const Real t671 = t669 - t670;
-  const Real t672 = t585 * par.k6;
-  const Real t673 = t584 * par.k2;
+  const Real t672 = t585 * par.k5;
+  const Real t673 = t584 * par.k3;
   const Real t674 = t672 - t673;
   const Real t675 = t671 + t674;
-  const Real t676 = par.k3 * t647;
+  const Real t676 = par.k1 * t647;
   const Real t677 = t675 - t676;
-  const Real t678 = t574 * par.k6;
-  const Real t679 = par.k2 * t573;
+  const Real t678 = t574 * par.k5;
+  const Real t679 = par.k3 * t573;
   const Real t680 = t678 - t679;
   const Real t681 = t677 + t680;
   const Real t682 = par.a * t656;
@@ -3174,7 +3171,7 @@ inline void multipliers(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -3182,7 +3179,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -3193,7 +3190,7 @@ inline void multipliers(const Prepared<Real>& par,
   // link_5: twist
   const Real t35 = t19 + par.a;
   const Real t36 = t31 - par.a;
-  const Real t37 = t31 - par.k3;
+  const Real t37 = t31 - par.k1;
   const Real t38 = t37 * c_r_a_3_;
   const Real t39 = s_r_a_3_ * t34;
   const Real t40 = t38 - t39;
@@ -3201,12 +3198,12 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t42 = t27 - par.a;
 
   // link_3: twist
-  const Real t43 = par.k3 * c_r_a_1_;
-  const Real t44 = par.k3 * s_r_a_1_;
+  const Real t43 = par.k1 * c_r_a_1_;
+  const Real t44 = par.k1 * s_r_a_1_;
 
   // link_4: twist
   const Real t45 = s_r_a_2_ * t44;
-  const Real t46 = par.k3 + t43;
+  const Real t46 = par.k1 + t43;
   const Real t47 = c_r_a_2_ * t46;
   const Real t48 = t45 - t47;
   const Real t49 = c_r_a_2_ * t44;
@@ -3216,26 +3213,26 @@ inline void multipliers(const Prepared<Real>& par,
   // link_5: twist
   const Real t52 = t48 - par.a;
   const Real t53 = s_r_a_3_ * t51;
-  const Real t54 = t48 - par.k3;
+  const Real t54 = t48 - par.k1;
   const Real t55 = t54 * c_r_a_3_;
   const Real t56 = t53 + t55;
   const Real t57 = t56 - par.a;
   const Real t58 = par.a + t43;
 
   // link_4: twist
-  const Real t59 = par.k3 * s_r_a_2_;
-  const Real t60 = par.k3 * c_r_a_2_;
+  const Real t59 = par.k1 * s_r_a_2_;
+  const Real t60 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t61 = par.a + t60;
   const Real t62 = s_r_a_3_ * t59;
-  const Real t63 = par.k3 + t60;
+  const Real t63 = par.k1 + t60;
   const Real t64 = t63 * c_r_a_3_;
   const Real t65 = t62 - t64;
   const Real t66 = t65 - par.a;
 
   // link_5: twist
-  const Real t67 = par.k3 * c_r_a_3_;
+  const Real t67 = par.k1 * c_r_a_3_;
   const Real t68 = par.a + t67;
 
   // kernel
@@ -3610,7 +3607,7 @@ inline void multipliers(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t435 = t426 + r_a_dot[1];
-  const Real t436 = t426 * par.k3;
+  const Real t436 = t426 * par.k1;
   const Real t437 = t431 - t436;
   const Real t438 = c_r_a_1_ * t437;
   const Real t439 = s_r_a_1_ * t434;
@@ -3622,7 +3619,7 @@ inline void multipliers(const Prepared<Real>& par,
   // link_4: twist
   const Real t444 = r_a_dot[2] + t435;
   const Real t445 = c_r_a_2_ * t443;
-  const Real t446 = par.k3 * t435;
+  const Real t446 = par.k1 * t435;
   const Real t447 = t440 - t446;
   const Real t448 = s_r_a_2_ * t447;
   const Real t449 = t445 + t448;
@@ -3633,7 +3630,7 @@ inline void multipliers(const Prepared<Real>& par,
   // link_5: twist
   const Real t453 = t444 + r_a_dot[3];
   const Real t454 = t449 * c_r_a_3_;
-  const Real t455 = par.k3 * t444;
+  const Real t455 = par.k1 * t444;
   const Real t456 = t452 - t455;
   const Real t457 = t456 * s_r_a_3_;
   const Real t458 = t454 + t457;
@@ -3656,7 +3653,7 @@ inline void multipliers(const Prepared<Real>& par,
 
   // link_3: acceleration
   const Real t471 = t435 * t435;
-  const Real t472 = par.k3 * t467;
+  const Real t472 = par.k1 * t467;
   const Real t473 = t472 + t470;
   const Real t474 = t473 * c_r_a_1_;
   const Real t475 = t466 * s_r_a_1_;
@@ -3666,7 +3663,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t479 = t477 + t478;
 
   // link_4: acceleration
-  const Real t480 = par.k3 * t471;
+  const Real t480 = par.k1 * t471;
   const Real t481 = t476 + t480;
   const Real t482 = s_r_a_2_ * t481;
   const Real t483 = c_r_a_2_ * t479;
@@ -3680,7 +3677,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t489 = t426 * t434;
   const Real t490 = t466 + t489;
   const Real t491 = t484 * c_r_a_3_;
-  const Real t492 = par.k3 * t485;
+  const Real t492 = par.k1 * t485;
   const Real t493 = t492 + t488;
   const Real t494 = s_r_a_3_ * t493;
   const Real t495 = t491 + t494;
@@ -3783,7 +3780,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t586 = t584 - t585;
 
   // link_3: acceleration
-  const Real t587 = t577 * par.k3;
+  const Real t587 = t577 * par.k1;
   const Real t588 = t586 - t587;
   const Real t589 = c_r_a_1_ * t588;
   const Real t590 = t583 + t472;
@@ -3796,7 +3793,7 @@ inline void multipliers(const Prepared<Real>& par,
 
   // link_4: acceleration
   const Real t597 = r_a_ddot[2] + t593;
-  const Real t598 = par.k3 * t593;
+  const Real t598 = par.k1 * t593;
   const Real t599 = t592 - t598;
   const Real t600 = c_r_a_2_ * t599;
   const Real t601 = t596 + t480;
@@ -3807,7 +3804,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t606 = t604 + t605;
 
   // link_5: acceleration
-  const Real t607 = par.k3 * t597;
+  const Real t607 = par.k1 * t597;
   const Real t608 = t603 - t607;
   const Real t609 = t608 * c_r_a_3_;
   const Real t610 = t492 + t606;
@@ -3824,54 +3821,54 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t619 = par.m * t576;
 
   // link_2: wrench
-  const Real t620 = t577 * par.k6;
-  const Real t621 = par.k2 * t586;
+  const Real t620 = t577 * par.k5;
+  const Real t621 = par.k3 * t586;
   const Real t622 = t620 - t621;
-  const Real t623 = t467 * par.k2;
+  const Real t623 = t467 * par.k3;
   const Real t624 = t583 * par.m;
   const Real t625 = t623 + t624;
   const Real t626 = par.m * t586;
-  const Real t627 = t577 * par.k2;
+  const Real t627 = t577 * par.k3;
   const Real t628 = t626 - t627;
 
   // link_3: wrench
-  const Real t629 = t593 * par.k6;
-  const Real t630 = t592 * par.k2;
+  const Real t629 = t593 * par.k5;
+  const Real t630 = t592 * par.k3;
   const Real t631 = t629 - t630;
-  const Real t632 = t471 * par.k2;
+  const Real t632 = t471 * par.k3;
   const Real t633 = par.m * t596;
   const Real t634 = t632 + t633;
   const Real t635 = t592 * par.m;
-  const Real t636 = par.k2 * t593;
+  const Real t636 = par.k3 * t593;
   const Real t637 = t635 - t636;
 
   // link_4: wrench
   const Real t638 = t603 * par.m;
-  const Real t639 = t597 * par.k2;
+  const Real t639 = t597 * par.k3;
   const Real t640 = t638 - t639;
-  const Real t641 = t597 * par.k6;
-  const Real t642 = t603 * par.k2;
+  const Real t641 = t597 * par.k5;
+  const Real t642 = t603 * par.k3;
   const Real t643 = t641 - t642;
   const Real t644 = par.m * t606;
-  const Real t645 = par.k2 * t485;
+  const Real t645 = par.k3 * t485;
   const Real t646 = t644 + t645;
 
   // link_5: wrench
   const Real t647 = t612 * par.m;
-  const Real t648 = t613 * par.k2;
+  const Real t648 = t613 * par.k3;
   const Real t649 = t647 - t648;
-  const Real t650 = t613 * par.k6;
-  const Real t651 = t612 * par.k2;
+  const Real t650 = t613 * par.k5;
+  const Real t651 = t612 * par.k3;
   const Real t652 = t650 - t651;
   const Real t653 = par.m * t616;
-  const Real t654 = t498 * par.k2;
+  const Real t654 = t498 * par.k3;
   const Real t655 = t653 + t654;
 
   // link_5: joint force
   const Real t656 = t649 * c_r_a_3_;
   const Real t657 = s_r_a_3_ * t655;
   const Real t658 = t656 + t657;
-  const Real t659 = par.k3 * t658;
+  const Real t659 = par.k1 * t658;
   const Real t660 = t652 - t659;
   const Real t661 = t660 + t643;
   const Real t662 = t640 + t658;
@@ -3885,7 +3882,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t668 = c_r_a_2_ * t662;
   const Real t669 = t667 + t668;
   const Real t670 = t669 + t637;
-  const Real t671 = t669 * par.k3;
+  const Real t671 = t669 * par.k1;
   const Real t672 = t661 - t671;
   const Real t673 = t631 + t672;
   const Real t674 = c_r_a_2_ * t666;
@@ -3897,7 +3894,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t678 = t670 * c_r_a_1_;
   const Real t679 = s_r_a_1_ * t677;
   const Real t680 = t678 + t679;
-  const Real t681 = par.k3 * t680;
+  const Real t681 = par.k1 * t680;
   const Real t682 = t673 - t681;
   const Real t683 = t622 + t682;
   const Real t684 = c_r_a_1_ * t677;
@@ -3999,8 +3996,8 @@ inline void multipliers(const Prepared<Real>& par,
 }
 
 /// Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must vanish.
-/// route: kernel, compensated beyond 4 ulps
-/// operations: 904 add, 609 mul, 7 div, 23 neg, 4 sin, 4 cos
+/// route: kernel
+/// operations: 238 add, 320 mul, 3 div, 4 sin, 4 cos
 /// @param[in]  par                    made by prepare()
 /// @param[in]  r_a                    (4) rad or m: r1, r2, r3, r4
 /// @param[in]  r_a_dot                (4) rad/s or m/s: rates of r_a
@@ -4017,9 +4014,6 @@ inline void compatibility(const Prepared<Real>& par,
   using std::cos;
   using std::sin;
   using detail::constant;
-  using detail::product_error;
-  using detail::quotient_error;
-  using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
@@ -4059,7 +4053,7 @@ inline void compatibility(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t21 = c_r_a_1_ * t20;
-  const Real t22 = t19 + par.k3;
+  const Real t22 = t19 + par.k1;
   const Real t23 = t22 * s_r_a_1_;
   const Real t24 = t21 + t23;
   const Real t25 = s_r_a_1_ * t20;
@@ -4067,7 +4061,7 @@ inline void compatibility(const Prepared<Real>& par,
   const Real t27 = t25 - t26;
 
   // link_4: twist
-  const Real t28 = t27 - par.k3;
+  const Real t28 = t27 - par.k1;
   const Real t29 = c_r_a_2_ * t28;
   const Real t30 = s_r_a_2_ * t24;
   const Real t31 = t29 + t30;
@@ -4077,913 +4071,573 @@ inline void compatibility(const Prepared<Real>& par,
 
   // link_5: twist
   const Real t35 = t19 + par.a;
-  const Real t36 = -t35;
-  const Real t37 = t31 - par.a;
-  const Real t38 = t31 - par.k3;
-  const Real t39 = t38 * c_r_a_3_;
-  const Real t40 = s_r_a_3_ * t34;
-  const Real t41 = t39 - t40;
-  const Real t42 = t41 - par.a;
-  const Real t43 = t27 - par.a;
+  const Real t36 = t31 - par.a;
+  const Real t37 = t31 - par.k1;
+  const Real t38 = t37 * c_r_a_3_;
+  const Real t39 = s_r_a_3_ * t34;
+  const Real t40 = t38 - t39;
+  const Real t41 = t40 - par.a;
+  const Real t42 = t27 - par.a;
 
   // link_3: twist
-  const Real t44 = par.k3 * c_r_a_1_;
-  const Real t45 = par.k3 * s_r_a_1_;
+  const Real t43 = par.k1 * c_r_a_1_;
+  const Real t44 = par.k1 * s_r_a_1_;
 
   // link_4: twist
-  const Real t46 = s_r_a_2_ * t45;
-  const Real t47 = par.k3 + t44;
-  const Real t48 = c_r_a_2_ * t47;
-  const Real t49 = t46 - t48;
-  const Real t50 = c_r_a_2_ * t45;
-  const Real t51 = s_r_a_2_ * t47;
-  const Real t52 = t50 + t51;
+  const Real t45 = s_r_a_2_ * t44;
+  const Real t46 = par.k1 + t43;
+  const Real t47 = c_r_a_2_ * t46;
+  const Real t48 = t45 - t47;
+  const Real t49 = c_r_a_2_ * t44;
+  const Real t50 = s_r_a_2_ * t46;
+  const Real t51 = t49 + t50;
 
   // link_5: twist
-  const Real t53 = t49 - par.a;
-  const Real t54 = s_r_a_3_ * t52;
-  const Real t55 = t49 - par.k3;
-  const Real t56 = t55 * c_r_a_3_;
-  const Real t57 = t54 + t56;
-  const Real t58 = t57 - par.a;
-  const Real t59 = par.a + t44;
+  const Real t52 = t48 - par.a;
+  const Real t53 = s_r_a_3_ * t51;
+  const Real t54 = t48 - par.k1;
+  const Real t55 = t54 * c_r_a_3_;
+  const Real t56 = t53 + t55;
+  const Real t57 = t56 - par.a;
+  const Real t58 = par.a + t43;
 
   // link_4: twist
-  const Real t60 = par.k3 * s_r_a_2_;
-  const Real t61 = par.k3 * c_r_a_2_;
+  const Real t59 = par.k1 * s_r_a_2_;
+  const Real t60 = par.k1 * c_r_a_2_;
 
   // link_5: twist
-  const Real t62 = par.a + t61;
-  const Real t63 = s_r_a_3_ * t60;
-  const Real t64 = par.k3 + t61;
-  const Real t65 = t64 * c_r_a_3_;
-  const Real t66 = t63 - t65;
-  const Real t67 = t66 - par.a;
+  const Real t61 = par.a + t60;
+  const Real t62 = s_r_a_3_ * t59;
+  const Real t63 = par.k1 + t60;
+  const Real t64 = t63 * c_r_a_3_;
+  const Real t65 = t62 - t64;
+  const Real t66 = t65 - par.a;
 
   // link_5: twist
-  const Real t68 = par.k3 * c_r_a_3_;
-  const Real t69 = par.a + t68;
+  const Real t67 = par.k1 * c_r_a_3_;
+  const Real t68 = par.a + t67;
 
   // kernel
-  const Real t70 = t3 * t59;
-  const Real t71 = t70 + t20;
-  const Real t72 = t9 * t37;
-  const Real t73 = -t72;
-  const Real t74 = s_r_a_0_ * s_r_a_0_;
-  const Real t75 = t3 * t3;
-  const Real t76 = t74 + t75;
-  const Real t77 = t9 * t9;
-  const Real t78 = t76 + t77;
-  const Real t79 = t18 * t18;
-  const Real t80 = t78 + t79;
-  const Real t81 = constant<Real>(1.0L) / t80;
-  const Real t82 = par.a * t18;
-  const Real t83 = t81 * t82;
-  const Real t84 = t35 * s_r_a_0_;
-  const Real t85 = t3 * t43;
-  const Real t86 = t84 - t85;
-  const Real t87 = t86 - t72;
-  const Real t88 = t42 * t18;
-  const Real t89 = t87 - t88;
-  const Real t90 = t81 * t89;
-  const Real t91 = t90 * t18;
-  const Real t92 = t42 + t91;
-  const Real t93 = t90 * t3;
-  const Real t94 = t93 + t43;
-  const Real t95 = t81 * t18;
-  const Real t96 = t3 * t95;
-  const Real t97 = t58 * t18;
-  const Real t98 = t9 * t95;
-  const Real t99 = t9 * t81;
-  const Real t100 = t99 * t18;
-  const Real t101 = par.a * t9;
-  const Real t102 = t69 * t18;
-  const Real t103 = t101 + t102;
-  const Real t104 = t103 * t81;
-  const Real t105 = t95 * t18;
-  const Real t106 = constant<Real>(1.0L) - t105;
-  const Real t107 = s_r_a_0_ * t95;
-  const Real t108 = t9 * t99;
-  const Real t109 = s_r_a_0_ * t99;
-  const Real t110 = t90 * t9;
-  const Real t111 = t110 + t37;
-  const Real t112 = t15 * t18;
-  const Real t113 = t9 * t12;
-  const Real t114 = c_r_a_0_ * s_r_a_0_;
-  const Real t115 = t3 * t6;
-  const Real t116 = t114 + t115;
-  const Real t117 = t113 + t116;
-  const Real t118 = t112 + t117;
-  const Real t119 = t118 * t81;
-  const Real t120 = t9 * t62;
-  const Real t121 = par.a * t3;
-  const Real t122 = t120 + t121;
-  const Real t123 = t67 * t18;
+  const Real t69 = s_r_a_0_ * s_r_a_0_;
+  const Real t70 = t3 * t3;
+  const Real t71 = t69 + t70;
+  const Real t72 = t9 * t9;
+  const Real t73 = t71 + t72;
+  const Real t74 = t18 * t18;
+  const Real t75 = t73 + t74;
+  const Real t76 = constant<Real>(1.0L) / t75;
+  const Real t77 = t9 * t76;
+  const Real t78 = t9 * t77;
+  const Real t79 = constant<Real>(1.0L) - t78;
+  const Real t80 = t15 * t18;
+  const Real t81 = t9 * t12;
+  const Real t82 = c_r_a_0_ * s_r_a_0_;
+  const Real t83 = t3 * t6;
+  const Real t84 = t82 + t83;
+  const Real t85 = t81 + t84;
+  const Real t86 = t80 + t85;
+  const Real t87 = t86 * t76;
+  const Real t88 = t9 * t87;
+  const Real t89 = t12 - t88;
+  const Real t90 = t89 * t89;
+  const Real t91 = s_r_a_0_ * t87;
+  const Real t92 = c_r_a_0_ - t91;
+  const Real t93 = t92 * t92;
+  const Real t94 = constant<Real>(1.0L) + t93;
+  const Real t95 = t3 * t87;
+  const Real t96 = t6 - t95;
+  const Real t97 = t96 * t96;
+  const Real t98 = t94 + t97;
+  const Real t99 = t90 + t98;
+  const Real t100 = t87 * t18;
+  const Real t101 = t15 - t100;
+  const Real t102 = t101 * t101;
+  const Real t103 = t99 + t102;
+  const Real t104 = constant<Real>(1.0L) / t103;
+  const Real t105 = t89 * t79;
+  const Real t106 = t77 * t3;
+  const Real t107 = t96 * t106;
+  const Real t108 = s_r_a_0_ * t77;
+  const Real t109 = t108 * t92;
+  const Real t110 = t107 + t109;
+  const Real t111 = t105 - t110;
+  const Real t112 = t77 * t18;
+  const Real t113 = t112 * t101;
+  const Real t114 = t111 - t113;
+  const Real t115 = t104 * t114;
+  const Real t116 = t115 * t89;
+  const Real t117 = t79 - t116;
+  const Real t118 = t35 * s_r_a_0_;
+  const Real t119 = t3 * t42;
+  const Real t120 = t118 - t119;
+  const Real t121 = t9 * t36;
+  const Real t122 = t120 - t121;
+  const Real t123 = t41 * t18;
   const Real t124 = t122 - t123;
-  const Real t125 = t81 * t124;
-  const Real t126 = -t88;
-  const Real t127 = t9 * t53;
-  const Real t128 = -t85;
-  const Real t129 = t90 * s_r_a_0_;
-  const Real t130 = t129 - t35;
-  const Real t131 = t99 * t3;
+  const Real t125 = t76 * t124;
+  const Real t126 = t125 * t9;
+  const Real t127 = t126 + t36;
+  const Real t128 = t125 * t3;
+  const Real t129 = t128 + t42;
+  const Real t130 = t129 * t96;
+  const Real t131 = t125 * s_r_a_0_;
+  const Real t132 = t131 - t35;
+  const Real t133 = t92 * t132;
+  const Real t134 = t130 + t133;
+  const Real t135 = t89 * t127;
+  const Real t136 = t134 + t135;
+  const Real t137 = t125 * t18;
+  const Real t138 = t41 + t137;
+  const Real t139 = t138 * t101;
+  const Real t140 = t136 + t139;
+  const Real t141 = t104 * t140;
+  const Real t142 = t141 * t89;
+  const Real t143 = t127 - t142;
+  const Real t144 = t141 * t92;
+  const Real t145 = t132 - t144;
+  const Real t146 = t145 * t145;
+  const Real t147 = t141 * t141;
+  const Real t148 = t146 + t147;
+  const Real t149 = t141 * t96;
+  const Real t150 = t129 - t149;
+  const Real t151 = t150 * t150;
+  const Real t152 = t148 + t151;
+  const Real t153 = t143 * t143;
+  const Real t154 = t152 + t153;
+  const Real t155 = t141 * t101;
+  const Real t156 = t138 - t155;
+  const Real t157 = t156 * t156;
+  const Real t158 = t154 + t157;
+  const Real t159 = constant<Real>(1.0L) / t158;
+  const Real t160 = t141 * t115;
+  const Real t161 = t115 * t92;
+  const Real t162 = t108 + t161;
+  const Real t163 = t145 * t162;
+  const Real t164 = t160 - t163;
+  const Real t165 = t96 * t115;
+  const Real t166 = t165 + t106;
+  const Real t167 = t150 * t166;
+  const Real t168 = t164 - t167;
+  const Real t169 = t143 * t117;
+  const Real t170 = t168 + t169;
+  const Real t171 = t115 * t101;
+  const Real t172 = t171 + t112;
+  const Real t173 = t172 * t156;
+  const Real t174 = t170 - t173;
+  const Real t175 = t159 * t174;
+  const Real t176 = t143 * t175;
+  const Real t177 = t117 - t176;
+  const Real t178 = t156 * t175;
+  const Real t179 = t172 + t178;
+  const Real t180 = t150 * t175;
+  const Real t181 = t180 + t166;
+  const Real t182 = par.a * t18;
+  const Real t183 = t76 * t182;
+  const Real t184 = t183 * t9;
+  const Real t185 = t183 * t18;
+  const Real t186 = t185 - par.a;
+  const Real t187 = t186 * t101;
+  const Real t188 = t183 * s_r_a_0_;
+  const Real t189 = t188 * t92;
+  const Real t190 = t183 * t3;
+  const Real t191 = t96 * t190;
+  const Real t192 = t189 + t191;
+  const Real t193 = t184 * t89;
+  const Real t194 = t192 + t193;
+  const Real t195 = t187 + t194;
+  const Real t196 = t104 * t195;
+  const Real t197 = t196 * t89;
+  const Real t198 = t184 - t197;
+  const Real t199 = t143 * t198;
+  const Real t200 = t196 * t96;
+  const Real t201 = t190 - t200;
+  const Real t202 = t150 * t201;
+  const Real t203 = t196 * t92;
+  const Real t204 = t188 - t203;
+  const Real t205 = t204 * t145;
+  const Real t206 = t141 * t196;
+  const Real t207 = t205 + t206;
+  const Real t208 = t202 + t207;
+  const Real t209 = t199 + t208;
+  const Real t210 = t196 * t101;
+  const Real t211 = t186 - t210;
+  const Real t212 = t156 * t211;
+  const Real t213 = t209 + t212;
+  const Real t214 = t159 * t213;
+  const Real t215 = t141 * t214;
+  const Real t216 = t215 - t196;
+  const Real t217 = t216 * r_a_dot[3];
+  const Real t218 = t9 * t61;
+  const Real t219 = par.a * t3;
+  const Real t220 = t218 + t219;
+  const Real t221 = t66 * t18;
+  const Real t222 = t220 - t221;
+  const Real t223 = t76 * t222;
+  const Real t224 = t223 * t18;
+  const Real t225 = t224 + t66;
+  const Real t226 = t225 * t101;
+  const Real t227 = t9 * t223;
+  const Real t228 = t227 - t61;
+  const Real t229 = t228 * t89;
+  const Real t230 = s_r_a_0_ * t223;
+  const Real t231 = t92 * t230;
+  const Real t232 = t3 * t223;
+  const Real t233 = t232 - par.a;
+  const Real t234 = t96 * t233;
+  const Real t235 = t231 + t234;
+  const Real t236 = t229 + t235;
+  const Real t237 = t226 + t236;
+  const Real t238 = t104 * t237;
+  const Real t239 = t238 * t101;
+  const Real t240 = t225 - t239;
+  const Real t241 = t156 * t240;
+  const Real t242 = t96 * t238;
+  const Real t243 = t233 - t242;
+  const Real t244 = t150 * t243;
+  const Real t245 = t238 * t92;
+  const Real t246 = t230 - t245;
+  const Real t247 = t246 * t145;
+  const Real t248 = t141 * t238;
+  const Real t249 = t247 + t248;
+  const Real t250 = t244 + t249;
+  const Real t251 = t238 * t89;
+  const Real t252 = t228 - t251;
+  const Real t253 = t252 * t143;
+  const Real t254 = t250 + t253;
+  const Real t255 = t241 + t254;
+  const Real t256 = t159 * t255;
+  const Real t257 = t141 * t256;
+  const Real t258 = t257 - t238;
+  const Real t259 = r_a_dot[1] * t258;
+  const Real t260 = t3 * t58;
+  const Real t261 = t260 + t20;
+  const Real t262 = t9 * t52;
+  const Real t263 = t261 - t262;
+  const Real t264 = t57 * t18;
+  const Real t265 = t263 - t264;
+  const Real t266 = t265 * t76;
+  const Real t267 = t266 * t18;
+  const Real t268 = t57 + t267;
+  const Real t269 = t266 * t3;
+  const Real t270 = t269 - t58;
+  const Real t271 = t96 * t270;
+  const Real t272 = s_r_a_0_ * t266;
+  const Real t273 = t272 - par.a;
+  const Real t274 = t273 * t92;
+  const Real t275 = t271 + t274;
+  const Real t276 = t9 * t266;
+  const Real t277 = t52 + t276;
+  const Real t278 = t277 * t89;
+  const Real t279 = t275 + t278;
+  const Real t280 = t268 * t101;
+  const Real t281 = t279 + t280;
+  const Real t282 = t104 * t281;
+  const Real t283 = t282 * t101;
+  const Real t284 = t268 - t283;
+  const Real t285 = t156 * t284;
+  const Real t286 = t282 * t96;
+  const Real t287 = t270 - t286;
+  const Real t288 = t287 * t150;
+  const Real t289 = t282 * t92;
+  const Real t290 = t273 - t289;
+  const Real t291 = t145 * t290;
+  const Real t292 = t141 * t282;
+  const Real t293 = t291 + t292;
+  const Real t294 = t288 + t293;
+  const Real t295 = t282 * t89;
+  const Real t296 = t277 - t295;
+  const Real t297 = t296 * t143;
+  const Real t298 = t294 + t297;
+  const Real t299 = t285 + t298;
+  const Real t300 = t299 * t159;
+  const Real t301 = t141 * t300;
+  const Real t302 = t301 - t282;
+  const Real t303 = t302 * r_a_dot[0];
+  const Real t304 = t259 + t303;
+  const Real t305 = par.a * t9;
+  const Real t306 = t68 * t18;
+  const Real t307 = t305 + t306;
+  const Real t308 = t307 * t76;
+  const Real t309 = t9 * t308;
+  const Real t310 = t309 - par.a;
+  const Real t311 = t308 * t18;
+  const Real t312 = t311 - t68;
+  const Real t313 = t312 * t101;
+  const Real t314 = t308 * t3;
+  const Real t315 = t314 * t96;
+  const Real t316 = s_r_a_0_ * t308;
+  const Real t317 = t92 * t316;
+  const Real t318 = t315 + t317;
+  const Real t319 = t310 * t89;
+  const Real t320 = t318 + t319;
+  const Real t321 = t313 + t320;
+  const Real t322 = t104 * t321;
+  const Real t323 = t89 * t322;
+  const Real t324 = t310 - t323;
+  const Real t325 = t143 * t324;
+  const Real t326 = t141 * t322;
+  const Real t327 = t92 * t322;
+  const Real t328 = t316 - t327;
+  const Real t329 = t328 * t145;
+  const Real t330 = t326 + t329;
+  const Real t331 = t96 * t322;
+  const Real t332 = t314 - t331;
+  const Real t333 = t150 * t332;
+  const Real t334 = t330 + t333;
+  const Real t335 = t325 + t334;
+  const Real t336 = t322 * t101;
+  const Real t337 = t312 - t336;
+  const Real t338 = t156 * t337;
+  const Real t339 = t335 + t338;
+  const Real t340 = t339 * t159;
+  const Real t341 = t141 * t340;
+  const Real t342 = t341 - t322;
+  const Real t343 = r_a_dot[2] * t342;
+  const Real t344 = t304 + t343;
+  const Real t345 = t217 + t344;
+  const Real t346 = t76 * t18;
+  const Real t347 = t346 * t18;
+  const Real t348 = constant<Real>(1.0L) - t347;
+  const Real t349 = t348 * t101;
+  const Real t350 = t9 * t346;
+  const Real t351 = t350 * t89;
+  const Real t352 = s_r_a_0_ * t346;
+  const Real t353 = t352 * t92;
+  const Real t354 = t3 * t346;
+  const Real t355 = t96 * t354;
+  const Real t356 = t353 + t355;
+  const Real t357 = t351 + t356;
+  const Real t358 = t349 - t357;
+  const Real t359 = t104 * t358;
+  const Real t360 = t359 * t101;
+  const Real t361 = t348 - t360;
+  const Real t362 = t156 * t361;
+  const Real t363 = t141 * t359;
+  const Real t364 = t359 * t92;
+  const Real t365 = t364 + t352;
+  const Real t366 = t365 * t145;
+  const Real t367 = t363 - t366;
+  const Real t368 = t96 * t359;
+  const Real t369 = t368 + t354;
+  const Real t370 = t369 * t150;
+  const Real t371 = t367 - t370;
+  const Real t372 = t359 * t89;
+  const Real t373 = t350 + t372;
+  const Real t374 = t373 * t143;
+  const Real t375 = t371 - t374;
+  const Real t376 = t362 + t375;
+  const Real t377 = t159 * t376;
+  const Real t378 = t156 * t377;
+  const Real t379 = t361 - t378;
+  const Real t380 = t175 * t145;
+  const Real t381 = t380 + t162;
+  const Real t382 = t143 * t377;
+  const Real t383 = t373 + t382;
+  const Real t384 = r_a_dot[3] * t214;
+  const Real t385 = t340 * r_a_dot[2];
+  const Real t386 = t300 * r_a_dot[0];
+  const Real t387 = r_a_dot[1] * t256;
+  const Real t388 = t386 + t387;
+  const Real t389 = t385 + t388;
+  const Real t390 = t384 + t389;
+  const Real t391 = t125 * t214;
+  const Real t392 = t196 - t215;
+  const Real t393 = t392 * t87;
+  const Real t394 = t183 + t393;
+  const Real t395 = t391 - t394;
+  const Real t396 = t395 * r_a_dot[3];
+  const Real t397 = t125 * t300;
+  const Real t398 = t282 - t301;
+  const Real t399 = t398 * t87;
+  const Real t400 = t266 + t399;
+  const Real t401 = t397 - t400;
+  const Real t402 = t401 * r_a_dot[0];
+  const Real t403 = t125 * t256;
+  const Real t404 = t238 - t257;
+  const Real t405 = t87 * t404;
+  const Real t406 = t223 + t405;
+  const Real t407 = t403 - t406;
+  const Real t408 = t407 * r_a_dot[1];
+  const Real t409 = t402 + t408;
+  const Real t410 = t340 * t125;
+  const Real t411 = t322 - t341;
+  const Real t412 = t411 * t87;
+  const Real t413 = t412 + t308;
+  const Real t414 = t410 - t413;
+  const Real t415 = r_a_dot[2] * t414;
+  const Real t416 = t409 + t415;
+  const Real t417 = t396 + t416;
+  const Real t418 = t377 * t145;
+  const Real t419 = t365 + t418;
+  const Real t420 = t150 * t377;
+  const Real t421 = t369 + t420;
 
-  // torques
-  const Real t132 = product_error(t81, t89);
-  const Real t133 = sum_error(t87, t126);
+  // link_2: twist
+  const Real t422 = r_a_dot[0] - t390;
+  const Real t423 = par.a * t390;
+  const Real t424 = t345 + t423;
+  const Real t425 = t424 * c_r_a_0_;
+  const Real t426 = s_r_a_0_ * t417;
+  const Real t427 = t425 - t426;
+  const Real t428 = t424 * s_r_a_0_;
+  const Real t429 = c_r_a_0_ * t417;
+  const Real t430 = t428 + t429;
 
-  // compatibility
-  const Real t134 = r_a_ddot[0] * t58;
-  const Real t135 = par.a * r_a_ddot[1];
-  const Real t136 = r_a_ddot[0] * t59;
-  const Real t137 = t135 + t136;
-  const Real t138 = r_a_ddot[2] * t69;
-  const Real t139 = par.a * r_a_dot[2];
-  const Real t140 = -t139;
-  const Real t141 = r_a_ddot[0] * t53;
-  const Real t142 = par.a * r_a_ddot[2];
-  const Real t143 = -t142;
-  const Real t144 = t62 * r_a_dot[1];
-  const Real t145 = -t144;
-  const Real t146 = par.a * r_a_ddot[3];
-  const Real t147 = -t146;
-  const Real t148 = par.a * r_a_ddot[0];
-  const Real t149 = r_a_dot[1] * t67;
-  const Real t150 = t58 * r_a_dot[0];
-  const Real t151 = t149 + t150;
-  const Real t152 = r_a_dot[2] * t69;
-  const Real t153 = t151 - t152;
-  const Real t154 = par.a * r_a_dot[3];
-  const Real t155 = t153 - t154;
-  const Real t156 = r_a_ddot[1] * t67;
-  const Real t157 = par.a * r_a_dot[1];
-  const Real t158 = r_a_dot[0] * t59;
-  const Real t159 = t157 + t158;
-  const Real t160 = par.a * r_a_dot[0];
-  const Real t161 = t62 * r_a_ddot[1];
-  const Real t162 = -t161;
-  const Real t163 = -t152;
-  const Real t164 = t53 * r_a_dot[0];
-  const Real t165 = t164 - t144;
-  const Real t166 = t165 - t139;
-  const Real t167 = -t154;
+  // link_3: twist
+  const Real t431 = t422 + r_a_dot[1];
+  const Real t432 = t422 * par.k1;
+  const Real t433 = t427 - t432;
+  const Real t434 = c_r_a_1_ * t433;
+  const Real t435 = s_r_a_1_ * t430;
+  const Real t436 = t434 - t435;
+  const Real t437 = s_r_a_1_ * t433;
+  const Real t438 = c_r_a_1_ * t430;
+  const Real t439 = t437 + t438;
+
+  // link_4: twist
+  const Real t440 = r_a_dot[2] + t431;
+  const Real t441 = c_r_a_2_ * t439;
+  const Real t442 = par.k1 * t431;
+  const Real t443 = t436 - t442;
+  const Real t444 = s_r_a_2_ * t443;
+  const Real t445 = t441 + t444;
+  const Real t446 = c_r_a_2_ * t443;
+  const Real t447 = s_r_a_2_ * t439;
+  const Real t448 = t446 - t447;
+
+  // link_5: twist
+  const Real t449 = t440 + r_a_dot[3];
+  const Real t450 = t445 * c_r_a_3_;
+  const Real t451 = par.k1 * t440;
+  const Real t452 = t448 - t451;
+  const Real t453 = t452 * s_r_a_3_;
+  const Real t454 = t450 + t453;
+
+  // link_1: acceleration
+  const Real t455 = t390 * t390;
+  const Real t456 = t390 * t417;
+  const Real t457 = t345 * t390;
+
+  // link_2: acceleration
+  const Real t458 = c_r_a_0_ * t456;
+  const Real t459 = t455 * par.a;
+  const Real t460 = t459 + t457;
+  const Real t461 = t460 * s_r_a_0_;
+  const Real t462 = t458 + t461;
+  const Real t463 = t422 * t422;
+  const Real t464 = t460 * c_r_a_0_;
+  const Real t465 = t456 * s_r_a_0_;
+  const Real t466 = t464 - t465;
+
+  // link_3: acceleration
+  const Real t467 = t431 * t431;
+  const Real t468 = par.k1 * t463;
+  const Real t469 = t468 + t466;
+  const Real t470 = t469 * c_r_a_1_;
+  const Real t471 = t462 * s_r_a_1_;
+  const Real t472 = t470 - t471;
+  const Real t473 = t462 * c_r_a_1_;
+  const Real t474 = t469 * s_r_a_1_;
+  const Real t475 = t473 + t474;
+
+  // link_4: acceleration
+  const Real t476 = par.k1 * t467;
+  const Real t477 = t472 + t476;
+  const Real t478 = s_r_a_2_ * t477;
+  const Real t479 = c_r_a_2_ * t475;
+  const Real t480 = t478 + t479;
+  const Real t481 = t440 * t440;
+  const Real t482 = t477 * c_r_a_2_;
+  const Real t483 = s_r_a_2_ * t475;
+  const Real t484 = t482 - t483;
 
   // link_5: acceleration
-  const Real t168 = quotient_error(constant<Real>(1.0L), t80);
-  const Real t169 = product_error(t9, t9);
-  const Real t170 = sum_error(t74, t75);
-  const Real t171 = product_error(t3, t3);
-  const Real t172 = t170 + t171;
-  const Real t173 = t169 + t172;
-  const Real t174 = sum_error(t76, t77);
-  const Real t175 = t173 + t174;
-  const Real t176 = product_error(t18, t18);
-  const Real t177 = t175 + t176;
-  const Real t178 = sum_error(t78, t79);
-  const Real t179 = t177 + t178;
-  const Real t180 = t179 * t81;
-  const Real t181 = t180 / t80;
-  const Real t182 = t168 - t181;
-  const Real t183 = t182 * t18;
-  const Real t184 = product_error(t81, t18);
-  const Real t185 = t183 + t184;
-  const Real t186 = t185 * t3;
-  const Real t187 = t186 + t96;
-  const Real t188 = t118 * t182;
-  const Real t189 = t188 + t119;
-  const Real t190 = t189 * t3;
-  const Real t191 = t6 - t190;
-  const Real t192 = t191 * t191;
-  const Real t193 = s_r_a_0_ * t189;
-  const Real t194 = c_r_a_0_ - t193;
-  const Real t195 = t194 * t194;
-  const Real t196 = t195 + constant<Real>(1.0L);
-  const Real t197 = t192 + t196;
-  const Real t198 = t9 * t189;
-  const Real t199 = t12 - t198;
-  const Real t200 = t199 * t199;
-  const Real t201 = t197 + t200;
-  const Real t202 = t189 * t18;
-  const Real t203 = t15 - t202;
-  const Real t204 = t203 * t203;
-  const Real t205 = t201 + t204;
-  const Real t206 = constant<Real>(1.0L) / t205;
-  const Real t207 = -t105;
-  const Real t208 = sum_error(constant<Real>(1.0L), t207);
-  const Real t209 = t185 * t18;
-  const Real t210 = product_error(t95, t18);
-  const Real t211 = t209 + t210;
-  const Real t212 = t208 - t211;
-  const Real t213 = t212 * t203;
-  const Real t214 = t106 * t203;
-  const Real t215 = t213 + t214;
-  const Real t216 = t187 * t191;
-  const Real t217 = t185 * s_r_a_0_;
-  const Real t218 = t217 + t107;
-  const Real t219 = t218 * t194;
-  const Real t220 = t216 + t219;
-  const Real t221 = t185 * t9;
-  const Real t222 = t98 + t221;
-  const Real t223 = t199 * t222;
-  const Real t224 = t220 + t223;
-  const Real t225 = t215 - t224;
-  const Real t226 = t206 * t225;
-  const Real t227 = t191 * t226;
-  const Real t228 = t187 + t227;
-  const Real t229 = t92 * t203;
-  const Real t230 = sum_error(t41, par.k1);
-  const Real t231 = -t40;
-  const Real t232 = sum_error(t39, t231);
-  const Real t233 = product_error(t38, c_r_a_3_);
-  const Real t234 = sum_error(t31, par.k4);
-  const Real t235 = t234 * c_r_a_3_;
-  const Real t236 = t233 + t235;
-  const Real t237 = t232 + t236;
-  const Real t238 = t230 + t237;
-  const Real t239 = t182 * t89;
-  const Real t240 = sum_error(t86, t73);
-  const Real t241 = sum_error(t84, t128);
-  const Real t242 = product_error(t3, t43);
-  const Real t243 = t241 - t242;
-  const Real t244 = product_error(t9, t37);
-  const Real t245 = sum_error(t31, par.k1);
-  const Real t246 = t9 * t245;
-  const Real t247 = t244 + t246;
-  const Real t248 = t243 - t247;
-  const Real t249 = t240 + t248;
-  const Real t250 = t238 * t18;
-  const Real t251 = product_error(t42, t18);
-  const Real t252 = t250 + t251;
-  const Real t253 = t249 - t252;
-  const Real t254 = t133 + t253;
-  const Real t255 = t254 * t81;
-  const Real t256 = t239 + t255;
-  const Real t257 = t132 + t256;
-  const Real t258 = t257 * t18;
-  const Real t259 = product_error(t90, t18);
-  const Real t260 = t258 + t259;
-  const Real t261 = t238 + t260;
-  const Real t262 = sum_error(t42, t91);
-  const Real t263 = t261 + t262;
-  const Real t264 = t203 * t263;
-  const Real t265 = t229 + t264;
-  const Real t266 = product_error(t90, t3);
-  const Real t267 = t257 * t3;
-  const Real t268 = t266 + t267;
-  const Real t269 = t268 + t94;
-  const Real t270 = t191 * t269;
-  const Real t271 = s_r_a_0_ * t257;
-  const Real t272 = product_error(t90, s_r_a_0_);
-  const Real t273 = t271 + t272;
-  const Real t274 = sum_error(t129, t36);
-  const Real t275 = t273 + t274;
-  const Real t276 = t194 * t275;
-  const Real t277 = t194 * t130;
-  const Real t278 = t276 + t277;
-  const Real t279 = t270 + t278;
-  const Real t280 = t9 * t257;
-  const Real t281 = product_error(t90, t9);
-  const Real t282 = t280 + t281;
-  const Real t283 = t245 + t282;
-  const Real t284 = t111 + t283;
-  const Real t285 = t199 * t284;
-  const Real t286 = t279 + t285;
-  const Real t287 = t265 + t286;
-  const Real t288 = t206 * t287;
-  const Real t289 = t288 * t203;
-  const Real t290 = sum_error(t286, t265);
-  const Real t291 = t206 * t290;
-  const Real t292 = product_error(t206, t287);
-  const Real t293 = t291 + t292;
-  const Real t294 = t293 * t203;
-  const Real t295 = t289 + t294;
-  const Real t296 = t92 - t295;
-  const Real t297 = -t295;
-  const Real t298 = sum_error(t92, t297);
-  const Real t299 = t298 + t263;
-  const Real t300 = t296 * t299;
-  const Real t301 = t300 * constant<Real>(2.0L);
-  const Real t302 = t296 * t296;
-  const Real t303 = t301 + t302;
-  const Real t304 = t194 * t288;
-  const Real t305 = t194 * t293;
-  const Real t306 = t304 + t305;
-  const Real t307 = -t306;
-  const Real t308 = sum_error(t130, t307);
-  const Real t309 = t308 + t275;
-  const Real t310 = t130 - t306;
-  const Real t311 = t309 * t310;
-  const Real t312 = t311 * constant<Real>(2.0L);
-  const Real t313 = t310 * t310;
-  const Real t314 = t312 + t313;
-  const Real t315 = t288 * t288;
-  const Real t316 = t288 * t293;
-  const Real t317 = t316 * constant<Real>(2.0L);
-  const Real t318 = t315 + t317;
-  const Real t319 = t314 + t318;
-  const Real t320 = t191 * t293;
-  const Real t321 = t191 * t288;
-  const Real t322 = t320 + t321;
-  const Real t323 = t269 - t322;
-  const Real t324 = t323 * t323;
-  const Real t325 = t319 + t324;
-  const Real t326 = t199 * t293;
-  const Real t327 = t199 * t288;
-  const Real t328 = t326 + t327;
-  const Real t329 = t284 - t328;
-  const Real t330 = t329 * t329;
-  const Real t331 = t325 + t330;
-  const Real t332 = t303 + t331;
-  const Real t333 = quotient_error(constant<Real>(1.0L), t332);
-  const Real t334 = constant<Real>(1.0L) / t332;
-  const Real t335 = sum_error(t331, t303);
-  const Real t336 = t334 * t335;
-  const Real t337 = t336 / t332;
-  const Real t338 = t333 - t337;
-  const Real t339 = t293 * t226;
-  const Real t340 = t288 * t226;
-  const Real t341 = t339 + t340;
-  const Real t342 = t194 * t226;
-  const Real t343 = t218 + t342;
-  const Real t344 = t343 * t310;
-  const Real t345 = t309 * t343;
-  const Real t346 = t344 + t345;
-  const Real t347 = t341 - t346;
-  const Real t348 = t228 * t323;
-  const Real t349 = t347 - t348;
-  const Real t350 = t199 * t226;
-  const Real t351 = t350 + t222;
-  const Real t352 = t329 * t351;
-  const Real t353 = t349 - t352;
-  const Real t354 = t203 * t226;
-  const Real t355 = t106 - t354;
-  const Real t356 = t296 * t355;
-  const Real t357 = t353 + t356;
-  const Real t358 = t338 * t357;
-  const Real t359 = sum_error(t356, t353);
-  const Real t360 = product_error(t296, t355);
-  const Real t361 = t299 * t355;
-  const Real t362 = -t354;
-  const Real t363 = sum_error(t106, t362);
-  const Real t364 = t212 + t363;
-  const Real t365 = t296 * t364;
-  const Real t366 = t361 + t365;
-  const Real t367 = t360 + t366;
-  const Real t368 = t359 + t367;
-  const Real t369 = t368 * t334;
-  const Real t370 = t358 + t369;
-  const Real t371 = product_error(t334, t357);
-  const Real t372 = t370 + t371;
-  const Real t373 = t372 * t323;
-  const Real t374 = t334 * t357;
-  const Real t375 = t374 * t323;
-  const Real t376 = t373 + t375;
-  const Real t377 = t228 + t376;
-  const Real t378 = t159 * t377;
-  const Real t379 = t309 * t374;
-  const Real t380 = t372 * t310;
-  const Real t381 = t379 + t380;
-  const Real t382 = t374 * t310;
-  const Real t383 = t381 + t382;
-  const Real t384 = t383 + t343;
-  const Real t385 = t384 * t160;
-  const Real t386 = t378 + t385;
-  const Real t387 = t329 * t372;
-  const Real t388 = t329 * t374;
-  const Real t389 = t387 + t388;
-  const Real t390 = t389 + t351;
-  const Real t391 = t390 * t166;
-  const Real t392 = t386 - t391;
-  const Real t393 = t296 * t374;
-  const Real t394 = t355 - t393;
-  const Real t395 = t155 * t394;
-  const Real t396 = t392 + t395;
-  const Real t397 = -t391;
-  const Real t398 = sum_error(t386, t397);
-  const Real t399 = product_error(t390, t166);
-  const Real t400 = sum_error(t351, t389);
-  const Real t401 = t400 * t166;
-  const Real t402 = sum_error(t49, par.k1);
-  const Real t403 = t402 * r_a_dot[0];
-  const Real t404 = product_error(t53, r_a_dot[0]);
-  const Real t405 = t403 + t404;
-  const Real t406 = sum_error(t164, t145);
-  const Real t407 = t405 + t406;
-  const Real t408 = sum_error(t165, t140);
-  const Real t409 = t407 + t408;
-  const Real t410 = t390 * t409;
-  const Real t411 = t401 + t410;
-  const Real t412 = t399 + t411;
-  const Real t413 = t398 - t412;
-  const Real t414 = product_error(t394, t155);
-  const Real t415 = sum_error(t153, t167);
-  const Real t416 = sum_error(t151, t163);
-  const Real t417 = sum_error(t149, t150);
-  const Real t418 = product_error(t58, r_a_dot[0]);
-  const Real t419 = sum_error(t57, par.k1);
-  const Real t420 = sum_error(t54, t56);
-  const Real t421 = sum_error(t49, par.k4);
-  const Real t422 = c_r_a_3_ * t421;
-  const Real t423 = product_error(t55, c_r_a_3_);
-  const Real t424 = t422 + t423;
-  const Real t425 = t420 + t424;
-  const Real t426 = t419 + t425;
-  const Real t427 = t426 * r_a_dot[0];
-  const Real t428 = t418 + t427;
-  const Real t429 = t417 + t428;
-  const Real t430 = t416 + t429;
-  const Real t431 = t415 + t430;
-  const Real t432 = t431 * t394;
-  const Real t433 = -t393;
-  const Real t434 = sum_error(t355, t433);
-  const Real t435 = product_error(t296, t374);
-  const Real t436 = t374 * t299;
-  const Real t437 = t296 * t372;
-  const Real t438 = t436 + t437;
-  const Real t439 = t435 + t438;
-  const Real t440 = t364 - t439;
-  const Real t441 = t434 + t440;
-  const Real t442 = t441 * t155;
-  const Real t443 = t432 + t442;
-  const Real t444 = t414 + t443;
-  const Real t445 = t413 + t444;
-  const Real t446 = t396 + t445;
-  const Real t447 = t9 * t182;
-  const Real t448 = product_error(t9, t81);
-  const Real t449 = t447 + t448;
-  const Real t450 = t449 * t9;
-  const Real t451 = t450 + t108;
-  const Real t452 = constant<Real>(1.0L) - t451;
-  const Real t453 = t199 * t452;
-  const Real t454 = -t451;
-  const Real t455 = sum_error(constant<Real>(1.0L), t454);
-  const Real t456 = t199 * t455;
-  const Real t457 = t453 + t456;
-  const Real t458 = t449 * s_r_a_0_;
-  const Real t459 = t109 + t458;
-  const Real t460 = t194 * t459;
-  const Real t461 = t449 * t3;
-  const Real t462 = t461 + t131;
-  const Real t463 = t191 * t462;
-  const Real t464 = t460 + t463;
-  const Real t465 = t457 - t464;
-  const Real t466 = t449 * t18;
-  const Real t467 = t466 + t100;
-  const Real t468 = t467 * t203;
-  const Real t469 = t465 - t468;
-  const Real t470 = t206 * t469;
-  const Real t471 = t199 * t470;
-  const Real t472 = t452 - t471;
-  const Real t473 = -t471;
-  const Real t474 = sum_error(t452, t473);
-  const Real t475 = t455 + t474;
-  const Real t476 = t329 * t475;
-  const Real t477 = t329 * t472;
-  const Real t478 = t476 + t477;
-  const Real t479 = t470 * t293;
-  const Real t480 = t470 * t288;
-  const Real t481 = t479 + t480;
-  const Real t482 = t194 * t470;
-  const Real t483 = t482 + t459;
-  const Real t484 = t309 * t483;
-  const Real t485 = t483 * t310;
-  const Real t486 = t484 + t485;
-  const Real t487 = t481 - t486;
-  const Real t488 = t470 * t191;
-  const Real t489 = t488 + t462;
-  const Real t490 = t489 * t323;
-  const Real t491 = t487 - t490;
-  const Real t492 = t478 + t491;
-  const Real t493 = t470 * t203;
-  const Real t494 = t467 + t493;
-  const Real t495 = t494 * t299;
-  const Real t496 = t296 * t494;
-  const Real t497 = t495 + t496;
-  const Real t498 = t492 - t497;
-  const Real t499 = t338 * t498;
-  const Real t500 = t498 * t334;
-  const Real t501 = t499 + t500;
-  const Real t502 = t329 * t501;
-  const Real t503 = -t502;
-  const Real t504 = sum_error(t472, t503);
-  const Real t505 = t504 + t475;
-  const Real t506 = t505 * t166;
-  const Real t507 = t472 - t502;
-  const Real t508 = t507 * t409;
-  const Real t509 = t506 + t508;
-  const Real t510 = product_error(t507, t166);
-  const Real t511 = t509 + t510;
-  const Real t512 = t501 * t310;
-  const Real t513 = t309 * t501;
-  const Real t514 = t512 + t513;
-  const Real t515 = t514 + t483;
-  const Real t516 = t515 * t160;
-  const Real t517 = t323 * t501;
-  const Real t518 = t517 + t489;
-  const Real t519 = t518 * t159;
-  const Real t520 = t516 + t519;
-  const Real t521 = t507 * t166;
-  const Real t522 = sum_error(t520, t521);
-  const Real t523 = t511 + t522;
-  const Real t524 = t501 * t299;
-  const Real t525 = t296 * t501;
-  const Real t526 = t524 + t525;
-  const Real t527 = t526 + t494;
-  const Real t528 = t527 * t431;
-  const Real t529 = sum_error(t494, t526);
-  const Real t530 = t529 * t155;
-  const Real t531 = t528 + t530;
-  const Real t532 = product_error(t527, t155);
-  const Real t533 = t531 + t532;
-  const Real t534 = t523 - t533;
-  const Real t535 = t520 + t521;
-  const Real t536 = t527 * t155;
-  const Real t537 = t535 - t536;
-  const Real t538 = t534 + t537;
-  const Real t539 = r_a_ddot[0] * t426;
-  const Real t540 = t134 + t539;
-  const Real t541 = sum_error(t540, t156);
-  const Real t542 = t540 + t156;
-  const Real t543 = t542 - t138;
-  const Real t544 = t541 + t543;
-  const Real t545 = t544 - t146;
-  const Real t546 = t182 * t103;
-  const Real t547 = t546 + t104;
-  const Real t548 = t547 * t18;
-  const Real t549 = t548 - t69;
-  const Real t550 = t549 * t203;
-  const Real t551 = t547 * t9;
-  const Real t552 = t551 - par.a;
-  const Real t553 = t199 * t552;
-  const Real t554 = t547 * s_r_a_0_;
-  const Real t555 = t194 * t554;
-  const Real t556 = t547 * t3;
-  const Real t557 = t191 * t556;
-  const Real t558 = t555 + t557;
-  const Real t559 = t553 + t558;
-  const Real t560 = t550 + t559;
-  const Real t561 = t206 * t560;
-  const Real t562 = t561 * t203;
-  const Real t563 = t549 - t562;
-  const Real t564 = t296 * t563;
-  const Real t565 = t563 * t299;
-  const Real t566 = t564 + t565;
-  const Real t567 = t199 * t561;
-  const Real t568 = t552 - t567;
-  const Real t569 = t568 * t329;
-  const Real t570 = t191 * t561;
-  const Real t571 = t556 - t570;
-  const Real t572 = t571 * t323;
-  const Real t573 = t561 * t293;
-  const Real t574 = t288 * t561;
-  const Real t575 = t573 + t574;
-  const Real t576 = t194 * t561;
-  const Real t577 = t554 - t576;
-  const Real t578 = t309 * t577;
-  const Real t579 = t577 * t310;
-  const Real t580 = t578 + t579;
-  const Real t581 = t575 + t580;
-  const Real t582 = t572 + t581;
-  const Real t583 = t569 + t582;
-  const Real t584 = t566 + t583;
-  const Real t585 = t338 * t584;
-  const Real t586 = t584 * t334;
-  const Real t587 = t585 + t586;
-  const Real t588 = r_a_dot[2] * t587;
-  const Real t589 = t182 * t124;
-  const Real t590 = t125 + t589;
-  const Real t591 = t9 * t590;
-  const Real t592 = t591 - t62;
-  const Real t593 = t590 * t18;
-  const Real t594 = t593 + t67;
-  const Real t595 = t594 * t203;
-  const Real t596 = t3 * t590;
-  const Real t597 = t596 - par.a;
-  const Real t598 = t597 * t191;
-  const Real t599 = s_r_a_0_ * t590;
-  const Real t600 = t194 * t599;
-  const Real t601 = t598 + t600;
-  const Real t602 = t199 * t592;
-  const Real t603 = t601 + t602;
-  const Real t604 = t595 + t603;
-  const Real t605 = t604 * t206;
-  const Real t606 = t199 * t605;
-  const Real t607 = t592 - t606;
-  const Real t608 = t329 * t607;
-  const Real t609 = t194 * t605;
-  const Real t610 = t599 - t609;
-  const Real t611 = t309 * t610;
-  const Real t612 = t610 * t310;
-  const Real t613 = t611 + t612;
-  const Real t614 = t605 * t293;
-  const Real t615 = t605 * t288;
-  const Real t616 = t614 + t615;
-  const Real t617 = t613 + t616;
-  const Real t618 = t605 * t191;
-  const Real t619 = t597 - t618;
-  const Real t620 = t619 * t323;
-  const Real t621 = t617 + t620;
-  const Real t622 = t608 + t621;
-  const Real t623 = t605 * t203;
-  const Real t624 = t594 - t623;
-  const Real t625 = t624 * t299;
-  const Real t626 = t296 * t624;
-  const Real t627 = t625 + t626;
-  const Real t628 = t622 + t627;
-  const Real t629 = t334 * t628;
-  const Real t630 = t338 * t628;
-  const Real t631 = t629 + t630;
-  const Real t632 = t631 * r_a_dot[1];
-  const Real t633 = t402 * t9;
-  const Real t634 = t633 + t127;
-  const Real t635 = t71 - t634;
-  const Real t636 = t426 * t18;
-  const Real t637 = t636 + t97;
-  const Real t638 = t635 - t637;
-  const Real t639 = t638 * t81;
-  const Real t640 = t182 * t638;
-  const Real t641 = t639 + t640;
-  const Real t642 = t641 * t18;
-  const Real t643 = t642 + t58;
-  const Real t644 = t426 + t643;
-  const Real t645 = s_r_a_0_ * t641;
-  const Real t646 = t645 - par.a;
-  const Real t647 = t194 * t646;
-  const Real t648 = t641 * t3;
-  const Real t649 = t648 - t59;
-  const Real t650 = t191 * t649;
-  const Real t651 = t647 + t650;
-  const Real t652 = t9 * t641;
-  const Real t653 = t53 + t652;
-  const Real t654 = t402 + t653;
-  const Real t655 = t199 * t654;
-  const Real t656 = t651 + t655;
-  const Real t657 = t203 * t644;
-  const Real t658 = t656 + t657;
-  const Real t659 = t206 * t658;
-  const Real t660 = t659 * t203;
-  const Real t661 = t644 - t660;
-  const Real t662 = t296 * t661;
-  const Real t663 = t661 * t299;
-  const Real t664 = t662 + t663;
-  const Real t665 = t194 * t659;
-  const Real t666 = t646 - t665;
-  const Real t667 = t666 * t310;
-  const Real t668 = t309 * t666;
-  const Real t669 = t667 + t668;
-  const Real t670 = t659 * t288;
-  const Real t671 = t659 * t293;
-  const Real t672 = t670 + t671;
-  const Real t673 = t669 + t672;
-  const Real t674 = t191 * t659;
-  const Real t675 = t649 - t674;
-  const Real t676 = t675 * t323;
-  const Real t677 = t673 + t676;
-  const Real t678 = t199 * t659;
-  const Real t679 = t654 - t678;
-  const Real t680 = t329 * t679;
-  const Real t681 = t677 + t680;
-  const Real t682 = t664 + t681;
-  const Real t683 = t334 * t682;
-  const Real t684 = t338 * t682;
-  const Real t685 = t683 + t684;
-  const Real t686 = t685 * r_a_dot[0];
-  const Real t687 = t632 + t686;
-  const Real t688 = t588 + t687;
-  const Real t689 = t182 * t82;
-  const Real t690 = t83 + t689;
-  const Real t691 = t9 * t690;
-  const Real t692 = t199 * t691;
-  const Real t693 = t690 * s_r_a_0_;
-  const Real t694 = t194 * t693;
-  const Real t695 = t690 * t3;
-  const Real t696 = t191 * t695;
-  const Real t697 = t694 + t696;
-  const Real t698 = t692 + t697;
-  const Real t699 = t690 * t18;
-  const Real t700 = t699 - par.a;
-  const Real t701 = t700 * t203;
-  const Real t702 = t698 + t701;
-  const Real t703 = t702 * t206;
-  const Real t704 = t199 * t703;
-  const Real t705 = t691 - t704;
-  const Real t706 = t329 * t705;
-  const Real t707 = t703 * t293;
-  const Real t708 = t288 * t703;
-  const Real t709 = t707 + t708;
-  const Real t710 = t194 * t703;
-  const Real t711 = t693 - t710;
-  const Real t712 = t309 * t711;
-  const Real t713 = t711 * t310;
-  const Real t714 = t712 + t713;
-  const Real t715 = t709 + t714;
-  const Real t716 = t191 * t703;
-  const Real t717 = t695 - t716;
-  const Real t718 = t717 * t323;
-  const Real t719 = t715 + t718;
-  const Real t720 = t706 + t719;
-  const Real t721 = t703 * t203;
-  const Real t722 = t700 - t721;
-  const Real t723 = t722 * t299;
-  const Real t724 = t722 * t296;
-  const Real t725 = t723 + t724;
-  const Real t726 = t720 + t725;
-  const Real t727 = t726 * t334;
-  const Real t728 = t338 * t726;
-  const Real t729 = t727 + t728;
-  const Real t730 = t729 * r_a_dot[3];
-  const Real t731 = t688 + t730;
-  const Real t732 = r_a_dot[0] - t731;
-  const Real t733 = r_a_dot[1] + t732;
-  const Real t734 = r_a_dot[2] + t733;
-  const Real t735 = r_a_dot[3] + t734;
-  const Real t736 = t729 * t288;
-  const Real t737 = t729 * t293;
-  const Real t738 = t736 + t737;
-  const Real t739 = t738 - t703;
-  const Real t740 = t739 * r_a_dot[3];
-  const Real t741 = t685 * t288;
-  const Real t742 = t685 * t293;
-  const Real t743 = t741 + t742;
-  const Real t744 = t743 - t659;
-  const Real t745 = t744 * r_a_dot[0];
-  const Real t746 = t631 * t288;
-  const Real t747 = t631 * t293;
-  const Real t748 = t746 + t747;
-  const Real t749 = t748 - t605;
-  const Real t750 = t749 * r_a_dot[1];
-  const Real t751 = t745 + t750;
-  const Real t752 = t293 * t587;
-  const Real t753 = t288 * t587;
-  const Real t754 = t752 + t753;
-  const Real t755 = t754 - t561;
-  const Real t756 = r_a_dot[2] * t755;
-  const Real t757 = t751 + t756;
-  const Real t758 = t740 + t757;
-  const Real t759 = par.a * t731;
-  const Real t760 = t758 + t759;
-  const Real t761 = c_r_a_0_ * t760;
-  const Real t762 = t257 * t587;
-  const Real t763 = t90 * t587;
-  const Real t764 = t762 + t763;
-  const Real t765 = t561 - t754;
-  const Real t766 = t189 * t765;
-  const Real t767 = t547 + t766;
-  const Real t768 = t764 - t767;
-  const Real t769 = r_a_dot[2] * t768;
-  const Real t770 = t685 * t257;
-  const Real t771 = t90 * t685;
-  const Real t772 = t770 + t771;
-  const Real t773 = t659 - t743;
-  const Real t774 = t189 * t773;
-  const Real t775 = t774 + t641;
-  const Real t776 = t772 - t775;
-  const Real t777 = t776 * r_a_dot[0];
-  const Real t778 = t631 * t257;
-  const Real t779 = t90 * t631;
-  const Real t780 = t778 + t779;
-  const Real t781 = t605 - t748;
-  const Real t782 = t189 * t781;
-  const Real t783 = t782 + t590;
-  const Real t784 = t780 - t783;
-  const Real t785 = r_a_dot[1] * t784;
-  const Real t786 = t777 + t785;
-  const Real t787 = t769 + t786;
-  const Real t788 = t90 * t729;
-  const Real t789 = t729 * t257;
-  const Real t790 = t788 + t789;
-  const Real t791 = t703 - t738;
-  const Real t792 = t189 * t791;
-  const Real t793 = t690 + t792;
-  const Real t794 = t790 - t793;
-  const Real t795 = r_a_dot[3] * t794;
-  const Real t796 = t787 + t795;
-  const Real t797 = t796 * s_r_a_0_;
-  const Real t798 = t761 - t797;
-  const Real t799 = par.k3 * t732;
-  const Real t800 = t798 - t799;
-  const Real t801 = t800 * s_r_a_1_;
-  const Real t802 = t796 * c_r_a_0_;
-  const Real t803 = s_r_a_0_ * t760;
-  const Real t804 = t802 + t803;
-  const Real t805 = c_r_a_1_ * t804;
-  const Real t806 = t801 + t805;
-  const Real t807 = c_r_a_2_ * t806;
-  const Real t808 = t800 * c_r_a_1_;
-  const Real t809 = s_r_a_1_ * t804;
-  const Real t810 = t808 - t809;
-  const Real t811 = par.k3 * t733;
-  const Real t812 = t810 - t811;
-  const Real t813 = s_r_a_2_ * t812;
-  const Real t814 = t807 + t813;
-  const Real t815 = t814 * c_r_a_3_;
-  const Real t816 = c_r_a_2_ * t812;
-  const Real t817 = s_r_a_2_ * t806;
-  const Real t818 = t816 - t817;
-  const Real t819 = par.k3 * t734;
-  const Real t820 = t818 - t819;
-  const Real t821 = s_r_a_3_ * t820;
-  const Real t822 = t815 + t821;
-  const Real t823 = t735 * t822;
-  const Real t824 = t733 * t733;
-  const Real t825 = par.k3 * t824;
-  const Real t826 = t731 * t731;
-  const Real t827 = par.a * t826;
-  const Real t828 = t731 * t758;
-  const Real t829 = t827 + t828;
-  const Real t830 = c_r_a_0_ * t829;
-  const Real t831 = t731 * t796;
-  const Real t832 = s_r_a_0_ * t831;
-  const Real t833 = t830 - t832;
-  const Real t834 = t732 * t732;
-  const Real t835 = t834 * par.k3;
-  const Real t836 = t833 + t835;
-  const Real t837 = c_r_a_1_ * t836;
-  const Real t838 = c_r_a_0_ * t831;
-  const Real t839 = s_r_a_0_ * t829;
-  const Real t840 = t838 + t839;
-  const Real t841 = s_r_a_1_ * t840;
-  const Real t842 = t837 - t841;
-  const Real t843 = t825 + t842;
-  const Real t844 = s_r_a_2_ * t843;
-  const Real t845 = t840 * c_r_a_1_;
-  const Real t846 = s_r_a_1_ * t836;
-  const Real t847 = t845 + t846;
-  const Real t848 = c_r_a_2_ * t847;
-  const Real t849 = t844 + t848;
-  const Real t850 = t849 * c_r_a_3_;
-  const Real t851 = t734 * t734;
-  const Real t852 = par.k3 * t851;
-  const Real t853 = c_r_a_2_ * t843;
-  const Real t854 = s_r_a_2_ * t847;
-  const Real t855 = t853 - t854;
-  const Real t856 = t852 + t855;
-  const Real t857 = s_r_a_3_ * t856;
-  const Real t858 = t850 + t857;
-  const Real t859 = t823 + t858;
-  const Real t860 = t545 - t859;
-  const Real t861 = t441 * t860;
-  const Real t862 = -t859;
-  const Real t863 = sum_error(t545, t862);
-  const Real t864 = sum_error(t544, t147);
-  const Real t865 = t863 + t864;
-  const Real t866 = t865 * t394;
-  const Real t867 = t861 + t866;
-  const Real t868 = t860 * t394;
-  const Real t869 = t867 + t868;
-  const Real t870 = t804 * t732;
-  const Real t871 = t840 + t870;
-  const Real t872 = t148 + t871;
-  const Real t873 = t872 * t384;
-  const Real t874 = t733 * t806;
-  const Real t875 = t874 + t847;
-  const Real t876 = t137 + t875;
-  const Real t877 = t876 * t377;
-  const Real t878 = t873 + t877;
-  const Real t879 = t402 * r_a_ddot[0];
-  const Real t880 = t879 + t141;
-  const Real t881 = t880 - t161;
-  const Real t882 = t881 - t142;
-  const Real t883 = t814 * t734;
-  const Real t884 = t849 + t883;
-  const Real t885 = t882 - t884;
-  const Real t886 = t885 * t390;
-  const Real t887 = sum_error(t881, t143);
-  const Real t888 = sum_error(t880, t162);
-  const Real t889 = t887 + t888;
-  const Real t890 = -t884;
-  const Real t891 = sum_error(t882, t890);
-  const Real t892 = t889 + t891;
-  const Real t893 = t390 * t892;
-  const Real t894 = t885 * t400;
-  const Real t895 = t893 + t894;
-  const Real t896 = t886 + t895;
-  const Real t897 = t878 - t896;
-  const Real t898 = t869 + t897;
-  const Real t899 = t885 * t507;
-  const Real t900 = t518 * t876;
-  const Real t901 = t872 * t515;
-  const Real t902 = t900 + t901;
-  const Real t903 = t899 + t902;
-  const Real t904 = product_error(t885, t507);
-  const Real t905 = t885 * t505;
-  const Real t906 = t892 * t507;
-  const Real t907 = t905 + t906;
-  const Real t908 = t904 + t907;
-  const Real t909 = t903 + t908;
-  const Real t910 = t527 * t860;
-  const Real t911 = t909 - t910;
-  const Real t912 = product_error(t527, t860);
-  const Real t913 = t527 * t865;
-  const Real t914 = t529 * t860;
-  const Real t915 = t913 + t914;
-  const Real t916 = t912 + t915;
-  const Real t917 = t911 - t916;
+  const Real t485 = t422 * t430;
+  const Real t486 = t462 + t485;
+  const Real t487 = t480 * c_r_a_3_;
+  const Real t488 = par.k1 * t481;
+  const Real t489 = t488 + t484;
+  const Real t490 = s_r_a_3_ * t489;
+  const Real t491 = t487 + t490;
+  const Real t492 = t449 * t454;
+  const Real t493 = t491 + t492;
+  const Real t494 = t440 * t445;
+  const Real t495 = t480 + t494;
+  const Real t496 = t431 * t439;
+  const Real t497 = t496 + t475;
 
-  velocity_residual[0] = t538;
-  velocity_residual[1] = t446;
-  acceleration_residual[0] = t917;
-  acceleration_residual[1] = t898;
+  // compatibility
+  const Real t498 = par.a * r_a_ddot[1];
+  const Real t499 = r_a_ddot[0] * t58;
+  const Real t500 = t498 + t499;
+  const Real t501 = r_a_ddot[0] * t52;
+  const Real t502 = t61 * r_a_ddot[1];
+  const Real t503 = t501 - t502;
+  const Real t504 = par.a * r_a_ddot[2];
+  const Real t505 = t503 - t504;
+  const Real t506 = par.a * r_a_ddot[0];
+  const Real t507 = r_a_dot[1] * t66;
+  const Real t508 = t57 * r_a_dot[0];
+  const Real t509 = t507 + t508;
+  const Real t510 = r_a_dot[2] * t68;
+  const Real t511 = t509 - t510;
+  const Real t512 = par.a * r_a_dot[3];
+  const Real t513 = t511 - t512;
+  const Real t514 = t379 * t513;
+  const Real t515 = par.a * r_a_dot[0];
+  const Real t516 = t515 * t419;
+  const Real t517 = par.a * r_a_dot[1];
+  const Real t518 = r_a_dot[0] * t58;
+  const Real t519 = t517 + t518;
+  const Real t520 = t519 * t421;
+  const Real t521 = t516 + t520;
+  const Real t522 = t52 * r_a_dot[0];
+  const Real t523 = t61 * r_a_dot[1];
+  const Real t524 = t522 - t523;
+  const Real t525 = par.a * r_a_dot[2];
+  const Real t526 = t524 - t525;
+  const Real t527 = t383 * t526;
+  const Real t528 = t521 - t527;
+  const Real t529 = t514 + t528;
+  const Real t530 = t381 * t515;
+  const Real t531 = t181 * t519;
+  const Real t532 = t530 + t531;
+  const Real t533 = t177 * t526;
+  const Real t534 = t532 + t533;
+  const Real t535 = t179 * t513;
+  const Real t536 = t534 - t535;
+  const Real t537 = r_a_ddot[0] * t57;
+  const Real t538 = r_a_ddot[1] * t66;
+  const Real t539 = t537 + t538;
+  const Real t540 = r_a_ddot[2] * t68;
+  const Real t541 = t539 - t540;
+  const Real t542 = par.a * r_a_ddot[3];
+  const Real t543 = t541 - t542;
+
+  // link_5: acceleration
+  const Real t544 = t500 + t497;
+  const Real t545 = t544 * t421;
+  const Real t546 = t486 + t506;
+  const Real t547 = t546 * t419;
+  const Real t548 = t545 + t547;
+  const Real t549 = t505 - t495;
+  const Real t550 = t549 * t383;
+  const Real t551 = t548 - t550;
+  const Real t552 = t543 - t493;
+  const Real t553 = t379 * t552;
+  const Real t554 = t551 + t553;
+  const Real t555 = t381 * t546;
+  const Real t556 = t181 * t544;
+  const Real t557 = t555 + t556;
+  const Real t558 = t549 * t177;
+  const Real t559 = t557 + t558;
+  const Real t560 = t179 * t552;
+  const Real t561 = t559 - t560;
+
+  velocity_residual[0] = t536;
+  velocity_residual[1] = t529;
+  acceleration_residual[0] = t561;
+  acceleration_residual[1] = t554;
 }
 
 /// All velocities from the reduced ones, active joints free.
@@ -5136,7 +4790,7 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
   const Real t3 = s_r_a_0_ * s_r_a_0_;
 
   // kernel
-  const Real t4 = t3 + par.k5;
+  const Real t4 = t3 + par.k4;
   const Real t5 = constant<Real>(1.0L) + c_r_a_1_;
   const Real t6 = t5 * s_r_a_0_;
   const Real t7 = t6 - t1;
@@ -5275,15 +4929,15 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t6 = c_r_a_1_ * t4;
 
   // link_2: wrench
-  const Real t7 = s_r_a_0_ * par.k2;
+  const Real t7 = s_r_a_0_ * par.k3;
 
   // link_2: wrench
-  const Real t8 = c_r_a_0_ * par.k2;
+  const Real t8 = c_r_a_0_ * par.k3;
 
   // link_2: wrench
   const Real t9 = t3 * par.m;
   const Real t10 = par.m * t4;
-  const Real t11 = t3 * par.k2;
+  const Real t11 = t3 * par.k3;
 
   // kernel
   const Real t12 = par.a * w[0];
@@ -5365,19 +5019,19 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t76 = t63 * t63;
 
   // link_3: acceleration
-  const Real t77 = par.k3 * t76;
+  const Real t77 = par.k1 * t76;
   const Real t78 = t75 + t77;
   const Real t79 = s_r_a_1_ * t78;
   const Real t80 = c_r_a_1_ * t78;
   const Real t81 = t64 * t64;
 
   // link_4: acceleration
-  const Real t82 = par.k3 * t81;
+  const Real t82 = par.k1 * t81;
   const Real t83 = t65 * t65;
 
   // link_5: acceleration
   const Real t84 = t66 * t66;
-  const Real t85 = par.k3 * t83;
+  const Real t85 = par.k1 * t83;
 
   // drift of the kernel
   const Real t86 = t24 * c_r_a_1_;
@@ -5486,7 +5140,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t189 = t180 + t188;
 
   // link_3: acceleration
-  const Real t190 = par.k3 * t142;
+  const Real t190 = par.k1 * t142;
   const Real t191 = t72 - t190;
   const Real t192 = c_r_a_1_ * t191;
   const Real t193 = t192 - t79;
@@ -5495,7 +5149,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t196 = t195 + t80;
 
   // link_4: acceleration
-  const Real t197 = par.k3 * t194;
+  const Real t197 = par.k1 * t194;
   const Real t198 = t193 - t197;
   const Real t199 = s_r_a_2_ * t198;
   const Real t200 = t82 + t196;
@@ -5509,7 +5163,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   // link_5: acceleration
   const Real t207 = t202 + t85;
   const Real t208 = c_r_a_3_ * t207;
-  const Real t209 = par.k3 * t203;
+  const Real t209 = par.k1 * t203;
   const Real t210 = t206 - t209;
   const Real t211 = s_r_a_3_ * t210;
   const Real t212 = t208 + t211;
@@ -5520,46 +5174,46 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // link_2: wrench
   const Real t217 = t72 * par.m;
-  const Real t218 = t142 * par.k2;
+  const Real t218 = t142 * par.k3;
   const Real t219 = t217 - t218;
-  const Real t220 = t142 * par.k6;
-  const Real t221 = t72 * par.k2;
+  const Real t220 = t142 * par.k5;
+  const Real t221 = t72 * par.k3;
   const Real t222 = t220 - t221;
-  const Real t223 = par.k2 * t76;
+  const Real t223 = par.k3 * t76;
   const Real t224 = t75 * par.m;
   const Real t225 = t223 + t224;
 
   // link_3: wrench
-  const Real t226 = par.k2 * t81;
+  const Real t226 = par.k3 * t81;
   const Real t227 = par.m * t196;
   const Real t228 = t226 + t227;
-  const Real t229 = t194 * par.k6;
-  const Real t230 = t193 * par.k2;
+  const Real t229 = t194 * par.k5;
+  const Real t230 = t193 * par.k3;
   const Real t231 = t229 - t230;
   const Real t232 = t193 * par.m;
-  const Real t233 = par.k2 * t194;
+  const Real t233 = par.k3 * t194;
   const Real t234 = t232 - t233;
 
   // link_4: wrench
   const Real t235 = par.m * t206;
-  const Real t236 = t203 * par.k2;
+  const Real t236 = t203 * par.k3;
   const Real t237 = t235 - t236;
-  const Real t238 = par.k2 * t83;
+  const Real t238 = par.k3 * t83;
   const Real t239 = t202 * par.m;
   const Real t240 = t238 + t239;
-  const Real t241 = t203 * par.k6;
-  const Real t242 = par.k2 * t206;
+  const Real t241 = t203 * par.k5;
+  const Real t242 = par.k3 * t206;
   const Real t243 = t241 - t242;
 
   // link_5: wrench
   const Real t244 = t212 * par.m;
-  const Real t245 = t84 * par.k2;
+  const Real t245 = t84 * par.k3;
   const Real t246 = t244 + t245;
-  const Real t247 = t213 * par.k6;
-  const Real t248 = t216 * par.k2;
+  const Real t247 = t213 * par.k5;
+  const Real t248 = t216 * par.k3;
   const Real t249 = t247 - t248;
   const Real t250 = par.m * t216;
-  const Real t251 = t213 * par.k2;
+  const Real t251 = t213 * par.k3;
   const Real t252 = t250 - t251;
 
   // link_5: joint force
@@ -5567,7 +5221,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t254 = s_r_a_3_ * t246;
   const Real t255 = t253 + t254;
   const Real t256 = t237 + t255;
-  const Real t257 = par.k3 * t255;
+  const Real t257 = par.k1 * t255;
   const Real t258 = t249 - t257;
   const Real t259 = t258 + t243;
   const Real t260 = t246 * c_r_a_3_;
@@ -5584,7 +5238,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t269 = s_r_a_2_ * t263;
   const Real t270 = t268 + t269;
   const Real t271 = t270 + t234;
-  const Real t272 = par.k3 * t270;
+  const Real t272 = par.k1 * t270;
   const Real t273 = t259 - t272;
   const Real t274 = t273 + t231;
 
@@ -5597,7 +5251,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t280 = c_r_a_1_ * t271;
   const Real t281 = t279 + t280;
   const Real t282 = t219 + t281;
-  const Real t283 = par.k3 * t281;
+  const Real t283 = par.k1 * t281;
   const Real t284 = t274 - t283;
   const Real t285 = t222 + t284;
 
@@ -5635,7 +5289,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t314 = t306 + t313;
 
   // link_3: acceleration
-  const Real t315 = par.k3 * s_r_a_0_;
+  const Real t315 = par.k1 * s_r_a_0_;
   const Real t316 = t315 - t4;
   const Real t317 = t316 * c_r_a_1_;
   const Real t318 = t3 * s_r_a_1_;
@@ -5647,7 +5301,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // link_4: acceleration
   const Real t324 = t320 - t38;
-  const Real t325 = par.k3 * t320;
+  const Real t325 = par.k1 * t320;
   const Real t326 = t319 - t325;
   const Real t327 = c_r_a_2_ * t326;
   const Real t328 = s_r_a_2_ * t323;
@@ -5657,7 +5311,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t332 = t330 + t331;
 
   // link_5: acceleration
-  const Real t333 = t324 * par.k3;
+  const Real t333 = t324 * par.k1;
   const Real t334 = t329 - t333;
   const Real t335 = t334 * c_r_a_3_;
   const Real t336 = s_r_a_3_ * t332;
@@ -5669,42 +5323,42 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // link_2: wrench
   const Real t342 = t7 - t10;
-  const Real t343 = par.k2 * t4;
-  const Real t344 = s_r_a_0_ * par.k6;
+  const Real t343 = par.k3 * t4;
+  const Real t344 = s_r_a_0_ * par.k5;
   const Real t345 = t343 - t344;
 
   // link_3: wrench
   const Real t346 = t319 * par.m;
-  const Real t347 = t320 * par.k2;
+  const Real t347 = t320 * par.k3;
   const Real t348 = t346 - t347;
   const Real t349 = t323 * par.m;
-  const Real t350 = t320 * par.k6;
-  const Real t351 = t319 * par.k2;
+  const Real t350 = t320 * par.k5;
+  const Real t351 = t319 * par.k3;
   const Real t352 = t350 - t351;
 
   // link_4: wrench
   const Real t353 = t329 * par.m;
-  const Real t354 = t324 * par.k2;
+  const Real t354 = t324 * par.k3;
   const Real t355 = t353 - t354;
-  const Real t356 = t324 * par.k6;
-  const Real t357 = t329 * par.k2;
+  const Real t356 = t324 * par.k5;
+  const Real t357 = t329 * par.k3;
   const Real t358 = t356 - t357;
   const Real t359 = t332 * par.m;
 
   // link_5: wrench
   const Real t360 = par.m * t341;
-  const Real t361 = t338 * par.k6;
-  const Real t362 = t337 * par.k2;
+  const Real t361 = t338 * par.k5;
+  const Real t362 = t337 * par.k3;
   const Real t363 = t361 - t362;
   const Real t364 = par.m * t337;
-  const Real t365 = par.k2 * t338;
+  const Real t365 = par.k3 * t338;
   const Real t366 = t364 - t365;
 
   // link_5: joint force
   const Real t367 = c_r_a_3_ * t366;
   const Real t368 = s_r_a_3_ * t360;
   const Real t369 = t367 + t368;
-  const Real t370 = par.k3 * t369;
+  const Real t370 = par.k1 * t369;
   const Real t371 = t363 - t370;
   const Real t372 = t358 + t371;
   const Real t373 = t355 + t369;
@@ -5718,7 +5372,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t379 = s_r_a_2_ * t377;
   const Real t380 = t378 + t379;
   const Real t381 = t380 + t348;
-  const Real t382 = par.k3 * t380;
+  const Real t382 = par.k1 * t380;
   const Real t383 = t372 - t382;
   const Real t384 = t383 + t352;
   const Real t385 = c_r_a_2_ * t377;
@@ -5735,7 +5389,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t394 = t381 * s_r_a_1_;
   const Real t395 = t393 - t394;
   const Real t396 = t9 + t395;
-  const Real t397 = par.k3 * t391;
+  const Real t397 = par.k1 * t391;
   const Real t398 = t384 - t397;
   const Real t399 = t345 + t398;
 
@@ -5743,7 +5397,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t400 = c_r_a_0_ * t396;
   const Real t401 = s_r_a_0_ * t392;
   const Real t402 = t400 - t401;
-  const Real t403 = par.k2 + t402;
+  const Real t403 = par.k3 + t402;
   const Real t404 = c_r_a_0_ * t392;
   const Real t405 = s_r_a_0_ * t396;
   const Real t406 = t404 + t405;
@@ -5771,7 +5425,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // link_3: acceleration
   const Real t426 = t19 - c_r_a_0_;
-  const Real t427 = par.k3 * c_r_a_0_;
+  const Real t427 = par.k1 * c_r_a_0_;
   const Real t428 = t427 - t3;
   const Real t429 = t428 * s_r_a_1_;
   const Real t430 = t429 - t6;
@@ -5780,7 +5434,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // link_4: acceleration
   const Real t433 = t426 + t34;
-  const Real t434 = par.k3 * t426;
+  const Real t434 = par.k1 * t426;
   const Real t435 = t432 - t434;
   const Real t436 = s_r_a_2_ * t435;
   const Real t437 = c_r_a_2_ * t430;
@@ -5790,7 +5444,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t441 = t439 - t440;
 
   // link_5: acceleration
-  const Real t442 = t433 * par.k3;
+  const Real t442 = t433 * par.k1;
   const Real t443 = t441 - t442;
   const Real t444 = s_r_a_3_ * t443;
   const Real t445 = t438 * c_r_a_3_;
@@ -5801,42 +5455,42 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t450 = t433 + t60;
 
   // link_2: wrench
-  const Real t451 = c_r_a_0_ * par.k6;
+  const Real t451 = c_r_a_0_ * par.k5;
   const Real t452 = t11 - t451;
   const Real t453 = t8 - t9;
 
   // link_3: wrench
   const Real t454 = par.m * t430;
   const Real t455 = par.m * t432;
-  const Real t456 = t426 * par.k2;
+  const Real t456 = t426 * par.k3;
   const Real t457 = t455 - t456;
-  const Real t458 = t426 * par.k6;
-  const Real t459 = par.k2 * t432;
+  const Real t458 = t426 * par.k5;
+  const Real t459 = par.k3 * t432;
   const Real t460 = t458 - t459;
 
   // link_4: wrench
   const Real t461 = t438 * par.m;
   const Real t462 = par.m * t441;
-  const Real t463 = t433 * par.k2;
+  const Real t463 = t433 * par.k3;
   const Real t464 = t462 - t463;
-  const Real t465 = t433 * par.k6;
-  const Real t466 = par.k2 * t441;
+  const Real t465 = t433 * par.k5;
+  const Real t466 = par.k3 * t441;
   const Real t467 = t465 - t466;
 
   // link_5: wrench
-  const Real t468 = t450 * par.k6;
-  const Real t469 = t449 * par.k2;
+  const Real t468 = t450 * par.k5;
+  const Real t469 = t449 * par.k3;
   const Real t470 = t468 - t469;
   const Real t471 = t446 * par.m;
   const Real t472 = t449 * par.m;
-  const Real t473 = par.k2 * t450;
+  const Real t473 = par.k3 * t450;
   const Real t474 = t472 - t473;
 
   // link_5: joint force
   const Real t475 = c_r_a_3_ * t474;
   const Real t476 = s_r_a_3_ * t471;
   const Real t477 = t475 + t476;
-  const Real t478 = t477 * par.k3;
+  const Real t478 = t477 * par.k1;
   const Real t479 = t470 - t478;
   const Real t480 = t479 + t467;
   const Real t481 = c_r_a_3_ * t471;
@@ -5853,7 +5507,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t490 = c_r_a_2_ * t485;
   const Real t491 = s_r_a_2_ * t484;
   const Real t492 = t490 + t491;
-  const Real t493 = par.k3 * t492;
+  const Real t493 = par.k1 * t492;
   const Real t494 = t480 - t493;
   const Real t495 = t494 + t460;
   const Real t496 = t492 + t457;
@@ -5862,7 +5516,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t497 = c_r_a_1_ * t496;
   const Real t498 = t489 * s_r_a_1_;
   const Real t499 = t497 + t498;
-  const Real t500 = par.k3 * t499;
+  const Real t500 = par.k1 * t499;
   const Real t501 = t495 - t500;
   const Real t502 = t452 + t501;
   const Real t503 = t499 + t453;
@@ -5989,7 +5643,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t18 = c_r_a_1_ * t17;
-  const Real t19 = t16 + par.k3;
+  const Real t19 = t16 + par.k1;
   const Real t20 = t19 * s_r_a_1_;
   const Real t21 = t18 + t20;
   const Real t22 = s_r_a_1_ * t17;
@@ -5997,7 +5651,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t24 = t22 - t23;
 
   // link_4: twist
-  const Real t25 = t24 - par.k3;
+  const Real t25 = t24 - par.k1;
   const Real t26 = c_r_a_2_ * t25;
   const Real t27 = s_r_a_2_ * t21;
   const Real t28 = t26 + t27;
@@ -6008,7 +5662,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   // link_5: twist
   const Real t32 = t16 + par.a;
   const Real t33 = t28 - par.a;
-  const Real t34 = t28 - par.k3;
+  const Real t34 = t28 - par.k1;
   const Real t35 = t34 * c_r_a_3_;
   const Real t36 = s_r_a_3_ * t31;
   const Real t37 = t35 - t36;
@@ -6016,19 +5670,19 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t39 = t24 - par.a;
 
   // link_4: twist
-  const Real t40 = par.k3 * s_r_a_2_;
-  const Real t41 = par.k3 * c_r_a_2_;
+  const Real t40 = par.k1 * s_r_a_2_;
+  const Real t41 = par.k1 * c_r_a_2_;
 
   // link_5: twist
   const Real t42 = par.a + t41;
   const Real t43 = s_r_a_3_ * t40;
-  const Real t44 = par.k3 + t41;
+  const Real t44 = par.k1 + t41;
   const Real t45 = t44 * c_r_a_3_;
   const Real t46 = t43 - t45;
   const Real t47 = t46 - par.a;
 
   // link_5: twist
-  const Real t48 = par.k3 * c_r_a_3_;
+  const Real t48 = par.k1 * c_r_a_3_;
   const Real t49 = par.a + t48;
 
   // kernel
@@ -6108,16 +5762,16 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t109 = par.a * t106;
 
   // link_3: acceleration
-  const Real t110 = par.k3 * t108;
+  const Real t110 = par.k1 * t108;
   const Real t111 = t103 * t103;
 
   // link_4: acceleration
-  const Real t112 = par.k3 * t111;
+  const Real t112 = par.k1 * t111;
   const Real t113 = t104 * t104;
 
   // link_5: acceleration
   const Real t114 = t105 * t105;
-  const Real t115 = par.k3 * t113;
+  const Real t115 = par.k1 * t113;
 
   // drift of the kernel
   const Real t116 = t63 * c_r_a_1_;
@@ -6229,16 +5883,16 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t220 = par.m * t107;
 
   // link_2: wrench
-  const Real t221 = par.k2 * t108;
+  const Real t221 = par.k3 * t108;
 
   // link_3: wrench
-  const Real t222 = par.k2 * t111;
+  const Real t222 = par.k3 * t111;
 
   // link_4: wrench
-  const Real t223 = par.k2 * t113;
+  const Real t223 = par.k3 * t113;
 
   // link_5: wrench
-  const Real t224 = t114 * par.k2;
+  const Real t224 = t114 * par.k3;
 
   // reduced mass matrix
   const Real t225 = s_r_a_0_ * w_dot[0];
@@ -6275,7 +5929,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t252 = t242 + t240;
   const Real t253 = t110 + t251;
   const Real t254 = t253 * c_r_a_1_;
-  const Real t255 = par.k3 * t242;
+  const Real t255 = par.k1 * t242;
   const Real t256 = t248 - t255;
   const Real t257 = t256 * s_r_a_1_;
   const Real t258 = t254 + t257;
@@ -6284,7 +5938,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t261 = t259 - t260;
 
   // link_4: acceleration
-  const Real t262 = par.k3 * t252;
+  const Real t262 = par.k1 * t252;
   const Real t263 = t261 - t262;
   const Real t264 = c_r_a_2_ * t263;
   const Real t265 = t258 + t112;
@@ -6297,7 +5951,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
 
   // link_5: acceleration
   const Real t272 = t232 + t271;
-  const Real t273 = par.k3 * t271;
+  const Real t273 = par.k1 * t271;
   const Real t274 = t267 - t273;
   const Real t275 = c_r_a_3_ * t274;
   const Real t276 = t115 + t270;
@@ -6314,38 +5968,38 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t283 = par.m * t251;
   const Real t284 = t283 + t221;
   const Real t285 = t248 * par.m;
-  const Real t286 = t242 * par.k2;
+  const Real t286 = t242 * par.k3;
   const Real t287 = t285 - t286;
-  const Real t288 = t242 * par.k6;
-  const Real t289 = t248 * par.k2;
+  const Real t288 = t242 * par.k5;
+  const Real t289 = t248 * par.k3;
   const Real t290 = t288 - t289;
 
   // link_3: wrench
   const Real t291 = par.m * t261;
-  const Real t292 = t252 * par.k2;
+  const Real t292 = t252 * par.k3;
   const Real t293 = t291 - t292;
   const Real t294 = t258 * par.m;
   const Real t295 = t222 + t294;
-  const Real t296 = t252 * par.k6;
-  const Real t297 = par.k2 * t261;
+  const Real t296 = t252 * par.k5;
+  const Real t297 = par.k3 * t261;
   const Real t298 = t296 - t297;
 
   // link_4: wrench
   const Real t299 = par.m * t270;
   const Real t300 = t223 + t299;
-  const Real t301 = t271 * par.k6;
-  const Real t302 = t267 * par.k2;
+  const Real t301 = t271 * par.k5;
+  const Real t302 = t267 * par.k3;
   const Real t303 = t301 - t302;
   const Real t304 = t267 * par.m;
-  const Real t305 = par.k2 * t271;
+  const Real t305 = par.k3 * t271;
   const Real t306 = t304 - t305;
 
   // link_5: wrench
-  const Real t307 = t272 * par.k6;
-  const Real t308 = par.k2 * t278;
+  const Real t307 = t272 * par.k5;
+  const Real t308 = par.k3 * t278;
   const Real t309 = t307 - t308;
   const Real t310 = par.m * t278;
-  const Real t311 = t272 * par.k2;
+  const Real t311 = t272 * par.k3;
   const Real t312 = t310 - t311;
   const Real t313 = par.m * t281;
   const Real t314 = t313 + t224;
@@ -6359,7 +6013,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t320 = c_r_a_3_ * t312;
   const Real t321 = t319 + t320;
   const Real t322 = t321 + t306;
-  const Real t323 = par.k3 * t321;
+  const Real t323 = par.k1 * t321;
   const Real t324 = t309 - t323;
   const Real t325 = t303 + t324;
 
@@ -6372,7 +6026,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t331 = c_r_a_2_ * t322;
   const Real t332 = t330 + t331;
   const Real t333 = t332 + t293;
-  const Real t334 = par.k3 * t332;
+  const Real t334 = par.k1 * t332;
   const Real t335 = t325 - t334;
   const Real t336 = t335 + t298;
 
@@ -6385,7 +6039,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t342 = t329 * s_r_a_1_;
   const Real t343 = t341 + t342;
   const Real t344 = t287 + t343;
-  const Real t345 = par.k3 * t343;
+  const Real t345 = par.k1 * t343;
   const Real t346 = t336 - t345;
   const Real t347 = t346 + t290;
 
@@ -6402,15 +6056,15 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t357 = t325 - tau_a[2];
 
   // multipliers
-  const Real t358 = t355 * par.k7;
+  const Real t358 = t355 * par.k6;
   const Real t359 = t358 * t47;
   const Real t360 = t348 + t359;
   const Real t361 = t358 * t49;
   const Real t362 = t357 - t361;
-  const Real t363 = par.k7 * t362;
+  const Real t363 = par.k6 * t362;
   const Real t364 = t363 * t42;
   const Real t365 = t360 - t364;
-  const Real t366 = t365 * par.k7;
+  const Real t366 = t365 * par.k6;
   const Real t367 = -t366;
   const Real t368 = t39 * t366;
   const Real t369 = t38 * t358;
@@ -6487,7 +6141,7 @@ inline void energies(const Prepared<Real>& par,
 
   // link_3: twist
   const Real t10 = c_r_a_1_ * t9;
-  const Real t11 = par.k3 * t1;
+  const Real t11 = par.k1 * t1;
   const Real t12 = t6 - t11;
   const Real t13 = t12 * s_r_a_1_;
   const Real t14 = t10 + t13;
@@ -6497,7 +6151,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t18 = t1 + r_a_dot[1];
 
   // link_4: twist
-  const Real t19 = par.k3 * t18;
+  const Real t19 = par.k1 * t18;
   const Real t20 = t17 - t19;
   const Real t21 = c_r_a_2_ * t20;
   const Real t22 = t14 * s_r_a_2_;
@@ -6508,7 +6162,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t27 = r_a_dot[2] + t18;
 
   // link_5: twist
-  const Real t28 = par.k3 * t27;
+  const Real t28 = par.k1 * t27;
   const Real t29 = t23 - t28;
   const Real t30 = t29 * c_r_a_3_;
   const Real t31 = s_r_a_3_ * t26;
@@ -6533,24 +6187,24 @@ inline void energies(const Prepared<Real>& par,
   const Real t46 = t9 * t9;
   const Real t47 = t45 + t46;
   const Real t48 = par.m * t47;
-  const Real t49 = t1 * par.k2;
+  const Real t49 = t1 * par.k3;
   const Real t50 = t49 * t6;
   const Real t51 = t50 * constant<Real>(2.0L);
   const Real t52 = t48 - t51;
-  const Real t53 = t1 * par.k6;
+  const Real t53 = t1 * par.k5;
   const Real t54 = t1 * t53;
   const Real t55 = t52 + t54;
   const Real t56 = constant<Real>(0.5L) * t55;
   const Real t57 = t56 + t44;
 
   // link_3: energy
-  const Real t58 = t18 * par.k6;
+  const Real t58 = t18 * par.k5;
   const Real t59 = t58 * t18;
   const Real t60 = t17 * t17;
   const Real t61 = t14 * t14;
   const Real t62 = t60 + t61;
   const Real t63 = par.m * t62;
-  const Real t64 = par.k2 * t18;
+  const Real t64 = par.k3 * t18;
   const Real t65 = t17 * t64;
   const Real t66 = t65 * constant<Real>(2.0L);
   const Real t67 = t63 - t66;
@@ -6559,13 +6213,13 @@ inline void energies(const Prepared<Real>& par,
   const Real t70 = t57 + t69;
 
   // link_4: energy
-  const Real t71 = t27 * par.k6;
+  const Real t71 = t27 * par.k5;
   const Real t72 = t27 * t71;
   const Real t73 = t23 * t23;
   const Real t74 = t26 * t26;
   const Real t75 = t73 + t74;
   const Real t76 = t75 * par.m;
-  const Real t77 = par.k2 * t27;
+  const Real t77 = par.k3 * t27;
   const Real t78 = t23 * t77;
   const Real t79 = t78 * constant<Real>(2.0L);
   const Real t80 = t76 - t79;
@@ -6578,11 +6232,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t85 = t36 * t36;
   const Real t86 = t84 + t85;
   const Real t87 = par.m * t86;
-  const Real t88 = t33 * par.k2;
+  const Real t88 = t33 * par.k3;
   const Real t89 = t88 * t32;
   const Real t90 = t89 * constant<Real>(2.0L);
   const Real t91 = t87 - t90;
-  const Real t92 = t33 * par.k6;
+  const Real t92 = t33 * par.k5;
   const Real t93 = t33 * t92;
   const Real t94 = t91 + t93;
   const Real t95 = constant<Real>(0.5L) * t94;
@@ -6654,7 +6308,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t12 = t10 - t11;
 
   // link_3: pose
-  const Real t13 = par.k3 * t12;
+  const Real t13 = par.k1 * t12;
   const Real t14 = t9 - t13;
   const Real t15 = s_r_a_1_ * t12;
   const Real t16 = c_r_a_1_ * t4;
@@ -6663,7 +6317,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t19 = c_r_a_1_ * t12;
   const Real t20 = s_r_a_1_ * t4;
   const Real t21 = t19 - t20;
-  const Real t22 = par.k3 * t4;
+  const Real t22 = par.k1 * t4;
   const Real t23 = t7 - t22;
 
   // link_4: pose
@@ -6671,21 +6325,21 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t25 = c_r_a_2_ * t17;
   const Real t26 = t24 + t25;
   const Real t27 = -t26;
-  const Real t28 = par.k3 * t17;
+  const Real t28 = par.k1 * t17;
   const Real t29 = t23 - t28;
   const Real t30 = c_r_a_2_ * t21;
   const Real t31 = s_r_a_2_ * t17;
   const Real t32 = t30 - t31;
-  const Real t33 = par.k3 * t21;
+  const Real t33 = par.k1 * t21;
   const Real t34 = t14 - t33;
 
   // link_5: pose
   const Real t35 = c_r_a_3_ * t32;
   const Real t36 = s_r_a_3_ * t26;
   const Real t37 = t35 - t36;
-  const Real t38 = par.k3 * t32;
+  const Real t38 = par.k1 * t32;
   const Real t39 = t34 - t38;
-  const Real t40 = par.k3 * t26;
+  const Real t40 = par.k1 * t26;
   const Real t41 = t29 - t40;
   const Real t42 = s_r_a_3_ * t32;
   const Real t43 = c_r_a_3_ * t26;

@@ -13,13 +13,13 @@
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
-//   reduced_dynamics     1518 add, 1335 mul, 15 div, 22 neg, 2 sqrt, 4 sin, 3 cos
-//   forward_dynamics     3468 add, 2121 mul, 25 div, 86 neg, 2 sqrt, 6 sin, 3 cos
-//   multipliers          1009 add, 810 mul, 13 div, 17 neg, 2 sqrt, 4 sin, 3 cos
+//   reduced_dynamics     1537 add, 1335 mul, 15 div, 23 neg, 2 sqrt, 4 sin, 3 cos
+//   forward_dynamics     3522 add, 2143 mul, 25 div, 88 neg, 2 sqrt, 6 sin, 3 cos
+//   multipliers          1524 add, 1033 mul, 15 div, 29 neg, 2 sqrt, 4 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
-//   prepare              187 add, 137 mul, 3 neg, 1 sin, 1 cos, once per set of parameters
+//   prepare              192 add, 138 mul, 3 neg, 1 sin, 1 cos, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -251,21 +251,24 @@ struct Prepared {
   Real k56;  // k5 * k2
   Real k57;  // k7 * k2
   Real k58;  // m_F * k13 * k13
-  Real k59;  // product_error(z_B, m_B)
+  Real k59;  // (z_B * z_B + x_B * x_B + product_error(z_B, z_B)) * m_B + I_Byy
   Real k60;
-  Real k61;  // k60 + k34
-  Real k62;  // product_error(x_B, m_B)
-  Real k63;  // k27 + k28 * k23
-  Real k64;
-  Real k65;  // k64 - k60 + k32
-  Real k66;  // k53 + k30 * m_H
-  Real k67;  // k33 - k64
-  Real k68;  // k30 * k11 + k54
-  Real k69;
+  Real k61;  // k59 - k10 - k60
+  Real k62;  // product_error(z_B, m_B)
+  Real k63;  // k60 + k34
+  Real k64;  // k15 - k59
+  Real k65;  // product_error(x_B, m_B)
+  Real k66;  // k27 + k28 * k23
+  Real k67;
+  Real k68;  // k67 - k60 + k32
+  Real k69;  // k53 + k30 * m_H
+  Real k70;  // k33 - k67
+  Real k71;  // k30 * k11 + k54
+  Real k72;
 };
 
 /// To be called once per set of parameter values.
-/// operations: 187 add, 137 mul, 3 neg, 1 sin, 1 cos
+/// operations: 192 add, 138 mul, 3 neg, 1 sin, 1 cos
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -424,39 +427,45 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t111 = t110 * t55;
 
   // passive accelerations
-  const Real t112 = product_error(par.z_B, par.m_B);
-  const Real t113 = sum_error(t45, par.I_Bxx);
-  const Real t114 = product_error(t4, par.m_B);
-  const Real t115 = product_error(par.z_B, par.z_B);
-  const Real t116 = t115 * par.m_B;
-  const Real t117 = t114 + t116;
-  const Real t118 = t113 + t117;
-  const Real t119 = t118 + t86;
+  const Real t112 = product_error(par.z_B, par.z_B);
+  const Real t113 = t6 + t112;
+  const Real t114 = t113 * par.m_B;
+  const Real t115 = t114 + par.I_Byy;
+  const Real t116 = t115 - t46;
+  const Real t117 = sum_error(t45, par.I_Bxx);
+  const Real t118 = product_error(t4, par.m_B);
+  const Real t119 = t112 * par.m_B;
+  const Real t120 = t118 + t119;
+  const Real t121 = t117 + t120;
+  const Real t122 = t116 - t121;
+  const Real t123 = product_error(par.z_B, par.m_B);
+  const Real t124 = t121 + t86;
+  const Real t125 = t58 - t115;
 
   // accelerations
-  const Real t120 = product_error(par.x_B, par.m_B);
-  const Real t121 = t72 + t74;
-  const Real t122 = sum_error(t7, par.I_Byy);
-  const Real t123 = sum_error(t4, t5);
-  const Real t124 = t115 + t123;
-  const Real t125 = par.m_B * t124;
-  const Real t126 = product_error(t6, par.m_B);
-  const Real t127 = t125 + t126;
-  const Real t128 = t122 + t127;
-  const Real t129 = t128 - t118;
-  const Real t130 = t129 + t84;
-  const Real t131 = t81 * par.m_H;
-  const Real t132 = t105 + t131;
-  const Real t133 = t85 - t128;
-  const Real t134 = t81 * t49;
-  const Real t135 = t134 + t106;
-  const Real t136 = -t2;
-  const Real t137 = sum_error(par.I_Bxz, t136);
-  const Real t138 = product_error(par.z_B, par.x_B);
-  const Real t139 = t138 * par.m_B;
-  const Real t140 = product_error(t1, par.m_B);
-  const Real t141 = t139 + t140;
-  const Real t142 = t137 - t141;
+  const Real t126 = product_error(par.x_B, par.m_B);
+  const Real t127 = t72 + t74;
+  const Real t128 = sum_error(t7, par.I_Byy);
+  const Real t129 = sum_error(t4, t5);
+  const Real t130 = t112 + t129;
+  const Real t131 = par.m_B * t130;
+  const Real t132 = product_error(t6, par.m_B);
+  const Real t133 = t131 + t132;
+  const Real t134 = t128 + t133;
+  const Real t135 = t134 - t121;
+  const Real t136 = t135 + t84;
+  const Real t137 = t81 * par.m_H;
+  const Real t138 = t105 + t137;
+  const Real t139 = t85 - t134;
+  const Real t140 = t81 * t49;
+  const Real t141 = t140 + t106;
+  const Real t142 = -t2;
+  const Real t143 = sum_error(par.I_Bxz, t142);
+  const Real t144 = product_error(par.z_B, par.x_B);
+  const Real t145 = t144 * par.m_B;
+  const Real t146 = product_error(t1, par.m_B);
+  const Real t147 = t145 + t146;
+  const Real t148 = t143 - t147;
 
   result.g = par.g;
   result.c = par.c;
@@ -529,17 +538,20 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k56 = t108;
   result.k57 = t109;
   result.k58 = t111;
-  result.k59 = t112;
-  result.k60 = t118;
-  result.k61 = t119;
-  result.k62 = t120;
-  result.k63 = t121;
-  result.k64 = t128;
-  result.k65 = t130;
-  result.k66 = t132;
-  result.k67 = t133;
-  result.k68 = t135;
-  result.k69 = t142;
+  result.k59 = t115;
+  result.k60 = t121;
+  result.k61 = t122;
+  result.k62 = t123;
+  result.k63 = t124;
+  result.k64 = t125;
+  result.k65 = t126;
+  result.k66 = t127;
+  result.k67 = t134;
+  result.k68 = t136;
+  result.k69 = t138;
+  result.k70 = t139;
+  result.k71 = t141;
+  result.k72 = t148;
   return result;
 }
 
@@ -2518,7 +2530,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
 /// route: projected recursion, stable forms, compensated beyond 0.71 ulps
-/// operations: 1518 add, 1335 mul, 15 div, 22 neg, 2 sqrt, 4 sin, 3 cos
+/// operations: 1537 add, 1335 mul, 15 div, 23 neg, 2 sqrt, 4 sin, 3 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p  (3) rad or m: rear_spin, steer, front_spin
@@ -3717,7 +3729,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t872 = t867 + t871;
   const Real t873 = t872 + t864;
   const Real t874 = t861 + t873;
-  const Real t875 = t874 * s_r_p_1_;
+  const Real t875 = t874 * c_r_p_1_;
   const Real t876 = t752 * c_r_p_1_;
   const Real t877 = s_r_p_1_ * t739;
   const Real t878 = s_r_p_1_ * t741;
@@ -3787,248 +3799,248 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t942 = t940 + t941;
   const Real t943 = t942 - t937;
   const Real t944 = t943 + t936;
-  const Real t945 = t944 * c_r_p_1_;
-  const Real t946 = t945 - t875;
-  const Real t947 = t946 * par.k1;
-  const Real t948 = t920 * par.k2;
-  const Real t949 = par.k1 * t916;
-  const Real t950 = t948 + t949;
-  const Real t951 = par.k13 * t934;
-  const Real t952 = t951 + t950;
-  const Real t953 = t925 * par.k11;
-  const Real t954 = par.k5 * t927;
-  const Real t955 = par.k7 * t884;
-  const Real t956 = t929 * par.k39;
-  const Real t957 = t955 - t956;
-  const Real t958 = t957 + t954;
-  const Real t959 = t953 + t958;
-  const Real t960 = t952 + t959;
-  const Real t961 = t960 * par.k2;
-  const Real t962 = t961 - t947;
-  const Real t963 = par.m_H * t822;
-  const Real t964 = par.k9 * t823;
-  const Real t965 = t826 * par.k11;
-  const Real t966 = t964 - t965;
-  const Real t967 = t966 + t963;
-  const Real t968 = t967 + t851;
-  const Real t969 = s_r_p_1_ * t968;
-  const Real t970 = t925 * par.m_H;
-  const Real t971 = par.k9 * t927;
-  const Real t972 = par.k11 * t930;
-  const Real t973 = t972 - t971;
-  const Real t974 = t970 + t973;
-  const Real t975 = t974 + t934;
-  const Real t976 = c_r_p_1_ * t975;
-  const Real t977 = t976 + t969;
-  const Real t978 = t977 * par.k14;
-  const Real t979 = t962 + t978;
-  const Real t980 = t812 * par.k17;
-  const Real t981 = t751 * par.k15;
-  const Real t982 = t813 * par.k32;
-  const Real t983 = t981 - t982;
-  const Real t984 = t480 * t468;
-  const Real t985 = par.k3 * t984;
-  const Real t986 = t983 - t985;
-  const Real t987 = t986 + t980;
-  const Real t988 = t987 + t979;
-  const Real t989 = t751 * c_r_p_0_;
-  const Real t990 = t468 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t991 = nu[0] * c_r_p_0_;
-
-  // passive accelerations
-  const Real t992 = t991 + t990;
-  const Real t993 = t992 * nu[2];
-  const Real t994 = t993 + t989;
-  const Real t995 = t994 * par.I_Rxx;
-  const Real t996 = t992 * t632;
-  const Real t997 = par.k35 * t996;
-  const Real t998 = t995 + t997;
-  const Real t999 = t998 * c_r_p_0_;
-  const Real t1000 = t751 * s_r_p_0_;
-  const Real t1001 = t468 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t1002 = nu[0] * s_r_p_0_;
-
-  // passive accelerations
-  const Real t1003 = t1002 - t1001;
-  const Real t1004 = t1003 * nu[2];
-  const Real t1005 = t1004 + t1000;
-  const Real t1006 = t1005 * par.I_Rxx;
-  const Real t1007 = t1003 * t632;
-  const Real t1008 = t1007 * par.k36;
-  const Real t1009 = t1008 - t1006;
-  const Real t1010 = t1009 * s_r_p_0_;
-  const Real t1011 = t999 - t1010;
-  const Real t1012 = t988 + t1011;
-  const Real t1013 = t1012 * t466;
-  const Real t1014 = t874 * c_r_p_1_;
-  const Real t1015 = s_r_p_1_ * t944;
-  const Real t1016 = t1014 + t1015;
-  const Real t1017 = c_r_p_1_ * t968;
-  const Real t1018 = s_r_p_1_ * t975;
-  const Real t1019 = t1017 - t1018;
-  const Real t1020 = par.k1 * t1019;
-  const Real t1021 = t761 * par.k11;
-  const Real t1022 = par.k9 * t765;
-  const Real t1023 = t1021 - t1022;
-  const Real t1024 = t802 * par.m_H;
-  const Real t1025 = t1023 + t1024;
-  const Real t1026 = t1025 + t855;
-  const Real t1027 = t1026 * par.k2;
-  const Real t1028 = t1027 - t1020;
-  const Real t1029 = par.k14 * t1028;
-  const Real t1030 = t1016 - t1029;
-  const Real t1031 = par.k59 * t779;
-  const Real t1032 = t779 * par.k16;
-  const Real t1033 = t1031 + t1032;
-  const Real t1034 = t795 * par.k17;
-  const Real t1035 = t1033 - t1034;
-  const Real t1036 = par.k4 * t739;
-  const Real t1037 = par.k4 * t741;
-  const Real t1038 = t1037 + t1036;
-  const Real t1039 = t796 * par.k34;
-  const Real t1040 = t1038 - t1039;
-  const Real t1041 = t468 - nu[0];
-  const Real t1042 = t468 + nu[0];
-  const Real t1043 = t1041 * t1042;
-  const Real t1044 = par.k3 * t1043;
-  const Real t1045 = t1040 + t1044;
-  const Real t1046 = t1035 + t1045;
-  const Real t1047 = t1030 + t1046;
-  const Real t1048 = t741 - t796;
-  const Real t1049 = t1048 + t739;
-  const Real t1050 = t1049 * par.r_R;
-  const Real t1051 = t779 - t1050;
-  const Real t1052 = t1051 * s_r_p_0_;
+  const Real t945 = s_r_p_1_ * t944;
+  const Real t946 = t875 + t945;
+  const Real t947 = par.m_H * t822;
+  const Real t948 = par.k9 * t823;
+  const Real t949 = t826 * par.k11;
+  const Real t950 = t948 - t949;
+  const Real t951 = t950 + t947;
+  const Real t952 = t951 + t851;
+  const Real t953 = c_r_p_1_ * t952;
+  const Real t954 = t925 * par.m_H;
+  const Real t955 = par.k9 * t927;
+  const Real t956 = par.k11 * t930;
+  const Real t957 = t956 - t955;
+  const Real t958 = t954 + t957;
+  const Real t959 = t958 + t934;
+  const Real t960 = s_r_p_1_ * t959;
+  const Real t961 = t953 - t960;
+  const Real t962 = par.k1 * t961;
+  const Real t963 = t761 * par.k11;
+  const Real t964 = par.k9 * t765;
+  const Real t965 = t963 - t964;
+  const Real t966 = t802 * par.m_H;
+  const Real t967 = t965 + t966;
+  const Real t968 = t967 + t855;
+  const Real t969 = t968 * par.k2;
+  const Real t970 = t969 - t962;
+  const Real t971 = par.k14 * t970;
+  const Real t972 = t946 - t971;
+  const Real t973 = par.k62 * t779;
+  const Real t974 = t779 * par.k16;
+  const Real t975 = t973 + t974;
+  const Real t976 = t795 * par.k17;
+  const Real t977 = t975 - t976;
+  const Real t978 = par.k59 * t739;
+  const Real t979 = par.k59 * t741;
+  const Real t980 = t979 + t978;
+  const Real t981 = t796 * par.k63;
+  const Real t982 = t980 - t981;
+  const Real t983 = t468 - nu[0];
+  const Real t984 = t468 + nu[0];
+  const Real t985 = t983 * t984;
+  const Real t986 = par.k3 * t985;
+  const Real t987 = t986 + t982;
+  const Real t988 = t987 + t977;
+  const Real t989 = t988 + t972;
+  const Real t990 = t741 - t796;
+  const Real t991 = t990 + t739;
+  const Real t992 = t991 * par.r_R;
+  const Real t993 = t779 - t992;
+  const Real t994 = t993 * s_r_p_0_;
 
   // frame: acceleration
-  const Real t1053 = nu[0] * nu[0];
+  const Real t995 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t1054 = t1053 + t781;
-  const Real t1055 = par.r_R * t1054;
-  const Real t1056 = t795 + t1055;
-  const Real t1057 = t1056 * c_r_p_0_;
-  const Real t1058 = t1052 + t1057;
-  const Real t1059 = t1058 * par.m_R;
-  const Real t1060 = t1059 * s_r_p_0_;
-  const Real t1061 = t1051 * c_r_p_0_;
-  const Real t1062 = t1056 * s_r_p_0_;
-  const Real t1063 = t1061 - t1062;
-  const Real t1064 = par.m_R * t1063;
-  const Real t1065 = t1064 * c_r_p_0_;
-  const Real t1066 = t1060 + t1065;
-  const Real t1067 = t1066 * par.r_R;
-  const Real t1068 = par.I_Ryy * t739;
-  const Real t1069 = par.I_Ryy * t741;
-  const Real t1070 = t1069 + t1068;
-  const Real t1071 = t1070 - t1067;
-  const Real t1072 = t1071 + t1047;
-  const Real t1073 = t1072 * t456;
-  const Real t1074 = t1072 * t454;
-  const Real t1075 = t1073 + t1074;
-  const Real t1076 = par.k2 * t1019;
-  const Real t1077 = par.k1 * t1026;
-  const Real t1078 = t1076 + t1077;
-  const Real t1079 = t779 * par.m_B;
-  const Real t1080 = t1049 * par.k59;
-  const Real t1081 = t1049 * par.k16;
-  const Real t1082 = t1080 + t1081;
-  const Real t1083 = t782 * par.k17;
-  const Real t1084 = t1082 - t1083;
-  const Real t1085 = t1084 + t1079;
-  const Real t1086 = t1078 + t1085;
-  const Real t1087 = t1086 + t1066;
-  const Real t1088 = t1087 * t592;
-  const Real t1089 = t812 * par.m_B;
-  const Real t1090 = t814 * par.k17;
-  const Real t1091 = par.k16 * t984;
-  const Real t1092 = par.k59 * t984;
-  const Real t1093 = t1091 + t1092;
-  const Real t1094 = t1093 + t1090;
-  const Real t1095 = t1094 + t1089;
-  const Real t1096 = t977 + t1095;
-  const Real t1097 = par.r_R * t984;
-  const Real t1098 = t812 - t1097;
-  const Real t1099 = par.m_R * t1098;
-  const Real t1100 = t1099 + t1096;
-  const Real t1101 = t568 * t1100;
-  const Real t1102 = t1101 + t1088;
-  const Real t1103 = t795 * par.m_B;
-  const Real t1104 = t798 * par.k17;
-  const Real t1105 = par.k59 * t1054;
-  const Real t1106 = par.k16 * t1054;
-  const Real t1107 = t1105 + t1106;
-  const Real t1108 = t1104 + t1107;
-  const Real t1109 = t1103 - t1108;
-  const Real t1110 = t1109 + t1028;
-  const Real t1111 = t1059 * c_r_p_0_;
-  const Real t1112 = t1064 * s_r_p_0_;
-  const Real t1113 = t1111 - t1112;
-  const Real t1114 = t1110 + t1113;
-  const Real t1115 = t1114 * t609;
-  const Real t1116 = t1102 + t1115;
-  const Real t1117 = t1075 - t1116;
-  const Real t1118 = t1013 + t1117;
-  const Real t1119 = t1118 - t1070;
+  const Real t996 = t995 + t781;
+  const Real t997 = par.r_R * t996;
+  const Real t998 = t795 + t997;
+  const Real t999 = t998 * c_r_p_0_;
+  const Real t1000 = t994 + t999;
+  const Real t1001 = t1000 * par.m_R;
+  const Real t1002 = t1001 * s_r_p_0_;
+  const Real t1003 = t993 * c_r_p_0_;
+  const Real t1004 = t998 * s_r_p_0_;
+  const Real t1005 = t1003 - t1004;
+  const Real t1006 = par.m_R * t1005;
+  const Real t1007 = t1006 * c_r_p_0_;
+  const Real t1008 = t1002 + t1007;
+  const Real t1009 = t1008 * par.r_R;
+  const Real t1010 = par.I_Ryy * t739;
+  const Real t1011 = par.I_Ryy * t741;
+  const Real t1012 = t1011 + t1010;
+  const Real t1013 = t1012 - t1009;
+  const Real t1014 = t1013 + t989;
+  const Real t1015 = t1014 * t454;
+  const Real t1016 = t1014 * t456;
+  const Real t1017 = t1015 + t1016;
+  const Real t1018 = par.k2 * t961;
+  const Real t1019 = par.k1 * t968;
+  const Real t1020 = t1018 + t1019;
+  const Real t1021 = t779 * par.m_B;
+  const Real t1022 = t991 * par.k62;
+  const Real t1023 = t991 * par.k16;
+  const Real t1024 = t1022 + t1023;
+  const Real t1025 = t782 * par.k17;
+  const Real t1026 = t1024 - t1025;
+  const Real t1027 = t1026 + t1021;
+  const Real t1028 = t1020 + t1027;
+  const Real t1029 = t1028 + t1008;
+  const Real t1030 = t1029 * t592;
+  const Real t1031 = s_r_p_1_ * t952;
+  const Real t1032 = c_r_p_1_ * t959;
+  const Real t1033 = t1032 + t1031;
+  const Real t1034 = t812 * par.m_B;
+  const Real t1035 = t814 * par.k17;
+  const Real t1036 = t480 * t468;
+  const Real t1037 = par.k16 * t1036;
+  const Real t1038 = par.k62 * t1036;
+  const Real t1039 = t1037 + t1038;
+  const Real t1040 = t1039 + t1035;
+  const Real t1041 = t1040 + t1034;
+  const Real t1042 = t1033 + t1041;
+  const Real t1043 = par.r_R * t1036;
+  const Real t1044 = t812 - t1043;
+  const Real t1045 = par.m_R * t1044;
+  const Real t1046 = t1045 + t1042;
+  const Real t1047 = t568 * t1046;
+  const Real t1048 = t1047 + t1030;
+  const Real t1049 = t795 * par.m_B;
+  const Real t1050 = t798 * par.k17;
+  const Real t1051 = par.k62 * t996;
+  const Real t1052 = par.k16 * t996;
+  const Real t1053 = t1051 + t1052;
+  const Real t1054 = t1050 + t1053;
+  const Real t1055 = t1049 - t1054;
+  const Real t1056 = t1055 + t970;
+  const Real t1057 = t1001 * c_r_p_0_;
+  const Real t1058 = t1006 * s_r_p_0_;
+  const Real t1059 = t1057 - t1058;
+  const Real t1060 = t1056 + t1059;
+  const Real t1061 = t1060 * t609;
+  const Real t1062 = t1048 + t1061;
+  const Real t1063 = t1017 - t1062;
+  const Real t1064 = t874 * s_r_p_1_;
+  const Real t1065 = t944 * c_r_p_1_;
+  const Real t1066 = t1065 - t1064;
+  const Real t1067 = t1066 * par.k1;
+  const Real t1068 = t920 * par.k2;
+  const Real t1069 = par.k1 * t916;
+  const Real t1070 = t1068 + t1069;
+  const Real t1071 = par.k13 * t934;
+  const Real t1072 = t1071 + t1070;
+  const Real t1073 = t925 * par.k11;
+  const Real t1074 = par.k5 * t927;
+  const Real t1075 = par.k7 * t884;
+  const Real t1076 = t929 * par.k39;
+  const Real t1077 = t1075 - t1076;
+  const Real t1078 = t1077 + t1074;
+  const Real t1079 = t1073 + t1078;
+  const Real t1080 = t1072 + t1079;
+  const Real t1081 = t1080 * par.k2;
+  const Real t1082 = t1081 - t1067;
+  const Real t1083 = t1033 * par.k14;
+  const Real t1084 = t1082 + t1083;
+  const Real t1085 = t812 * par.k17;
+  const Real t1086 = t751 * par.k15;
+  const Real t1087 = par.k61 * t813;
+  const Real t1088 = t1086 - t1087;
+  const Real t1089 = par.k3 * t1036;
+  const Real t1090 = t1088 - t1089;
+  const Real t1091 = t1085 + t1090;
+  const Real t1092 = t1084 + t1091;
+  const Real t1093 = t751 * c_r_p_0_;
+  const Real t1094 = t468 * s_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1095 = nu[0] * c_r_p_0_;
+
+  // passive accelerations
+  const Real t1096 = t1095 + t1094;
+  const Real t1097 = t1096 * nu[2];
+  const Real t1098 = t1097 + t1093;
+  const Real t1099 = t1098 * par.I_Rxx;
+  const Real t1100 = t1096 * t632;
+  const Real t1101 = par.k35 * t1100;
+  const Real t1102 = t1099 + t1101;
+  const Real t1103 = t1102 * c_r_p_0_;
+  const Real t1104 = t751 * s_r_p_0_;
+  const Real t1105 = t468 * c_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1106 = nu[0] * s_r_p_0_;
+
+  // passive accelerations
+  const Real t1107 = t1106 - t1105;
+  const Real t1108 = t1107 * nu[2];
+  const Real t1109 = t1108 + t1104;
+  const Real t1110 = t1109 * par.I_Rxx;
+  const Real t1111 = t1107 * t632;
+  const Real t1112 = t1111 * par.k36;
+  const Real t1113 = t1112 - t1110;
+  const Real t1114 = t1113 * s_r_p_0_;
+  const Real t1115 = t1103 - t1114;
+  const Real t1116 = t1092 + t1115;
+  const Real t1117 = t1116 * t466;
+  const Real t1118 = t1063 + t1117;
+  const Real t1119 = t1118 - t1012;
   const Real t1120 = t443 * t860;
   const Real t1121 = t1120 + t1119;
-  const Real t1122 = t1072 * t308;
-  const Real t1123 = t1072 * t310;
+  const Real t1122 = t310 * t1014;
+  const Real t1123 = t1014 * t308;
   const Real t1124 = t1122 + t1123;
-  const Real t1125 = t1087 * t578;
-  const Real t1126 = t562 * t1100;
+  const Real t1125 = t1029 * t578;
+  const Real t1126 = t562 * t1046;
   const Real t1127 = t1125 + t1126;
-  const Real t1128 = t1114 * t599;
+  const Real t1128 = t1060 * t599;
   const Real t1129 = t1128 - t1127;
   const Real t1130 = t1129 + t1124;
-  const Real t1131 = t320 * t1012;
+  const Real t1131 = t320 * t1116;
   const Real t1132 = t1130 + t1131;
-  const Real t1133 = t1132 - t960;
+  const Real t1133 = t1132 - t1080;
   const Real t1134 = t860 * t291;
   const Real t1135 = t293 * t860;
   const Real t1136 = t1134 + t1135;
   const Real t1137 = t1133 + t1136;
-  const Real t1138 = t584 * t1087;
-  const Real t1139 = t565 * t1100;
+  const Real t1138 = t584 * t1029;
+  const Real t1139 = t565 * t1046;
   const Real t1140 = t1138 + t1139;
-  const Real t1141 = t1114 * t603;
+  const Real t1141 = t1060 * t603;
   const Real t1142 = t1141 - t1140;
-  const Real t1143 = t946 * par.k2;
-  const Real t1144 = t960 * par.k1;
+  const Real t1143 = t1066 * par.k2;
+  const Real t1144 = t1080 * par.k1;
   const Real t1145 = t1144 + t1143;
   const Real t1146 = t812 * par.k16;
   const Real t1147 = par.k3 * t814;
-  const Real t1148 = par.k33 * t984;
+  const Real t1148 = par.k64 * t1036;
   const Real t1149 = t1148 + t1147;
   const Real t1150 = t1149 - t1146;
   const Real t1151 = t1150 + t1145;
-  const Real t1152 = t1099 * par.r_R;
-  const Real t1153 = t998 * s_r_p_0_;
-  const Real t1154 = t1009 * c_r_p_0_;
+  const Real t1152 = t1045 * par.r_R;
+  const Real t1153 = t1102 * s_r_p_0_;
+  const Real t1154 = t1113 * c_r_p_0_;
   const Real t1155 = t1153 + t1154;
   const Real t1156 = t1155 + t1152;
   const Real t1157 = t1151 + t1156;
   const Real t1158 = t1142 - t1157;
-  const Real t1159 = sum_error(t1156, t1151);
-  const Real t1160 = sum_error(t1145, t1150);
-  const Real t1161 = -t1146;
-  const Real t1162 = sum_error(t1149, t1161);
-  const Real t1163 = product_error(t812, par.k16);
-  const Real t1164 = t812 * par.k59;
-  const Real t1165 = t1163 + t1164;
-  const Real t1166 = t1162 - t1165;
-  const Real t1167 = t1160 + t1166;
-  const Real t1168 = t1159 + t1167;
+  const Real t1159 = sum_error(t1145, t1150);
+  const Real t1160 = -t1146;
+  const Real t1161 = sum_error(t1149, t1160);
+  const Real t1162 = product_error(t812, par.k16);
+  const Real t1163 = t812 * par.k62;
+  const Real t1164 = t1162 + t1163;
+  const Real t1165 = t1161 - t1164;
+  const Real t1166 = t1165 + t1159;
+  const Real t1167 = sum_error(t1156, t1151);
+  const Real t1168 = t1166 + t1167;
   const Real t1169 = t1158 - t1168;
-  const Real t1170 = t1072 * t396;
-  const Real t1171 = t1072 * t394;
+  const Real t1170 = t1014 * t396;
+  const Real t1171 = t1014 * t394;
   const Real t1172 = t1170 + t1171;
-  const Real t1173 = t1169 + t1172;
-  const Real t1174 = t1012 * t406;
+  const Real t1173 = t1172 + t1169;
+  const Real t1174 = t1116 * t406;
   const Real t1175 = t1174 + t1173;
   const Real t1176 = t860 * t383;
   const Real t1177 = t1175 + t1176;
@@ -4166,13 +4178,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1309 = t1308 - t1303;
   const Real t1310 = par.k14 * t1309;
   const Real t1311 = t1289 - t1310;
-  const Real t1312 = par.k59 * t592;
+  const Real t1312 = par.k62 * t592;
   const Real t1313 = t592 * par.k16;
   const Real t1314 = t1312 + t1313;
   const Real t1315 = t609 * par.k17;
   const Real t1316 = t1314 - t1315;
-  const Real t1317 = par.k4 * t454;
-  const Real t1318 = par.k4 * t456;
+  const Real t1317 = par.k59 * t454;
+  const Real t1318 = par.k59 * t456;
   const Real t1319 = t1317 + t1318;
   const Real t1320 = t1316 - t1319;
   const Real t1321 = t1311 + t1320;
@@ -4197,15 +4209,15 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1340 = par.I_Ryy * t1339;
   const Real t1341 = t1340 - t1337;
   const Real t1342 = t1321 + t1341;
-  const Real t1343 = t456 * t1342;
-  const Real t1344 = t1342 * t454;
+  const Real t1343 = t1342 * t454;
+  const Real t1344 = t1342 * t456;
   const Real t1345 = t1343 + t1344;
   const Real t1346 = t1302 * par.k2;
   const Real t1347 = t1307 * par.k1;
   const Real t1348 = t1346 + t1347;
   const Real t1349 = t592 * par.m_B;
   const Real t1350 = par.k16 * t454;
-  const Real t1351 = par.k59 * t456;
+  const Real t1351 = par.k62 * t456;
   const Real t1352 = t1351 + t1350;
   const Real t1353 = t456 * par.k16;
   const Real t1354 = t1353 + t1352;
@@ -4270,7 +4282,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1413 = t1405 - t1412;
   const Real t1414 = t1413 * t466;
   const Real t1415 = t1382 - t1414;
-  const Real t1416 = t1340 + t1415;
+  const Real t1416 = t1415 + t1340;
   const Real t1417 = t1233 * t443;
   const Real t1418 = t1417 + t1416;
   const Real t1419 = t320 * par.k14;
@@ -4410,12 +4422,12 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1553 = t1552 * par.k14;
   const Real t1554 = t1532 - t1553;
   const Real t1555 = par.k16 * t578;
-  const Real t1556 = par.k59 * t578;
+  const Real t1556 = par.k62 * t578;
   const Real t1557 = t1555 + t1556;
   const Real t1558 = par.k17 * t599;
   const Real t1559 = t1558 + t1557;
-  const Real t1560 = par.k4 * t308;
-  const Real t1561 = t310 * par.k4;
+  const Real t1560 = par.k59 * t308;
+  const Real t1561 = t310 * par.k59;
   const Real t1562 = t1561 + t1560;
   const Real t1563 = t1559 - t1562;
   const Real t1564 = t1563 + t1554;
@@ -4448,7 +4460,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1591 = t1589 + t1590;
   const Real t1592 = t578 * par.m_B;
   const Real t1593 = par.k16 * t308;
-  const Real t1594 = t310 * par.k59;
+  const Real t1594 = t310 * par.k62;
   const Real t1595 = t1594 + t1593;
   const Real t1596 = t310 * par.k16;
   const Real t1597 = t1596 + t1595;
@@ -4652,16 +4664,16 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1795 = t1794 - t1789;
   const Real t1796 = par.k14 * t1795;
   const Real t1797 = t1775 - t1796;
-  const Real t1798 = par.k59 * t584;
+  const Real t1798 = par.k62 * t584;
   const Real t1799 = t584 * par.k16;
   const Real t1800 = t1798 + t1799;
   const Real t1801 = t603 * par.k17;
   const Real t1802 = t1801 + t1800;
-  const Real t1803 = par.k4 * t394;
-  const Real t1804 = par.k4 * t396;
+  const Real t1803 = par.k59 * t394;
+  const Real t1804 = par.k59 * t396;
   const Real t1805 = t1803 + t1804;
   const Real t1806 = t1802 - t1805;
-  const Real t1807 = t1797 + t1806;
+  const Real t1807 = t1806 + t1797;
   const Real t1808 = t394 * par.r_R;
   const Real t1809 = par.r_R * t396;
   const Real t1810 = t1808 + t1809;
@@ -4683,15 +4695,15 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1826 = t1824 + t1825;
   const Real t1827 = t1823 + t1826;
   const Real t1828 = t1807 - t1827;
-  const Real t1829 = t456 * t1828;
-  const Real t1830 = t1828 * t454;
+  const Real t1829 = t1828 * t454;
+  const Real t1830 = t1828 * t456;
   const Real t1831 = t1829 + t1830;
   const Real t1832 = t1788 * par.k2;
   const Real t1833 = par.k1 * t1793;
   const Real t1834 = t1832 + t1833;
   const Real t1835 = t584 * par.m_B;
   const Real t1836 = t394 * par.k16;
-  const Real t1837 = par.k59 * t396;
+  const Real t1837 = par.k62 * t396;
   const Real t1838 = t1837 + t1836;
   const Real t1839 = par.k16 * t396;
   const Real t1840 = t1838 + t1839;
@@ -4705,7 +4717,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1848 = t565 * par.m_B;
   const Real t1849 = par.k17 * t406;
   const Real t1850 = par.k16 + t1849;
-  const Real t1851 = par.k59 + t1850;
+  const Real t1851 = par.k62 + t1850;
   const Real t1852 = t1848 - t1851;
   const Real t1853 = t1852 + t1847;
   const Real t1854 = t565 + par.r_R;
@@ -4792,46 +4804,54 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1935 = t1934 - t1929;
   const Real t1936 = t320 * t1905;
   const Real t1937 = t1935 - t1936;
-  const Real t1938 = t1886 + t1937;
+  const Real t1938 = t1937 + t1886;
   const Real t1939 = t291 * t1718;
   const Real t1940 = t293 * t1718;
   const Real t1941 = t1939 + t1940;
   const Real t1942 = t1938 + t1941;
-  const Real t1943 = par.k2 * t1874;
-  const Real t1944 = par.k1 * t1886;
-  const Real t1945 = t1944 + t1943;
-  const Real t1946 = t565 * par.k16;
-  const Real t1947 = par.k59 * t565;
-  const Real t1948 = t1946 + t1947;
-  const Real t1949 = par.k3 * t406;
-  const Real t1950 = par.k10 - t1949;
-  const Real t1951 = t1950 - t1948;
-  const Real t1952 = -t1949;
-  const Real t1953 = sum_error(par.k10, t1952);
-  const Real t1954 = t1951 + t1953;
-  const Real t1955 = t1954 + t1945;
-  const Real t1956 = t1902 * c_r_p_0_;
-  const Real t1957 = t1898 * s_r_p_0_;
-  const Real t1958 = t1956 + t1957;
-  const Real t1959 = t1855 * par.r_R;
+  const Real t1943 = t1843 * t584;
+  const Real t1944 = t1856 * t565;
+  const Real t1945 = t1943 + t1944;
+  const Real t1946 = t603 * t1868;
+  const Real t1947 = t1945 - t1946;
+  const Real t1948 = par.k2 * t1874;
+  const Real t1949 = par.k1 * t1886;
+  const Real t1950 = t1949 + t1948;
+  const Real t1951 = t565 * par.k16;
+  const Real t1952 = par.k62 * t565;
+  const Real t1953 = t1951 + t1952;
+  const Real t1954 = par.k3 * t406;
+  const Real t1955 = par.k10 - t1954;
+  const Real t1956 = t1955 - t1953;
+  const Real t1957 = t1950 + t1956;
+  const Real t1958 = t1902 * c_r_p_0_;
+  const Real t1959 = t1898 * s_r_p_0_;
   const Real t1960 = t1958 + t1959;
-  const Real t1961 = t1955 + t1960;
-  const Real t1962 = t1843 * t584;
-  const Real t1963 = t1856 * t565;
-  const Real t1964 = t1962 + t1963;
-  const Real t1965 = t603 * t1868;
-  const Real t1966 = t1964 - t1965;
-  const Real t1967 = t1961 + t1966;
-  const Real t1968 = t1828 * t396;
-  const Real t1969 = t394 * t1828;
-  const Real t1970 = t1968 + t1969;
-  const Real t1971 = t1967 - t1970;
-  const Real t1972 = t1905 * t406;
-  const Real t1973 = t1971 - t1972;
-  const Real t1974 = t383 * t1718;
-  const Real t1975 = t1974 + t1973;
+  const Real t1961 = t1855 * par.r_R;
+  const Real t1962 = t1960 + t1961;
+  const Real t1963 = t1957 + t1962;
+  const Real t1964 = t1947 + t1963;
+  const Real t1965 = sum_error(t1950, t1956);
+  const Real t1966 = -t1953;
+  const Real t1967 = sum_error(t1955, t1966);
+  const Real t1968 = -t1954;
+  const Real t1969 = sum_error(par.k10, t1968);
+  const Real t1970 = par.k60 + t1969;
+  const Real t1971 = t1967 + t1970;
+  const Real t1972 = t1965 + t1971;
+  const Real t1973 = sum_error(t1962, t1957);
+  const Real t1974 = t1972 + t1973;
+  const Real t1975 = t1964 + t1974;
+  const Real t1976 = t1828 * t394;
+  const Real t1977 = t1828 * t396;
+  const Real t1978 = t1976 + t1977;
+  const Real t1979 = t1975 - t1978;
+  const Real t1980 = t1905 * t406;
+  const Real t1981 = t1979 - t1980;
+  const Real t1982 = t383 * t1718;
+  const Real t1983 = t1982 + t1981;
 
-  M_r[0] = t1975;
+  M_r[0] = t1983;
   M_r[1] = t1942;
   M_r[2] = t1910;
   M_r[3] = t1942;
@@ -4847,7 +4867,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
 /// route: orthogonal basis, all blocks, stable forms, compensated beyond 0.5 ulps
-/// operations: 3468 add, 2121 mul, 25 div, 86 neg, 2 sqrt, 6 sin, 3 cos
+/// operations: 3522 add, 2143 mul, 25 div, 88 neg, 2 sqrt, 6 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -5028,12 +5048,14 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t82 = constant<Real>(1.0L) / t81;
   const Real t83 = t82 * R[6];
 
-  // accelerations
+  // kernel
   const Real t84 = quotient_error(constant<Real>(1.0L), t81);
   const Real t85 = t84 * R[6];
   const Real t86 = t83 + t85;
   const Real t87 = t86 * par.r_R;
   const Real t88 = t87 * c_r_p_1_;
+
+  // accelerations
   const Real t89 = t77 - t88;
   const Real t90 = constant<Real>(1.0L) / t89;
   const Real t91 = sum_error(t76, t69);
@@ -5047,7 +5069,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // accelerations
   const Real t96 = t92 + t95;
   const Real t97 = t91 + t96;
+
+  // kernel
   const Real t98 = -t88;
+
+  // accelerations
   const Real t99 = sum_error(t77, t98);
   const Real t100 = t97 + t99;
   const Real t101 = t90 * t100;
@@ -5080,7 +5106,11 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // accelerations
   const Real t116 = t115 - t106;
+
+  // kernel
   const Real t117 = t87 * t105;
+
+  // accelerations
   const Real t118 = t117 + t116;
   const Real t119 = t104 * t118;
   const Real t120 = t90 * t118;
@@ -5158,21 +5188,17 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // accelerations
   const Real t154 = t153 - t146;
+
+  // kernel
   const Real t155 = product_error(R[8], t82);
   const Real t156 = R[8] * t84;
   const Real t157 = t155 + t156;
   const Real t158 = t157 * par.r_R;
   const Real t159 = product_error(t138, par.r_R);
   const Real t160 = t159 + t158;
-
-  // kernel
   const Real t161 = sum_error(t139, par.k6);
-
-  // accelerations
   const Real t162 = t161 + t160;
   const Real t163 = t162 * t65;
-
-  // kernel
   const Real t164 = t140 * t65;
 
   // accelerations
@@ -5185,9 +5211,9 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t171 = sum_error(t170, t145);
   const Real t172 = product_error(t121, t143);
   const Real t173 = sum_error(t141, t137);
-  const Real t174 = t162 * t122;
 
   // kernel
+  const Real t174 = t162 * t122;
   const Real t175 = product_error(t140, t122);
 
   // accelerations
@@ -5237,9 +5263,9 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // kernel
   const Real t207 = t206 - t203;
+  const Real t208 = t87 * t122;
 
   // accelerations
-  const Real t208 = t87 * t122;
   const Real t209 = t207 - t208;
   const Real t210 = t209 * t90;
   const Real t211 = t143 * t210;
@@ -5250,7 +5276,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t214 = t213 * t50;
 
   // accelerations
-  const Real t215 = par.k63 * t64;
+  const Real t215 = par.k66 * t64;
 
   // joint angles
   const Real t216 = c_r_p_1_ * par.r_F;
@@ -5269,12 +5295,10 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // accelerations
   const Real t223 = t222 + t218;
-  const Real t224 = t84 * par.k1;
 
   // kernel
+  const Real t224 = t84 * par.k1;
   const Real t225 = par.k1 * t82;
-
-  // accelerations
   const Real t226 = t224 + t225;
   const Real t227 = par.k2 * t226;
   const Real t228 = t227 * t6;
@@ -5282,6 +5306,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t230 = t229 * R[6];
   const Real t231 = t230 * par.r_R;
   const Real t232 = constant<Real>(2.0L) * t231;
+
+  // accelerations
   const Real t233 = t232 - t223;
   const Real t234 = t233 - t211;
   const Real t235 = t202 * t234;
@@ -5324,9 +5350,9 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // accelerations
   const Real t263 = t262 + t261;
   const Real t264 = t263 + t260;
-  const Real t265 = t162 * t221;
 
   // kernel
+  const Real t265 = t162 * t221;
   const Real t266 = sum_error(par.k20, t220);
   const Real t267 = product_error(c_r_p_1_, par.k2);
   const Real t268 = t267 * par.k2;
@@ -5463,8 +5489,6 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // kernel
   const Real t374 = -t139;
   const Real t375 = sum_error(par.r_R, t374);
-
-  // accelerations
   const Real t376 = t375 - t160;
   const Real t377 = t376 * c_r_p_1_;
 
@@ -5487,11 +5511,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // kernel
   const Real t385 = t383 - t384;
-
-  // accelerations
   const Real t386 = t376 * t105;
-
-  // kernel
   const Real t387 = t378 * t105;
 
   // accelerations
@@ -5519,10 +5539,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // passive accelerations
   const Real t406 = t405 + t127;
 
-  // accelerations
-  const Real t407 = t376 * t122;
-
   // kernel
+  const Real t407 = t376 * t122;
   const Real t408 = t122 * t378;
 
   // accelerations
@@ -5561,3519 +5579,3544 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t441 = t439 + t440;
   const Real t442 = t441 * nu[0];
   const Real t443 = t442 + t362;
-  const Real t444 = t122 * t160;
 
   // kernel
+  const Real t444 = t122 * t160;
   const Real t445 = t122 * t139;
 
   // accelerations
   const Real t446 = t445 + t444;
   const Real t447 = t117 + t446;
   const Real t448 = t121 * t447;
-  const Real t449 = t65 * t160;
 
   // kernel
+  const Real t449 = t65 * t160;
   const Real t450 = t139 * t65;
 
   // accelerations
   const Real t451 = t450 + t449;
   const Real t452 = t169 - t451;
   const Real t453 = t452 - t448;
-  const Real t454 = t453 * t287;
-  const Real t455 = -t448;
-  const Real t456 = sum_error(t452, t455);
-  const Real t457 = product_error(t121, t447);
-  const Real t458 = t456 - t457;
-  const Real t459 = t458 * t289;
-  const Real t460 = t454 + t459;
-  const Real t461 = product_error(t453, t289);
-  const Real t462 = t460 + t461;
-  const Real t463 = t447 * t252;
-  const Real t464 = product_error(t210, t447);
-  const Real t465 = t464 + t463;
-  const Real t466 = t447 * t210;
-  const Real t467 = -t466;
-  const Real t468 = t160 * t221;
+  const Real t454 = t453 * t289;
+  const Real t455 = t447 * t210;
 
   // kernel
-  const Real t469 = t139 * t271;
+  const Real t456 = t160 * t221;
+  const Real t457 = t139 * t271;
 
   // accelerations
-  const Real t470 = t469 + t468;
+  const Real t458 = t457 + t456;
 
   // kernel
-  const Real t471 = t139 * t221;
+  const Real t459 = t139 * t221;
 
   // accelerations
-  const Real t472 = t470 + t471;
-  const Real t473 = t87 * t65;
-  const Real t474 = t473 - t472;
-  const Real t475 = sum_error(t474, t467);
-  const Real t476 = t475 - t465;
-  const Real t477 = t476 - t462;
-  const Real t478 = t453 * t289;
-  const Real t479 = t474 - t466;
-  const Real t480 = t479 - t478;
-  const Real t481 = t480 + t477;
-  const Real t482 = t481 * t301;
-  const Real t483 = t297 * t481;
-  const Real t484 = t482 + t483;
-  const Real t485 = product_error(t52, t484);
-  const Real t486 = t458 + t485;
-  const Real t487 = t52 * t484;
-  const Real t488 = sum_error(t453, t487);
-  const Real t489 = t486 + t488;
-  const Real t490 = t489 * t198;
-  const Real t491 = t453 + t487;
-  const Real t492 = t202 * t491;
-  const Real t493 = t492 + t490;
-  const Real t494 = product_error(t198, t491);
-  const Real t495 = t493 + t494;
-  const Real t496 = t143 * t495;
-  const Real t497 = t198 * t491;
-  const Real t498 = t179 * t497;
-  const Real t499 = t498 + t496;
-  const Real t500 = product_error(t143, t497);
-  const Real t501 = t499 + t500;
-  const Real t502 = t497 * t143;
-  const Real t503 = -t502;
-  const Real t504 = sum_error(t447, t503);
-  const Real t505 = t504 - t501;
-  const Real t506 = t505 * t90;
-  const Real t507 = t447 - t502;
-  const Real t508 = t104 * t507;
-  const Real t509 = t508 + t506;
-  const Real t510 = product_error(t90, t507);
-  const Real t511 = t509 + t510;
-  const Real t512 = nu[2] * t511;
-  const Real t513 = t90 * t507;
-  const Real t514 = t513 * nu[2];
-  const Real t515 = t512 + t514;
-  const Real t516 = t515 + t443;
-  const Real t517 = t516 * R[7];
-  const Real t518 = t342 * nu[1];
-  const Real t519 = t344 * nu[1];
-  const Real t520 = t519 + t518;
-  const Real t521 = t429 * nu[0];
-  const Real t522 = nu[0] * t431;
-  const Real t523 = t522 + t521;
-  const Real t524 = t523 + t520;
-  const Real t525 = t495 * nu[2];
-  const Real t526 = t497 * nu[2];
+  const Real t460 = t458 + t459;
+  const Real t461 = t87 * t65;
+  const Real t462 = t461 - t460;
+  const Real t463 = t462 - t455;
+  const Real t464 = t463 - t454;
+  const Real t465 = t464 * t301;
+  const Real t466 = t453 * t287;
+  const Real t467 = -t448;
+  const Real t468 = sum_error(t452, t467);
+  const Real t469 = product_error(t121, t447);
+  const Real t470 = t468 - t469;
+  const Real t471 = t470 * t289;
+  const Real t472 = t466 + t471;
+  const Real t473 = product_error(t453, t289);
+  const Real t474 = t472 + t473;
+  const Real t475 = t447 * t252;
+  const Real t476 = product_error(t210, t447);
+  const Real t477 = t476 + t475;
+  const Real t478 = -t455;
+  const Real t479 = sum_error(t462, t478);
+  const Real t480 = t479 - t477;
+  const Real t481 = t480 - t474;
+  const Real t482 = -t454;
+  const Real t483 = sum_error(t463, t482);
+  const Real t484 = t483 + t481;
+  const Real t485 = t484 * t297;
+  const Real t486 = t485 + t465;
+  const Real t487 = product_error(t464, t297);
+  const Real t488 = t486 + t487;
+  const Real t489 = t52 * t488;
+  const Real t490 = t464 * t297;
+  const Real t491 = product_error(t52, t490);
+  const Real t492 = t491 + t489;
+  const Real t493 = t492 + t470;
+  const Real t494 = t490 * t52;
+  const Real t495 = sum_error(t453, t494);
+  const Real t496 = t493 + t495;
+  const Real t497 = t496 * t198;
+  const Real t498 = t453 + t494;
+  const Real t499 = t202 * t498;
+  const Real t500 = t497 + t499;
+  const Real t501 = product_error(t198, t498);
+  const Real t502 = t500 + t501;
+  const Real t503 = t143 * t502;
+  const Real t504 = t198 * t498;
+  const Real t505 = t179 * t504;
+  const Real t506 = t505 + t503;
+  const Real t507 = product_error(t143, t504);
+  const Real t508 = t506 + t507;
+  const Real t509 = t504 * t143;
+  const Real t510 = -t509;
+  const Real t511 = sum_error(t447, t510);
+  const Real t512 = t511 - t508;
+  const Real t513 = t512 * t90;
+  const Real t514 = t447 - t509;
+  const Real t515 = t104 * t514;
+  const Real t516 = t515 + t513;
+  const Real t517 = product_error(t90, t514);
+  const Real t518 = t516 + t517;
+  const Real t519 = t518 * nu[2];
+  const Real t520 = t90 * t514;
+  const Real t521 = t520 * nu[2];
+  const Real t522 = t521 + t519;
+  const Real t523 = t443 + t522;
+  const Real t524 = t523 * R[7];
+  const Real t525 = t342 * nu[1];
+  const Real t526 = t344 * nu[1];
   const Real t527 = t526 + t525;
-  const Real t528 = t527 + t524;
-  const Real t529 = R[8] * t528;
-  const Real t530 = t529 - t517;
-  const Real t531 = t530 * par.k2;
-  const Real t532 = R[6] * t528;
+  const Real t528 = t429 * nu[0];
+  const Real t529 = nu[0] * t431;
+  const Real t530 = t529 + t528;
+  const Real t531 = t530 + t527;
+  const Real t532 = nu[2] * t502;
+  const Real t533 = t504 * nu[2];
+  const Real t534 = t533 + t532;
+  const Real t535 = t531 + t534;
+  const Real t536 = t535 * R[8];
+  const Real t537 = t536 - t524;
+  const Real t538 = par.k2 * t537;
+  const Real t539 = t535 * R[6];
 
   // joint angles
-  const Real t533 = nu[0] * R[7];
+  const Real t540 = nu[0] * R[7];
 
   // accelerations
-  const Real t534 = t532 + t533;
-  const Real t535 = t534 * par.k1;
-  const Real t536 = t531 + t535;
-  const Real t537 = t536 * c_r_p_1_;
-
-  // joint angles
-  const Real t538 = s_r_p_1_ * nu[1];
-
-  // passive accelerations
-  const Real t539 = t538 * t12;
-
-  // joint angles
-  const Real t540 = t538 * t14;
-
-  // passive accelerations
   const Real t541 = t540 + t539;
-
-  // accelerations
-  const Real t542 = t537 - t541;
-  const Real t543 = t516 * R[6];
-
-  // joint angles
-  const Real t544 = R[8] * nu[0];
-
-  // accelerations
-  const Real t545 = t544 + t543;
-  const Real t546 = s_r_p_1_ * t545;
+  const Real t542 = par.k1 * t541;
+  const Real t543 = t538 + t542;
+  const Real t544 = t543 * c_r_p_1_;
 
   // joint angles
-  const Real t547 = c_r_p_1_ * nu[1];
-  const Real t548 = t547 * R[7];
+  const Real t545 = s_r_p_1_ * nu[1];
+
+  // passive accelerations
+  const Real t546 = t545 * t12;
+
+  // joint angles
+  const Real t547 = t545 * t14;
+
+  // passive accelerations
+  const Real t548 = t547 + t546;
 
   // accelerations
-  const Real t549 = t548 + t546;
-  const Real t550 = t542 + t549;
-  const Real t551 = t550 * par.k1;
-  const Real t552 = par.k1 * t530;
-  const Real t553 = t534 * par.k2;
-  const Real t554 = t552 - t553;
-  const Real t555 = par.k2 * t554;
-  const Real t556 = t551 - t555;
-  const Real t557 = t38 * t556;
-  const Real t558 = t557 * constant<Real>(2.0L);
-  const Real t559 = t550 * par.k2;
-  const Real t560 = par.k1 * t554;
-  const Real t561 = t560 + t559;
-  const Real t562 = t46 * t561;
-  const Real t563 = t562 * constant<Real>(2.0L);
-  const Real t564 = t558 + t563;
+  const Real t549 = t544 - t548;
+  const Real t550 = t523 * R[6];
+
+  // joint angles
+  const Real t551 = R[8] * nu[0];
+
+  // accelerations
+  const Real t552 = t551 + t550;
+  const Real t553 = s_r_p_1_ * t552;
+
+  // joint angles
+  const Real t554 = c_r_p_1_ * nu[1];
+  const Real t555 = t554 * R[7];
+
+  // accelerations
+  const Real t556 = t553 + t555;
+  const Real t557 = t556 + t549;
+  const Real t558 = par.k2 * t557;
+  const Real t559 = par.k1 * t537;
+  const Real t560 = par.k2 * t541;
+  const Real t561 = t559 - t560;
+  const Real t562 = par.k1 * t561;
+  const Real t563 = t562 + t558;
+  const Real t564 = t46 * t563;
+  const Real t565 = t564 * constant<Real>(2.0L);
+  const Real t566 = par.k1 * t557;
+  const Real t567 = t561 * par.k2;
+  const Real t568 = t566 - t567;
+  const Real t569 = t568 * t38;
+  const Real t570 = t569 * constant<Real>(2.0L);
+  const Real t571 = t565 + t570;
 
   // kernel
-  const Real t565 = t49 * constant<Real>(2.0L);
+  const Real t572 = t49 * constant<Real>(2.0L);
 
   // accelerations
-  const Real t566 = t564 / t565;
-  const Real t567 = t566 * t50;
-  const Real t568 = t567 / t49;
-  const Real t569 = t46 * t568;
-  const Real t570 = t50 * t561;
-  const Real t571 = t570 - t569;
-  const Real t572 = par.r_F * t571;
-  const Real t573 = par.k1 * t516;
+  const Real t573 = t571 / t572;
+  const Real t574 = t50 * t573;
+  const Real t575 = t574 / t49;
+  const Real t576 = t38 * t575;
+  const Real t577 = t568 * t50;
+  const Real t578 = t577 - t576;
+  const Real t579 = t578 * par.r_F;
+  const Real t580 = par.k1 * t523;
 
   // joint angles
-  const Real t574 = par.k2 * nu[0];
+  const Real t581 = par.k2 * nu[0];
 
   // accelerations
-  const Real t575 = t573 + t574;
-  const Real t576 = c_r_p_1_ * t575;
-  const Real t577 = s_r_p_1_ * t528;
-  const Real t578 = t576 - t577;
-  const Real t579 = t578 * par.k1;
-  const Real t580 = par.k2 * t516;
+  const Real t582 = t581 + t580;
+  const Real t583 = c_r_p_1_ * t582;
+  const Real t584 = t535 * s_r_p_1_;
+  const Real t585 = t583 - t584;
+  const Real t586 = t585 * par.k2;
+  const Real t587 = t523 * par.k2;
 
   // joint angles
-  const Real t581 = par.k1 * nu[0];
+  const Real t588 = par.k1 * nu[0];
 
   // accelerations
-  const Real t582 = t581 - t580;
-  const Real t583 = t582 + nu[1];
-  const Real t584 = t583 * par.k2;
-  const Real t585 = t584 - t579;
-  const Real t586 = t585 * t572;
-  const Real t587 = t538 * t575;
-  const Real t588 = t547 * t528;
-  const Real t589 = t587 + t588;
-  const Real t590 = par.k1 * t589;
-  const Real t591 = t590 * t52;
-  const Real t592 = t591 + t586;
-  const Real t593 = t38 * t568;
-  const Real t594 = t50 * t556;
-  const Real t595 = t594 - t593;
-  const Real t596 = par.r_F * t595;
-  const Real t597 = t578 * par.k2;
-  const Real t598 = par.k1 * t583;
-  const Real t599 = t597 + t598;
-  const Real t600 = t596 * t599;
-  const Real t601 = t589 * par.k2;
-  const Real t602 = t601 * t62;
-  const Real t603 = t600 - t602;
-  const Real t604 = t592 + t603;
-  const Real t605 = par.r_F * t601;
-  const Real t606 = t590 * par.c;
-  const Real t607 = t605 + t606;
-  const Real t608 = par.k14 * t516;
-  const Real t609 = par.k28 * t516;
-  const Real t610 = t608 + t609;
-  const Real t611 = t87 * t358;
-  const Real t612 = t87 * t360;
-  const Real t613 = t611 + t612;
-  const Real t614 = t613 * nu[1];
-  const Real t615 = t87 * t441;
-  const Real t616 = sum_error(t615, t140);
-  const Real t617 = t160 - t375;
-  const Real t618 = t617 + t616;
-  const Real t619 = t618 * nu[0];
-  const Real t620 = t615 - t378;
-  const Real t621 = t620 * nu[0];
-  const Real t622 = t621 + t619;
-  const Real t623 = t622 + t614;
-  const Real t624 = t87 * t511;
-  const Real t625 = t87 * t513;
-  const Real t626 = t625 + t624;
-  const Real t627 = nu[2] * t626;
-  const Real t628 = t627 + t623;
-  const Real t629 = t628 - t610;
-  const Real t630 = t538 * t629;
-  const Real t631 = par.k28 * t528;
-  const Real t632 = par.k14 * t528;
+  const Real t589 = t588 - t587;
+  const Real t590 = t589 + nu[1];
+  const Real t591 = par.k1 * t590;
+  const Real t592 = t586 + t591;
+  const Real t593 = t579 * t592;
+  const Real t594 = t545 * t582;
+  const Real t595 = t535 * t554;
+  const Real t596 = t594 + t595;
+  const Real t597 = par.k2 * t596;
+  const Real t598 = t62 * t597;
+  const Real t599 = t593 - t598;
+  const Real t600 = t46 * t575;
+  const Real t601 = t563 * t50;
+  const Real t602 = t601 - t600;
+  const Real t603 = par.r_F * t602;
+  const Real t604 = t585 * par.k1;
+  const Real t605 = par.k2 * t590;
+  const Real t606 = t605 - t604;
+  const Real t607 = t603 * t606;
+  const Real t608 = par.k1 * t596;
+  const Real t609 = t608 * t52;
+  const Real t610 = t609 + t607;
+  const Real t611 = t599 + t610;
+  const Real t612 = par.r_F * t597;
+  const Real t613 = t608 * par.c;
+  const Real t614 = t612 + t613;
+  const Real t615 = t523 * par.k14;
+  const Real t616 = t523 * par.k28;
+  const Real t617 = t615 + t616;
+  const Real t618 = t87 * t358;
+  const Real t619 = t87 * t360;
+  const Real t620 = t618 + t619;
+  const Real t621 = t620 * nu[1];
+  const Real t622 = t87 * t441;
+  const Real t623 = sum_error(t622, t140);
+
+  // kernel
+  const Real t624 = t160 - t375;
+
+  // accelerations
+  const Real t625 = t624 + t623;
+  const Real t626 = t625 * nu[0];
+  const Real t627 = t622 - t378;
+  const Real t628 = t627 * nu[0];
+  const Real t629 = t628 + t626;
+  const Real t630 = t629 + t621;
+  const Real t631 = t518 * t87;
+  const Real t632 = t87 * t520;
   const Real t633 = t631 + t632;
-  const Real t634 = t87 * t342;
-  const Real t635 = product_error(t344, t87);
-  const Real t636 = t634 + t635;
-  const Real t637 = t636 * nu[1];
-  const Real t638 = t87 * t344;
-  const Real t639 = t638 * nu[1];
-  const Real t640 = t637 + t639;
-  const Real t641 = t429 * t87;
-  const Real t642 = t87 * t431;
-  const Real t643 = t641 + t642;
-  const Real t644 = t643 * nu[0];
-  const Real t645 = t644 + t640;
-  const Real t646 = t87 * t495;
-  const Real t647 = product_error(t87, t497);
-  const Real t648 = t646 + t647;
-  const Real t649 = t87 * t497;
-  const Real t650 = -t649;
-  const Real t651 = sum_error(t87, t650);
-  const Real t652 = t651 - t648;
-  const Real t653 = t652 * nu[2];
-  const Real t654 = t87 - t649;
-  const Real t655 = nu[2] * t654;
-  const Real t656 = t653 + t655;
-  const Real t657 = t656 - t645;
-  const Real t658 = t633 + t657;
-  const Real t659 = par.k1 * t658;
-  const Real t660 = t140 * t342;
-  const Real t661 = t162 * t344;
-  const Real t662 = t661 + t660;
-  const Real t663 = t140 * t344;
-  const Real t664 = t663 + t662;
-  const Real t665 = t664 * nu[1];
-  const Real t666 = t429 * t140;
-  const Real t667 = t162 * t431;
-  const Real t668 = t666 + t667;
-  const Real t669 = t140 * t431;
-  const Real t670 = t668 + t669;
-  const Real t671 = t670 * nu[0];
-  const Real t672 = t671 + t665;
-  const Real t673 = t140 * t495;
-  const Real t674 = t162 * t497;
-  const Real t675 = t674 + t673;
-  const Real t676 = t140 * t497;
-  const Real t677 = t676 + t675;
-  const Real t678 = t677 - t139;
-  const Real t679 = t678 - t160;
-  const Real t680 = nu[2] * t679;
-  const Real t681 = t672 + t680;
-  const Real t682 = t681 * par.k2;
-  const Real t683 = t682 - t659;
-  const Real t684 = t683 * t547;
-  const Real t685 = t630 + t684;
-  const Real t686 = t685 + t607;
-  const Real t687 = t686 - t604;
-  const Real t688 = t530 * R[6];
-  const Real t689 = t688 * constant<Real>(2.0L);
-  const Real t690 = R[8] * t534;
-  const Real t691 = t690 * constant<Real>(2.0L);
-  const Real t692 = t689 - t691;
+  const Real t634 = t633 * nu[2];
+  const Real t635 = t634 + t630;
+  const Real t636 = t635 - t617;
+  const Real t637 = t636 * t545;
+  const Real t638 = t140 * t502;
+  const Real t639 = t504 * t162;
+  const Real t640 = t638 + t639;
+  const Real t641 = t504 * t140;
+  const Real t642 = t641 + t640;
+  const Real t643 = t642 - t139;
+  const Real t644 = t643 - t160;
+  const Real t645 = t644 * nu[2];
+  const Real t646 = t140 * t342;
+  const Real t647 = t162 * t344;
+  const Real t648 = t647 + t646;
+  const Real t649 = t140 * t344;
+  const Real t650 = t649 + t648;
+  const Real t651 = t650 * nu[1];
+  const Real t652 = t429 * t140;
+  const Real t653 = t162 * t431;
+  const Real t654 = t652 + t653;
+  const Real t655 = t140 * t431;
+  const Real t656 = t654 + t655;
+  const Real t657 = t656 * nu[0];
+  const Real t658 = t657 + t651;
+  const Real t659 = t658 + t645;
+  const Real t660 = t659 * par.k2;
+  const Real t661 = t535 * par.k14;
+  const Real t662 = t535 * par.k28;
+  const Real t663 = t661 + t662;
+  const Real t664 = t87 * t502;
+  const Real t665 = product_error(t87, t504);
+  const Real t666 = t665 + t664;
+  const Real t667 = t87 * t504;
+  const Real t668 = -t667;
+  const Real t669 = sum_error(t87, t668);
+  const Real t670 = t669 - t666;
+  const Real t671 = t670 * nu[2];
+  const Real t672 = t87 - t667;
+  const Real t673 = t672 * nu[2];
+  const Real t674 = t671 + t673;
+  const Real t675 = t87 * t342;
+  const Real t676 = product_error(t344, t87);
+  const Real t677 = t675 + t676;
+  const Real t678 = t677 * nu[1];
+  const Real t679 = t87 * t344;
+  const Real t680 = t679 * nu[1];
+  const Real t681 = t678 + t680;
+  const Real t682 = t429 * t87;
+  const Real t683 = t87 * t431;
+  const Real t684 = t682 + t683;
+  const Real t685 = t684 * nu[0];
+  const Real t686 = t685 + t681;
+  const Real t687 = t674 - t686;
+  const Real t688 = t663 + t687;
+  const Real t689 = t688 * par.k1;
+  const Real t690 = t660 - t689;
+  const Real t691 = t690 * t554;
+  const Real t692 = t637 + t691;
+  const Real t693 = t692 + t614;
+  const Real t694 = t693 - t611;
+  const Real t695 = R[6] * t537;
+  const Real t696 = t695 * constant<Real>(2.0L);
+  const Real t697 = R[8] * t541;
+  const Real t698 = t697 * constant<Real>(2.0L);
+  const Real t699 = t696 - t698;
 
   // joint angles
-  const Real t693 = constant<Real>(2.0L) * t81;
+  const Real t700 = constant<Real>(2.0L) * t81;
 
   // accelerations
-  const Real t694 = t692 / t693;
-  const Real t695 = t84 * t694;
-  const Real t696 = t82 * t694;
-  const Real t697 = t695 + t696;
-  const Real t698 = t697 / t81;
-  const Real t699 = R[8] * t698;
-  const Real t700 = t534 * t82;
-  const Real t701 = t534 * t84;
-  const Real t702 = t700 + t701;
-  const Real t703 = t702 + t699;
-  const Real t704 = t703 * par.r_R;
-  const Real t705 = nu[2] - t528;
-  const Real t706 = t705 * t704;
-  const Real t707 = t706 * t122;
-  const Real t708 = t687 + t707;
-  const Real t709 = R[6] * t698;
-  const Real t710 = t530 * t82;
-  const Real t711 = t84 * t530;
-  const Real t712 = t710 + t711;
-  const Real t713 = t712 - t709;
-  const Real t714 = t713 * par.r_R;
-  const Real t715 = t516 * t714;
-  const Real t716 = nu[0] * t704;
-  const Real t717 = t715 - t716;
-  const Real t718 = c_r_p_1_ * t717;
-  const Real t719 = t708 - t718;
-  const Real t720 = t705 * t714;
-  const Real t721 = t105 * t720;
-  const Real t722 = t719 - t721;
-  const Real t723 = t121 * t722;
-  const Real t724 = -t723;
-  const Real t725 = s_r_p_1_ * t575;
-  const Real t726 = c_r_p_1_ * t528;
-  const Real t727 = t726 + t725;
-  const Real t728 = t327 * nu[1];
-  const Real t729 = t329 * nu[1];
-  const Real t730 = t729 + t728;
-  const Real t731 = t420 * nu[0];
-  const Real t732 = t730 + t731;
-  const Real t733 = t484 * nu[2];
+  const Real t701 = t699 / t700;
+  const Real t702 = t82 * t701;
+  const Real t703 = t84 * t701;
+  const Real t704 = t702 + t703;
+  const Real t705 = t704 / t81;
+  const Real t706 = R[8] * t705;
+  const Real t707 = t84 * t541;
+  const Real t708 = t82 * t541;
+  const Real t709 = t707 + t708;
+  const Real t710 = t706 + t709;
+  const Real t711 = t710 * par.r_R;
+  const Real t712 = nu[2] - t535;
+  const Real t713 = t712 * t711;
+  const Real t714 = t122 * t713;
+  const Real t715 = t694 + t714;
+  const Real t716 = t705 * R[6];
+  const Real t717 = t84 * t537;
+  const Real t718 = t82 * t537;
+  const Real t719 = t717 + t718;
+  const Real t720 = t719 - t716;
+  const Real t721 = par.r_R * t720;
+  const Real t722 = t523 * t721;
+  const Real t723 = t711 * nu[0];
+  const Real t724 = t722 - t723;
+  const Real t725 = t724 * c_r_p_1_;
+  const Real t726 = t715 - t725;
+  const Real t727 = t712 * t721;
+  const Real t728 = t727 * t105;
+  const Real t729 = t726 - t728;
+  const Real t730 = t121 * t729;
+  const Real t731 = -t730;
+  const Real t732 = s_r_p_1_ * t582;
+  const Real t733 = t535 * c_r_p_1_;
   const Real t734 = t733 + t732;
-  const Real t735 = t734 + t727;
-  const Real t736 = t735 * t572;
-  const Real t737 = t575 * t547;
-  const Real t738 = t538 * t528;
-  const Real t739 = t737 - t738;
-  const Real t740 = t52 * t739;
-  const Real t741 = t740 + t736;
-  const Real t742 = t547 * t629;
-  const Real t743 = t683 * t538;
-  const Real t744 = t742 - t743;
-  const Real t745 = par.k1 * t744;
-  const Real t746 = par.c * t739;
-  const Real t747 = t745 + t746;
-  const Real t748 = t747 - t741;
-  const Real t749 = t706 * t65;
-  const Real t750 = t748 - t749;
-  const Real t751 = t717 * t105;
-  const Real t752 = t750 + t751;
-  const Real t753 = t56 * t720;
-  const Real t754 = t58 * t720;
-  const Real t755 = t753 + t754;
-  const Real t756 = t752 - t755;
-  const Real t757 = sum_error(t756, t724);
-  const Real t758 = product_error(t121, t722);
+  const Real t735 = t327 * nu[1];
+  const Real t736 = t329 * nu[1];
+  const Real t737 = t736 + t735;
+  const Real t738 = t420 * nu[0];
+  const Real t739 = t737 + t738;
+  const Real t740 = t488 * nu[2];
+  const Real t741 = t490 * nu[2];
+  const Real t742 = t741 + t740;
+  const Real t743 = t742 + t739;
+  const Real t744 = t734 + t743;
+  const Real t745 = t744 * t603;
+  const Real t746 = t554 * t582;
+  const Real t747 = t535 * t545;
+  const Real t748 = t746 - t747;
+  const Real t749 = t52 * t748;
+  const Real t750 = t749 + t745;
+  const Real t751 = t636 * t554;
+  const Real t752 = t690 * t545;
+  const Real t753 = t751 - t752;
+  const Real t754 = t753 * par.k1;
+  const Real t755 = par.c * t748;
+  const Real t756 = t754 + t755;
+  const Real t757 = t756 - t750;
+  const Real t758 = t65 * t713;
   const Real t759 = t757 - t758;
-  const Real t760 = t759 * t289;
-  const Real t761 = t756 - t723;
-  const Real t762 = t761 * t287;
-  const Real t763 = t762 + t760;
-  const Real t764 = product_error(t289, t761);
-  const Real t765 = t763 + t764;
-  const Real t766 = t722 * t252;
-  const Real t767 = product_error(t210, t722);
-  const Real t768 = t766 + t767;
-  const Real t769 = t210 * t722;
-  const Real t770 = t596 * t735;
-  const Real t771 = t62 * t739;
-  const Real t772 = t771 + t770;
-  const Real t773 = par.k2 * t744;
-  const Real t774 = par.r_F * t739;
-  const Real t775 = t774 + t773;
-  const Real t776 = t772 + t775;
-  const Real t777 = t706 * t271;
-  const Real t778 = t706 * t221;
-  const Real t779 = t777 + t778;
-  const Real t780 = t776 + t779;
-  const Real t781 = t122 * t717;
-  const Real t782 = t780 + t781;
-  const Real t783 = t65 * t720;
-  const Real t784 = t782 + t783;
-  const Real t785 = sum_error(t784, t769);
-  const Real t786 = t768 + t785;
-  const Real t787 = t786 + t765;
-  const Real t788 = t761 * t289;
-  const Real t789 = t784 + t769;
+  const Real t760 = t724 * t105;
+  const Real t761 = t759 + t760;
+  const Real t762 = t56 * t727;
+  const Real t763 = t58 * t727;
+  const Real t764 = t762 + t763;
+  const Real t765 = t761 - t764;
+  const Real t766 = sum_error(t765, t731);
+  const Real t767 = product_error(t121, t729);
+  const Real t768 = t766 - t767;
+  const Real t769 = t768 * t289;
+  const Real t770 = t765 - t730;
+  const Real t771 = t287 * t770;
+  const Real t772 = t771 + t769;
+  const Real t773 = product_error(t289, t770);
+  const Real t774 = t773 + t772;
+  const Real t775 = t729 * t210;
+  const Real t776 = t744 * t579;
+  const Real t777 = t62 * t748;
+  const Real t778 = t777 + t776;
+  const Real t779 = t753 * par.k2;
+  const Real t780 = par.r_F * t748;
+  const Real t781 = t779 + t780;
+  const Real t782 = t781 + t778;
+  const Real t783 = t713 * t221;
+  const Real t784 = t271 * t713;
+  const Real t785 = t783 + t784;
+  const Real t786 = t782 + t785;
+  const Real t787 = t724 * t122;
+  const Real t788 = t787 + t786;
+  const Real t789 = t727 * t65;
   const Real t790 = t788 + t789;
-  const Real t791 = t787 + t790;
-  const Real t792 = t791 * t297;
-  const Real t793 = t791 * t301;
+  const Real t791 = sum_error(t790, t775);
+  const Real t792 = product_error(t210, t729);
+  const Real t793 = t729 * t252;
   const Real t794 = t792 + t793;
-  const Real t795 = t794 * t52;
-  const Real t796 = -t795;
-  const Real t797 = sum_error(t761, t796);
-  const Real t798 = product_error(t52, t794);
-  const Real t799 = t759 - t798;
-  const Real t800 = t797 + t799;
-  const Real t801 = t198 * t800;
-  const Real t802 = t761 - t795;
-  const Real t803 = t202 * t802;
-  const Real t804 = t803 + t801;
-  const Real t805 = product_error(t198, t802);
-  const Real t806 = t804 + t805;
-  const Real t807 = t806 * t143;
-  const Real t808 = t198 * t802;
-  const Real t809 = t179 * t808;
-  const Real t810 = t809 + t807;
-  const Real t811 = product_error(t143, t808);
-  const Real t812 = t810 + t811;
-  const Real t813 = t143 * t808;
-  const Real t814 = t722 - t813;
-  const Real t815 = t814 - t812;
-  const Real t816 = t90 * t815;
-  const Real t817 = t104 * t815;
-  const Real t818 = t816 + t817;
-  const Real t819 = t87 * t818;
-  const Real t820 = t717 - t819;
+  const Real t795 = t791 + t794;
+  const Real t796 = t774 + t795;
+  const Real t797 = t289 * t770;
+  const Real t798 = t775 + t790;
+  const Real t799 = t797 + t798;
+  const Real t800 = t796 + t799;
+  const Real t801 = t301 * t800;
+  const Real t802 = t297 * t800;
+  const Real t803 = t801 + t802;
+  const Real t804 = t803 * t52;
+  const Real t805 = -t804;
+  const Real t806 = sum_error(t770, t805);
+  const Real t807 = product_error(t52, t803);
+  const Real t808 = t768 - t807;
+  const Real t809 = t808 + t806;
+  const Real t810 = t809 * t198;
+  const Real t811 = t770 - t804;
+  const Real t812 = t202 * t811;
+  const Real t813 = t810 + t812;
+  const Real t814 = product_error(t198, t811);
+  const Real t815 = t814 + t813;
+  const Real t816 = t815 * t143;
+  const Real t817 = t198 * t811;
+  const Real t818 = t179 * t817;
+  const Real t819 = t818 + t816;
+  const Real t820 = product_error(t143, t817);
+  const Real t821 = t820 + t819;
+  const Real t822 = t817 * t143;
+  const Real t823 = t729 - t822;
+  const Real t824 = t823 - t821;
+  const Real t825 = t824 * t90;
+  const Real t826 = t104 * t824;
+  const Real t827 = t825 + t826;
+  const Real t828 = t87 * t827;
+  const Real t829 = t724 - t828;
+
+  // passive accelerations
+  const Real t830 = c_r_p_2_ * t271;
 
   // front_wheel: acceleration
-  const Real t821 = t122 * c_r_p_2_;
-  const Real t822 = t105 * s_r_p_2_;
-  const Real t823 = t821 + t822;
-
-  // front_wheel: wrench
-  const Real t824 = par.m_F * t823;
-
-  // front_wheel: joint force
-  const Real t825 = c_r_p_2_ * t824;
+  const Real t831 = c_r_p_2_ * t221;
 
   // passive accelerations
-  const Real t826 = s_r_p_1_ * t2;
-  const Real t827 = t826 * par.m_F;
-  const Real t828 = t827 * s_r_p_2_;
-  const Real t829 = t825 + t828;
-  const Real t830 = t829 * par.k2;
+  const Real t832 = t830 + t831;
+  const Real t833 = t65 * s_r_p_2_;
+  const Real t834 = t832 - t833;
+  const Real t835 = t834 * par.m_F;
+  const Real t836 = c_r_p_2_ * t835;
+  const Real t837 = t271 * s_r_p_2_;
 
-  // front_wheel: joint force
-  const Real t831 = t824 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t832 = t827 * c_r_p_2_;
-  const Real t833 = t832 - t831;
-  const Real t834 = par.k1 * t833;
-  const Real t835 = t830 - t834;
-
-  // fork: wrench
-  const Real t836 = s_r_p_1_ * par.m_H;
+  // front_wheel: acceleration
+  const Real t838 = t221 * s_r_p_2_;
 
   // passive accelerations
-  const Real t837 = t836 + t835;
-  const Real t838 = s_r_p_1_ * t837;
-
-  // fork: wrench
-  const Real t839 = par.m_H * c_r_p_1_;
-
-  // front_wheel: wrench
-  const Real t840 = c_r_p_1_ * par.m_F;
-
-  // front_wheel: joint force
+  const Real t839 = t838 + t837;
+  const Real t840 = c_r_p_2_ * t65;
   const Real t841 = t839 + t840;
-
-  // fork: joint force
-  const Real t842 = t841 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t843 = t838 + t842;
-  const Real t844 = t843 + par.m_B;
-
-  // accelerations
-  const Real t845 = sum_error(par.m_R, t844);
-  const Real t846 = sum_error(t843, par.m_B);
-  const Real t847 = t845 + t846;
-  const Real t848 = t820 * t847;
-
-  // passive accelerations
-  const Real t849 = par.m_R + t844;
-
-  // accelerations
-  const Real t850 = t820 * t849;
-  const Real t851 = t848 + t850;
-  const Real t852 = t140 * t806;
-  const Real t853 = t162 * t808;
-  const Real t854 = t852 + t853;
-  const Real t855 = t140 * t808;
-  const Real t856 = t854 + t855;
-  const Real t857 = t706 - t856;
-
-  // passive accelerations
-  const Real t858 = c_r_p_2_ * t271;
-
-  // front_wheel: acceleration
-  const Real t859 = c_r_p_2_ * t221;
-
-  // passive accelerations
-  const Real t860 = t858 + t859;
-  const Real t861 = t65 * s_r_p_2_;
-  const Real t862 = t860 - t861;
-  const Real t863 = t862 * par.m_F;
-  const Real t864 = c_r_p_2_ * t863;
-  const Real t865 = t271 * s_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t866 = t221 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t867 = t866 + t865;
-  const Real t868 = c_r_p_2_ * t65;
-  const Real t869 = t867 + t868;
-  const Real t870 = par.m_F * t869;
-  const Real t871 = t870 * s_r_p_2_;
-  const Real t872 = t864 + t871;
-  const Real t873 = t872 * par.k2;
-  const Real t874 = c_r_p_2_ * t870;
-  const Real t875 = t863 * s_r_p_2_;
-  const Real t876 = t874 - t875;
-  const Real t877 = par.k1 * t876;
-  const Real t878 = t873 - t877;
-  const Real t879 = t267 * par.m_H;
+  const Real t842 = par.m_F * t841;
+  const Real t843 = t842 * s_r_p_2_;
+  const Real t844 = t836 + t843;
+  const Real t845 = t844 * par.k2;
+  const Real t846 = c_r_p_2_ * t842;
+  const Real t847 = t835 * s_r_p_2_;
+  const Real t848 = t846 - t847;
+  const Real t849 = par.k1 * t848;
+  const Real t850 = t845 - t849;
+  const Real t851 = t267 * par.m_H;
 
   // fork: wrench
-  const Real t880 = par.m_H * t219;
+  const Real t852 = par.m_H * t219;
 
   // passive accelerations
-  const Real t881 = t879 + t880;
-  const Real t882 = t878 + t881;
-  const Real t883 = s_r_p_1_ * t882;
+  const Real t853 = t851 + t852;
+  const Real t854 = t850 + t853;
+  const Real t855 = s_r_p_1_ * t854;
 
   // fork: wrench
-  const Real t884 = t122 * par.m_H;
+  const Real t856 = t122 * par.m_H;
 
   // front_wheel: wrench
-  const Real t885 = t122 * par.m_F;
+  const Real t857 = t122 * par.m_F;
 
   // front_wheel: joint force
-  const Real t886 = t884 + t885;
+  const Real t858 = t856 + t857;
 
   // fork: joint force
-  const Real t887 = c_r_p_1_ * t886;
+  const Real t859 = c_r_p_1_ * t858;
 
   // passive accelerations
-  const Real t888 = t883 - t887;
+  const Real t860 = t855 - t859;
 
   // accelerations
-  const Real t889 = t888 * t857;
-  const Real t890 = t889 + t851;
-  const Real t891 = t87 * t806;
-  const Real t892 = t87 * t808;
-  const Real t893 = t891 + t892;
-  const Real t894 = t720 + t893;
+  const Real t861 = t829 * t860;
+  const Real t862 = t140 * t815;
+  const Real t863 = t817 * t162;
+  const Real t864 = t862 + t863;
+  const Real t865 = t140 * t817;
+  const Real t866 = t864 + t865;
+  const Real t867 = t713 - t866;
 
   // passive accelerations
-  const Real t895 = c_r_p_1_ * t837;
+  const Real t868 = c_r_p_1_ * t854;
 
   // fork: joint force
-  const Real t896 = s_r_p_1_ * t841;
+  const Real t869 = s_r_p_1_ * t858;
 
   // passive accelerations
-  const Real t897 = t895 - t896;
-  const Real t898 = t897 * par.k1;
-  const Real t899 = par.k2 * t833;
-  const Real t900 = t829 * par.k1;
-  const Real t901 = t899 + t900;
-  const Real t902 = t901 * par.k2;
-  const Real t903 = t902 - t898;
+  const Real t870 = t869 + t868;
+  const Real t871 = t870 * par.k2;
+  const Real t872 = par.k2 * t848;
+  const Real t873 = par.k1 * t844;
+  const Real t874 = t872 + t873;
+  const Real t875 = t874 + par.k41;
+  const Real t876 = par.k1 * t875;
+  const Real t877 = t876 + t871;
+  const Real t878 = t877 + par.m_B;
+
+  // rear_wheel: wrench
+  const Real t879 = par.m_R * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t880 = t879 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t881 = par.m_R * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t882 = t881 * s_r_p_0_;
+  const Real t883 = t880 + t882;
 
   // accelerations
-  const Real t904 = t894 * t903;
-  const Real t905 = t904 + t890;
-  const Real t906 = par.k28 * t903;
+  const Real t884 = sum_error(t883, t878);
+  const Real t885 = sum_error(t877, par.m_B);
+  const Real t886 = t885 + t884;
+  const Real t887 = t886 * t867;
 
   // passive accelerations
-  const Real t907 = par.k14 * t903;
+  const Real t888 = t883 + t878;
 
   // accelerations
-  const Real t908 = t906 + t907;
+  const Real t889 = t888 * t867;
+  const Real t890 = t887 + t889;
+  const Real t891 = t861 + t890;
+  const Real t892 = t87 * t815;
+  const Real t893 = t87 * t817;
+  const Real t894 = t892 + t893;
+  const Real t895 = t727 + t894;
 
   // passive accelerations
-  const Real t909 = t901 * par.k13;
-  const Real t910 = t835 * par.k12;
-  const Real t911 = t909 + t910;
+  const Real t896 = par.k1 * t870;
+  const Real t897 = t875 * par.k2;
+  const Real t898 = t897 - t896;
+
+  // rear_wheel: joint force
+  const Real t899 = t881 * c_r_p_0_;
+  const Real t900 = t879 * s_r_p_0_;
+  const Real t901 = t899 - t900;
+
+  // passive accelerations
+  const Real t902 = t901 + t898;
+
+  // accelerations
+  const Real t903 = t902 * t895;
+  const Real t904 = t891 + t903;
+
+  // passive accelerations
+  const Real t905 = par.k14 * t898;
+
+  // accelerations
+  const Real t906 = par.k28 * t898;
+  const Real t907 = t905 + t906;
+
+  // passive accelerations
+  const Real t908 = t850 * par.k12;
+  const Real t909 = par.k13 * t874;
+  const Real t910 = t908 + t909;
 
   // fork: wrench
-  const Real t912 = s_r_p_1_ * par.k9;
+  const Real t911 = par.k9 * t219;
 
   // passive accelerations
-  const Real t913 = t912 - t911;
-  const Real t914 = c_r_p_1_ * t913;
+  const Real t912 = par.k9 * t267;
+  const Real t913 = t911 + t912;
+  const Real t914 = t913 - par.k40;
+  const Real t915 = t914 - t910;
+  const Real t916 = t915 * c_r_p_1_;
 
   // front_wheel: joint force
-  const Real t915 = par.k12 * t840;
+  const Real t917 = t857 * par.k12;
 
   // fork: wrench
-  const Real t916 = par.k9 * c_r_p_1_;
+  const Real t918 = par.k9 * t122;
 
   // front_wheel: joint force
-  const Real t917 = t915 - t916;
+  const Real t919 = t918 - t917;
 
   // fork: joint force
-  const Real t918 = s_r_p_1_ * t917;
+  const Real t920 = t919 * s_r_p_1_;
 
   // passive accelerations
-  const Real t919 = t918 + t914;
+  const Real t921 = t920 + t916;
 
   // accelerations
-  const Real t920 = t919 - t908;
-  const Real t921 = t920 * t806;
-  const Real t922 = t920 * t808;
-  const Real t923 = t921 + t922;
-  const Real t924 = t905 + t923;
+  const Real t922 = t921 - t907;
+  const Real t923 = t922 + par.k16;
+
+  // rear_wheel: joint force
+  const Real t924 = t883 * par.r_R;
+
+  // accelerations
+  const Real t925 = t923 - t924;
+  const Real t926 = t925 * t817;
+  const Real t927 = t904 + t926;
 
   // passive accelerations
-  const Real t925 = s_r_p_1_ * t913;
+  const Real t928 = s_r_p_1_ * t915;
 
   // fork: joint force
-  const Real t926 = c_r_p_1_ * t917;
+  const Real t929 = t919 * c_r_p_1_;
 
   // passive accelerations
-  const Real t927 = t926 - t925;
-  const Real t928 = par.k1 * t927;
+  const Real t930 = t929 - t928;
+  const Real t931 = t930 * par.k1;
 
   // front_wheel: joint force
-  const Real t929 = par.k13 * t840;
+  const Real t932 = t857 * par.k13;
 
   // fork: wrench
-  const Real t930 = c_r_p_1_ * par.k11;
+  const Real t933 = t122 * par.k11;
 
   // front_wheel: joint force
-  const Real t931 = t930 + t929;
+  const Real t934 = t933 + t932;
 
   // fork: joint force
-  const Real t932 = par.k2 * t931;
+  const Real t935 = par.k2 * t934;
 
   // passive accelerations
-  const Real t933 = t932 - t928;
+  const Real t936 = t931 + t935;
+  const Real t937 = par.k14 * t860;
 
   // accelerations
-  const Real t934 = par.k28 * t843;
+  const Real t938 = par.k28 * t860;
+  const Real t939 = t937 + t938;
+  const Real t940 = t939 - t936;
+  const Real t941 = t827 * t940;
+  const Real t942 = sum_error(t941, t927);
+  const Real t943 = sum_error(t926, t904);
+  const Real t944 = t925 * t815;
 
-  // passive accelerations
-  const Real t935 = t843 * par.k14;
-
-  // accelerations
-  const Real t936 = t934 + t935;
-  const Real t937 = t936 + t933;
-  const Real t938 = sum_error(t937, par.k17);
-  const Real t939 = par.k62 + t938;
-  const Real t940 = t939 * t818;
-  const Real t941 = t937 + par.k17;
-  const Real t942 = t941 * t818;
-  const Real t943 = t940 + t942;
-  const Real t944 = t943 + t924;
-  const Real t945 = -t944;
-  const Real t946 = t628 * t516;
-  const Real t947 = t657 * t528;
-  const Real t948 = t946 - t947;
-
-  // frame: acceleration
-  const Real t949 = par.g * R[6];
+  // rear_wheel: joint force
+  const Real t945 = -t924;
 
   // accelerations
-  const Real t950 = t948 - t949;
-  const Real t951 = t516 * t516;
-  const Real t952 = t528 * t528;
+  const Real t946 = sum_error(t923, t945);
+  const Real t947 = sum_error(t922, par.k16);
+  const Real t948 = t947 + par.k62;
+  const Real t949 = t946 + t948;
+  const Real t950 = t949 * t817;
+  const Real t951 = t950 + t944;
+  const Real t952 = product_error(t817, t925);
   const Real t953 = t952 + t951;
-  const Real t954 = par.k14 * t953;
-  const Real t955 = par.k28 * t953;
-  const Real t956 = t954 + t955;
-  const Real t957 = t950 - t956;
-  const Real t958 = t957 * par.k2;
-  const Real t959 = t628 * nu[0];
-  const Real t960 = t681 * t528;
-  const Real t961 = t959 + t960;
+  const Real t954 = t953 + t943;
+  const Real t955 = t942 + t954;
+  const Real t956 = t523 * t635;
+  const Real t957 = t535 * t687;
+  const Real t958 = t956 - t957;
 
   // frame: acceleration
-  const Real t962 = par.g * R[8];
+  const Real t959 = par.g * R[6];
 
   // accelerations
-  const Real t963 = t961 - t962;
-  const Real t964 = t516 * nu[0];
-  const Real t965 = par.k14 * t964;
-  const Real t966 = par.k28 * t964;
-  const Real t967 = t965 + t966;
-  const Real t968 = t963 - t967;
-  const Real t969 = t968 * par.k1;
-  const Real t970 = t958 - t969;
-  const Real t971 = c_r_p_1_ * t970;
-  const Real t972 = t681 * t516;
-  const Real t973 = t657 * nu[0];
-  const Real t974 = t973 + t972;
+  const Real t960 = t958 - t959;
+  const Real t961 = t523 * t523;
+  const Real t962 = t535 * t535;
+  const Real t963 = t962 + t961;
+  const Real t964 = t963 * par.k14;
+  const Real t965 = t963 * par.k28;
+  const Real t966 = t964 + t965;
+  const Real t967 = t960 - t966;
+  const Real t968 = par.k2 * t967;
+  const Real t969 = t635 * nu[0];
+  const Real t970 = t535 * t659;
+  const Real t971 = t969 + t970;
 
   // frame: acceleration
-  const Real t975 = par.g * R[7];
+  const Real t972 = par.g * R[8];
 
   // accelerations
-  const Real t976 = t975 + t974;
-  const Real t977 = nu[0] * t528;
-  const Real t978 = par.k28 * t977;
-  const Real t979 = par.k14 * t977;
-  const Real t980 = t978 + t979;
-  const Real t981 = t980 + t976;
-  const Real t982 = sum_error(t974, t975);
+  const Real t973 = t971 - t972;
+  const Real t974 = t523 * nu[0];
+  const Real t975 = t974 * par.k14;
+  const Real t976 = par.k28 * t974;
+  const Real t977 = t975 + t976;
+  const Real t978 = t973 - t977;
+  const Real t979 = t978 * par.k1;
+  const Real t980 = t968 - t979;
+  const Real t981 = t980 * c_r_p_1_;
+  const Real t982 = t659 * t523;
+  const Real t983 = t687 * nu[0];
+  const Real t984 = t983 + t982;
+
+  // frame: acceleration
+  const Real t985 = par.g * R[7];
+
+  // accelerations
+  const Real t986 = sum_error(t984, t985);
 
   // passive accelerations
-  const Real t983 = product_error(par.g, R[7]);
+  const Real t987 = product_error(par.g, R[7]);
 
   // accelerations
-  const Real t984 = t982 + t983;
-  const Real t985 = t981 + t984;
-  const Real t986 = s_r_p_1_ * t985;
-  const Real t987 = t971 - t986;
-  const Real t988 = t727 * t727;
-  const Real t989 = t583 * t583;
-  const Real t990 = t988 + t989;
-  const Real t991 = t990 * par.k13;
-  const Real t992 = t578 * t583;
-  const Real t993 = t578 * nu[1];
-  const Real t994 = t992 - t993;
-  const Real t995 = t994 * par.k12;
-  const Real t996 = t991 + t995;
-  const Real t997 = t987 - t996;
-  const Real t998 = par.k2 * t997;
-  const Real t999 = t993 + t992;
-  const Real t1000 = t999 * par.k13;
-  const Real t1001 = t578 * t578;
-  const Real t1002 = t988 + t1001;
-  const Real t1003 = t1002 * par.k12;
-  const Real t1004 = t1000 + t1003;
-  const Real t1005 = par.k1 * t957;
-  const Real t1006 = t968 * par.k2;
-  const Real t1007 = t1005 + t1006;
-  const Real t1008 = t1004 + t1007;
-  const Real t1009 = par.k1 * t1008;
-  const Real t1010 = t1009 + t998;
-  const Real t1011 = c_r_p_2_ * t1010;
-  const Real t1012 = par.k1 * t997;
-  const Real t1013 = par.k2 * t1008;
-  const Real t1014 = t1013 - t1012;
-  const Real t1015 = t1014 * s_r_p_2_;
-  const Real t1016 = t1011 - t1015;
-  const Real t1017 = t1016 * par.m_F;
-  const Real t1018 = c_r_p_2_ * t1017;
-  const Real t1019 = t1010 * s_r_p_2_;
-  const Real t1020 = t1014 * c_r_p_2_;
-  const Real t1021 = t1019 + t1020;
-  const Real t1022 = par.m_F * t1021;
-  const Real t1023 = t1022 * s_r_p_2_;
-  const Real t1024 = t1018 + t1023;
-  const Real t1025 = t1024 * par.k2;
-  const Real t1026 = t1022 * c_r_p_2_;
-  const Real t1027 = t1017 * s_r_p_2_;
-  const Real t1028 = t1026 - t1027;
-  const Real t1029 = par.k1 * t1028;
-  const Real t1030 = t1025 - t1029;
-  const Real t1031 = t987 * par.m_H;
-  const Real t1032 = par.k9 * t994;
-  const Real t1033 = par.k11 * t990;
-  const Real t1034 = t1032 - t1033;
-  const Real t1035 = t1031 + t1034;
-  const Real t1036 = t1030 + t1035;
-  const Real t1037 = s_r_p_1_ * t1036;
-  const Real t1038 = s_r_p_1_ * t970;
-  const Real t1039 = c_r_p_1_ * t985;
-  const Real t1040 = t1039 + t1038;
-  const Real t1041 = t1040 * par.m_H;
-  const Real t1042 = t727 * nu[1];
-  const Real t1043 = t583 * t727;
+  const Real t988 = t986 + t987;
+  const Real t989 = t985 + t984;
+  const Real t990 = t535 * nu[0];
+  const Real t991 = par.k28 * t990;
+  const Real t992 = t990 * par.k14;
+  const Real t993 = t991 + t992;
+  const Real t994 = t993 + t989;
+  const Real t995 = t988 + t994;
+  const Real t996 = s_r_p_1_ * t995;
+  const Real t997 = t981 - t996;
+  const Real t998 = t585 * t590;
+  const Real t999 = t585 * nu[1];
+  const Real t1000 = t998 - t999;
+  const Real t1001 = par.k12 * t1000;
+  const Real t1002 = t734 * t734;
+  const Real t1003 = t590 * t590;
+  const Real t1004 = t1002 + t1003;
+  const Real t1005 = t1004 * par.k13;
+  const Real t1006 = t1001 + t1005;
+  const Real t1007 = t997 - t1006;
+  const Real t1008 = t1007 * par.k2;
+  const Real t1009 = t585 * t585;
+  const Real t1010 = t1002 + t1009;
+  const Real t1011 = t1010 * par.k12;
+  const Real t1012 = t998 + t999;
+  const Real t1013 = t1012 * par.k13;
+  const Real t1014 = t1011 + t1013;
+  const Real t1015 = par.k1 * t967;
+  const Real t1016 = t978 * par.k2;
+  const Real t1017 = t1015 + t1016;
+  const Real t1018 = t1014 + t1017;
+  const Real t1019 = t1018 * par.k1;
+  const Real t1020 = t1008 + t1019;
+  const Real t1021 = c_r_p_2_ * t1020;
+  const Real t1022 = t1007 * par.k1;
+  const Real t1023 = t1018 * par.k2;
+  const Real t1024 = t1023 - t1022;
+  const Real t1025 = t1024 * s_r_p_2_;
+  const Real t1026 = t1021 - t1025;
+  const Real t1027 = t1026 * par.m_F;
+  const Real t1028 = t1027 * c_r_p_2_;
+  const Real t1029 = t1024 * c_r_p_2_;
+  const Real t1030 = t1020 * s_r_p_2_;
+  const Real t1031 = t1029 + t1030;
+  const Real t1032 = t1031 * par.m_F;
+  const Real t1033 = t1032 * s_r_p_2_;
+  const Real t1034 = t1028 + t1033;
+  const Real t1035 = par.k2 * t1034;
+  const Real t1036 = c_r_p_2_ * t1032;
+  const Real t1037 = t1027 * s_r_p_2_;
+  const Real t1038 = t1036 - t1037;
+  const Real t1039 = par.k1 * t1038;
+  const Real t1040 = t1035 - t1039;
+  const Real t1041 = t997 * par.m_H;
+  const Real t1042 = par.k9 * t1000;
+  const Real t1043 = t1004 * par.k11;
   const Real t1044 = t1042 - t1043;
-  const Real t1045 = t1044 * par.k9;
-  const Real t1046 = t578 * t727;
-  const Real t1047 = t1046 * par.k11;
-  const Real t1048 = t1045 - t1047;
-  const Real t1049 = t1048 - t1041;
-  const Real t1050 = t1044 * par.k12;
-  const Real t1051 = t1046 * par.k13;
-  const Real t1052 = t1051 + t1050;
-  const Real t1053 = t1040 + t1052;
-  const Real t1054 = t1053 * par.m_F;
-  const Real t1055 = t1049 - t1054;
-  const Real t1056 = c_r_p_1_ * t1055;
-  const Real t1057 = t1037 + t1056;
-  const Real t1058 = t516 * t528;
-  const Real t1059 = t1058 * par.k16;
-  const Real t1060 = par.k59 * t1058;
-  const Real t1061 = t1059 + t1060;
-  const Real t1062 = par.k17 * t977;
-  const Real t1063 = par.k62 * t977;
-  const Real t1064 = t1062 + t1063;
-  const Real t1065 = t1061 - t1064;
-  const Real t1066 = t976 * par.m_B;
-  const Real t1067 = t1065 - t1066;
-  const Real t1068 = t1057 + t1067;
-  const Real t1069 = t1058 * par.r_R;
-  const Real t1070 = t976 + t1069;
-  const Real t1071 = t1070 + t984;
-  const Real t1072 = par.m_R * t1071;
-  const Real t1073 = t1072 - t1068;
-  const Real t1074 = sum_error(t1073, t945);
-  const Real t1075 = -t1068;
-  const Real t1076 = sum_error(t1072, t1075);
-  const Real t1077 = sum_error(t1057, t1067);
-  const Real t1078 = -t1066;
-  const Real t1079 = sum_error(t1065, t1078);
-  const Real t1080 = par.m_B * t984;
-  const Real t1081 = product_error(par.m_B, t976);
-  const Real t1082 = t1080 + t1081;
-  const Real t1083 = t1079 - t1082;
-  const Real t1084 = t1077 + t1083;
-  const Real t1085 = t1076 - t1084;
-  const Real t1086 = t1085 + t1074;
-  const Real t1087 = t1086 * t620;
-  const Real t1088 = t1073 - t944;
-  const Real t1089 = t1088 * t618;
-  const Real t1090 = t1089 + t1087;
-  const Real t1091 = product_error(t620, t1088);
-  const Real t1092 = t1091 + t1090;
-  const Real t1093 = t820 * t888;
-
-  // passive accelerations
-  const Real t1094 = c_r_p_1_ * t882;
-
-  // fork: joint force
-  const Real t1095 = s_r_p_1_ * t886;
-
-  // passive accelerations
-  const Real t1096 = t1095 + t1094;
-  const Real t1097 = t1096 * par.k2;
-  const Real t1098 = par.k2 * t876;
-  const Real t1099 = par.k1 * t872;
-  const Real t1100 = t1098 + t1099;
-  const Real t1101 = t1100 + par.k41;
-  const Real t1102 = par.k1 * t1101;
-  const Real t1103 = t1102 + t1097;
-  const Real t1104 = t1103 + par.m_B;
-
-  // rear_wheel: wrench
-  const Real t1105 = par.m_R * c_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t1106 = t1105 * c_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t1107 = par.m_R * s_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t1108 = t1107 * s_r_p_0_;
-  const Real t1109 = t1106 + t1108;
-
-  // passive accelerations
-  const Real t1110 = t1109 + t1104;
-
-  // accelerations
-  const Real t1111 = t1110 * t857;
-  const Real t1112 = sum_error(t1109, t1104);
-  const Real t1113 = sum_error(t1103, par.m_B);
-  const Real t1114 = t1113 + t1112;
-  const Real t1115 = t1114 * t857;
-  const Real t1116 = t1111 + t1115;
-  const Real t1117 = t1116 + t1093;
-
-  // passive accelerations
-  const Real t1118 = par.k1 * t1096;
-  const Real t1119 = t1101 * par.k2;
-  const Real t1120 = t1119 - t1118;
-
-  // rear_wheel: joint force
-  const Real t1121 = t1107 * c_r_p_0_;
-  const Real t1122 = t1105 * s_r_p_0_;
-  const Real t1123 = t1121 - t1122;
-
-  // passive accelerations
-  const Real t1124 = t1123 + t1120;
-
-  // accelerations
-  const Real t1125 = t1124 * t894;
-  const Real t1126 = t1125 + t1117;
-
-  // passive accelerations
-  const Real t1127 = par.k14 * t1120;
-
-  // accelerations
-  const Real t1128 = par.k28 * t1120;
-  const Real t1129 = t1127 + t1128;
-
-  // passive accelerations
-  const Real t1130 = t878 * par.k12;
-  const Real t1131 = par.k13 * t1100;
-  const Real t1132 = t1130 + t1131;
-
-  // fork: wrench
-  const Real t1133 = par.k9 * t219;
-
-  // passive accelerations
-  const Real t1134 = par.k9 * t267;
-  const Real t1135 = t1133 + t1134;
-  const Real t1136 = t1135 - par.k40;
-  const Real t1137 = t1136 - t1132;
-  const Real t1138 = t1137 * c_r_p_1_;
-
-  // front_wheel: joint force
-  const Real t1139 = t885 * par.k12;
-
-  // fork: wrench
-  const Real t1140 = par.k9 * t122;
-
-  // front_wheel: joint force
-  const Real t1141 = t1140 - t1139;
-
-  // fork: joint force
-  const Real t1142 = t1141 * s_r_p_1_;
-
-  // passive accelerations
-  const Real t1143 = t1142 + t1138;
-
-  // accelerations
-  const Real t1144 = t1143 - t1129;
-  const Real t1145 = t1144 + par.k16;
-
-  // rear_wheel: joint force
-  const Real t1146 = t1109 * par.r_R;
-
-  // accelerations
-  const Real t1147 = t1145 - t1146;
-  const Real t1148 = t1147 * t808;
-  const Real t1149 = t1148 + t1126;
-
-  // passive accelerations
-  const Real t1150 = s_r_p_1_ * t1137;
-
-  // fork: joint force
-  const Real t1151 = t1141 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t1152 = t1151 - t1150;
-  const Real t1153 = t1152 * par.k1;
-
-  // front_wheel: joint force
-  const Real t1154 = t885 * par.k13;
-
-  // fork: wrench
-  const Real t1155 = t122 * par.k11;
-
-  // front_wheel: joint force
-  const Real t1156 = t1155 + t1154;
-
-  // fork: joint force
-  const Real t1157 = par.k2 * t1156;
-
-  // passive accelerations
-  const Real t1158 = t1153 + t1157;
-  const Real t1159 = par.k14 * t888;
-
-  // accelerations
-  const Real t1160 = par.k28 * t888;
-  const Real t1161 = t1159 + t1160;
-  const Real t1162 = t1161 - t1158;
-  const Real t1163 = t1162 * t818;
-  const Real t1164 = sum_error(t1163, t1149);
-  const Real t1165 = sum_error(t1148, t1126);
-  const Real t1166 = t1147 * t806;
-
-  // rear_wheel: joint force
-  const Real t1167 = -t1146;
-
-  // accelerations
-  const Real t1168 = sum_error(t1145, t1167);
-  const Real t1169 = sum_error(t1144, par.k16);
-  const Real t1170 = t1169 + par.k59;
-  const Real t1171 = t1168 + t1170;
-  const Real t1172 = t1171 * t808;
-  const Real t1173 = t1172 + t1166;
-  const Real t1174 = product_error(t808, t1147);
-  const Real t1175 = t1174 + t1173;
-  const Real t1176 = t1165 + t1175;
-  const Real t1177 = t1164 + t1176;
-  const Real t1178 = c_r_p_1_ * t1036;
-  const Real t1179 = s_r_p_1_ * t1055;
-  const Real t1180 = t1178 - t1179;
-  const Real t1181 = par.k2 * t1180;
-  const Real t1182 = par.k2 * t1028;
-  const Real t1183 = par.k1 * t1024;
-  const Real t1184 = t1182 + t1183;
-  const Real t1185 = par.m_H * t1007;
-  const Real t1186 = t999 * par.k11;
-  const Real t1187 = par.k9 * t1002;
-  const Real t1188 = t1186 - t1187;
-  const Real t1189 = t1185 + t1188;
-  const Real t1190 = t1184 + t1189;
-  const Real t1191 = t1190 * par.k1;
-  const Real t1192 = t1191 + t1181;
-  const Real t1193 = t950 * par.m_B;
-  const Real t1194 = t953 * par.k17;
-  const Real t1195 = par.k62 * t953;
-  const Real t1196 = t1194 + t1195;
-  const Real t1197 = par.k16 * t964;
-  const Real t1198 = par.k59 * t964;
-  const Real t1199 = t1197 + t1198;
-  const Real t1200 = t1196 + t1199;
-  const Real t1201 = t1193 - t1200;
-  const Real t1202 = t1201 + t1192;
-  const Real t1203 = t964 * par.r_R;
-  const Real t1204 = t950 + t1203;
-  const Real t1205 = t1204 * c_r_p_0_;
+  const Real t1045 = t1041 + t1044;
+  const Real t1046 = t1040 + t1045;
+  const Real t1047 = c_r_p_1_ * t1046;
+  const Real t1048 = s_r_p_1_ * t980;
+  const Real t1049 = c_r_p_1_ * t995;
+  const Real t1050 = t1049 + t1048;
+  const Real t1051 = par.m_H * t1050;
+  const Real t1052 = t734 * nu[1];
+  const Real t1053 = t734 * t590;
+  const Real t1054 = t1052 - t1053;
+  const Real t1055 = par.k9 * t1054;
+  const Real t1056 = t734 * t585;
+  const Real t1057 = t1056 * par.k11;
+  const Real t1058 = t1055 - t1057;
+  const Real t1059 = t1058 - t1051;
+  const Real t1060 = par.k12 * t1054;
+  const Real t1061 = t1056 * par.k13;
+  const Real t1062 = t1061 + t1060;
+  const Real t1063 = t1062 + t1050;
+  const Real t1064 = t1063 * par.m_F;
+  const Real t1065 = t1059 - t1064;
+  const Real t1066 = s_r_p_1_ * t1065;
+  const Real t1067 = t1047 - t1066;
+  const Real t1068 = par.k2 * t1067;
+  const Real t1069 = par.k2 * t1038;
+  const Real t1070 = par.k1 * t1034;
+  const Real t1071 = t1069 + t1070;
+  const Real t1072 = par.m_H * t1017;
+  const Real t1073 = par.k11 * t1012;
+  const Real t1074 = par.k9 * t1010;
+  const Real t1075 = t1073 - t1074;
+  const Real t1076 = t1072 + t1075;
+  const Real t1077 = t1076 + t1071;
+  const Real t1078 = par.k1 * t1077;
+  const Real t1079 = t1068 + t1078;
+  const Real t1080 = t960 * par.m_B;
+  const Real t1081 = par.k65 * t963;
+  const Real t1082 = t963 * par.k17;
+  const Real t1083 = t1081 + t1082;
+  const Real t1084 = t974 * par.k16;
+  const Real t1085 = par.k62 * t974;
+  const Real t1086 = t1084 + t1085;
+  const Real t1087 = t1086 + t1083;
+  const Real t1088 = t1080 - t1087;
+  const Real t1089 = sum_error(t1088, t1079);
+  const Real t1090 = -t1087;
+  const Real t1091 = sum_error(t1080, t1090);
+  const Real t1092 = product_error(par.m_B, t960);
+  const Real t1093 = t1091 + t1092;
+  const Real t1094 = t1093 + t1089;
+  const Real t1095 = t1079 + t1088;
+  const Real t1096 = t974 * par.r_R;
+  const Real t1097 = t960 + t1096;
+  const Real t1098 = t1097 * s_r_p_0_;
 
   // frame: acceleration
-  const Real t1206 = nu[0] * nu[0];
+  const Real t1099 = nu[0] * nu[0];
 
   // accelerations
-  const Real t1207 = t1206 + t952;
-  const Real t1208 = t1207 * par.r_R;
-  const Real t1209 = t1208 + t963;
-  const Real t1210 = s_r_p_0_ * t1209;
-  const Real t1211 = t1205 - t1210;
-  const Real t1212 = par.m_R * t1211;
-  const Real t1213 = t1212 * c_r_p_0_;
-  const Real t1214 = t1204 * s_r_p_0_;
-  const Real t1215 = c_r_p_0_ * t1209;
+  const Real t1100 = t1099 + t962;
+  const Real t1101 = t1100 * par.r_R;
+  const Real t1102 = t1101 + t973;
+  const Real t1103 = t1102 * c_r_p_0_;
+  const Real t1104 = t1098 + t1103;
+  const Real t1105 = t1104 * par.m_R;
+  const Real t1106 = s_r_p_0_ * t1105;
+  const Real t1107 = t1097 * c_r_p_0_;
+  const Real t1108 = t1102 * s_r_p_0_;
+  const Real t1109 = t1107 - t1108;
+  const Real t1110 = t1109 * par.m_R;
+  const Real t1111 = t1110 * c_r_p_0_;
+  const Real t1112 = t1106 + t1111;
+  const Real t1113 = sum_error(t1112, t1095);
+  const Real t1114 = t1094 + t1113;
+  const Real t1115 = t1114 + t955;
+  const Real t1116 = t927 + t941;
+  const Real t1117 = t1095 + t1112;
+  const Real t1118 = sum_error(t1117, t1116);
+  const Real t1119 = t1118 + t1115;
+  const Real t1120 = t627 * t625;
+  const Real t1121 = t1120 * constant<Real>(2.0L);
+  const Real t1122 = t627 * t627;
+  const Real t1123 = t1121 + t1122;
+  const Real t1124 = t656 * t656;
+  const Real t1125 = t1124 + t1123;
+  const Real t1126 = t684 * t684;
+  const Real t1127 = t1125 + t1126;
+  const Real t1128 = constant<Real>(1.0L) + t1127;
+  const Real t1129 = t429 * t431;
+  const Real t1130 = t1129 * constant<Real>(2.0L);
+  const Real t1131 = t431 * t431;
+  const Real t1132 = t1131 + t1130;
+  const Real t1133 = t1132 + t1128;
+  const Real t1134 = t441 * t441;
+  const Real t1135 = t1133 + t1134;
+  const Real t1136 = t420 * t420;
+  const Real t1137 = t1136 + t1135;
+  const Real t1138 = constant<Real>(1.0L) / t1137;
+  const Real t1139 = t620 * t627;
+  const Real t1140 = t620 * t625;
+  const Real t1141 = t1139 + t1140;
+  const Real t1142 = t656 * t650;
+  const Real t1143 = t1142 + t1141;
+  const Real t1144 = t677 * t684;
+  const Real t1145 = t679 * t684;
+  const Real t1146 = t1144 + t1145;
+  const Real t1147 = t1143 + t1146;
+  const Real t1148 = t342 * t431;
+  const Real t1149 = t429 * t344;
+  const Real t1150 = t1148 + t1149;
+  const Real t1151 = t344 * t431;
+  const Real t1152 = t1151 + t1150;
+  const Real t1153 = t1152 + t1147;
+  const Real t1154 = t358 * t441;
+  const Real t1155 = t360 * t441;
+  const Real t1156 = t1155 + t1154;
+  const Real t1157 = t1156 + t1153;
+  const Real t1158 = t420 * t327;
+  const Real t1159 = t329 * t420;
+  const Real t1160 = t1158 + t1159;
+  const Real t1161 = t1157 + t1160;
+  const Real t1162 = t1138 * t1161;
+  const Real t1163 = t1162 * t656;
+  const Real t1164 = t650 - t1163;
+  const Real t1165 = t1119 * t1164;
+  const Real t1166 = t1116 + t1117;
+  const Real t1167 = t1166 * t1164;
+  const Real t1168 = t1165 + t1167;
+  const Real t1169 = -t1168;
+
+  // front_wheel: acceleration
+  const Real t1170 = t122 * c_r_p_2_;
+  const Real t1171 = t105 * s_r_p_2_;
+  const Real t1172 = t1170 + t1171;
+
+  // front_wheel: wrench
+  const Real t1173 = par.m_F * t1172;
+
+  // front_wheel: joint force
+  const Real t1174 = c_r_p_2_ * t1173;
+
+  // passive accelerations
+  const Real t1175 = s_r_p_1_ * t2;
+  const Real t1176 = t1175 * par.m_F;
+  const Real t1177 = t1176 * s_r_p_2_;
+  const Real t1178 = t1174 + t1177;
+  const Real t1179 = t1178 * par.k2;
+
+  // front_wheel: joint force
+  const Real t1180 = t1173 * s_r_p_2_;
+
+  // passive accelerations
+  const Real t1181 = t1176 * c_r_p_2_;
+  const Real t1182 = t1181 - t1180;
+  const Real t1183 = par.k1 * t1182;
+  const Real t1184 = t1179 - t1183;
+
+  // fork: wrench
+  const Real t1185 = s_r_p_1_ * par.m_H;
+
+  // passive accelerations
+  const Real t1186 = t1185 + t1184;
+  const Real t1187 = s_r_p_1_ * t1186;
+
+  // fork: wrench
+  const Real t1188 = par.m_H * c_r_p_1_;
+
+  // front_wheel: wrench
+  const Real t1189 = c_r_p_1_ * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1190 = t1188 + t1189;
+
+  // fork: joint force
+  const Real t1191 = t1190 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t1192 = t1187 + t1191;
+  const Real t1193 = t1192 + par.m_B;
+
+  // accelerations
+  const Real t1194 = sum_error(par.m_R, t1193);
+  const Real t1195 = sum_error(t1192, par.m_B);
+  const Real t1196 = t1194 + t1195;
+  const Real t1197 = t829 * t1196;
+
+  // passive accelerations
+  const Real t1198 = par.m_R + t1193;
+
+  // accelerations
+  const Real t1199 = t829 * t1198;
+  const Real t1200 = t1197 + t1199;
+  const Real t1201 = t860 * t867;
+  const Real t1202 = t1201 + t1200;
+
+  // passive accelerations
+  const Real t1203 = c_r_p_1_ * t1186;
+
+  // fork: joint force
+  const Real t1204 = s_r_p_1_ * t1190;
+
+  // passive accelerations
+  const Real t1205 = t1203 - t1204;
+  const Real t1206 = t1205 * par.k1;
+  const Real t1207 = par.k2 * t1182;
+  const Real t1208 = t1178 * par.k1;
+  const Real t1209 = t1207 + t1208;
+  const Real t1210 = t1209 * par.k2;
+  const Real t1211 = t1210 - t1206;
+
+  // accelerations
+  const Real t1212 = t1211 * t895;
+  const Real t1213 = t1212 + t1202;
+  const Real t1214 = par.k28 * t1211;
+
+  // passive accelerations
+  const Real t1215 = par.k14 * t1211;
+
+  // accelerations
   const Real t1216 = t1214 + t1215;
-  const Real t1217 = par.m_R * t1216;
-  const Real t1218 = t1217 * s_r_p_0_;
-  const Real t1219 = t1213 + t1218;
-  const Real t1220 = sum_error(t1219, t1202);
-  const Real t1221 = sum_error(t1201, t1192);
-  const Real t1222 = t1221 + t1220;
-  const Real t1223 = t1222 + t1177;
-  const Real t1224 = t1163 + t1149;
-  const Real t1225 = t1202 + t1219;
-  const Real t1226 = sum_error(t1225, t1224);
-  const Real t1227 = t1226 + t1223;
-  const Real t1228 = t1227 * t670;
-  const Real t1229 = t1224 + t1225;
-  const Real t1230 = t670 * t1229;
-  const Real t1231 = t1230 + t1228;
-  const Real t1232 = -t1231;
-  const Real t1233 = t1088 * t620;
-  const Real t1234 = sum_error(t1233, t1232);
-  const Real t1235 = t1092 + t1234;
-  const Real t1236 = t1233 - t1231;
-  const Real t1237 = t820 * t903;
-  const Real t1238 = t1124 * t857;
+
+  // passive accelerations
+  const Real t1217 = t1209 * par.k13;
+  const Real t1218 = t1184 * par.k12;
+  const Real t1219 = t1217 + t1218;
+
+  // fork: wrench
+  const Real t1220 = s_r_p_1_ * par.k9;
+
+  // passive accelerations
+  const Real t1221 = t1220 - t1219;
+  const Real t1222 = c_r_p_1_ * t1221;
+
+  // front_wheel: joint force
+  const Real t1223 = par.k12 * t1189;
+
+  // fork: wrench
+  const Real t1224 = par.k9 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t1225 = t1223 - t1224;
+
+  // fork: joint force
+  const Real t1226 = s_r_p_1_ * t1225;
+
+  // passive accelerations
+  const Real t1227 = t1226 + t1222;
+
+  // accelerations
+  const Real t1228 = t1227 - t1216;
+  const Real t1229 = t1228 * t815;
+  const Real t1230 = t1228 * t817;
+  const Real t1231 = t1229 + t1230;
+  const Real t1232 = t1213 + t1231;
+
+  // passive accelerations
+  const Real t1233 = s_r_p_1_ * t1221;
+
+  // fork: joint force
+  const Real t1234 = c_r_p_1_ * t1225;
+
+  // passive accelerations
+  const Real t1235 = t1234 - t1233;
+  const Real t1236 = par.k1 * t1235;
+
+  // front_wheel: joint force
+  const Real t1237 = par.k13 * t1189;
+
+  // fork: wrench
+  const Real t1238 = c_r_p_1_ * par.k11;
+
+  // front_wheel: joint force
   const Real t1239 = t1238 + t1237;
-  const Real t1240 = c_r_p_2_ * t56;
+
+  // fork: joint force
+  const Real t1240 = par.k2 * t1239;
+
+  // passive accelerations
+  const Real t1241 = t1240 - t1236;
+
+  // accelerations
+  const Real t1242 = par.k28 * t1192;
+
+  // passive accelerations
+  const Real t1243 = t1192 * par.k14;
+
+  // accelerations
+  const Real t1244 = t1242 + t1243;
+  const Real t1245 = t1244 + t1241;
+  const Real t1246 = sum_error(t1245, par.k17);
+  const Real t1247 = par.k65 + t1246;
+  const Real t1248 = t827 * t1247;
+  const Real t1249 = t1245 + par.k17;
+  const Real t1250 = t1249 * t827;
+  const Real t1251 = t1248 + t1250;
+  const Real t1252 = t1251 + t1232;
+  const Real t1253 = s_r_p_1_ * t1046;
+  const Real t1254 = c_r_p_1_ * t1065;
+  const Real t1255 = t1253 + t1254;
+  const Real t1256 = t535 * t523;
+  const Real t1257 = t1256 * par.k16;
+  const Real t1258 = par.k62 * t1256;
+  const Real t1259 = t1257 + t1258;
+  const Real t1260 = par.k65 * t990;
+  const Real t1261 = t990 * par.k17;
+  const Real t1262 = t1260 + t1261;
+  const Real t1263 = t1259 - t1262;
+  const Real t1264 = par.m_B * t989;
+  const Real t1265 = t1263 - t1264;
+  const Real t1266 = t1265 + t1255;
+  const Real t1267 = t1256 * par.r_R;
+  const Real t1268 = t1267 + t989;
+  const Real t1269 = t1268 + t988;
+  const Real t1270 = par.m_R * t1269;
+  const Real t1271 = t1270 - t1266;
+  const Real t1272 = t1271 - t1252;
+  const Real t1273 = t627 * t1162;
+  const Real t1274 = t1162 * t625;
+  const Real t1275 = t1273 + t1274;
+  const Real t1276 = t620 - t1275;
+  const Real t1277 = t1272 * t1276;
+  const Real t1278 = sum_error(t1277, t1169);
+  const Real t1279 = -t1252;
+  const Real t1280 = sum_error(t1271, t1279);
+  const Real t1281 = -t1266;
+  const Real t1282 = sum_error(t1270, t1281);
+  const Real t1283 = sum_error(t1255, t1265);
+  const Real t1284 = -t1264;
+  const Real t1285 = sum_error(t1263, t1284);
+  const Real t1286 = t988 * par.m_B;
+  const Real t1287 = product_error(par.m_B, t989);
+  const Real t1288 = t1287 + t1286;
+  const Real t1289 = t1285 - t1288;
+  const Real t1290 = t1283 + t1289;
+  const Real t1291 = t1282 - t1290;
+  const Real t1292 = t1280 + t1291;
+  const Real t1293 = t1276 * t1292;
+  const Real t1294 = product_error(t1276, t1272);
+  const Real t1295 = t1293 + t1294;
+  const Real t1296 = t1295 + t1278;
+  const Real t1297 = t1277 - t1168;
+  const Real t1298 = t829 * t1211;
+  const Real t1299 = t902 * t867;
+  const Real t1300 = t1299 + t1298;
+  const Real t1301 = c_r_p_2_ * t56;
 
   // front_wheel: acceleration
-  const Real t1241 = t58 * c_r_p_2_;
+  const Real t1302 = t58 * c_r_p_2_;
 
   // accelerations
-  const Real t1242 = t1241 + t1240;
-  const Real t1243 = t1242 + t861;
-  const Real t1244 = t1243 * par.m_F;
-  const Real t1245 = t1244 * s_r_p_2_;
-  const Real t1246 = t56 * s_r_p_2_;
+  const Real t1303 = t1302 + t1301;
+  const Real t1304 = t1303 + t833;
+  const Real t1305 = t1304 * par.m_F;
+  const Real t1306 = t1305 * s_r_p_2_;
+  const Real t1307 = t56 * s_r_p_2_;
 
   // front_wheel: acceleration
-  const Real t1247 = t58 * s_r_p_2_;
+  const Real t1308 = t58 * s_r_p_2_;
 
   // accelerations
-  const Real t1248 = t1247 + t1246;
-  const Real t1249 = t868 - t1248;
-  const Real t1250 = par.m_F * t1249;
-  const Real t1251 = t1250 * c_r_p_2_;
-  const Real t1252 = t1245 + t1251;
-  const Real t1253 = t1252 * par.k2;
-  const Real t1254 = t1244 * c_r_p_2_;
-  const Real t1255 = t1250 * s_r_p_2_;
-  const Real t1256 = t1254 - t1255;
-  const Real t1257 = par.k1 * t1256;
-  const Real t1258 = t1253 - t1257;
+  const Real t1309 = t1308 + t1307;
+  const Real t1310 = t840 - t1309;
+  const Real t1311 = par.m_F * t1310;
+  const Real t1312 = t1311 * c_r_p_2_;
+  const Real t1313 = t1306 + t1312;
+  const Real t1314 = t1313 * par.k2;
+  const Real t1315 = t1305 * c_r_p_2_;
+  const Real t1316 = t1311 * s_r_p_2_;
+  const Real t1317 = t1315 - t1316;
+  const Real t1318 = par.k1 * t1317;
+  const Real t1319 = t1314 - t1318;
 
   // fork: wrench
-  const Real t1259 = par.m_H * t53;
+  const Real t1320 = par.m_H * t53;
 
   // accelerations
-  const Real t1260 = t1258 - t1259;
-  const Real t1261 = c_r_p_1_ * t1260;
+  const Real t1321 = t1319 - t1320;
+  const Real t1322 = c_r_p_1_ * t1321;
 
   // fork: wrench
-  const Real t1262 = par.m_H * t105;
+  const Real t1323 = par.m_H * t105;
 
   // front_wheel: wrench
-  const Real t1263 = par.m_F * t105;
+  const Real t1324 = par.m_F * t105;
 
   // front_wheel: joint force
-  const Real t1264 = t1262 + t1263;
-
-  // fork: joint force
-  const Real t1265 = s_r_p_1_ * t1264;
-
-  // accelerations
-  const Real t1266 = t1261 - t1265;
-  const Real t1267 = par.k1 * t1266;
-  const Real t1268 = t1252 * par.k1;
-  const Real t1269 = par.k2 * t1256;
-  const Real t1270 = t1268 + t1269;
-  const Real t1271 = t1270 + par.k46;
-  const Real t1272 = t1271 * par.k2;
-  const Real t1273 = t1272 - t1267;
-  const Real t1274 = t1273 + par.m_B;
-  const Real t1275 = t1109 + t1274;
-  const Real t1276 = t894 * t1275;
-  const Real t1277 = t1276 + t1239;
-  const Real t1278 = par.k28 * t1273;
-  const Real t1279 = par.k14 * t1273;
-  const Real t1280 = t1278 + t1279;
-  const Real t1281 = par.k12 * t1258;
-  const Real t1282 = t1270 * par.k13;
-  const Real t1283 = t1281 + t1282;
-
-  // fork: wrench
-  const Real t1284 = par.k9 * t53;
-  const Real t1285 = par.k47 + t1284;
-
-  // accelerations
-  const Real t1286 = t1283 + t1285;
-  const Real t1287 = t1286 * c_r_p_1_;
-
-  // front_wheel: joint force
-  const Real t1288 = par.k12 * t1263;
-
-  // fork: wrench
-  const Real t1289 = par.k9 * t105;
-
-  // front_wheel: joint force
-  const Real t1290 = t1288 - t1289;
-
-  // fork: joint force
-  const Real t1291 = s_r_p_1_ * t1290;
-
-  // accelerations
-  const Real t1292 = t1291 - t1287;
-  const Real t1293 = t1292 - t1280;
-  const Real t1294 = t1293 - par.k17;
-  const Real t1295 = t1294 - par.k62;
-
-  // rear_wheel: joint force
-  const Real t1296 = t1122 - t1121;
-  const Real t1297 = t1296 * par.r_R;
-
-  // accelerations
-  const Real t1298 = t1295 - t1297;
-  const Real t1299 = t1298 * t808;
-  const Real t1300 = t1299 + t1277;
-  const Real t1301 = t1286 * s_r_p_1_;
-
-  // fork: joint force
-  const Real t1302 = c_r_p_1_ * t1290;
-
-  // accelerations
-  const Real t1303 = t1301 + t1302;
-  const Real t1304 = t1303 * par.k1;
-
-  // front_wheel: joint force
-  const Real t1305 = par.k13 * t1263;
-
-  // fork: wrench
-  const Real t1306 = par.k11 * t105;
-
-  // front_wheel: joint force
-  const Real t1307 = t1306 + t1305;
-
-  // fork: joint force
-  const Real t1308 = t1307 * par.k2;
-
-  // accelerations
-  const Real t1309 = t1308 - t1304;
-  const Real t1310 = s_r_p_1_ * t1260;
-
-  // fork: joint force
-  const Real t1311 = c_r_p_1_ * t1264;
-
-  // accelerations
-  const Real t1312 = t1311 + t1310;
-  const Real t1313 = t1312 * par.k14;
-  const Real t1314 = t1312 * par.k28;
-  const Real t1315 = t1313 + t1314;
-  const Real t1316 = t1315 + t1309;
-  const Real t1317 = t1316 * t818;
-  const Real t1318 = t1300 + t1317;
-  const Real t1319 = par.k1 * t1180;
-  const Real t1320 = t1190 * par.k2;
-  const Real t1321 = t1320 - t1319;
-  const Real t1322 = t963 * par.m_B;
-  const Real t1323 = t964 * par.k17;
-  const Real t1324 = par.k62 * t964;
   const Real t1325 = t1323 + t1324;
-  const Real t1326 = t1207 * par.k16;
-  const Real t1327 = t1207 * par.k59;
-  const Real t1328 = t1326 + t1327;
-  const Real t1329 = t1325 + t1328;
-  const Real t1330 = t1322 - t1329;
-  const Real t1331 = t1321 + t1330;
-  const Real t1332 = t1217 * c_r_p_0_;
-  const Real t1333 = t1212 * s_r_p_0_;
-  const Real t1334 = t1332 - t1333;
-  const Real t1335 = t1331 + t1334;
-  const Real t1336 = sum_error(t1335, t1318);
-  const Real t1337 = sum_error(t1277, t1299);
-  const Real t1338 = t806 * t1298;
-  const Real t1339 = product_error(t808, t1298);
-  const Real t1340 = t1339 + t1338;
-  const Real t1341 = t1340 + t1337;
-  const Real t1342 = sum_error(t1317, t1300);
-  const Real t1343 = t1341 + t1342;
-  const Real t1344 = t1336 + t1343;
-  const Real t1345 = t643 * t1344;
-  const Real t1346 = t1318 + t1335;
-  const Real t1347 = t643 * t1346;
-  const Real t1348 = t1347 + t1345;
-  const Real t1349 = sum_error(t1348, t1236);
-  const Real t1350 = t1349 + t1235;
-
-  // passive accelerations
-  const Real t1351 = par.k2 * t927;
 
   // fork: joint force
-  const Real t1352 = par.k1 * t931;
-
-  // passive accelerations
-  const Real t1353 = t1351 + t1352;
-  const Real t1354 = t1353 - par.k16;
-  const Real t1355 = par.k45 + t1354;
+  const Real t1326 = s_r_p_1_ * t1325;
 
   // accelerations
-  const Real t1356 = t820 * t1355;
+  const Real t1327 = t1322 - t1326;
+  const Real t1328 = par.k1 * t1327;
+  const Real t1329 = t1313 * par.k1;
+  const Real t1330 = par.k2 * t1317;
+  const Real t1331 = t1329 + t1330;
+  const Real t1332 = t1331 + par.k46;
+  const Real t1333 = t1332 * par.k2;
+  const Real t1334 = t1333 - t1328;
+  const Real t1335 = t1334 + par.m_B;
+  const Real t1336 = t883 + t1335;
+  const Real t1337 = t895 * t1336;
+  const Real t1338 = t1337 + t1300;
+  const Real t1339 = par.k28 * t1334;
+  const Real t1340 = par.k14 * t1334;
+  const Real t1341 = t1339 + t1340;
+  const Real t1342 = par.k12 * t1319;
+  const Real t1343 = t1331 * par.k13;
+  const Real t1344 = t1342 + t1343;
 
-  // passive accelerations
-  const Real t1357 = sum_error(t1353, par.k44);
-  const Real t1358 = t1357 - par.k59;
-  const Real t1359 = sum_error(par.k45, t1354);
-  const Real t1360 = t1358 + t1359;
-
-  // accelerations
-  const Real t1361 = t820 * t1360;
-  const Real t1362 = t1356 + t1361;
-
-  // passive accelerations
-  const Real t1363 = t1152 * par.k2;
-
-  // fork: joint force
-  const Real t1364 = par.k1 * t1156;
-
-  // passive accelerations
-  const Real t1365 = t1363 - t1364;
-
-  // accelerations
-  const Real t1366 = t1365 * t857;
-  const Real t1367 = t1362 + t1366;
-  const Real t1368 = t1303 * par.k2;
-
-  // fork: joint force
-  const Real t1369 = par.k1 * t1307;
+  // fork: wrench
+  const Real t1345 = par.k9 * t53;
+  const Real t1346 = par.k47 + t1345;
 
   // accelerations
-  const Real t1370 = t1368 + t1369;
-  const Real t1371 = t1370 * t894;
-  const Real t1372 = t1371 + t1367;
-
-  // front_wheel: acceleration
-  const Real t1373 = t122 * par.k13;
-  const Real t1374 = t1373 * par.k1;
-  const Real t1375 = t122 * par.k12;
-  const Real t1376 = t1375 * par.k2;
-  const Real t1377 = t1374 + t1376;
-  const Real t1378 = c_r_p_2_ * t1377;
-  const Real t1379 = t1373 * par.k2;
-  const Real t1380 = par.k1 * t1375;
-  const Real t1381 = t1379 - t1380;
-  const Real t1382 = s_r_p_2_ * t1381;
-  const Real t1383 = t1378 - t1382;
-
-  // front_wheel: wrench
-  const Real t1384 = t1383 * par.m_F;
+  const Real t1347 = t1344 + t1346;
+  const Real t1348 = t1347 * c_r_p_1_;
 
   // front_wheel: joint force
-  const Real t1385 = t1384 * c_r_p_2_;
+  const Real t1349 = par.k12 * t1324;
 
-  // front_wheel: acceleration
-  const Real t1386 = c_r_p_2_ * t1381;
-  const Real t1387 = t1377 * s_r_p_2_;
-  const Real t1388 = t1386 + t1387;
-
-  // front_wheel: wrench
-  const Real t1389 = t1388 * par.m_F;
+  // fork: wrench
+  const Real t1350 = par.k9 * t105;
 
   // front_wheel: joint force
-  const Real t1390 = t1389 * s_r_p_2_;
-  const Real t1391 = t1385 + t1390;
-  const Real t1392 = t1391 * par.k2;
-  const Real t1393 = t1389 * c_r_p_2_;
-  const Real t1394 = t1384 * s_r_p_2_;
+  const Real t1351 = t1349 - t1350;
+
+  // fork: joint force
+  const Real t1352 = s_r_p_1_ * t1351;
+
+  // accelerations
+  const Real t1353 = t1352 - t1348;
+  const Real t1354 = t1353 - t1341;
+  const Real t1355 = t1354 - par.k17;
+  const Real t1356 = t1355 - par.k65;
+
+  // rear_wheel: joint force
+  const Real t1357 = t900 - t899;
+  const Real t1358 = t1357 * par.r_R;
+
+  // accelerations
+  const Real t1359 = t1356 - t1358;
+  const Real t1360 = t817 * t1359;
+  const Real t1361 = t1360 + t1338;
+  const Real t1362 = t1347 * s_r_p_1_;
+
+  // fork: joint force
+  const Real t1363 = c_r_p_1_ * t1351;
+
+  // accelerations
+  const Real t1364 = t1362 + t1363;
+  const Real t1365 = t1364 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1366 = par.k13 * t1324;
+
+  // fork: wrench
+  const Real t1367 = par.k11 * t105;
+
+  // front_wheel: joint force
+  const Real t1368 = t1367 + t1366;
+
+  // fork: joint force
+  const Real t1369 = t1368 * par.k2;
+
+  // accelerations
+  const Real t1370 = t1369 - t1365;
+  const Real t1371 = s_r_p_1_ * t1321;
+
+  // fork: joint force
+  const Real t1372 = c_r_p_1_ * t1325;
+
+  // accelerations
+  const Real t1373 = t1372 + t1371;
+  const Real t1374 = t1373 * par.k14;
+  const Real t1375 = t1373 * par.k28;
+  const Real t1376 = t1374 + t1375;
+  const Real t1377 = t1376 + t1370;
+  const Real t1378 = t827 * t1377;
+  const Real t1379 = t1378 + t1361;
+  const Real t1380 = par.k1 * t1067;
+  const Real t1381 = par.k2 * t1077;
+  const Real t1382 = t1381 - t1380;
+  const Real t1383 = t973 * par.m_B;
+  const Real t1384 = par.k65 * t974;
+  const Real t1385 = t974 * par.k17;
+  const Real t1386 = t1384 + t1385;
+  const Real t1387 = t1100 * par.k62;
+  const Real t1388 = t1100 * par.k16;
+  const Real t1389 = t1387 + t1388;
+  const Real t1390 = t1389 + t1386;
+  const Real t1391 = t1383 - t1390;
+  const Real t1392 = t1382 + t1391;
+  const Real t1393 = t1105 * c_r_p_0_;
+  const Real t1394 = t1110 * s_r_p_0_;
   const Real t1395 = t1393 - t1394;
-  const Real t1396 = par.k1 * t1395;
-  const Real t1397 = t1392 - t1396;
-  const Real t1398 = t1397 - t1140;
+  const Real t1396 = t1395 + t1392;
+  const Real t1397 = sum_error(t1396, t1379);
+  const Real t1398 = sum_error(t1378, t1361);
+  const Real t1399 = sum_error(t1338, t1360);
+  const Real t1400 = t815 * t1359;
+  const Real t1401 = product_error(t817, t1359);
+  const Real t1402 = t1401 + t1400;
+  const Real t1403 = t1402 + t1399;
+  const Real t1404 = t1398 + t1403;
+  const Real t1405 = t1397 + t1404;
+  const Real t1406 = t684 * t1162;
+  const Real t1407 = t1406 - t679;
+  const Real t1408 = t1407 * t1405;
+  const Real t1409 = t1396 + t1379;
+  const Real t1410 = -t679;
+  const Real t1411 = sum_error(t1406, t1410);
+  const Real t1412 = t1411 - t677;
+  const Real t1413 = t1412 * t1409;
+  const Real t1414 = t1408 + t1413;
+  const Real t1415 = t1407 * t1409;
+  const Real t1416 = t1415 + t1414;
+  const Real t1417 = -t1416;
+  const Real t1418 = sum_error(t1297, t1417);
+  const Real t1419 = t1418 + t1296;
+
+  // passive accelerations
+  const Real t1420 = par.k2 * t1235;
 
   // fork: joint force
-  const Real t1399 = t1398 * c_r_p_1_;
+  const Real t1421 = par.k1 * t1239;
 
   // passive accelerations
-  const Real t1400 = t267 * par.k12;
-
-  // front_wheel: acceleration
-  const Real t1401 = par.k12 * t219;
-
-  // passive accelerations
-  const Real t1402 = t1400 + t1401;
-  const Real t1403 = par.k48 + t1402;
-  const Real t1404 = t1403 * par.m_F;
-  const Real t1405 = par.k40 - t1135;
-  const Real t1406 = t1405 + t1404;
-  const Real t1407 = s_r_p_1_ * t1406;
-  const Real t1408 = t1399 - t1407;
-  const Real t1409 = t1408 * par.k1;
-
-  // front_wheel: joint force
-  const Real t1410 = par.k2 * t1395;
-  const Real t1411 = t1391 * par.k1;
-  const Real t1412 = t1410 + t1411;
-  const Real t1413 = t1412 + t1155;
-
-  // fork: joint force
-  const Real t1414 = t1413 * par.k2;
-
-  // passive accelerations
-  const Real t1415 = t1414 - t1409;
-  const Real t1416 = t1415 * par.k14;
+  const Real t1422 = t1420 + t1421;
+  const Real t1423 = t1422 - par.k16;
+  const Real t1424 = par.k45 + t1423;
 
   // accelerations
-  const Real t1417 = t1415 * par.k28;
-  const Real t1418 = t1416 + t1417;
-
-  // front_wheel: joint force
-  const Real t1419 = par.k12 * t1397;
-  const Real t1420 = t1412 * par.k13;
-  const Real t1421 = t1419 + t1420;
-
-  // front_wheel: wrench
-  const Real t1422 = t122 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t1423 = t1422 + t1421;
-
-  // fork: wrench
-  const Real t1424 = par.k8 * t122;
-
-  // front_wheel: joint force
-  const Real t1425 = t1424 + t1423;
-
-  // fork: joint force
-  const Real t1426 = t1425 * c_r_p_1_;
+  const Real t1425 = t829 * t1424;
 
   // passive accelerations
-  const Real t1427 = par.I_Fxx * t869;
-  const Real t1428 = t1427 * s_r_p_2_;
-  const Real t1429 = t862 * par.I_Fxx;
-  const Real t1430 = t1429 * c_r_p_2_;
-  const Real t1431 = t1428 + t1430;
-  const Real t1432 = par.k2 * t1431;
-  const Real t1433 = c_r_p_2_ * t1427;
-  const Real t1434 = t1429 * s_r_p_2_;
-  const Real t1435 = t1433 - t1434;
-  const Real t1436 = par.k1 * t1435;
-  const Real t1437 = t1432 - t1436;
-  const Real t1438 = t1404 * par.k12;
+  const Real t1426 = sum_error(t1422, par.k44);
+  const Real t1427 = t1426 - par.k62;
+  const Real t1428 = sum_error(par.k45, t1423);
+  const Real t1429 = t1427 + t1428;
+
+  // accelerations
+  const Real t1430 = t829 * t1429;
+  const Real t1431 = t1425 + t1430;
+
+  // passive accelerations
+  const Real t1432 = t930 * par.k2;
+
+  // fork: joint force
+  const Real t1433 = par.k1 * t934;
+
+  // passive accelerations
+  const Real t1434 = t1432 - t1433;
+
+  // accelerations
+  const Real t1435 = t1434 * t867;
+  const Real t1436 = t1431 + t1435;
+  const Real t1437 = t1364 * par.k2;
+
+  // fork: joint force
+  const Real t1438 = par.k1 * t1368;
+
+  // accelerations
   const Real t1439 = t1437 + t1438;
+  const Real t1440 = t1439 * t895;
+  const Real t1441 = t1436 + t1440;
 
-  // fork: wrench
-  const Real t1440 = t219 * par.k18;
+  // front_wheel: acceleration
+  const Real t1442 = t122 * par.k13;
+  const Real t1443 = t1442 * par.k1;
+  const Real t1444 = t122 * par.k12;
+  const Real t1445 = t1444 * par.k2;
+  const Real t1446 = t1443 + t1445;
+  const Real t1447 = c_r_p_2_ * t1446;
+  const Real t1448 = t1442 * par.k2;
+  const Real t1449 = par.k1 * t1444;
+  const Real t1450 = t1448 - t1449;
+  const Real t1451 = s_r_p_2_ * t1450;
+  const Real t1452 = t1447 - t1451;
 
-  // passive accelerations
-  const Real t1441 = t267 * par.k18;
-  const Real t1442 = t1440 + t1441;
-  const Real t1443 = par.k51 + t1442;
-  const Real t1444 = t1443 + t1439;
-  const Real t1445 = s_r_p_1_ * t1444;
-  const Real t1446 = t1445 - t1426;
+  // front_wheel: wrench
+  const Real t1453 = t1452 * par.m_F;
 
-  // accelerations
-  const Real t1447 = t1446 - t1418;
-  const Real t1448 = t806 * t1447;
-  const Real t1449 = t808 * t1447;
-  const Real t1450 = t1448 + t1449;
-  const Real t1451 = t1450 + t1372;
+  // front_wheel: joint force
+  const Real t1454 = t1453 * c_r_p_2_;
 
-  // fork: joint force
-  const Real t1452 = t1425 * s_r_p_1_;
+  // front_wheel: acceleration
+  const Real t1455 = c_r_p_2_ * t1450;
+  const Real t1456 = t1446 * s_r_p_2_;
+  const Real t1457 = t1455 + t1456;
 
-  // passive accelerations
-  const Real t1453 = c_r_p_1_ * t1444;
-  const Real t1454 = t1453 + t1452;
-  const Real t1455 = par.k1 * t1454;
-  const Real t1456 = par.k2 * t1435;
-  const Real t1457 = par.k1 * t1431;
-  const Real t1458 = t1456 + t1457;
-  const Real t1459 = t1404 * par.k13;
-  const Real t1460 = t1459 + t1458;
+  // front_wheel: wrench
+  const Real t1458 = t1457 * par.m_F;
 
-  // fork: wrench
-  const Real t1461 = par.k5 * t219;
-
-  // passive accelerations
-  const Real t1462 = par.k5 * t267;
-  const Real t1463 = t1461 + t1462;
-  const Real t1464 = par.k50 + t1463;
-  const Real t1465 = t1464 + t1460;
-  const Real t1466 = t1465 * par.k2;
-  const Real t1467 = t1466 - t1455;
+  // front_wheel: joint force
+  const Real t1459 = t1458 * s_r_p_2_;
+  const Real t1460 = t1454 + t1459;
+  const Real t1461 = t1460 * par.k2;
+  const Real t1462 = t1458 * c_r_p_2_;
+  const Real t1463 = t1453 * s_r_p_2_;
+  const Real t1464 = t1462 - t1463;
+  const Real t1465 = par.k1 * t1464;
+  const Real t1466 = t1461 - t1465;
+  const Real t1467 = t1466 - t918;
 
   // fork: joint force
-  const Real t1468 = t1398 * s_r_p_1_;
+  const Real t1468 = t1467 * c_r_p_1_;
 
   // passive accelerations
-  const Real t1469 = c_r_p_1_ * t1406;
-  const Real t1470 = t1468 + t1469;
-  const Real t1471 = t1470 * par.k14;
+  const Real t1469 = t267 * par.k12;
+
+  // front_wheel: acceleration
+  const Real t1470 = par.k12 * t219;
+
+  // passive accelerations
+  const Real t1471 = t1469 + t1470;
+  const Real t1472 = par.k48 + t1471;
+  const Real t1473 = t1472 * par.m_F;
+  const Real t1474 = par.k40 - t913;
+  const Real t1475 = t1474 + t1473;
+  const Real t1476 = s_r_p_1_ * t1475;
+  const Real t1477 = t1468 - t1476;
+  const Real t1478 = t1477 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1479 = par.k2 * t1464;
+  const Real t1480 = t1460 * par.k1;
+  const Real t1481 = t1479 + t1480;
+  const Real t1482 = t1481 + t933;
+
+  // fork: joint force
+  const Real t1483 = t1482 * par.k2;
+
+  // passive accelerations
+  const Real t1484 = t1483 - t1478;
+  const Real t1485 = t1484 * par.k14;
 
   // accelerations
-  const Real t1472 = par.k28 * t1470;
-  const Real t1473 = t1471 + t1472;
-  const Real t1474 = t1467 + t1473;
-  const Real t1475 = t1474 + par.k3;
+  const Real t1486 = t1484 * par.k28;
+  const Real t1487 = t1485 + t1486;
 
-  // rear_wheel: wrench
-  const Real t1476 = par.I_Rxx * s_r_p_0_;
+  // front_wheel: joint force
+  const Real t1488 = par.k12 * t1466;
+  const Real t1489 = t1481 * par.k13;
+  const Real t1490 = t1488 + t1489;
 
-  // rear_wheel: joint force
-  const Real t1477 = t1476 * c_r_p_0_;
+  // front_wheel: wrench
+  const Real t1491 = t122 * par.I_Fyy;
 
-  // rear_wheel: wrench
-  const Real t1478 = par.I_Rxx * c_r_p_0_;
+  // front_wheel: joint force
+  const Real t1492 = t1491 + t1490;
 
-  // rear_wheel: joint force
-  const Real t1479 = t1478 * s_r_p_0_;
-  const Real t1480 = t1477 - t1479;
+  // fork: wrench
+  const Real t1493 = par.k8 * t122;
+
+  // front_wheel: joint force
+  const Real t1494 = t1493 + t1492;
+
+  // fork: joint force
+  const Real t1495 = t1494 * c_r_p_1_;
+
+  // passive accelerations
+  const Real t1496 = par.I_Fxx * t841;
+  const Real t1497 = t1496 * s_r_p_2_;
+  const Real t1498 = t834 * par.I_Fxx;
+  const Real t1499 = t1498 * c_r_p_2_;
+  const Real t1500 = t1497 + t1499;
+  const Real t1501 = par.k2 * t1500;
+  const Real t1502 = c_r_p_2_ * t1496;
+  const Real t1503 = t1498 * s_r_p_2_;
+  const Real t1504 = t1502 - t1503;
+  const Real t1505 = par.k1 * t1504;
+  const Real t1506 = t1501 - t1505;
+  const Real t1507 = t1473 * par.k12;
+  const Real t1508 = t1506 + t1507;
+
+  // fork: wrench
+  const Real t1509 = t219 * par.k18;
+
+  // passive accelerations
+  const Real t1510 = t267 * par.k18;
+  const Real t1511 = t1509 + t1510;
+  const Real t1512 = par.k51 + t1511;
+  const Real t1513 = t1512 + t1508;
+  const Real t1514 = s_r_p_1_ * t1513;
+  const Real t1515 = t1514 - t1495;
 
   // accelerations
-  const Real t1481 = sum_error(t1480, t1475);
-  const Real t1482 = sum_error(par.k3, t1474);
-  const Real t1483 = t1482 + par.k69;
-  const Real t1484 = t1481 + t1483;
-  const Real t1485 = t1484 * t818;
-  const Real t1486 = t1475 + t1480;
-  const Real t1487 = t1486 * t818;
-  const Real t1488 = t1485 + t1487;
-  const Real t1489 = t1488 + t1451;
-  const Real t1490 = t794 * t1422;
-  const Real t1491 = t1490 + t1489;
-  const Real t1492 = t1030 * par.k12;
-  const Real t1493 = t1184 * par.k13;
-  const Real t1494 = t1492 + t1493;
-  const Real t1495 = t993 * par.I_Fyy;
-  const Real t1496 = t1494 + t1495;
-  const Real t1497 = t987 * par.k9;
-  const Real t1498 = par.k11 * t1007;
-  const Real t1499 = t1497 - t1498;
-  const Real t1500 = t992 * par.k38;
-  const Real t1501 = par.k8 * t993;
-  const Real t1502 = t1500 - t1501;
-  const Real t1503 = t583 - t578;
-  const Real t1504 = t578 + t583;
-  const Real t1505 = t1503 * t1504;
-  const Real t1506 = par.k5 * t1505;
-  const Real t1507 = t1502 + t1506;
-  const Real t1508 = t1499 + t1507;
-  const Real t1509 = t1508 - t1496;
-  const Real t1510 = s_r_p_1_ * t1509;
-  const Real t1511 = t599 * s_r_p_2_;
-  const Real t1512 = t585 * c_r_p_2_;
-  const Real t1513 = t1511 + t1512;
-  const Real t1514 = t734 * t1513;
-  const Real t1515 = t1042 * par.k2;
-  const Real t1516 = t1515 * c_r_p_2_;
-  const Real t1517 = par.k1 * t1042;
-  const Real t1518 = t1517 * s_r_p_2_;
-  const Real t1519 = t1516 + t1518;
-  const Real t1520 = t1514 - t1519;
-  const Real t1521 = par.I_Fxx * t1520;
-  const Real t1522 = t735 * t1513;
-  const Real t1523 = t1522 * par.k42;
-  const Real t1524 = t1521 - t1523;
-  const Real t1525 = c_r_p_2_ * t1524;
-  const Real t1526 = c_r_p_2_ * t599;
-  const Real t1527 = t585 * s_r_p_2_;
-  const Real t1528 = t1526 - t1527;
-  const Real t1529 = t1528 * t734;
-  const Real t1530 = t1042 * t4;
-  const Real t1531 = t1530 - t1529;
-  const Real t1532 = par.I_Fxx * t1531;
-  const Real t1533 = t1528 * t735;
-  const Real t1534 = par.k43 * t1533;
-  const Real t1535 = t1532 - t1534;
-  const Real t1536 = t1535 * s_r_p_2_;
-  const Real t1537 = t1525 + t1536;
-  const Real t1538 = t1537 * par.k2;
-  const Real t1539 = t1535 * c_r_p_2_;
-  const Real t1540 = t1524 * s_r_p_2_;
-  const Real t1541 = t1539 - t1540;
-  const Real t1542 = t1541 * par.k1;
-  const Real t1543 = t1538 - t1542;
-  const Real t1544 = par.k12 * t1054;
-  const Real t1545 = t1543 - t1544;
-  const Real t1546 = t1040 * par.k9;
-  const Real t1547 = par.k37 * t1043;
-  const Real t1548 = t1042 * par.k18;
-  const Real t1549 = t1547 + t1548;
-  const Real t1550 = par.k5 * t1046;
-  const Real t1551 = t1549 + t1550;
-  const Real t1552 = t1546 - t1551;
-  const Real t1553 = t1545 + t1552;
-  const Real t1554 = t1553 * c_r_p_1_;
-  const Real t1555 = t1554 - t1510;
-  const Real t1556 = t1555 * par.k2;
-  const Real t1557 = t1537 * par.k1;
-  const Real t1558 = t1541 * par.k2;
-  const Real t1559 = t1557 + t1558;
-  const Real t1560 = par.k13 * t1054;
-  const Real t1561 = t1559 - t1560;
-  const Real t1562 = t1040 * par.k11;
-  const Real t1563 = par.k5 * t1044;
-  const Real t1564 = t1046 * par.k39;
+  const Real t1516 = t1515 - t1487;
+  const Real t1517 = t815 * t1516;
+  const Real t1518 = t817 * t1516;
+  const Real t1519 = t1518 + t1517;
+  const Real t1520 = t1519 + t1441;
+
+  // fork: joint force
+  const Real t1521 = t1494 * s_r_p_1_;
+
+  // passive accelerations
+  const Real t1522 = c_r_p_1_ * t1513;
+  const Real t1523 = t1522 + t1521;
+  const Real t1524 = par.k1 * t1523;
+  const Real t1525 = par.k2 * t1504;
+  const Real t1526 = par.k1 * t1500;
+  const Real t1527 = t1525 + t1526;
+  const Real t1528 = t1473 * par.k13;
+  const Real t1529 = t1528 + t1527;
+
+  // fork: wrench
+  const Real t1530 = par.k5 * t219;
+
+  // passive accelerations
+  const Real t1531 = par.k5 * t267;
+  const Real t1532 = t1530 + t1531;
+  const Real t1533 = par.k50 + t1532;
+  const Real t1534 = t1533 + t1529;
+  const Real t1535 = t1534 * par.k2;
+  const Real t1536 = t1535 - t1524;
+
+  // fork: joint force
+  const Real t1537 = t1467 * s_r_p_1_;
+
+  // passive accelerations
+  const Real t1538 = c_r_p_1_ * t1475;
+  const Real t1539 = t1537 + t1538;
+  const Real t1540 = t1539 * par.k14;
+
+  // accelerations
+  const Real t1541 = par.k28 * t1539;
+  const Real t1542 = t1540 + t1541;
+  const Real t1543 = t1536 + t1542;
+  const Real t1544 = t1543 + par.k3;
+
+  // rear_wheel: wrench
+  const Real t1545 = par.I_Rxx * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1546 = t1545 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1547 = par.I_Rxx * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1548 = t1547 * s_r_p_0_;
+  const Real t1549 = t1546 - t1548;
+
+  // accelerations
+  const Real t1550 = t1544 + t1549;
+  const Real t1551 = t1550 * t827;
+  const Real t1552 = sum_error(t1549, t1544);
+  const Real t1553 = sum_error(par.k3, t1543);
+  const Real t1554 = t1553 + par.k72;
+  const Real t1555 = t1552 + t1554;
+  const Real t1556 = t1555 * t827;
+  const Real t1557 = t1551 + t1556;
+  const Real t1558 = t1557 + t1520;
+  const Real t1559 = t803 * t1491;
+  const Real t1560 = t1558 + t1559;
+  const Real t1561 = t1071 * par.k13;
+  const Real t1562 = t1040 * par.k12;
+  const Real t1563 = t1561 + t1562;
+  const Real t1564 = t999 * par.I_Fyy;
   const Real t1565 = t1563 + t1564;
-  const Real t1566 = t1565 + t1562;
-  const Real t1567 = t1561 - t1566;
-  const Real t1568 = t1567 * par.k1;
-  const Real t1569 = t1568 + t1556;
-  const Real t1570 = t976 * par.k16;
-  const Real t1571 = t1058 * par.k67;
-  const Real t1572 = t977 * par.k69;
-  const Real t1573 = par.k3 * t977;
-  const Real t1574 = t1572 + t1573;
-  const Real t1575 = t1571 - t1574;
-  const Real t1576 = t1570 + t1575;
-  const Real t1577 = t1569 + t1576;
-  const Real t1578 = t516 * c_r_p_0_;
+  const Real t1566 = par.k9 * t997;
+  const Real t1567 = par.k11 * t1017;
+  const Real t1568 = t1566 - t1567;
+  const Real t1569 = t585 + t590;
+  const Real t1570 = t590 - t585;
+  const Real t1571 = t1569 * t1570;
+  const Real t1572 = par.k5 * t1571;
+  const Real t1573 = t998 * par.k38;
+  const Real t1574 = par.k8 * t999;
+  const Real t1575 = t1573 - t1574;
+  const Real t1576 = t1572 + t1575;
+  const Real t1577 = t1576 + t1568;
+  const Real t1578 = t1577 - t1565;
+  const Real t1579 = s_r_p_1_ * t1578;
+  const Real t1580 = c_r_p_2_ * t606;
+  const Real t1581 = t592 * s_r_p_2_;
+  const Real t1582 = t1580 + t1581;
+  const Real t1583 = t743 * t1582;
+  const Real t1584 = t1052 * par.k1;
+  const Real t1585 = t1584 * s_r_p_2_;
+  const Real t1586 = t1052 * par.k2;
+  const Real t1587 = c_r_p_2_ * t1586;
+  const Real t1588 = t1585 + t1587;
+  const Real t1589 = t1583 - t1588;
+  const Real t1590 = t1589 * par.I_Fxx;
+  const Real t1591 = t744 * t1582;
+  const Real t1592 = t1591 * par.k42;
+  const Real t1593 = t1590 - t1592;
+  const Real t1594 = t1593 * c_r_p_2_;
+  const Real t1595 = c_r_p_2_ * t592;
+  const Real t1596 = s_r_p_2_ * t606;
+  const Real t1597 = t1595 - t1596;
+  const Real t1598 = t743 * t1597;
+  const Real t1599 = t1052 * t4;
+  const Real t1600 = t1599 - t1598;
+  const Real t1601 = par.I_Fxx * t1600;
+  const Real t1602 = t744 * t1597;
+  const Real t1603 = par.k43 * t1602;
+  const Real t1604 = t1601 - t1603;
+  const Real t1605 = t1604 * s_r_p_2_;
+  const Real t1606 = t1594 + t1605;
+  const Real t1607 = t1606 * par.k2;
+  const Real t1608 = c_r_p_2_ * t1604;
+  const Real t1609 = t1593 * s_r_p_2_;
+  const Real t1610 = t1608 - t1609;
+  const Real t1611 = par.k1 * t1610;
+  const Real t1612 = t1607 - t1611;
+  const Real t1613 = t1064 * par.k12;
+  const Real t1614 = t1612 - t1613;
+  const Real t1615 = par.k9 * t1050;
+  const Real t1616 = t1052 * par.k18;
+  const Real t1617 = t1053 * par.k37;
+  const Real t1618 = t1616 + t1617;
+  const Real t1619 = par.k5 * t1056;
+  const Real t1620 = t1618 + t1619;
+  const Real t1621 = t1615 - t1620;
+  const Real t1622 = t1621 + t1614;
+  const Real t1623 = t1622 * c_r_p_1_;
+  const Real t1624 = t1623 - t1579;
+  const Real t1625 = t1624 * par.k2;
+  const Real t1626 = par.k2 * t1610;
+  const Real t1627 = par.k1 * t1606;
+  const Real t1628 = t1626 + t1627;
+  const Real t1629 = t1064 * par.k13;
+  const Real t1630 = t1628 - t1629;
+  const Real t1631 = par.k11 * t1050;
+  const Real t1632 = par.k5 * t1054;
+  const Real t1633 = t1056 * par.k39;
+  const Real t1634 = t1632 + t1633;
+  const Real t1635 = t1634 + t1631;
+  const Real t1636 = t1630 - t1635;
+  const Real t1637 = par.k1 * t1636;
+  const Real t1638 = t1625 + t1637;
+  const Real t1639 = par.k16 * t989;
+  const Real t1640 = par.k70 * t1256;
+  const Real t1641 = t990 * par.k72;
+  const Real t1642 = par.k3 * t990;
+  const Real t1643 = t1641 + t1642;
+  const Real t1644 = t1640 - t1643;
+  const Real t1645 = t1644 + t1639;
+  const Real t1646 = t1638 + t1645;
+  const Real t1647 = t523 * s_r_p_0_;
 
   // rear_wheel: twist
-  const Real t1579 = nu[0] * s_r_p_0_;
+  const Real t1648 = nu[0] * c_r_p_0_;
 
   // accelerations
-  const Real t1580 = t1579 - t1578;
-  const Real t1581 = t1580 * t705;
-  const Real t1582 = t1581 * par.k36;
-  const Real t1583 = t1580 * nu[2];
-  const Real t1584 = par.I_Rxx * t1583;
-  const Real t1585 = t1582 - t1584;
-  const Real t1586 = t1585 * c_r_p_0_;
-  const Real t1587 = t516 * s_r_p_0_;
+  const Real t1649 = t1648 + t1647;
+  const Real t1650 = t1649 * nu[2];
+  const Real t1651 = t1650 * par.I_Rxx;
+  const Real t1652 = t1649 * t712;
+  const Real t1653 = t1652 * par.k35;
+  const Real t1654 = t1651 + t1653;
+  const Real t1655 = t1654 * s_r_p_0_;
+  const Real t1656 = t523 * c_r_p_0_;
 
   // rear_wheel: twist
-  const Real t1588 = nu[0] * c_r_p_0_;
+  const Real t1657 = nu[0] * s_r_p_0_;
 
   // accelerations
-  const Real t1589 = t1588 + t1587;
-  const Real t1590 = t1589 * nu[2];
-  const Real t1591 = t1590 * par.I_Rxx;
-  const Real t1592 = t1589 * t705;
-  const Real t1593 = t1592 * par.k35;
-  const Real t1594 = t1591 + t1593;
-  const Real t1595 = t1594 * s_r_p_0_;
-  const Real t1596 = t1586 + t1595;
-  const Real t1597 = par.r_R * t1072;
-  const Real t1598 = t1596 - t1597;
-  const Real t1599 = t1598 + t1577;
-  const Real t1600 = sum_error(t1491, t1599);
-  const Real t1601 = sum_error(t1598, t1577);
-  const Real t1602 = sum_error(t1576, t1569);
-  const Real t1603 = par.k16 * t984;
-  const Real t1604 = par.k59 * t976;
-  const Real t1605 = t1604 + t1603;
-  const Real t1606 = product_error(par.k16, t976);
-  const Real t1607 = t1605 + t1606;
-  const Real t1608 = sum_error(t1570, t1575);
-  const Real t1609 = t1607 + t1608;
-  const Real t1610 = t1609 + t1602;
-  const Real t1611 = t1601 + t1610;
-  const Real t1612 = t1600 + t1611;
-  const Real t1613 = t1350 - t1612;
-  const Real t1614 = t1236 + t1348;
-  const Real t1615 = t1491 + t1599;
-  const Real t1616 = -t1615;
-  const Real t1617 = sum_error(t1614, t1616);
-  const Real t1618 = t1617 + t1613;
-  const Real t1619 = t1614 - t1615;
-  const Real t1620 = t820 * t920;
-  const Real t1621 = t1171 * t857;
-  const Real t1622 = t1147 * t857;
-  const Real t1623 = t1621 + t1622;
-  const Real t1624 = t1623 + t1620;
-  const Real t1625 = t1298 * t894;
-  const Real t1626 = t1625 + t1624;
-
-  // front_wheel: acceleration
-  const Real t1627 = c_r_p_1_ * par.k13;
-  const Real t1628 = t1627 + par.k21;
-
-  // accelerations
-  const Real t1629 = par.k30 + t1628;
-  const Real t1630 = par.k2 * t1629;
-
-  // front_wheel: acceleration
-  const Real t1631 = c_r_p_1_ * par.k12;
-
-  // accelerations
-  const Real t1632 = t149 - t1631;
-  const Real t1633 = par.k1 * t1632;
-  const Real t1634 = t1630 + t1633;
-  const Real t1635 = t1634 * s_r_p_2_;
-  const Real t1636 = t1632 * par.k2;
-  const Real t1637 = par.k1 * t1629;
-  const Real t1638 = t1636 - t1637;
-  const Real t1639 = t1638 * c_r_p_2_;
-  const Real t1640 = t1635 + t1639;
-  const Real t1641 = t1640 * par.m_F;
-  const Real t1642 = t1641 * c_r_p_2_;
-  const Real t1643 = t1638 * s_r_p_2_;
-  const Real t1644 = t1634 * c_r_p_2_;
-  const Real t1645 = t1643 - t1644;
-  const Real t1646 = par.m_F * t1645;
-  const Real t1647 = t1646 * s_r_p_2_;
-  const Real t1648 = t1642 + t1647;
-  const Real t1649 = par.k2 * t1648;
-  const Real t1650 = c_r_p_2_ * t1646;
-  const Real t1651 = t1641 * s_r_p_2_;
-  const Real t1652 = t1650 - t1651;
-  const Real t1653 = par.k1 * t1652;
-  const Real t1654 = t1649 - t1653;
-  const Real t1655 = par.m_H * t149;
-  const Real t1656 = t916 + t1655;
-  const Real t1657 = t1656 + t1654;
-  const Real t1658 = c_r_p_1_ * t1657;
-  const Real t1659 = par.m_H * t131;
-
-  // fork: wrench
-  const Real t1660 = par.m_H * t134;
-
-  // accelerations
-  const Real t1661 = t1660 + t1659;
-  const Real t1662 = t912 + t1661;
-
-  // front_wheel: acceleration
-  const Real t1663 = s_r_p_1_ * par.k12;
-  const Real t1664 = t1663 - t134;
-
-  // accelerations
-  const Real t1665 = t1664 - t131;
-  const Real t1666 = par.m_F * t1665;
-  const Real t1667 = t1666 - t1662;
-  const Real t1668 = s_r_p_1_ * t1667;
-  const Real t1669 = t1658 - t1668;
-  const Real t1670 = par.k1 * t1669;
-  const Real t1671 = par.k1 * t1648;
-  const Real t1672 = t1652 * par.k2;
+  const Real t1658 = t1657 - t1656;
+  const Real t1659 = t712 * t1658;
+  const Real t1660 = t1659 * par.k36;
+  const Real t1661 = t1658 * nu[2];
+  const Real t1662 = t1661 * par.I_Rxx;
+  const Real t1663 = t1660 - t1662;
+  const Real t1664 = t1663 * c_r_p_0_;
+  const Real t1665 = t1655 + t1664;
+  const Real t1666 = par.r_R * t1270;
+  const Real t1667 = t1665 - t1666;
+  const Real t1668 = t1667 + t1646;
+  const Real t1669 = sum_error(t1560, t1668);
+  const Real t1670 = sum_error(t1645, t1638);
+  const Real t1671 = t988 * par.k16;
+  const Real t1672 = par.k62 * t989;
   const Real t1673 = t1671 + t1672;
-  const Real t1674 = par.k66 + t930;
-  const Real t1675 = t1673 - t1674;
-  const Real t1676 = par.k2 * t1675;
-  const Real t1677 = t1676 - t1670;
-  const Real t1678 = t1677 * par.k14;
-  const Real t1679 = t1677 * par.k28;
+  const Real t1674 = product_error(par.k16, t989);
+  const Real t1675 = t1673 + t1674;
+  const Real t1676 = sum_error(t1639, t1644);
+  const Real t1677 = t1676 + t1675;
+  const Real t1678 = t1670 + t1677;
+  const Real t1679 = sum_error(t1667, t1646);
   const Real t1680 = t1678 + t1679;
-  const Real t1681 = par.k13 * t1673;
-  const Real t1682 = par.k12 * t1654;
-  const Real t1683 = t1681 + t1682;
+  const Real t1681 = t1669 + t1680;
+  const Real t1682 = t1681 * t1162;
+  const Real t1683 = t1560 + t1668;
+  const Real t1684 = product_error(t1162, t1683);
+  const Real t1685 = t1684 + t1682;
+  const Real t1686 = t1685 + t1419;
+  const Real t1687 = t1297 - t1416;
+  const Real t1688 = t1683 * t1162;
+  const Real t1689 = sum_error(t1687, t1688);
+  const Real t1690 = t1689 + t1686;
+  const Real t1691 = t1228 * t829;
+  const Real t1692 = t925 * t867;
+  const Real t1693 = t949 * t867;
+  const Real t1694 = t1692 + t1693;
+  const Real t1695 = t1694 + t1691;
+  const Real t1696 = t1359 * t895;
+  const Real t1697 = t1695 + t1696;
+
+  // front_wheel: acceleration
+  const Real t1698 = c_r_p_1_ * par.k13;
+  const Real t1699 = t1698 + par.k21;
+
+  // accelerations
+  const Real t1700 = par.k30 + t1699;
+  const Real t1701 = par.k2 * t1700;
+
+  // front_wheel: acceleration
+  const Real t1702 = c_r_p_1_ * par.k12;
+
+  // accelerations
+  const Real t1703 = t149 - t1702;
+  const Real t1704 = par.k1 * t1703;
+  const Real t1705 = t1701 + t1704;
+  const Real t1706 = t1705 * s_r_p_2_;
+  const Real t1707 = t1703 * par.k2;
+  const Real t1708 = par.k1 * t1700;
+  const Real t1709 = t1707 - t1708;
+  const Real t1710 = t1709 * c_r_p_2_;
+  const Real t1711 = t1706 + t1710;
+  const Real t1712 = t1711 * par.m_F;
+  const Real t1713 = t1712 * c_r_p_2_;
+  const Real t1714 = t1709 * s_r_p_2_;
+  const Real t1715 = t1705 * c_r_p_2_;
+  const Real t1716 = t1714 - t1715;
+  const Real t1717 = par.m_F * t1716;
+  const Real t1718 = t1717 * s_r_p_2_;
+  const Real t1719 = t1713 + t1718;
+  const Real t1720 = par.k2 * t1719;
+  const Real t1721 = c_r_p_2_ * t1717;
+  const Real t1722 = t1712 * s_r_p_2_;
+  const Real t1723 = t1721 - t1722;
+  const Real t1724 = par.k1 * t1723;
+  const Real t1725 = t1720 - t1724;
+  const Real t1726 = par.m_H * t149;
+  const Real t1727 = t1224 + t1726;
+  const Real t1728 = t1727 + t1725;
+  const Real t1729 = c_r_p_1_ * t1728;
+  const Real t1730 = par.m_H * t131;
+
+  // fork: wrench
+  const Real t1731 = par.m_H * t134;
+
+  // accelerations
+  const Real t1732 = t1731 + t1730;
+  const Real t1733 = t1220 + t1732;
+
+  // front_wheel: acceleration
+  const Real t1734 = s_r_p_1_ * par.k12;
+  const Real t1735 = t1734 - t134;
+
+  // accelerations
+  const Real t1736 = t1735 - t131;
+  const Real t1737 = par.m_F * t1736;
+  const Real t1738 = t1737 - t1733;
+  const Real t1739 = s_r_p_1_ * t1738;
+  const Real t1740 = t1729 - t1739;
+  const Real t1741 = par.k1 * t1740;
+  const Real t1742 = par.k1 * t1719;
+  const Real t1743 = t1723 * par.k2;
+  const Real t1744 = t1742 + t1743;
+  const Real t1745 = par.k69 + t1238;
+  const Real t1746 = t1744 - t1745;
+  const Real t1747 = par.k2 * t1746;
+  const Real t1748 = t1747 - t1741;
+  const Real t1749 = t1748 * par.k14;
+  const Real t1750 = t1748 * par.k28;
+  const Real t1751 = t1749 + t1750;
+  const Real t1752 = par.k13 * t1744;
+  const Real t1753 = par.k12 * t1725;
+  const Real t1754 = t1752 + t1753;
 
   // front_wheel: wrench
-  const Real t1684 = c_r_p_1_ * par.I_Fyy;
+  const Real t1755 = c_r_p_1_ * par.I_Fyy;
 
   // accelerations
-  const Real t1685 = t1684 - t1683;
-  const Real t1686 = par.k9 * t149;
-  const Real t1687 = t1686 + par.k68;
+  const Real t1756 = t1755 - t1754;
+  const Real t1757 = par.k9 * t149;
+  const Real t1758 = t1757 + par.k71;
 
   // fork: wrench
-  const Real t1688 = par.k8 * c_r_p_1_;
+  const Real t1759 = par.k8 * c_r_p_1_;
 
   // accelerations
-  const Real t1689 = t1688 + t1687;
-  const Real t1690 = t1689 + t1685;
-  const Real t1691 = c_r_p_1_ * t1690;
+  const Real t1760 = t1759 + t1758;
+  const Real t1761 = t1760 + t1756;
+  const Real t1762 = c_r_p_1_ * t1761;
 
   // front_wheel: wrench
-  const Real t1692 = par.I_Fxx * t823;
+  const Real t1763 = par.I_Fxx * t1172;
 
   // front_wheel: joint force
-  const Real t1693 = c_r_p_2_ * t1692;
+  const Real t1764 = c_r_p_2_ * t1763;
 
   // passive accelerations
-  const Real t1694 = t826 * par.I_Fxx;
-  const Real t1695 = t1694 * s_r_p_2_;
-  const Real t1696 = t1695 + t1693;
-  const Real t1697 = t1696 * par.k2;
+  const Real t1765 = t1175 * par.I_Fxx;
+  const Real t1766 = t1765 * s_r_p_2_;
+  const Real t1767 = t1766 + t1764;
+  const Real t1768 = t1767 * par.k2;
 
   // front_wheel: joint force
-  const Real t1698 = t1692 * s_r_p_2_;
+  const Real t1769 = t1763 * s_r_p_2_;
 
   // passive accelerations
-  const Real t1699 = t1694 * c_r_p_2_;
-  const Real t1700 = t1699 - t1698;
-  const Real t1701 = par.k1 * t1700;
-  const Real t1702 = t1697 - t1701;
+  const Real t1770 = t1765 * c_r_p_2_;
+  const Real t1771 = t1770 - t1769;
+  const Real t1772 = par.k1 * t1771;
+  const Real t1773 = t1768 - t1772;
 
   // accelerations
-  const Real t1703 = par.k12 * t1666;
-  const Real t1704 = t1702 + t1703;
-  const Real t1705 = par.k9 * t131;
+  const Real t1774 = par.k12 * t1737;
+  const Real t1775 = t1773 + t1774;
+  const Real t1776 = par.k9 * t131;
 
   // fork: wrench
-  const Real t1706 = par.k9 * t134;
+  const Real t1777 = par.k9 * t134;
 
   // accelerations
-  const Real t1707 = t1705 + t1706;
+  const Real t1778 = t1776 + t1777;
 
   // fork: wrench
-  const Real t1708 = s_r_p_1_ * par.k18;
+  const Real t1779 = s_r_p_1_ * par.k18;
 
   // accelerations
-  const Real t1709 = t1707 + t1708;
-  const Real t1710 = t1709 + t1704;
-  const Real t1711 = s_r_p_1_ * t1710;
-  const Real t1712 = t1711 + t1691;
-  const Real t1713 = t1712 - t1680;
-  const Real t1714 = par.k4 + t1713;
+  const Real t1780 = t1778 + t1779;
+  const Real t1781 = t1780 + t1775;
+  const Real t1782 = s_r_p_1_ * t1781;
+  const Real t1783 = t1782 + t1762;
+  const Real t1784 = t1783 - t1751;
+  const Real t1785 = par.k4 + t1784;
 
   // rear_wheel: acceleration
-  const Real t1715 = par.r_R * c_r_p_0_;
+  const Real t1786 = par.r_R * c_r_p_0_;
 
   // rear_wheel: wrench
-  const Real t1716 = par.m_R * t1715;
+  const Real t1787 = par.m_R * t1786;
 
   // rear_wheel: joint force
-  const Real t1717 = t1716 * c_r_p_0_;
+  const Real t1788 = t1787 * c_r_p_0_;
 
   // rear_wheel: acceleration
-  const Real t1718 = par.r_R * s_r_p_0_;
+  const Real t1789 = par.r_R * s_r_p_0_;
 
   // rear_wheel: wrench
-  const Real t1719 = par.m_R * t1718;
+  const Real t1790 = par.m_R * t1789;
 
   // rear_wheel: joint force
-  const Real t1720 = t1719 * s_r_p_0_;
-  const Real t1721 = t1717 + t1720;
-  const Real t1722 = t1721 * par.r_R;
-  const Real t1723 = par.I_Ryy + t1722;
+  const Real t1791 = t1790 * s_r_p_0_;
+  const Real t1792 = t1788 + t1791;
+  const Real t1793 = t1792 * par.r_R;
+  const Real t1794 = par.I_Ryy + t1793;
 
   // accelerations
-  const Real t1724 = t1723 + t1714;
-  const Real t1725 = t1724 * t808;
-  const Real t1726 = t1626 + t1725;
-  const Real t1727 = s_r_p_1_ * t1690;
-  const Real t1728 = c_r_p_1_ * t1710;
-  const Real t1729 = t1728 - t1727;
-  const Real t1730 = par.k1 * t1729;
+  const Real t1795 = t1794 + t1785;
+  const Real t1796 = t1795 * t817;
+  const Real t1797 = sum_error(t1697, t1796);
+  const Real t1798 = sum_error(t1695, t1696);
+  const Real t1799 = t1795 * t815;
+  const Real t1800 = sum_error(par.k4, t1784);
+  const Real t1801 = t1800 + par.k67;
+  const Real t1802 = sum_error(t1794, t1785);
+  const Real t1803 = t1801 + t1802;
+  const Real t1804 = t1803 * t817;
+  const Real t1805 = t1804 + t1799;
+  const Real t1806 = product_error(t1795, t817);
+  const Real t1807 = t1806 + t1805;
+  const Real t1808 = t1798 + t1807;
+  const Real t1809 = t1797 + t1808;
+  const Real t1810 = t1796 + t1697;
+  const Real t1811 = s_r_p_1_ * t1761;
+  const Real t1812 = c_r_p_1_ * t1781;
+  const Real t1813 = t1812 - t1811;
+  const Real t1814 = par.k1 * t1813;
 
   // passive accelerations
-  const Real t1731 = t1696 * par.k1;
-  const Real t1732 = par.k2 * t1700;
-  const Real t1733 = t1731 + t1732;
+  const Real t1815 = t1767 * par.k1;
+  const Real t1816 = par.k2 * t1771;
+  const Real t1817 = t1815 + t1816;
 
   // accelerations
-  const Real t1734 = par.k13 * t1666;
-  const Real t1735 = t1734 + t1733;
-  const Real t1736 = par.k11 * t131;
+  const Real t1818 = par.k13 * t1737;
+  const Real t1819 = t1818 + t1817;
+  const Real t1820 = par.k11 * t131;
 
   // fork: wrench
-  const Real t1737 = par.k11 * t134;
+  const Real t1821 = par.k11 * t134;
 
   // accelerations
-  const Real t1738 = t1736 + t1737;
+  const Real t1822 = t1820 + t1821;
 
   // fork: wrench
-  const Real t1739 = s_r_p_1_ * par.k5;
+  const Real t1823 = s_r_p_1_ * par.k5;
 
   // accelerations
-  const Real t1740 = t1739 - t1738;
-  const Real t1741 = t1735 + t1740;
-  const Real t1742 = par.k2 * t1741;
-  const Real t1743 = t1742 - t1730;
-  const Real t1744 = s_r_p_1_ * t1657;
-  const Real t1745 = c_r_p_1_ * t1667;
-  const Real t1746 = t1744 + t1745;
-  const Real t1747 = par.k14 * t1746;
-  const Real t1748 = par.k28 * t1746;
-  const Real t1749 = t1747 + t1748;
-  const Real t1750 = t1743 + t1749;
-  const Real t1751 = t1750 * t818;
-  const Real t1752 = t1726 + t1751;
-  const Real t1753 = t1684 * t794;
-  const Real t1754 = -t1753;
-  const Real t1755 = sum_error(t1752, t1754);
-  const Real t1756 = sum_error(t1751, t1726);
-  const Real t1757 = sum_error(t1626, t1725);
-  const Real t1758 = sum_error(t1624, t1625);
-  const Real t1759 = t1724 * t806;
-  const Real t1760 = sum_error(par.k4, t1713);
-  const Real t1761 = t1760 + par.k64;
-  const Real t1762 = sum_error(t1723, t1714);
-  const Real t1763 = t1761 + t1762;
-  const Real t1764 = t1763 * t808;
-  const Real t1765 = t1759 + t1764;
-  const Real t1766 = product_error(t1724, t808);
-  const Real t1767 = t1766 + t1765;
-  const Real t1768 = t1758 + t1767;
-  const Real t1769 = t1757 + t1768;
-  const Real t1770 = t1756 + t1769;
-  const Real t1771 = t1755 + t1770;
-  const Real t1772 = t1321 * par.k14;
-  const Real t1773 = par.k28 * t1321;
-  const Real t1774 = t1772 + t1773;
-  const Real t1775 = t1509 * c_r_p_1_;
-  const Real t1776 = t1553 * s_r_p_1_;
-  const Real t1777 = t1775 + t1776;
-  const Real t1778 = t1777 - t1774;
-  const Real t1779 = t963 * par.k17;
-  const Real t1780 = par.k62 * t963;
-  const Real t1781 = t1779 + t1780;
-  const Real t1782 = par.k16 * t950;
-  const Real t1783 = t1782 - t1781;
-  const Real t1784 = t516 + nu[0];
-  const Real t1785 = t516 - nu[0];
-  const Real t1786 = t1784 * t1785;
-  const Real t1787 = t1786 * par.k69;
-  const Real t1788 = t1786 * par.k3;
-  const Real t1789 = t1787 + t1788;
-  const Real t1790 = par.k61 * t964;
-  const Real t1791 = t1789 - t1790;
-  const Real t1792 = t1783 + t1791;
-  const Real t1793 = t1792 + t1778;
-  const Real t1794 = -t1793;
-  const Real t1795 = t1219 * par.r_R;
-  const Real t1796 = sum_error(t1795, t1794);
-  const Real t1797 = sum_error(t1792, t1778);
-  const Real t1798 = -t1781;
-  const Real t1799 = sum_error(t1782, t1798);
-  const Real t1800 = product_error(par.k16, t950);
-  const Real t1801 = par.k59 * t950;
-  const Real t1802 = t1800 + t1801;
-  const Real t1803 = t1802 + t1799;
-  const Real t1804 = sum_error(t1783, t1791);
-  const Real t1805 = t1803 + t1804;
-  const Real t1806 = t1805 + t1797;
-  const Real t1807 = t1796 - t1806;
-  const Real t1808 = t1807 - t1771;
-  const Real t1809 = t1753 - t1752;
-  const Real t1810 = t1795 - t1793;
-  const Real t1811 = sum_error(t1810, t1809);
-  const Real t1812 = t1808 + t1811;
-  const Real t1813 = t1812 * t431;
-  const Real t1814 = t1752 - t1753;
-  const Real t1815 = t1810 - t1814;
-  const Real t1816 = t429 * t1815;
-  const Real t1817 = t1813 + t1816;
-  const Real t1818 = t1815 * t431;
-  const Real t1819 = t1817 + t1818;
-  const Real t1820 = -t1819;
-  const Real t1821 = sum_error(t1619, t1820);
-  const Real t1822 = t1821 + t1618;
-  const Real t1823 = t1619 - t1819;
-  const Real t1824 = t820 * t939;
-  const Real t1825 = t941 * t820;
-  const Real t1826 = t1824 + t1825;
-  const Real t1827 = t1162 * t857;
-  const Real t1828 = t1827 + t1826;
-  const Real t1829 = t894 * t1316;
-  const Real t1830 = t1829 + t1828;
-  const Real t1831 = t1750 * t806;
-  const Real t1832 = t1750 * t808;
+  const Real t1824 = t1823 - t1822;
+  const Real t1825 = t1819 + t1824;
+  const Real t1826 = par.k2 * t1825;
+  const Real t1827 = t1826 - t1814;
+  const Real t1828 = s_r_p_1_ * t1728;
+  const Real t1829 = c_r_p_1_ * t1738;
+  const Real t1830 = t1828 + t1829;
+  const Real t1831 = par.k14 * t1830;
+  const Real t1832 = par.k28 * t1830;
   const Real t1833 = t1831 + t1832;
-  const Real t1834 = t1830 + t1833;
-
-  // front_wheel: acceleration
-  const Real t1835 = par.k12 * t105;
-  const Real t1836 = t111 - t1835;
-
-  // accelerations
-  const Real t1837 = t109 + t1836;
-  const Real t1838 = t1837 * par.k2;
-
-  // front_wheel: acceleration
-  const Real t1839 = par.k13 * t105;
-  const Real t1840 = t1839 * par.k1;
-
-  // accelerations
-  const Real t1841 = t1838 - t1840;
-  const Real t1842 = t1841 * s_r_p_2_;
-  const Real t1843 = t1837 * par.k1;
-
-  // front_wheel: acceleration
-  const Real t1844 = t1839 * par.k2;
-
-  // accelerations
+  const Real t1834 = t1827 + t1833;
+  const Real t1835 = t1834 * t827;
+  const Real t1836 = sum_error(t1835, t1810);
+  const Real t1837 = t1809 + t1836;
+  const Real t1838 = t1835 + t1810;
+  const Real t1839 = t1755 * t803;
+  const Real t1840 = -t1839;
+  const Real t1841 = sum_error(t1838, t1840);
+  const Real t1842 = t1837 + t1841;
+  const Real t1843 = t1382 * par.k28;
+  const Real t1844 = t1382 * par.k14;
   const Real t1845 = t1843 + t1844;
-  const Real t1846 = t1845 * c_r_p_2_;
-  const Real t1847 = t1842 - t1846;
-  const Real t1848 = t1847 * par.m_F;
-  const Real t1849 = t1848 * s_r_p_2_;
-  const Real t1850 = t1845 * s_r_p_2_;
-  const Real t1851 = c_r_p_2_ * t1841;
+  const Real t1846 = c_r_p_1_ * t1578;
+  const Real t1847 = s_r_p_1_ * t1622;
+  const Real t1848 = t1847 + t1846;
+  const Real t1849 = t1848 - t1845;
+  const Real t1850 = par.k65 * t973;
+  const Real t1851 = t973 * par.k17;
   const Real t1852 = t1850 + t1851;
-  const Real t1853 = par.m_F * t1852;
-  const Real t1854 = c_r_p_2_ * t1853;
-  const Real t1855 = t1849 + t1854;
-  const Real t1856 = par.k1 * t1855;
-  const Real t1857 = c_r_p_2_ * t1848;
-  const Real t1858 = t1853 * s_r_p_2_;
-  const Real t1859 = t1857 - t1858;
-  const Real t1860 = t1859 * par.k2;
-  const Real t1861 = t1856 + t1860;
-  const Real t1862 = t1861 * par.k13;
-  const Real t1863 = par.k2 * t1855;
-  const Real t1864 = t1859 * par.k1;
-  const Real t1865 = t1863 - t1864;
-  const Real t1866 = t1865 * par.k12;
-  const Real t1867 = t1862 + t1866;
+  const Real t1853 = t960 * par.k16;
+  const Real t1854 = t1853 - t1852;
+  const Real t1855 = t523 + nu[0];
+  const Real t1856 = t523 - nu[0];
+  const Real t1857 = t1855 * t1856;
+  const Real t1858 = t1857 * par.k72;
+  const Real t1859 = par.k3 * t1857;
+  const Real t1860 = t1858 + t1859;
+  const Real t1861 = par.k63 * t974;
+  const Real t1862 = t1860 - t1861;
+  const Real t1863 = t1862 + t1854;
+  const Real t1864 = t1849 + t1863;
+  const Real t1865 = -t1864;
+  const Real t1866 = par.r_R * t1112;
+  const Real t1867 = sum_error(t1866, t1865);
+  const Real t1868 = sum_error(t1863, t1849);
+  const Real t1869 = -t1852;
+  const Real t1870 = sum_error(t1853, t1869);
+  const Real t1871 = product_error(par.k16, t960);
+  const Real t1872 = par.k62 * t960;
+  const Real t1873 = t1871 + t1872;
+  const Real t1874 = t1870 + t1873;
+  const Real t1875 = sum_error(t1854, t1862);
+  const Real t1876 = t1875 + t1874;
+  const Real t1877 = t1876 + t1868;
+  const Real t1878 = t1867 - t1877;
+  const Real t1879 = t1878 - t1842;
+  const Real t1880 = t1839 - t1838;
+  const Real t1881 = t1866 - t1864;
+  const Real t1882 = sum_error(t1881, t1880);
+  const Real t1883 = t1879 + t1882;
+  const Real t1884 = t1162 * t431;
+  const Real t1885 = t429 * t1162;
+  const Real t1886 = t1884 + t1885;
+  const Real t1887 = t1886 - t344;
+  const Real t1888 = t1887 * t1883;
+  const Real t1889 = t1838 - t1839;
+  const Real t1890 = t1881 - t1889;
+  const Real t1891 = -t344;
+  const Real t1892 = sum_error(t1886, t1891);
+  const Real t1893 = t1892 - t342;
+  const Real t1894 = t1893 * t1890;
+  const Real t1895 = t1888 + t1894;
+  const Real t1896 = product_error(t1887, t1890);
+  const Real t1897 = t1896 + t1895;
+  const Real t1898 = t1690 + t1897;
+  const Real t1899 = t1687 + t1688;
+  const Real t1900 = t1887 * t1890;
+  const Real t1901 = sum_error(t1899, t1900);
+  const Real t1902 = t1901 + t1898;
+  const Real t1903 = t1249 * t829;
+  const Real t1904 = t829 * t1247;
+  const Real t1905 = t1903 + t1904;
+  const Real t1906 = t940 * t867;
+  const Real t1907 = t1905 + t1906;
+  const Real t1908 = t1377 * t895;
+  const Real t1909 = t1908 + t1907;
+  const Real t1910 = t1834 * t815;
+  const Real t1911 = t1834 * t817;
+  const Real t1912 = t1911 + t1910;
+  const Real t1913 = t1912 + t1909;
+
+  // front_wheel: acceleration
+  const Real t1914 = par.k12 * t105;
+  const Real t1915 = t111 - t1914;
+
+  // accelerations
+  const Real t1916 = t109 + t1915;
+  const Real t1917 = t1916 * par.k2;
+
+  // front_wheel: acceleration
+  const Real t1918 = par.k13 * t105;
+  const Real t1919 = t1918 * par.k1;
+
+  // accelerations
+  const Real t1920 = t1917 - t1919;
+  const Real t1921 = t1920 * s_r_p_2_;
+  const Real t1922 = t1916 * par.k1;
+
+  // front_wheel: acceleration
+  const Real t1923 = t1918 * par.k2;
+
+  // accelerations
+  const Real t1924 = t1922 + t1923;
+  const Real t1925 = t1924 * c_r_p_2_;
+  const Real t1926 = t1921 - t1925;
+  const Real t1927 = t1926 * par.m_F;
+  const Real t1928 = t1927 * s_r_p_2_;
+  const Real t1929 = t1924 * s_r_p_2_;
+  const Real t1930 = c_r_p_2_ * t1920;
+  const Real t1931 = t1929 + t1930;
+  const Real t1932 = par.m_F * t1931;
+  const Real t1933 = c_r_p_2_ * t1932;
+  const Real t1934 = t1928 + t1933;
+  const Real t1935 = par.k1 * t1934;
+  const Real t1936 = c_r_p_2_ * t1927;
+  const Real t1937 = t1932 * s_r_p_2_;
+  const Real t1938 = t1936 - t1937;
+  const Real t1939 = t1938 * par.k2;
+  const Real t1940 = t1935 + t1939;
+  const Real t1941 = t1940 * par.k13;
+  const Real t1942 = par.k2 * t1934;
+  const Real t1943 = t1938 * par.k1;
+  const Real t1944 = t1942 - t1943;
+  const Real t1945 = t1944 * par.k12;
+  const Real t1946 = t1941 + t1945;
 
   // front_wheel: wrench
-  const Real t1868 = par.I_Fyy * t105;
+  const Real t1947 = par.I_Fyy * t105;
 
   // accelerations
-  const Real t1869 = t1868 - t1867;
-  const Real t1870 = t109 * par.k9;
+  const Real t1948 = t1947 - t1946;
+  const Real t1949 = t109 * par.k9;
 
   // fork: wrench
-  const Real t1871 = par.k9 * t111;
+  const Real t1950 = par.k9 * t111;
 
   // accelerations
-  const Real t1872 = t1870 + t1871;
+  const Real t1951 = t1949 + t1950;
 
   // fork: wrench
-  const Real t1873 = par.k8 * t105;
+  const Real t1952 = par.k8 * t105;
 
   // accelerations
-  const Real t1874 = t1872 + t1873;
-  const Real t1875 = t1874 + t1869;
-  const Real t1876 = s_r_p_1_ * t1875;
-  const Real t1877 = par.I_Fxx * t1243;
-  const Real t1878 = t1877 * s_r_p_2_;
-  const Real t1879 = par.I_Fxx * t1249;
-  const Real t1880 = c_r_p_2_ * t1879;
-  const Real t1881 = t1878 + t1880;
-  const Real t1882 = t1881 * par.k2;
-  const Real t1883 = t1877 * c_r_p_2_;
-  const Real t1884 = t1879 * s_r_p_2_;
-  const Real t1885 = t1883 - t1884;
-  const Real t1886 = par.k1 * t1885;
-  const Real t1887 = t1882 - t1886;
+  const Real t1953 = t1951 + t1952;
+  const Real t1954 = t1953 + t1948;
+  const Real t1955 = s_r_p_1_ * t1954;
+  const Real t1956 = par.I_Fxx * t1304;
+  const Real t1957 = t1956 * s_r_p_2_;
+  const Real t1958 = par.I_Fxx * t1310;
+  const Real t1959 = c_r_p_2_ * t1958;
+  const Real t1960 = t1957 + t1959;
+  const Real t1961 = t1960 * par.k2;
+  const Real t1962 = t1956 * c_r_p_2_;
+  const Real t1963 = t1958 * s_r_p_2_;
+  const Real t1964 = t1962 - t1963;
+  const Real t1965 = par.k1 * t1964;
+  const Real t1966 = t1961 - t1965;
 
   // front_wheel: acceleration
-  const Real t1888 = t53 * par.k12;
-  const Real t1889 = par.k55 - t1888;
-  const Real t1890 = t75 + t1889;
+  const Real t1967 = t53 * par.k12;
+  const Real t1968 = par.k55 - t1967;
+  const Real t1969 = t75 + t1968;
 
   // accelerations
-  const Real t1891 = t1890 + t95;
-  const Real t1892 = par.m_F * t1891;
-  const Real t1893 = t1892 * par.k12;
-  const Real t1894 = t1887 + t1893;
-  const Real t1895 = par.k9 * t95;
+  const Real t1970 = t1969 + t95;
+  const Real t1971 = par.m_F * t1970;
+  const Real t1972 = t1971 * par.k12;
+  const Real t1973 = t1966 + t1972;
+  const Real t1974 = par.k9 * t95;
 
   // fork: wrench
-  const Real t1896 = par.k9 * t75;
+  const Real t1975 = par.k9 * t75;
 
   // accelerations
-  const Real t1897 = t1895 + t1896;
-
-  // fork: wrench
-  const Real t1898 = t53 * par.k18;
-  const Real t1899 = par.k56 - t1898;
-
-  // accelerations
-  const Real t1900 = t1899 - t1897;
-  const Real t1901 = t1900 + t1894;
-  const Real t1902 = c_r_p_1_ * t1901;
-  const Real t1903 = t1902 - t1876;
-  const Real t1904 = t1903 * par.k1;
-  const Real t1905 = par.k1 * t1881;
-  const Real t1906 = par.k2 * t1885;
-  const Real t1907 = t1905 + t1906;
-  const Real t1908 = t1892 * par.k13;
-  const Real t1909 = t1908 + t1907;
-  const Real t1910 = par.k11 * t95;
-
-  // fork: wrench
-  const Real t1911 = t75 * par.k11;
-
-  // accelerations
-  const Real t1912 = t1911 + t1910;
-
-  // fork: wrench
-  const Real t1913 = par.k5 * t53;
-  const Real t1914 = par.k57 - t1913;
-
-  // accelerations
-  const Real t1915 = t1914 + t1912;
-  const Real t1916 = t1909 + t1915;
-  const Real t1917 = t1916 * par.k2;
-  const Real t1918 = t1917 - t1904;
-  const Real t1919 = t109 * par.m_H;
-
-  // fork: wrench
-  const Real t1920 = par.m_H * t111;
-
-  // accelerations
-  const Real t1921 = t1919 + t1920;
-  const Real t1922 = t1289 + t1921;
-  const Real t1923 = t1922 + t1865;
-  const Real t1924 = t1923 * s_r_p_1_;
-  const Real t1925 = par.m_H * t95;
-
-  // fork: wrench
-  const Real t1926 = par.m_H * t75;
-
-  // accelerations
-  const Real t1927 = t1926 + t1925;
-  const Real t1928 = t1285 + t1927;
-  const Real t1929 = t1892 + t1928;
-  const Real t1930 = c_r_p_1_ * t1929;
-  const Real t1931 = t1930 + t1924;
-  const Real t1932 = t1931 * par.k14;
-  const Real t1933 = t1931 * par.k28;
-  const Real t1934 = t1932 + t1933;
-  const Real t1935 = t1918 + t1934;
-  const Real t1936 = par.k15 + t1935;
-
-  // rear_wheel: joint force
-  const Real t1937 = t1476 * s_r_p_0_;
-  const Real t1938 = t1478 * c_r_p_0_;
-  const Real t1939 = t1937 + t1938;
-
-  // accelerations
-  const Real t1940 = t1936 + t1939;
-  const Real t1941 = t1940 * t818;
-  const Real t1942 = t1834 + t1941;
-  const Real t1943 = t794 * t1868;
-  const Real t1944 = t1942 - t1943;
-  const Real t1945 = t1555 * par.k1;
-  const Real t1946 = t1567 * par.k2;
-  const Real t1947 = t1946 - t1945;
-  const Real t1948 = t1057 * par.k14;
-  const Real t1949 = t1057 * par.k28;
-  const Real t1950 = t1948 + t1949;
-  const Real t1951 = t1950 + t1947;
-  const Real t1952 = par.k3 * t1058;
-  const Real t1953 = t1058 * par.k69;
-  const Real t1954 = t1952 + t1953;
-  const Real t1955 = par.k65 * t977;
-  const Real t1956 = t1954 + t1955;
-  const Real t1957 = t976 * par.k17;
-  const Real t1958 = t1956 + t1957;
-  const Real t1959 = t1951 - t1958;
-  const Real t1960 = t1594 * c_r_p_0_;
-  const Real t1961 = t1585 * s_r_p_0_;
-  const Real t1962 = t1960 - t1961;
-  const Real t1963 = t1962 + t1959;
-  const Real t1964 = sum_error(t1963, t1944);
-  const Real t1965 = -t1958;
-  const Real t1966 = sum_error(t1951, t1965);
-  const Real t1967 = par.k17 * t984;
-  const Real t1968 = par.k62 * t976;
-  const Real t1969 = t1968 + t1967;
-  const Real t1970 = product_error(par.k17, t976);
-  const Real t1971 = t1969 + t1970;
-  const Real t1972 = sum_error(t1956, t1957);
-  const Real t1973 = t1971 + t1972;
-  const Real t1974 = t1966 - t1973;
-  const Real t1975 = sum_error(t1962, t1959);
   const Real t1976 = t1974 + t1975;
-  const Real t1977 = t1964 + t1976;
-  const Real t1978 = t441 * t1977;
-  const Real t1979 = t1944 + t1963;
-  const Real t1980 = t1979 * t441;
-  const Real t1981 = t1980 + t1978;
-  const Real t1982 = sum_error(t1981, t1823);
-  const Real t1983 = t1822 + t1982;
-  const Real t1984 = t1981 + t1823;
-  const Real t1985 = t1868 * t818;
-  const Real t1986 = t1684 * t806;
-  const Real t1987 = t1684 * t808;
-  const Real t1988 = t1987 + t1986;
-  const Real t1989 = t1985 + t1988;
-  const Real t1990 = t794 * par.I_Fyy;
-  const Real t1991 = t1989 - t1990;
-  const Real t1992 = t1495 - t1991;
-  const Real t1993 = t1992 * t420;
-  const Real t1994 = -t1993;
-  const Real t1995 = sum_error(t1984, t1994);
-  const Real t1996 = t1983 + t1995;
-  const Real t1997 = t620 * t618;
-  const Real t1998 = t1997 * constant<Real>(2.0L);
-  const Real t1999 = t620 * t620;
-  const Real t2000 = t1998 + t1999;
-  const Real t2001 = t670 * t670;
-  const Real t2002 = t2001 + t2000;
-  const Real t2003 = t643 * t643;
-  const Real t2004 = t2002 + t2003;
-  const Real t2005 = constant<Real>(1.0L) + t2004;
-  const Real t2006 = t429 * t431;
-  const Real t2007 = t2006 * constant<Real>(2.0L);
-  const Real t2008 = t431 * t431;
-  const Real t2009 = t2008 + t2007;
-  const Real t2010 = t2009 + t2005;
-  const Real t2011 = t441 * t441;
-  const Real t2012 = t2010 + t2011;
-  const Real t2013 = t420 * t420;
-  const Real t2014 = t2013 + t2012;
-  const Real t2015 = constant<Real>(1.0L) / t2014;
-  const Real t2016 = t613 * t620;
-  const Real t2017 = t613 * t618;
-  const Real t2018 = t2016 + t2017;
-  const Real t2019 = t670 * t664;
-  const Real t2020 = t2019 + t2018;
-  const Real t2021 = t636 * t643;
-  const Real t2022 = t638 * t643;
-  const Real t2023 = t2021 + t2022;
-  const Real t2024 = t2020 + t2023;
-  const Real t2025 = t342 * t431;
-  const Real t2026 = t429 * t344;
-  const Real t2027 = t2025 + t2026;
-  const Real t2028 = t344 * t431;
-  const Real t2029 = t2028 + t2027;
-  const Real t2030 = t2029 + t2024;
-  const Real t2031 = t358 * t441;
-  const Real t2032 = t360 * t441;
-  const Real t2033 = t2032 + t2031;
-  const Real t2034 = t2033 + t2030;
-  const Real t2035 = t420 * t327;
-  const Real t2036 = t329 * t420;
-  const Real t2037 = t2035 + t2036;
-  const Real t2038 = t2034 + t2037;
-  const Real t2039 = t2015 * t2038;
-  const Real t2040 = t620 * t2039;
-  const Real t2041 = t2039 * t618;
-  const Real t2042 = t2040 + t2041;
-  const Real t2043 = t613 - t2042;
-  const Real t2044 = t849 * t620;
-  const Real t2045 = t670 * t888;
-  const Real t2046 = t2044 + t2045;
-  const Real t2047 = t643 * t903;
-  const Real t2048 = t2046 - t2047;
-  const Real t2049 = t2048 + t1355;
-  const Real t2050 = t429 * t920;
-  const Real t2051 = t920 * t431;
-  const Real t2052 = t2051 + t2050;
-  const Real t2053 = t2049 - t2052;
-  const Real t2054 = t441 * t939;
-  const Real t2055 = t941 * t441;
-  const Real t2056 = t2054 + t2055;
-  const Real t2057 = t2053 - t2056;
-  const Real t2058 = t2043 * t2057;
-  const Real t2059 = t849 * t618;
-  const Real t2060 = t620 * t847;
-  const Real t2061 = t2059 + t2060;
-  const Real t2062 = product_error(t620, t849);
-  const Real t2063 = t2061 + t2062;
-  const Real t2064 = sum_error(t2044, t2045);
-  const Real t2065 = t2063 + t2064;
-  const Real t2066 = -t2047;
-  const Real t2067 = sum_error(t2046, t2066);
-  const Real t2068 = t2065 + t2067;
-  const Real t2069 = t2068 + t1360;
-  const Real t2070 = sum_error(t1355, t2048);
-  const Real t2071 = t2069 + t2070;
-  const Real t2072 = -t2052;
-  const Real t2073 = sum_error(t2049, t2072);
-  const Real t2074 = t2073 + t2071;
-  const Real t2075 = -t2056;
-  const Real t2076 = sum_error(t2053, t2075);
-  const Real t2077 = t2076 + t2074;
-  const Real t2078 = t2077 * t2043;
-  const Real t2079 = t2058 + t2078;
-  const Real t2080 = t2039 * t670;
-  const Real t2081 = t664 - t2080;
-  const Real t2082 = t618 * t888;
-  const Real t2083 = t620 * t888;
-  const Real t2084 = t2083 + t2082;
-  const Real t2085 = t1110 * t670;
-  const Real t2086 = t1114 * t670;
-  const Real t2087 = t2085 + t2086;
-  const Real t2088 = t2087 + t2084;
-  const Real t2089 = t1124 * t643;
-  const Real t2090 = t2088 - t2089;
-  const Real t2091 = t1365 + t2090;
-  const Real t2092 = t1147 * t431;
-  const Real t2093 = t2091 - t2092;
-  const Real t2094 = t1162 * t441;
-  const Real t2095 = -t2094;
-  const Real t2096 = sum_error(t2093, t2095);
-  const Real t2097 = -t2092;
-  const Real t2098 = sum_error(t2091, t2097);
-  const Real t2099 = t429 * t1147;
-  const Real t2100 = t1171 * t431;
-  const Real t2101 = t2099 + t2100;
-  const Real t2102 = product_error(t431, t1147);
-  const Real t2103 = t2101 + t2102;
-  const Real t2104 = t2098 - t2103;
-  const Real t2105 = t2096 + t2104;
-  const Real t2106 = t2105 * t2081;
-  const Real t2107 = t2093 - t2094;
-  const Real t2108 = t2081 * t2107;
-  const Real t2109 = t2106 + t2108;
-  const Real t2110 = t2109 + t2079;
-  const Real t2111 = t643 * t2039;
-  const Real t2112 = -t638;
-  const Real t2113 = sum_error(t2111, t2112);
-  const Real t2114 = t2113 - t636;
-  const Real t2115 = t903 * t618;
-  const Real t2116 = t620 * t903;
-  const Real t2117 = t2116 + t2115;
-  const Real t2118 = t1124 * t670;
-  const Real t2119 = t2117 + t2118;
-  const Real t2120 = t643 * t1275;
-  const Real t2121 = t2119 - t2120;
-  const Real t2122 = t1370 + t2121;
-  const Real t2123 = t429 * t1298;
-  const Real t2124 = t1298 * t431;
-  const Real t2125 = t2124 + t2123;
-  const Real t2126 = t2122 - t2125;
-  const Real t2127 = t441 * t1316;
-  const Real t2128 = t2126 - t2127;
-  const Real t2129 = t2128 * t2114;
-  const Real t2130 = t2111 - t638;
-  const Real t2131 = t2128 * t2130;
-  const Real t2132 = t2129 + t2131;
-  const Real t2133 = t2132 + t2110;
-  const Real t2134 = t618 * t1355;
-  const Real t2135 = t1360 * t620;
-  const Real t2136 = t2134 + t2135;
-  const Real t2137 = product_error(t620, t1355);
-  const Real t2138 = t2137 + t2136;
-  const Real t2139 = t620 * t1355;
-  const Real t2140 = t1365 * t670;
-  const Real t2141 = sum_error(t2140, t2139);
-  const Real t2142 = t2141 + t2138;
-  const Real t2143 = t2140 + t2139;
-  const Real t2144 = t1370 * t643;
-  const Real t2145 = -t2144;
-  const Real t2146 = sum_error(t2143, t2145);
-  const Real t2147 = t2146 + t2142;
 
-  // passive accelerations
-  const Real t2148 = par.k2 * t1454;
-  const Real t2149 = par.k1 * t1465;
-  const Real t2150 = t2148 + t2149;
+  // fork: wrench
+  const Real t1977 = t53 * par.k18;
+  const Real t1978 = par.k56 - t1977;
 
   // accelerations
-  const Real t2151 = sum_error(t2150, par.k10);
-  const Real t2152 = par.k60 + t2151;
+  const Real t1979 = t1978 - t1976;
+  const Real t1980 = t1979 + t1973;
+  const Real t1981 = c_r_p_1_ * t1980;
+  const Real t1982 = t1981 - t1955;
+  const Real t1983 = t1982 * par.k1;
+  const Real t1984 = par.k1 * t1960;
+  const Real t1985 = par.k2 * t1964;
+  const Real t1986 = t1984 + t1985;
+  const Real t1987 = t1971 * par.k13;
+  const Real t1988 = t1987 + t1986;
+  const Real t1989 = par.k11 * t95;
 
-  // passive accelerations
-  const Real t2153 = par.k10 + t2150;
+  // fork: wrench
+  const Real t1990 = t75 * par.k11;
+
+  // accelerations
+  const Real t1991 = t1990 + t1989;
+
+  // fork: wrench
+  const Real t1992 = par.k5 * t53;
+  const Real t1993 = par.k57 - t1992;
+
+  // accelerations
+  const Real t1994 = t1993 + t1991;
+  const Real t1995 = t1988 + t1994;
+  const Real t1996 = t1995 * par.k2;
+  const Real t1997 = t1996 - t1983;
+  const Real t1998 = t109 * par.m_H;
+
+  // fork: wrench
+  const Real t1999 = par.m_H * t111;
+
+  // accelerations
+  const Real t2000 = t1998 + t1999;
+  const Real t2001 = t1350 + t2000;
+  const Real t2002 = t2001 + t1944;
+  const Real t2003 = t2002 * s_r_p_1_;
+  const Real t2004 = par.m_H * t95;
+
+  // fork: wrench
+  const Real t2005 = par.m_H * t75;
+
+  // accelerations
+  const Real t2006 = t2005 + t2004;
+  const Real t2007 = t1346 + t2006;
+  const Real t2008 = t1971 + t2007;
+  const Real t2009 = c_r_p_1_ * t2008;
+  const Real t2010 = t2009 + t2003;
+  const Real t2011 = t2010 * par.k14;
+  const Real t2012 = t2010 * par.k28;
+  const Real t2013 = t2011 + t2012;
+  const Real t2014 = t1997 + t2013;
+  const Real t2015 = par.k15 + t2014;
 
   // rear_wheel: joint force
-  const Real t2154 = par.k52 + t1939;
+  const Real t2016 = t1545 * s_r_p_0_;
+  const Real t2017 = t1547 * c_r_p_0_;
+  const Real t2018 = t2016 + t2017;
 
   // accelerations
-  const Real t2155 = sum_error(t2153, t2154);
-  const Real t2156 = t2152 + t2155;
-  const Real t2157 = t2147 + t2156;
-  const Real t2158 = t2143 - t2144;
+  const Real t2019 = t2015 + t2018;
+  const Real t2020 = t827 * t2019;
+  const Real t2021 = t2020 + t1913;
+  const Real t2022 = t803 * t1947;
+  const Real t2023 = t2021 - t2022;
+  const Real t2024 = par.k1 * t1624;
+  const Real t2025 = par.k2 * t1636;
+  const Real t2026 = t2025 - t2024;
+  const Real t2027 = t1255 * par.k14;
+  const Real t2028 = par.k28 * t1255;
+  const Real t2029 = t2027 + t2028;
+  const Real t2030 = t2026 + t2029;
+  const Real t2031 = par.k3 * t1256;
+  const Real t2032 = t1256 * par.k72;
+  const Real t2033 = t2031 + t2032;
+  const Real t2034 = par.k68 * t990;
+  const Real t2035 = t2033 + t2034;
+  const Real t2036 = par.k17 * t989;
+  const Real t2037 = t2035 + t2036;
+  const Real t2038 = t2030 - t2037;
+  const Real t2039 = t1654 * c_r_p_0_;
+  const Real t2040 = t1663 * s_r_p_0_;
+  const Real t2041 = t2039 - t2040;
+  const Real t2042 = t2038 + t2041;
+  const Real t2043 = sum_error(t2042, t2023);
+  const Real t2044 = -t2037;
+  const Real t2045 = sum_error(t2030, t2044);
+  const Real t2046 = t988 * par.k17;
+  const Real t2047 = par.k65 * t989;
+  const Real t2048 = t2047 + t2046;
+  const Real t2049 = product_error(par.k17, t989);
+  const Real t2050 = t2049 + t2048;
+  const Real t2051 = sum_error(t2035, t2036);
+  const Real t2052 = t2051 + t2050;
+  const Real t2053 = t2045 - t2052;
+  const Real t2054 = sum_error(t2041, t2038);
+  const Real t2055 = t2053 + t2054;
+  const Real t2056 = t2055 + t2043;
+  const Real t2057 = t441 * t1162;
+  const Real t2058 = t2057 - t360;
+  const Real t2059 = t2058 * t2056;
+  const Real t2060 = t2042 + t2023;
+  const Real t2061 = -t360;
+  const Real t2062 = sum_error(t2057, t2061);
+  const Real t2063 = t2062 - t358;
+  const Real t2064 = t2060 * t2063;
+  const Real t2065 = t2064 + t2059;
+  const Real t2066 = product_error(t2060, t2058);
+  const Real t2067 = t2066 + t2065;
+  const Real t2068 = t1902 - t2067;
+  const Real t2069 = t1899 + t1900;
+  const Real t2070 = t2058 * t2060;
+  const Real t2071 = -t2070;
+  const Real t2072 = sum_error(t2069, t2071);
+  const Real t2073 = t2068 + t2072;
+  const Real t2074 = t2069 - t2070;
+  const Real t2075 = t829 * t1239;
+  const Real t2076 = t934 * t867;
+  const Real t2077 = t2075 - t2076;
+  const Real t2078 = t1368 * t895;
+  const Real t2079 = t2077 + t2078;
+  const Real t2080 = t815 * t1825;
+  const Real t2081 = t817 * t1825;
+  const Real t2082 = t2081 + t2080;
+  const Real t2083 = t2079 + t2082;
+  const Real t2084 = t1995 * t827;
+  const Real t2085 = t2084 + t2083;
+  const Real t2086 = t1635 - t1630;
+  const Real t2087 = t2086 - t2085;
+  const Real t2088 = sum_error(t2074, t2087);
+  const Real t2089 = t2088 + t2073;
+  const Real t2090 = t2087 + t2074;
+  const Real t2091 = t827 * t1947;
+  const Real t2092 = t1755 * t815;
+  const Real t2093 = t1755 * t817;
+  const Real t2094 = t2093 + t2092;
+  const Real t2095 = t2094 + t2091;
+  const Real t2096 = t803 * par.I_Fyy;
+  const Real t2097 = t2095 - t2096;
+  const Real t2098 = t1564 - t2097;
+  const Real t2099 = t420 * t1162;
+  const Real t2100 = t2099 - t329;
+  const Real t2101 = t2100 * t2098;
+  const Real t2102 = -t329;
+  const Real t2103 = sum_error(t2099, t2102);
+  const Real t2104 = t2103 - t327;
+  const Real t2105 = t2104 * t2098;
+  const Real t2106 = t2101 + t2105;
+  const Real t2107 = sum_error(t2106, t2090);
+  const Real t2108 = t2107 + t2089;
+  const Real t2109 = t627 * t1292;
+  const Real t2110 = t1272 * t625;
+  const Real t2111 = t2109 + t2110;
+  const Real t2112 = product_error(t627, t1272);
+  const Real t2113 = t2112 + t2111;
+  const Real t2114 = t1119 * t656;
+  const Real t2115 = t1166 * t656;
+  const Real t2116 = t2115 + t2114;
+  const Real t2117 = -t2116;
+  const Real t2118 = t1272 * t627;
+  const Real t2119 = sum_error(t2118, t2117);
+  const Real t2120 = t2113 + t2119;
+  const Real t2121 = t2118 - t2116;
+  const Real t2122 = t684 * t1405;
+  const Real t2123 = t684 * t1409;
+  const Real t2124 = t2123 + t2122;
+  const Real t2125 = sum_error(t2124, t2121);
+  const Real t2126 = t2125 + t2120;
+  const Real t2127 = t2126 - t1681;
+  const Real t2128 = t2121 + t2124;
+  const Real t2129 = -t1683;
+  const Real t2130 = sum_error(t2128, t2129);
+  const Real t2131 = t2130 + t2127;
+  const Real t2132 = t2128 - t1683;
+  const Real t2133 = t1883 * t431;
+  const Real t2134 = t429 * t1890;
+  const Real t2135 = t2133 + t2134;
+  const Real t2136 = t1890 * t431;
+  const Real t2137 = t2136 + t2135;
+  const Real t2138 = -t2137;
+  const Real t2139 = sum_error(t2132, t2138);
+  const Real t2140 = t2131 + t2139;
+  const Real t2141 = t2132 - t2137;
+  const Real t2142 = t2056 * t441;
+  const Real t2143 = t2060 * t441;
+  const Real t2144 = t2142 + t2143;
+  const Real t2145 = sum_error(t2144, t2141);
+  const Real t2146 = t2145 + t2140;
+  const Real t2147 = t2144 + t2141;
+  const Real t2148 = t2098 * t420;
+  const Real t2149 = -t2148;
+  const Real t2150 = sum_error(t2147, t2149);
+  const Real t2151 = t2146 + t2150;
+  const Real t2152 = t1198 * t627;
+  const Real t2153 = t656 * t860;
+  const Real t2154 = t2152 + t2153;
+  const Real t2155 = t684 * t1211;
+  const Real t2156 = t2154 - t2155;
+  const Real t2157 = t2156 + t1424;
+  const Real t2158 = t429 * t1228;
+  const Real t2159 = t1228 * t431;
+  const Real t2160 = t2159 + t2158;
+  const Real t2161 = t2157 - t2160;
+  const Real t2162 = t441 * t1247;
+  const Real t2163 = t1249 * t441;
+  const Real t2164 = t2162 + t2163;
+  const Real t2165 = t2161 - t2164;
+  const Real t2166 = t1276 * t2165;
+  const Real t2167 = t1198 * t625;
+  const Real t2168 = t627 * t1196;
+  const Real t2169 = t2167 + t2168;
+  const Real t2170 = product_error(t627, t1198);
+  const Real t2171 = t2169 + t2170;
+  const Real t2172 = sum_error(t2152, t2153);
+  const Real t2173 = t2171 + t2172;
+  const Real t2174 = -t2155;
+  const Real t2175 = sum_error(t2154, t2174);
+  const Real t2176 = t2173 + t2175;
+  const Real t2177 = t2176 + t1429;
+  const Real t2178 = sum_error(t1424, t2156);
+  const Real t2179 = t2177 + t2178;
+  const Real t2180 = -t2160;
+  const Real t2181 = sum_error(t2157, t2180);
+  const Real t2182 = t2181 + t2179;
+  const Real t2183 = -t2164;
+  const Real t2184 = sum_error(t2161, t2183);
+  const Real t2185 = t2184 + t2182;
+  const Real t2186 = t2185 * t1276;
+  const Real t2187 = t2166 + t2186;
+  const Real t2188 = t625 * t860;
+  const Real t2189 = t627 * t860;
+  const Real t2190 = t2189 + t2188;
+  const Real t2191 = t888 * t656;
+  const Real t2192 = t886 * t656;
+  const Real t2193 = t2191 + t2192;
+  const Real t2194 = t2193 + t2190;
+  const Real t2195 = t902 * t684;
+  const Real t2196 = t2194 - t2195;
+  const Real t2197 = t1434 + t2196;
+  const Real t2198 = t925 * t431;
+  const Real t2199 = t2197 - t2198;
+  const Real t2200 = t940 * t441;
+  const Real t2201 = -t2200;
+  const Real t2202 = sum_error(t2199, t2201);
+  const Real t2203 = -t2198;
+  const Real t2204 = sum_error(t2197, t2203);
+  const Real t2205 = t429 * t925;
+  const Real t2206 = t949 * t431;
+  const Real t2207 = t2205 + t2206;
+  const Real t2208 = product_error(t431, t925);
+  const Real t2209 = t2207 + t2208;
+  const Real t2210 = t2204 - t2209;
+  const Real t2211 = t2202 + t2210;
+  const Real t2212 = t2211 * t1164;
+  const Real t2213 = t2199 - t2200;
+  const Real t2214 = t1164 * t2213;
+  const Real t2215 = t2212 + t2214;
+  const Real t2216 = t2215 + t2187;
+  const Real t2217 = t1211 * t625;
+  const Real t2218 = t627 * t1211;
+  const Real t2219 = t2218 + t2217;
+  const Real t2220 = t902 * t656;
+  const Real t2221 = t2219 + t2220;
+  const Real t2222 = t684 * t1336;
+  const Real t2223 = t2221 - t2222;
+  const Real t2224 = t1439 + t2223;
+  const Real t2225 = t429 * t1359;
+  const Real t2226 = t1359 * t431;
+  const Real t2227 = t2226 + t2225;
+  const Real t2228 = t2224 - t2227;
+  const Real t2229 = t441 * t1377;
+  const Real t2230 = t2228 - t2229;
+  const Real t2231 = t2230 * t1412;
+  const Real t2232 = t2230 * t1407;
+  const Real t2233 = t2231 + t2232;
+  const Real t2234 = t2233 + t2216;
+  const Real t2235 = t625 * t1424;
+  const Real t2236 = t1429 * t627;
+  const Real t2237 = t2235 + t2236;
+  const Real t2238 = product_error(t627, t1424);
+  const Real t2239 = t2238 + t2237;
+  const Real t2240 = t627 * t1424;
+  const Real t2241 = t1434 * t656;
+  const Real t2242 = sum_error(t2241, t2240);
+  const Real t2243 = t2242 + t2239;
+  const Real t2244 = t2241 + t2240;
+  const Real t2245 = t1439 * t684;
+  const Real t2246 = -t2245;
+  const Real t2247 = sum_error(t2244, t2246);
+  const Real t2248 = t2247 + t2243;
 
   // passive accelerations
-  const Real t2159 = t2153 + t2154;
+  const Real t2249 = par.k2 * t1523;
+  const Real t2250 = par.k1 * t1534;
+  const Real t2251 = t2249 + t2250;
+  const Real t2252 = sum_error(t2251, par.k10);
+  const Real t2253 = par.k60 + t2252;
+  const Real t2254 = par.k10 + t2251;
+
+  // rear_wheel: joint force
+  const Real t2255 = par.k52 + t2018;
+
+  // passive accelerations
+  const Real t2256 = sum_error(t2254, t2255);
+  const Real t2257 = t2253 + t2256;
 
   // accelerations
-  const Real t2160 = sum_error(t2159, t2158);
-  const Real t2161 = t2157 + t2160;
-  const Real t2162 = t2159 + t2158;
-  const Real t2163 = t429 * t1447;
-  const Real t2164 = t1447 * t431;
-  const Real t2165 = t2163 + t2164;
-  const Real t2166 = -t2165;
-  const Real t2167 = sum_error(t2162, t2166);
-  const Real t2168 = t2167 + t2161;
-  const Real t2169 = t2162 - t2165;
-  const Real t2170 = t1484 * t441;
-  const Real t2171 = t1486 * t441;
-  const Real t2172 = t2170 + t2171;
-  const Real t2173 = -t2172;
-  const Real t2174 = sum_error(t2169, t2173);
-  const Real t2175 = t2168 + t2174;
-  const Real t2176 = t2169 - t2172;
-  const Real t2177 = t1422 * t420;
-  const Real t2178 = sum_error(t2177, t2176);
-  const Real t2179 = t2178 + t2175;
-  const Real t2180 = t2179 * t2039;
-  const Real t2181 = t2176 + t2177;
-  const Real t2182 = t2039 * t2181;
-  const Real t2183 = t2180 + t2182;
-  const Real t2184 = t2133 - t2183;
-  const Real t2185 = t2039 * t431;
-  const Real t2186 = t429 * t2039;
-  const Real t2187 = t2185 + t2186;
-  const Real t2188 = -t344;
-  const Real t2189 = sum_error(t2187, t2188);
-  const Real t2190 = t2189 - t342;
-  const Real t2191 = t920 * t618;
-  const Real t2192 = t920 * t620;
-  const Real t2193 = t2192 + t2191;
-  const Real t2194 = t1171 * t670;
-  const Real t2195 = t1147 * t670;
-  const Real t2196 = t2194 + t2195;
-  const Real t2197 = t2193 + t2196;
-  const Real t2198 = t643 * t1298;
-  const Real t2199 = t2197 - t2198;
-  const Real t2200 = t2199 + t1447;
-  const Real t2201 = t1724 * t431;
-  const Real t2202 = t2200 - t2201;
-  const Real t2203 = t1750 * t441;
-  const Real t2204 = t2202 - t2203;
-  const Real t2205 = t1684 * t420;
-  const Real t2206 = t2204 - t2205;
-  const Real t2207 = t2206 * t2190;
-  const Real t2208 = t2187 - t344;
-  const Real t2209 = -t2203;
-  const Real t2210 = sum_error(t2202, t2209);
-  const Real t2211 = -t2201;
-  const Real t2212 = sum_error(t2200, t2211);
-  const Real t2213 = t429 * t1724;
-  const Real t2214 = t1763 * t431;
-  const Real t2215 = t2213 + t2214;
-  const Real t2216 = product_error(t431, t1724);
-  const Real t2217 = t2216 + t2215;
-  const Real t2218 = t2212 - t2217;
-  const Real t2219 = t2210 + t2218;
-  const Real t2220 = -t2205;
-  const Real t2221 = sum_error(t2204, t2220);
-  const Real t2222 = t2219 + t2221;
-  const Real t2223 = t2208 * t2222;
-  const Real t2224 = t2223 + t2207;
-  const Real t2225 = t2208 * t2206;
-  const Real t2226 = t2225 + t2224;
-  const Real t2227 = t2184 + t2226;
-  const Real t2228 = t441 * t2039;
-  const Real t2229 = t2228 - t360;
-  const Real t2230 = t941 * t620;
-  const Real t2231 = t1162 * t670;
-  const Real t2232 = t2231 + t2230;
-  const Real t2233 = t643 * t1316;
-  const Real t2234 = t2232 - t2233;
-  const Real t2235 = t1486 + t2234;
-  const Real t2236 = t429 * t1750;
-  const Real t2237 = t1750 * t431;
-  const Real t2238 = t2237 + t2236;
-  const Real t2239 = t2235 - t2238;
-  const Real t2240 = t441 * t1940;
-  const Real t2241 = t2239 - t2240;
-  const Real t2242 = t1868 * t420;
-  const Real t2243 = t2241 - t2242;
-  const Real t2244 = t2229 * t2243;
-  const Real t2245 = t2227 + t2244;
-  const Real t2246 = t931 * t618;
-  const Real t2247 = t620 * t931;
-  const Real t2248 = t2246 + t2247;
-  const Real t2249 = t1156 * t670;
-  const Real t2250 = t2248 - t2249;
-  const Real t2251 = t643 * t1307;
-  const Real t2252 = t2250 - t2251;
-  const Real t2253 = t2252 + t1465;
-  const Real t2254 = t429 * t1741;
-  const Real t2255 = t1741 * t431;
-  const Real t2256 = t2255 + t2254;
-  const Real t2257 = t2253 - t2256;
-  const Real t2258 = t1916 * t441;
-  const Real t2259 = t2257 - t2258;
-  const Real t2260 = t2259 + t2245;
-  const Real t2261 = t420 * t2039;
-  const Real t2262 = -t329;
-  const Real t2263 = sum_error(t2261, t2262);
-  const Real t2264 = t2263 - t327;
-  const Real t2265 = t1868 * t441;
-  const Real t2266 = t1684 * t429;
-  const Real t2267 = t1684 * t431;
-  const Real t2268 = t2266 + t2267;
-  const Real t2269 = t1422 + t2268;
-  const Real t2270 = t2269 + t2265;
-  const Real t2271 = par.I_Fyy * t420;
-  const Real t2272 = t2270 + t2271;
-  const Real t2273 = t2264 * t2272;
-  const Real t2274 = t2261 - t329;
-  const Real t2275 = t2274 * t2272;
-  const Real t2276 = t2275 + t2273;
-  const Real t2277 = t2260 - t2276;
-  const Real t2278 = t2077 * t620;
-  const Real t2279 = t2057 * t618;
-  const Real t2280 = t2279 + t2278;
-  const Real t2281 = t620 * t2057;
-  const Real t2282 = t2280 + t2281;
-  const Real t2283 = t2105 * t670;
-  const Real t2284 = t670 * t2107;
-  const Real t2285 = t2284 + t2283;
-  const Real t2286 = t2282 + t2285;
-  const Real t2287 = t2128 * t643;
-  const Real t2288 = t2286 - t2287;
-  const Real t2289 = t2288 + t2181;
-  const Real t2290 = t2222 * t431;
-  const Real t2291 = t429 * t2206;
-  const Real t2292 = t2290 + t2291;
-  const Real t2293 = t2206 * t431;
-  const Real t2294 = t2292 + t2293;
-  const Real t2295 = t2289 - t2294;
-  const Real t2296 = t941 * t618;
-  const Real t2297 = t620 * t939;
-  const Real t2298 = t2296 + t2297;
-  const Real t2299 = product_error(t620, t941);
-  const Real t2300 = t2299 + t2298;
-  const Real t2301 = sum_error(t2230, t2231);
-  const Real t2302 = t2301 + t2300;
-  const Real t2303 = -t2233;
-  const Real t2304 = sum_error(t2232, t2303);
-  const Real t2305 = t2302 + t2304;
-  const Real t2306 = t1484 + t2305;
-  const Real t2307 = sum_error(t2234, t1486);
-  const Real t2308 = t2306 + t2307;
-  const Real t2309 = -t2238;
-  const Real t2310 = sum_error(t2235, t2309);
-  const Real t2311 = t2308 + t2310;
-  const Real t2312 = -t2240;
-  const Real t2313 = sum_error(t2239, t2312);
-  const Real t2314 = t2313 + t2311;
-  const Real t2315 = -t2242;
-  const Real t2316 = sum_error(t2241, t2315);
-  const Real t2317 = t2314 + t2316;
-  const Real t2318 = t441 * t2317;
-  const Real t2319 = t441 * t2243;
+  const Real t2258 = t2248 + t2257;
+  const Real t2259 = t2244 - t2245;
+
+  // passive accelerations
+  const Real t2260 = t2254 + t2255;
+
+  // accelerations
+  const Real t2261 = sum_error(t2260, t2259);
+  const Real t2262 = t2258 + t2261;
+  const Real t2263 = t2260 + t2259;
+  const Real t2264 = t429 * t1516;
+  const Real t2265 = t1516 * t431;
+  const Real t2266 = t2264 + t2265;
+  const Real t2267 = -t2266;
+  const Real t2268 = sum_error(t2263, t2267);
+  const Real t2269 = t2268 + t2262;
+  const Real t2270 = t2263 - t2266;
+  const Real t2271 = t1555 * t441;
+  const Real t2272 = t1550 * t441;
+  const Real t2273 = t2271 + t2272;
+  const Real t2274 = -t2273;
+  const Real t2275 = sum_error(t2270, t2274);
+  const Real t2276 = t2269 + t2275;
+  const Real t2277 = t2270 - t2273;
+  const Real t2278 = t1491 * t420;
+  const Real t2279 = sum_error(t2278, t2277);
+  const Real t2280 = t2279 + t2276;
+  const Real t2281 = t2280 * t1162;
+  const Real t2282 = t2277 + t2278;
+  const Real t2283 = t1162 * t2282;
+  const Real t2284 = t2281 + t2283;
+  const Real t2285 = t2234 - t2284;
+  const Real t2286 = t1228 * t625;
+  const Real t2287 = t1228 * t627;
+  const Real t2288 = t2287 + t2286;
+  const Real t2289 = t949 * t656;
+  const Real t2290 = t925 * t656;
+  const Real t2291 = t2289 + t2290;
+  const Real t2292 = t2288 + t2291;
+  const Real t2293 = t684 * t1359;
+  const Real t2294 = t2292 - t2293;
+  const Real t2295 = t2294 + t1516;
+  const Real t2296 = t1795 * t431;
+  const Real t2297 = t2295 - t2296;
+  const Real t2298 = t1834 * t441;
+  const Real t2299 = t2297 - t2298;
+  const Real t2300 = t1755 * t420;
+  const Real t2301 = t2299 - t2300;
+  const Real t2302 = t2301 * t1893;
+  const Real t2303 = -t2298;
+  const Real t2304 = sum_error(t2297, t2303);
+  const Real t2305 = -t2296;
+  const Real t2306 = sum_error(t2295, t2305);
+  const Real t2307 = t429 * t1795;
+  const Real t2308 = t1803 * t431;
+  const Real t2309 = t2307 + t2308;
+  const Real t2310 = product_error(t431, t1795);
+  const Real t2311 = t2310 + t2309;
+  const Real t2312 = t2306 - t2311;
+  const Real t2313 = t2304 + t2312;
+  const Real t2314 = -t2300;
+  const Real t2315 = sum_error(t2299, t2314);
+  const Real t2316 = t2313 + t2315;
+  const Real t2317 = t1887 * t2316;
+  const Real t2318 = t2317 + t2302;
+  const Real t2319 = t1887 * t2301;
   const Real t2320 = t2319 + t2318;
-  const Real t2321 = t2295 - t2320;
-  const Real t2322 = t2272 * t420;
-  const Real t2323 = t2321 + t2322;
-  const Real t2324 = constant<Real>(1.0L) / t2323;
-  const Real t2325 = t2277 * t2324;
-  const Real t2326 = t1996 * t2325;
-  const Real t2327 = t1984 - t1993;
-  const Real t2328 = sum_error(t2227, t2244);
-  const Real t2329 = -t360;
-  const Real t2330 = sum_error(t2228, t2329);
-  const Real t2331 = t2330 - t358;
-  const Real t2332 = t2331 * t2243;
-  const Real t2333 = t2229 * t2317;
-  const Real t2334 = t2333 + t2332;
-  const Real t2335 = product_error(t2243, t2229);
-  const Real t2336 = t2335 + t2334;
-  const Real t2337 = t2336 + t2328;
-  const Real t2338 = sum_error(t2259, t2245);
-  const Real t2339 = t2337 + t2338;
-  const Real t2340 = -t2276;
-  const Real t2341 = sum_error(t2260, t2340);
-  const Real t2342 = t2339 + t2341;
-  const Real t2343 = t2324 * t2342;
-  const Real t2344 = -t2320;
-  const Real t2345 = sum_error(t2295, t2344);
-  const Real t2346 = sum_error(t2181, t2288);
-  const Real t2347 = t2179 + t2346;
-  const Real t2348 = -t2294;
-  const Real t2349 = sum_error(t2289, t2348);
-  const Real t2350 = t2347 + t2349;
-  const Real t2351 = t2345 + t2350;
-  const Real t2352 = sum_error(t2321, t2322);
-  const Real t2353 = t2351 + t2352;
-  const Real t2354 = t2324 * t2353;
-  const Real t2355 = t2354 / t2323;
-  const Real t2356 = quotient_error(constant<Real>(1.0L), t2323);
-  const Real t2357 = t2356 - t2355;
-  const Real t2358 = t2277 * t2357;
-  const Real t2359 = t2343 + t2358;
-  const Real t2360 = product_error(t2277, t2324);
-  const Real t2361 = t2359 + t2360;
-  const Real t2362 = t2327 * t2361;
-  const Real t2363 = t2326 + t2362;
-  const Real t2364 = product_error(t2325, t2327);
-  const Real t2365 = t2364 + t2363;
-  const Real t2366 = t1227 * t2081;
-  const Real t2367 = t2081 * t1229;
-  const Real t2368 = t2366 + t2367;
-  const Real t2369 = -t2368;
-  const Real t2370 = t1088 * t2043;
-  const Real t2371 = sum_error(t2370, t2369);
-  const Real t2372 = t1086 * t2043;
-  const Real t2373 = product_error(t2043, t1088);
-  const Real t2374 = t2373 + t2372;
-  const Real t2375 = t2371 + t2374;
-  const Real t2376 = t2370 - t2368;
-  const Real t2377 = t2130 * t1344;
-  const Real t2378 = t2114 * t1346;
+  const Real t2321 = t2285 + t2320;
+  const Real t2322 = t1249 * t627;
+  const Real t2323 = t940 * t656;
+  const Real t2324 = t2323 + t2322;
+  const Real t2325 = t684 * t1377;
+  const Real t2326 = t2324 - t2325;
+  const Real t2327 = t1550 + t2326;
+  const Real t2328 = t429 * t1834;
+  const Real t2329 = t1834 * t431;
+  const Real t2330 = t2329 + t2328;
+  const Real t2331 = t2327 - t2330;
+  const Real t2332 = t441 * t2019;
+  const Real t2333 = t2331 - t2332;
+  const Real t2334 = t1947 * t420;
+  const Real t2335 = t2333 - t2334;
+  const Real t2336 = t2058 * t2335;
+  const Real t2337 = t2321 + t2336;
+  const Real t2338 = t1239 * t625;
+  const Real t2339 = t627 * t1239;
+  const Real t2340 = t2338 + t2339;
+  const Real t2341 = t934 * t656;
+  const Real t2342 = t2340 - t2341;
+  const Real t2343 = t684 * t1368;
+  const Real t2344 = t2342 - t2343;
+  const Real t2345 = t2344 + t1534;
+  const Real t2346 = t429 * t1825;
+  const Real t2347 = t1825 * t431;
+  const Real t2348 = t2347 + t2346;
+  const Real t2349 = t2345 - t2348;
+  const Real t2350 = t1995 * t441;
+  const Real t2351 = t2349 - t2350;
+  const Real t2352 = t2351 + t2337;
+  const Real t2353 = t1947 * t441;
+  const Real t2354 = t1755 * t429;
+  const Real t2355 = t1755 * t431;
+  const Real t2356 = t2354 + t2355;
+  const Real t2357 = t1491 + t2356;
+  const Real t2358 = t2357 + t2353;
+  const Real t2359 = par.I_Fyy * t420;
+  const Real t2360 = t2358 + t2359;
+  const Real t2361 = t2104 * t2360;
+  const Real t2362 = t2100 * t2360;
+  const Real t2363 = t2362 + t2361;
+  const Real t2364 = t2352 - t2363;
+  const Real t2365 = t2185 * t627;
+  const Real t2366 = t2165 * t625;
+  const Real t2367 = t2366 + t2365;
+  const Real t2368 = t627 * t2165;
+  const Real t2369 = t2367 + t2368;
+  const Real t2370 = t2211 * t656;
+  const Real t2371 = t656 * t2213;
+  const Real t2372 = t2371 + t2370;
+  const Real t2373 = t2369 + t2372;
+  const Real t2374 = t2230 * t684;
+  const Real t2375 = t2373 - t2374;
+  const Real t2376 = t2375 + t2282;
+  const Real t2377 = t2316 * t431;
+  const Real t2378 = t429 * t2301;
   const Real t2379 = t2377 + t2378;
-  const Real t2380 = t2130 * t1346;
+  const Real t2380 = t2301 * t431;
   const Real t2381 = t2379 + t2380;
-  const Real t2382 = -t2381;
-  const Real t2383 = sum_error(t2376, t2382);
-  const Real t2384 = t2383 + t2375;
-  const Real t2385 = t2376 - t2381;
-  const Real t2386 = t2039 * t1612;
-  const Real t2387 = t2039 * t1615;
-  const Real t2388 = t2387 + t2386;
-  const Real t2389 = sum_error(t2385, t2388);
-  const Real t2390 = t2389 + t2384;
-  const Real t2391 = t1812 * t2208;
-  const Real t2392 = t1815 * t2190;
-  const Real t2393 = t2391 + t2392;
-  const Real t2394 = product_error(t2208, t1815);
+  const Real t2382 = t2376 - t2381;
+  const Real t2383 = t1249 * t625;
+  const Real t2384 = t627 * t1247;
+  const Real t2385 = t2383 + t2384;
+  const Real t2386 = product_error(t627, t1249);
+  const Real t2387 = t2386 + t2385;
+  const Real t2388 = sum_error(t2322, t2323);
+  const Real t2389 = t2388 + t2387;
+  const Real t2390 = -t2325;
+  const Real t2391 = sum_error(t2324, t2390);
+  const Real t2392 = t2389 + t2391;
+  const Real t2393 = t1555 + t2392;
+  const Real t2394 = sum_error(t2326, t1550);
   const Real t2395 = t2393 + t2394;
-  const Real t2396 = t2395 + t2390;
-  const Real t2397 = t2388 + t2385;
-  const Real t2398 = t2208 * t1815;
-  const Real t2399 = sum_error(t2397, t2398);
-  const Real t2400 = t2396 + t2399;
-  const Real t2401 = t2229 * t1977;
-  const Real t2402 = t1979 * t2331;
-  const Real t2403 = t2402 + t2401;
-  const Real t2404 = product_error(t1979, t2229);
-  const Real t2405 = t2404 + t2403;
-  const Real t2406 = t2400 - t2405;
-  const Real t2407 = t2397 + t2398;
-  const Real t2408 = t1979 * t2229;
-  const Real t2409 = -t2408;
-  const Real t2410 = sum_error(t2407, t2409);
-  const Real t2411 = t2410 + t2406;
-  const Real t2412 = t2407 - t2408;
-  const Real t2413 = t820 * t931;
-  const Real t2414 = t1156 * t857;
-  const Real t2415 = t2413 - t2414;
-  const Real t2416 = t1307 * t894;
-  const Real t2417 = t2415 + t2416;
-  const Real t2418 = t806 * t1741;
-  const Real t2419 = t1741 * t808;
-  const Real t2420 = t2418 + t2419;
-  const Real t2421 = t2420 + t2417;
-  const Real t2422 = t1916 * t818;
+  const Real t2396 = -t2330;
+  const Real t2397 = sum_error(t2327, t2396);
+  const Real t2398 = t2395 + t2397;
+  const Real t2399 = -t2332;
+  const Real t2400 = sum_error(t2331, t2399);
+  const Real t2401 = t2400 + t2398;
+  const Real t2402 = -t2334;
+  const Real t2403 = sum_error(t2333, t2402);
+  const Real t2404 = t2401 + t2403;
+  const Real t2405 = t441 * t2404;
+  const Real t2406 = t441 * t2335;
+  const Real t2407 = t2406 + t2405;
+  const Real t2408 = t2382 - t2407;
+  const Real t2409 = t2360 * t420;
+  const Real t2410 = t2408 + t2409;
+  const Real t2411 = constant<Real>(1.0L) / t2410;
+  const Real t2412 = t2364 * t2411;
+  const Real t2413 = t2151 * t2412;
+  const Real t2414 = t2147 - t2148;
+  const Real t2415 = sum_error(t2321, t2336);
+  const Real t2416 = t2063 * t2335;
+  const Real t2417 = t2058 * t2404;
+  const Real t2418 = t2417 + t2416;
+  const Real t2419 = product_error(t2335, t2058);
+  const Real t2420 = t2419 + t2418;
+  const Real t2421 = t2420 + t2415;
+  const Real t2422 = sum_error(t2351, t2337);
   const Real t2423 = t2421 + t2422;
-  const Real t2424 = t1566 - t1561;
-  const Real t2425 = t2424 - t2423;
-  const Real t2426 = sum_error(t2412, t2425);
-  const Real t2427 = t2426 + t2411;
-  const Real t2428 = t2425 + t2412;
-  const Real t2429 = t1992 * t2264;
-  const Real t2430 = t1992 * t2274;
-  const Real t2431 = t2429 + t2430;
-  const Real t2432 = sum_error(t2431, t2428);
-  const Real t2433 = t2432 + t2427;
-  const Real t2434 = t2433 - t2365;
-  const Real t2435 = t2327 * t2325;
-  const Real t2436 = -t2435;
-  const Real t2437 = t2428 + t2431;
-  const Real t2438 = sum_error(t2437, t2436);
-  const Real t2439 = t2438 + t2434;
-  const Real t2440 = t2130 * t2114;
-  const Real t2441 = t2440 * constant<Real>(2.0L);
-  const Real t2442 = t2130 * t2130;
-  const Real t2443 = t2442 + t2441;
-  const Real t2444 = t2043 * t2043;
-  const Real t2445 = t2081 * t2081;
-  const Real t2446 = t2444 + t2445;
-  const Real t2447 = t2443 + t2446;
-  const Real t2448 = t2039 * t2039;
+  const Real t2424 = -t2363;
+  const Real t2425 = sum_error(t2352, t2424);
+  const Real t2426 = t2423 + t2425;
+  const Real t2427 = t2411 * t2426;
+  const Real t2428 = -t2407;
+  const Real t2429 = sum_error(t2382, t2428);
+  const Real t2430 = sum_error(t2282, t2375);
+  const Real t2431 = t2280 + t2430;
+  const Real t2432 = -t2381;
+  const Real t2433 = sum_error(t2376, t2432);
+  const Real t2434 = t2431 + t2433;
+  const Real t2435 = t2429 + t2434;
+  const Real t2436 = sum_error(t2408, t2409);
+  const Real t2437 = t2435 + t2436;
+  const Real t2438 = t2411 * t2437;
+  const Real t2439 = t2438 / t2410;
+  const Real t2440 = quotient_error(constant<Real>(1.0L), t2410);
+  const Real t2441 = t2440 - t2439;
+  const Real t2442 = t2364 * t2441;
+  const Real t2443 = t2427 + t2442;
+  const Real t2444 = product_error(t2364, t2411);
+  const Real t2445 = t2443 + t2444;
+  const Real t2446 = t2414 * t2445;
+  const Real t2447 = t2446 + t2413;
+  const Real t2448 = product_error(t2412, t2414);
   const Real t2449 = t2447 + t2448;
-  const Real t2450 = t2208 * t2190;
-  const Real t2451 = t2450 * constant<Real>(2.0L);
-  const Real t2452 = t2208 * t2208;
-  const Real t2453 = t2452 + t2451;
-  const Real t2454 = t2453 + t2449;
-  const Real t2455 = t2229 * t2331;
-  const Real t2456 = t2455 * constant<Real>(2.0L);
-  const Real t2457 = t2229 * t2229;
-  const Real t2458 = t2457 + t2456;
-  const Real t2459 = t2458 + t2454;
-  const Real t2460 = t2459 + constant<Real>(1.0L);
-  const Real t2461 = t2274 * t2264;
-  const Real t2462 = t2461 * constant<Real>(2.0L);
-  const Real t2463 = t2274 * t2274;
-  const Real t2464 = t2462 + t2463;
-  const Real t2465 = t2460 + t2464;
-  const Real t2466 = constant<Real>(1.0L) / t2465;
-  const Real t2467 = t620 * t626;
-  const Real t2468 = t618 * t626;
-  const Real t2469 = t2467 + t2468;
-  const Real t2470 = t670 * t679;
-  const Real t2471 = t2470 + t2469;
-  const Real t2472 = t652 * t643;
-  const Real t2473 = t643 * t654;
-  const Real t2474 = t2472 + t2473;
-  const Real t2475 = t2471 - t2474;
-  const Real t2476 = t495 * t431;
-  const Real t2477 = t429 * t497;
-  const Real t2478 = t2476 + t2477;
-  const Real t2479 = t497 * t431;
+  const Real t2450 = t2108 - t2449;
+  const Real t2451 = t2414 * t2412;
+  const Real t2452 = -t2451;
+  const Real t2453 = t2106 + t2090;
+  const Real t2454 = sum_error(t2453, t2452);
+  const Real t2455 = t2454 + t2450;
+  const Real t2456 = t1407 * t1412;
+  const Real t2457 = t2456 * constant<Real>(2.0L);
+  const Real t2458 = t1407 * t1407;
+  const Real t2459 = t2458 + t2457;
+  const Real t2460 = t1276 * t1276;
+  const Real t2461 = t1164 * t1164;
+  const Real t2462 = t2460 + t2461;
+  const Real t2463 = t2459 + t2462;
+  const Real t2464 = t1162 * t1162;
+  const Real t2465 = t2463 + t2464;
+  const Real t2466 = t1887 * t1893;
+  const Real t2467 = t2466 * constant<Real>(2.0L);
+  const Real t2468 = t1887 * t1887;
+  const Real t2469 = t2468 + t2467;
+  const Real t2470 = t2469 + t2465;
+  const Real t2471 = t2058 * t2063;
+  const Real t2472 = t2471 * constant<Real>(2.0L);
+  const Real t2473 = t2058 * t2058;
+  const Real t2474 = t2473 + t2472;
+  const Real t2475 = t2474 + t2470;
+  const Real t2476 = t2475 + constant<Real>(1.0L);
+  const Real t2477 = t2100 * t2104;
+  const Real t2478 = t2477 * constant<Real>(2.0L);
+  const Real t2479 = t2100 * t2100;
   const Real t2480 = t2478 + t2479;
-  const Real t2481 = t2480 + t2475;
-  const Real t2482 = t441 * t511;
-  const Real t2483 = t513 * t441;
-  const Real t2484 = t2482 + t2483;
-  const Real t2485 = t2484 + t2481;
-  const Real t2486 = t484 * t420;
+  const Real t2481 = t2476 + t2480;
+  const Real t2482 = constant<Real>(1.0L) / t2481;
+  const Real t2483 = t633 * t627;
+  const Real t2484 = t633 * t625;
+  const Real t2485 = t2483 + t2484;
+  const Real t2486 = t644 * t656;
   const Real t2487 = t2485 + t2486;
-  const Real t2488 = t2015 * t2487;
-  const Real t2489 = t643 * t2488;
-  const Real t2490 = t2489 + t654;
-  const Real t2491 = t2490 * t2114;
-  const Real t2492 = sum_error(t654, t2489);
-  const Real t2493 = t2492 + t652;
-  const Real t2494 = t2493 * t2130;
-  const Real t2495 = t2491 + t2494;
-  const Real t2496 = t2490 * t2130;
-  const Real t2497 = t2495 + t2496;
-  const Real t2498 = t618 * t2488;
-  const Real t2499 = t620 * t2488;
+  const Real t2488 = t670 * t684;
+  const Real t2489 = t684 * t672;
+  const Real t2490 = t2489 + t2488;
+  const Real t2491 = t2487 - t2490;
+  const Real t2492 = t431 * t502;
+  const Real t2493 = t429 * t504;
+  const Real t2494 = t2493 + t2492;
+  const Real t2495 = t504 * t431;
+  const Real t2496 = t2495 + t2494;
+  const Real t2497 = t2491 + t2496;
+  const Real t2498 = t518 * t441;
+  const Real t2499 = t441 * t520;
   const Real t2500 = t2498 + t2499;
-  const Real t2501 = t626 - t2500;
-  const Real t2502 = t2501 * t2043;
-  const Real t2503 = t670 * t2488;
-  const Real t2504 = t679 - t2503;
-  const Real t2505 = t2081 * t2504;
-  const Real t2506 = t2502 + t2505;
-  const Real t2507 = t2497 + t2506;
-  const Real t2508 = t2039 * t2488;
-  const Real t2509 = t2508 + t2507;
-  const Real t2510 = t429 * t2488;
-  const Real t2511 = t2488 * t431;
-  const Real t2512 = t2510 + t2511;
-  const Real t2513 = -t497;
-  const Real t2514 = sum_error(t2512, t2513);
-  const Real t2515 = t2514 - t495;
-  const Real t2516 = t2208 * t2515;
-  const Real t2517 = t2512 - t497;
-  const Real t2518 = t2517 * t2190;
-  const Real t2519 = t2516 + t2518;
-  const Real t2520 = t2517 * t2208;
-  const Real t2521 = t2520 + t2519;
-  const Real t2522 = t2509 + t2521;
-  const Real t2523 = t441 * t2488;
-  const Real t2524 = -t513;
-  const Real t2525 = sum_error(t2523, t2524);
-  const Real t2526 = t2525 - t511;
-  const Real t2527 = t2229 * t2526;
-  const Real t2528 = t2523 - t513;
-  const Real t2529 = t2528 * t2331;
-  const Real t2530 = t2527 + t2529;
-  const Real t2531 = t2229 * t2528;
-  const Real t2532 = t2530 + t2531;
-  const Real t2533 = t2522 + t2532;
-  const Real t2534 = t420 * t2488;
-  const Real t2535 = t2534 - t484;
-  const Real t2536 = t2264 * t2535;
-  const Real t2537 = -t484;
-  const Real t2538 = sum_error(t2534, t2537);
-  const Real t2539 = t2274 * t2538;
-  const Real t2540 = t2536 + t2539;
-  const Real t2541 = t2274 * t2535;
-  const Real t2542 = t2541 + t2540;
-  const Real t2543 = t2533 + t2542;
-  const Real t2544 = t2543 * t2466;
-  const Real t2545 = product_error(t2544, t2130);
-  const Real t2546 = t2114 * t2544;
-  const Real t2547 = t2545 + t2546;
-  const Real t2548 = t2493 - t2547;
-  const Real t2549 = t2130 * t2544;
-  const Real t2550 = t2490 - t2549;
-  const Real t2551 = t2548 + t2550;
-  const Real t2552 = t2128 * t2551;
-  const Real t2553 = t2043 * t2544;
-  const Real t2554 = t2501 - t2553;
-  const Real t2555 = t2554 * t2057;
-  const Real t2556 = t2077 * t2554;
-  const Real t2557 = t2555 + t2556;
-  const Real t2558 = t2081 * t2544;
-  const Real t2559 = t2504 - t2558;
-  const Real t2560 = t2559 * t2107;
-  const Real t2561 = t2560 + t2557;
-  const Real t2562 = t2552 + t2561;
-  const Real t2563 = t2039 * t2544;
-  const Real t2564 = t2563 - t2488;
-  const Real t2565 = t2179 * t2564;
-  const Real t2566 = t2564 * t2181;
-  const Real t2567 = t2565 + t2566;
-  const Real t2568 = t2567 + t2562;
-  const Real t2569 = product_error(t2208, t2544);
-  const Real t2570 = t2190 * t2544;
-  const Real t2571 = t2569 + t2570;
-  const Real t2572 = t2515 - t2571;
-  const Real t2573 = t2208 * t2544;
-  const Real t2574 = t2517 - t2573;
-  const Real t2575 = t2572 + t2574;
-  const Real t2576 = t2206 * t2575;
-  const Real t2577 = t2575 * t2222;
-  const Real t2578 = t2576 + t2577;
-  const Real t2579 = t2568 + t2578;
-  const Real t2580 = t2331 * t2544;
-  const Real t2581 = product_error(t2544, t2229);
-  const Real t2582 = t2580 + t2581;
-  const Real t2583 = t2526 - t2582;
-  const Real t2584 = t2229 * t2544;
-  const Real t2585 = t2528 - t2584;
-  const Real t2586 = t2583 + t2585;
-  const Real t2587 = t2586 * t2243;
-  const Real t2588 = t2586 * t2317;
-  const Real t2589 = t2587 + t2588;
-  const Real t2590 = t2589 + t2579;
-  const Real t2591 = t429 * par.I_Ryy;
-  const Real t2592 = par.I_Ryy * t431;
-  const Real t2593 = t2591 + t2592;
-  const Real t2594 = t2590 - t2593;
-  const Real t2595 = t2259 * t2544;
-  const Real t2596 = -t2595;
-  const Real t2597 = sum_error(t2594, t2596);
-  const Real t2598 = -t2593;
-  const Real t2599 = sum_error(t2590, t2598);
-  const Real t2600 = sum_error(t2579, t2589);
-  const Real t2601 = sum_error(t2567, t2562);
-  const Real t2602 = sum_error(t2560, t2557);
-  const Real t2603 = t2105 * t2559;
-  const Real t2604 = product_error(t2559, t2107);
-  const Real t2605 = t2603 + t2604;
-  const Real t2606 = t2602 + t2605;
-  const Real t2607 = sum_error(t2552, t2561);
+  const Real t2501 = t2497 + t2500;
+  const Real t2502 = t420 * t488;
+  const Real t2503 = t490 * t420;
+  const Real t2504 = t2502 + t2503;
+  const Real t2505 = t2504 + t2501;
+  const Real t2506 = t1138 * t2505;
+  const Real t2507 = t2506 * t684;
+  const Real t2508 = sum_error(t672, t2507);
+  const Real t2509 = t670 + t2508;
+  const Real t2510 = t2509 * t1407;
+  const Real t2511 = t2507 + t672;
+  const Real t2512 = t2511 * t1412;
+  const Real t2513 = t2510 + t2512;
+  const Real t2514 = t1407 * t2511;
+  const Real t2515 = t2513 + t2514;
+  const Real t2516 = t2506 * t627;
+  const Real t2517 = t2506 * t625;
+  const Real t2518 = t2516 + t2517;
+  const Real t2519 = t633 - t2518;
+  const Real t2520 = t2519 * t1276;
+  const Real t2521 = t2506 * t656;
+  const Real t2522 = t644 - t2521;
+  const Real t2523 = t2522 * t1164;
+  const Real t2524 = t2523 + t2520;
+  const Real t2525 = t2524 + t2515;
+  const Real t2526 = t2506 * t1162;
+  const Real t2527 = t2525 + t2526;
+  const Real t2528 = t2506 * t431;
+  const Real t2529 = t429 * t2506;
+  const Real t2530 = t2528 + t2529;
+  const Real t2531 = t2530 - t504;
+  const Real t2532 = t2531 * t1893;
+  const Real t2533 = -t504;
+  const Real t2534 = sum_error(t2530, t2533);
+  const Real t2535 = t2534 - t502;
+  const Real t2536 = t1887 * t2535;
+  const Real t2537 = t2532 + t2536;
+  const Real t2538 = t1887 * t2531;
+  const Real t2539 = t2538 + t2537;
+  const Real t2540 = t2527 + t2539;
+  const Real t2541 = t2506 * t441;
+  const Real t2542 = -t520;
+  const Real t2543 = sum_error(t2541, t2542);
+  const Real t2544 = t2543 - t518;
+  const Real t2545 = t2058 * t2544;
+  const Real t2546 = t2541 - t520;
+  const Real t2547 = t2063 * t2546;
+  const Real t2548 = t2545 + t2547;
+  const Real t2549 = t2058 * t2546;
+  const Real t2550 = t2548 + t2549;
+  const Real t2551 = t2540 + t2550;
+  const Real t2552 = t2506 * t420;
+  const Real t2553 = -t490;
+  const Real t2554 = sum_error(t2552, t2553);
+  const Real t2555 = t2554 - t488;
+  const Real t2556 = t2100 * t2555;
+  const Real t2557 = t2552 - t490;
+  const Real t2558 = t2557 * t2104;
+  const Real t2559 = t2556 + t2558;
+  const Real t2560 = t2557 * t2100;
+  const Real t2561 = t2560 + t2559;
+  const Real t2562 = t2561 + t2551;
+  const Real t2563 = t2562 * t2482;
+  const Real t2564 = product_error(t2563, t1407);
+  const Real t2565 = t2563 * t1412;
+  const Real t2566 = t2564 + t2565;
+  const Real t2567 = t2509 - t2566;
+  const Real t2568 = t1407 * t2563;
+  const Real t2569 = t2511 - t2568;
+  const Real t2570 = t2569 + t2567;
+  const Real t2571 = t2230 * t2570;
+  const Real t2572 = t2563 * t1276;
+  const Real t2573 = t2519 - t2572;
+  const Real t2574 = t2165 * t2573;
+  const Real t2575 = t2185 * t2573;
+  const Real t2576 = t2574 + t2575;
+  const Real t2577 = t2563 * t1164;
+  const Real t2578 = t2522 - t2577;
+  const Real t2579 = t2578 * t2213;
+  const Real t2580 = t2576 + t2579;
+  const Real t2581 = t2571 + t2580;
+  const Real t2582 = t2563 * t1162;
+  const Real t2583 = t2582 - t2506;
+  const Real t2584 = t2583 * t2282;
+  const Real t2585 = t2280 * t2583;
+  const Real t2586 = t2584 + t2585;
+  const Real t2587 = t2581 + t2586;
+  const Real t2588 = product_error(t1887, t2563);
+  const Real t2589 = t2563 * t1893;
+  const Real t2590 = t2588 + t2589;
+  const Real t2591 = t2535 - t2590;
+  const Real t2592 = t1887 * t2563;
+  const Real t2593 = t2531 - t2592;
+  const Real t2594 = t2591 + t2593;
+  const Real t2595 = t2316 * t2594;
+  const Real t2596 = t2301 * t2594;
+  const Real t2597 = t2595 + t2596;
+  const Real t2598 = t2597 + t2587;
+  const Real t2599 = product_error(t2563, t2058);
+  const Real t2600 = t2063 * t2563;
+  const Real t2601 = t2599 + t2600;
+  const Real t2602 = t2544 - t2601;
+  const Real t2603 = t2058 * t2563;
+  const Real t2604 = t2546 - t2603;
+  const Real t2605 = t2604 + t2602;
+  const Real t2606 = t2605 * t2404;
+  const Real t2607 = t2605 * t2335;
   const Real t2608 = t2606 + t2607;
-  const Real t2609 = t2601 + t2608;
-  const Real t2610 = sum_error(t2578, t2568);
-  const Real t2611 = t2609 + t2610;
-  const Real t2612 = t2600 + t2611;
-  const Real t2613 = t2599 + t2612;
-  const Real t2614 = t2597 + t2613;
-  const Real t2615 = t2594 - t2595;
-  const Real t2616 = t2264 * t2544;
-  const Real t2617 = product_error(t2274, t2544);
-  const Real t2618 = t2616 + t2617;
-  const Real t2619 = t2538 - t2618;
-  const Real t2620 = t2274 * t2544;
-  const Real t2621 = t2535 - t2620;
-  const Real t2622 = t2619 + t2621;
-  const Real t2623 = t2622 * t2272;
-  const Real t2624 = -t2623;
-  const Real t2625 = sum_error(t2615, t2624);
-  const Real t2626 = t2614 + t2625;
-  const Real t2627 = t2325 * t2626;
-  const Real t2628 = t2615 - t2623;
-  const Real t2629 = t2361 * t2628;
-  const Real t2630 = t2629 + t2627;
-  const Real t2631 = t2325 * t2628;
-  const Real t2632 = t2631 + t2630;
-  const Real t2633 = t2043 * t903;
-  const Real t2634 = t1124 * t2081;
-  const Real t2635 = t2634 + t2633;
-  const Real t2636 = t2114 * t1275;
-  const Real t2637 = t2130 * t1275;
-  const Real t2638 = t2636 + t2637;
-  const Real t2639 = t2635 + t2638;
-  const Real t2640 = t1370 * t2039;
-  const Real t2641 = t2639 - t2640;
-  const Real t2642 = t2208 * t1298;
-  const Real t2643 = t2641 + t2642;
-  const Real t2644 = t2331 * t1316;
-  const Real t2645 = t2229 * t1316;
-  const Real t2646 = t2645 + t2644;
-  const Real t2647 = t2646 + t2643;
-  const Real t2648 = t1307 + t2647;
-  const Real t2649 = t2551 * t2648;
-  const Real t2650 = t849 * t2043;
-  const Real t2651 = t2043 * t847;
-  const Real t2652 = t2650 + t2651;
-  const Real t2653 = t2081 * t888;
-  const Real t2654 = t2652 + t2653;
-  const Real t2655 = t2114 * t903;
-  const Real t2656 = t2130 * t903;
+  const Real t2609 = t2598 + t2608;
+  const Real t2610 = t429 * par.I_Ryy;
+  const Real t2611 = par.I_Ryy * t431;
+  const Real t2612 = t2610 + t2611;
+  const Real t2613 = -t2612;
+  const Real t2614 = sum_error(t2609, t2613);
+  const Real t2615 = sum_error(t2571, t2580);
+  const Real t2616 = sum_error(t2579, t2576);
+  const Real t2617 = product_error(t2578, t2213);
+  const Real t2618 = t2211 * t2578;
+  const Real t2619 = t2617 + t2618;
+  const Real t2620 = t2616 + t2619;
+  const Real t2621 = t2615 + t2620;
+  const Real t2622 = sum_error(t2586, t2581);
+  const Real t2623 = t2621 + t2622;
+  const Real t2624 = sum_error(t2597, t2587);
+  const Real t2625 = t2623 + t2624;
+  const Real t2626 = sum_error(t2598, t2608);
+  const Real t2627 = t2625 + t2626;
+  const Real t2628 = t2614 + t2627;
+  const Real t2629 = t2609 - t2612;
+  const Real t2630 = t2351 * t2563;
+  const Real t2631 = -t2630;
+  const Real t2632 = sum_error(t2629, t2631);
+  const Real t2633 = t2628 + t2632;
+  const Real t2634 = t2629 - t2630;
+  const Real t2635 = t2104 * t2563;
+  const Real t2636 = product_error(t2100, t2563);
+  const Real t2637 = t2635 + t2636;
+  const Real t2638 = t2555 - t2637;
+  const Real t2639 = t2100 * t2563;
+  const Real t2640 = t2557 - t2639;
+  const Real t2641 = t2640 + t2638;
+  const Real t2642 = t2641 * t2360;
+  const Real t2643 = -t2642;
+  const Real t2644 = sum_error(t2634, t2643);
+  const Real t2645 = t2633 + t2644;
+  const Real t2646 = t2412 * t2645;
+  const Real t2647 = t2634 - t2642;
+  const Real t2648 = t2647 * t2445;
+  const Real t2649 = t2646 + t2648;
+  const Real t2650 = t2412 * t2647;
+  const Real t2651 = t2649 + t2650;
+  const Real t2652 = t1276 * t1211;
+  const Real t2653 = t902 * t1164;
+  const Real t2654 = t2653 + t2652;
+  const Real t2655 = t1412 * t1336;
+  const Real t2656 = t1407 * t1336;
   const Real t2657 = t2655 + t2656;
   const Real t2658 = t2654 + t2657;
-  const Real t2659 = t1360 * t2039;
-  const Real t2660 = t2039 * t1355;
-  const Real t2661 = t2659 + t2660;
-  const Real t2662 = t2658 - t2661;
-  const Real t2663 = t920 * t2190;
-  const Real t2664 = t920 * t2208;
-  const Real t2665 = t2663 + t2664;
-  const Real t2666 = t2662 + t2665;
-  const Real t2667 = t941 * t2331;
-  const Real t2668 = t2229 * t939;
-  const Real t2669 = t2667 + t2668;
-  const Real t2670 = t941 * t2229;
-  const Real t2671 = t2670 + t2669;
-  const Real t2672 = t2666 + t2671;
-  const Real t2673 = t2672 + t931;
-  const Real t2674 = t2673 * t2554;
-  const Real t2675 = t2043 * t888;
-  const Real t2676 = t1110 * t2081;
-  const Real t2677 = t1114 * t2081;
-  const Real t2678 = t2676 + t2677;
-  const Real t2679 = t2675 + t2678;
-  const Real t2680 = t1124 * t2114;
-  const Real t2681 = t1124 * t2130;
-  const Real t2682 = t2680 + t2681;
-  const Real t2683 = t2679 + t2682;
-  const Real t2684 = t1365 * t2039;
-  const Real t2685 = t2683 - t2684;
-  const Real t2686 = t1147 * t2208;
-  const Real t2687 = t2685 + t2686;
-  const Real t2688 = t2331 * t1162;
-  const Real t2689 = t2229 * t1162;
-  const Real t2690 = t2689 + t2688;
-  const Real t2691 = t2687 + t2690;
-  const Real t2692 = t2691 - t1156;
-  const Real t2693 = t2559 * t2692;
-  const Real t2694 = t2674 + t2693;
-  const Real t2695 = t2694 + t2649;
-  const Real t2696 = t1360 * t2043;
-  const Real t2697 = t2043 * t1355;
-  const Real t2698 = t2696 + t2697;
-  const Real t2699 = t1365 * t2081;
-  const Real t2700 = t2699 + t2698;
-  const Real t2701 = t1370 * t2114;
-  const Real t2702 = t1370 * t2130;
-  const Real t2703 = t2702 + t2701;
+  const Real t2659 = t1439 * t1162;
+  const Real t2660 = t2658 - t2659;
+  const Real t2661 = t1887 * t1359;
+  const Real t2662 = t2660 + t2661;
+  const Real t2663 = t2063 * t1377;
+  const Real t2664 = t2058 * t1377;
+  const Real t2665 = t2664 + t2663;
+  const Real t2666 = t2665 + t2662;
+  const Real t2667 = t1368 + t2666;
+  const Real t2668 = t2570 * t2667;
+  const Real t2669 = t1276 * t860;
+  const Real t2670 = t888 * t1164;
+  const Real t2671 = t886 * t1164;
+  const Real t2672 = t2670 + t2671;
+  const Real t2673 = t2669 + t2672;
+  const Real t2674 = t902 * t1412;
+  const Real t2675 = t902 * t1407;
+  const Real t2676 = t2674 + t2675;
+  const Real t2677 = t2673 + t2676;
+  const Real t2678 = t1434 * t1162;
+  const Real t2679 = t2677 - t2678;
+  const Real t2680 = t925 * t1887;
+  const Real t2681 = t2679 + t2680;
+  const Real t2682 = t2063 * t940;
+  const Real t2683 = t2058 * t940;
+  const Real t2684 = t2683 + t2682;
+  const Real t2685 = t2681 + t2684;
+  const Real t2686 = t2685 - t934;
+  const Real t2687 = t2578 * t2686;
+  const Real t2688 = t1198 * t1276;
+  const Real t2689 = t1276 * t1196;
+  const Real t2690 = t2688 + t2689;
+  const Real t2691 = t1164 * t860;
+  const Real t2692 = t2690 + t2691;
+  const Real t2693 = t1412 * t1211;
+  const Real t2694 = t1407 * t1211;
+  const Real t2695 = t2693 + t2694;
+  const Real t2696 = t2692 + t2695;
+  const Real t2697 = t1429 * t1162;
+  const Real t2698 = t1162 * t1424;
+  const Real t2699 = t2697 + t2698;
+  const Real t2700 = t2696 - t2699;
+  const Real t2701 = t1228 * t1893;
+  const Real t2702 = t1228 * t1887;
+  const Real t2703 = t2701 + t2702;
   const Real t2704 = t2700 + t2703;
-  const Real t2705 = t2159 * t2039;
-  const Real t2706 = t2156 * t2039;
+  const Real t2705 = t1249 * t2063;
+  const Real t2706 = t2058 * t1247;
   const Real t2707 = t2705 + t2706;
-  const Real t2708 = t2704 - t2707;
-  const Real t2709 = t2190 * t1447;
-  const Real t2710 = t2208 * t1447;
-  const Real t2711 = t2709 + t2710;
-  const Real t2712 = t2708 + t2711;
-  const Real t2713 = t1486 * t2331;
-  const Real t2714 = t2229 * t1484;
-  const Real t2715 = t2713 + t2714;
-  const Real t2716 = t1486 * t2229;
+  const Real t2708 = t1249 * t2058;
+  const Real t2709 = t2708 + t2707;
+  const Real t2710 = t2704 + t2709;
+  const Real t2711 = t2710 + t1239;
+  const Real t2712 = t2711 * t2573;
+  const Real t2713 = t2687 + t2712;
+  const Real t2714 = t2668 + t2713;
+  const Real t2715 = t1429 * t1276;
+  const Real t2716 = t1276 * t1424;
   const Real t2717 = t2715 + t2716;
-  const Real t2718 = t2712 + t2717;
-  const Real t2719 = t1465 + t2718;
-  const Real t2720 = t1422 * t2264;
-  const Real t2721 = t1422 * t2274;
+  const Real t2718 = t1434 * t1164;
+  const Real t2719 = t2718 + t2717;
+  const Real t2720 = t1439 * t1412;
+  const Real t2721 = t1439 * t1407;
   const Real t2722 = t2721 + t2720;
-  const Real t2723 = t2719 - t2722;
-  const Real t2724 = t2564 * t2723;
-  const Real t2725 = t2724 + t2695;
-  const Real t2726 = t1171 * t2081;
-  const Real t2727 = t1147 * t2081;
-  const Real t2728 = t2726 + t2727;
-  const Real t2729 = t920 * t2043;
+  const Real t2723 = t2719 + t2722;
+  const Real t2724 = t2260 * t1162;
+  const Real t2725 = t2257 * t1162;
+  const Real t2726 = t2724 + t2725;
+  const Real t2727 = t2723 - t2726;
+  const Real t2728 = t1893 * t1516;
+  const Real t2729 = t1887 * t1516;
   const Real t2730 = t2728 + t2729;
-  const Real t2731 = t1298 * t2114;
-  const Real t2732 = t2130 * t1298;
-  const Real t2733 = t2732 + t2731;
-  const Real t2734 = t2730 + t2733;
-  const Real t2735 = t2039 * t1447;
-  const Real t2736 = t2734 - t2735;
-  const Real t2737 = t1724 * t2208;
-  const Real t2738 = t2737 + t2736;
-  const Real t2739 = t1750 * t2331;
-  const Real t2740 = t2229 * t1750;
-  const Real t2741 = t2739 + t2740;
-  const Real t2742 = t2741 + t2738;
-  const Real t2743 = t1741 + t2742;
-  const Real t2744 = t1684 * t2264;
-  const Real t2745 = t1684 * t2274;
-  const Real t2746 = t2745 + t2744;
-  const Real t2747 = t2746 + t2743;
-  const Real t2748 = t2747 * t2575;
-  const Real t2749 = t2748 + t2725;
-  const Real t2750 = t2043 * t939;
-  const Real t2751 = t941 * t2043;
-  const Real t2752 = t2750 + t2751;
-  const Real t2753 = t1162 * t2081;
-  const Real t2754 = t2752 + t2753;
-  const Real t2755 = t2114 * t1316;
-  const Real t2756 = t2130 * t1316;
+  const Real t2731 = t2727 + t2730;
+  const Real t2732 = t1550 * t2063;
+  const Real t2733 = t2058 * t1555;
+  const Real t2734 = t2732 + t2733;
+  const Real t2735 = t1550 * t2058;
+  const Real t2736 = t2734 + t2735;
+  const Real t2737 = t2731 + t2736;
+  const Real t2738 = t1534 + t2737;
+  const Real t2739 = t1491 * t2104;
+  const Real t2740 = t1491 * t2100;
+  const Real t2741 = t2740 + t2739;
+  const Real t2742 = t2738 - t2741;
+  const Real t2743 = t2583 * t2742;
+  const Real t2744 = t2714 + t2743;
+  const Real t2745 = t949 * t1164;
+  const Real t2746 = t925 * t1164;
+  const Real t2747 = t2745 + t2746;
+  const Real t2748 = t1228 * t1276;
+  const Real t2749 = t2747 + t2748;
+  const Real t2750 = t1359 * t1412;
+  const Real t2751 = t1407 * t1359;
+  const Real t2752 = t2751 + t2750;
+  const Real t2753 = t2749 + t2752;
+  const Real t2754 = t1162 * t1516;
+  const Real t2755 = t2753 - t2754;
+  const Real t2756 = t1795 * t1887;
   const Real t2757 = t2756 + t2755;
-  const Real t2758 = t2754 + t2757;
-  const Real t2759 = t1484 * t2039;
-  const Real t2760 = t1486 * t2039;
-  const Real t2761 = t2759 + t2760;
-  const Real t2762 = t2758 - t2761;
-  const Real t2763 = t1750 * t2190;
-  const Real t2764 = t1750 * t2208;
-  const Real t2765 = t2763 + t2764;
+  const Real t2758 = t1834 * t2063;
+  const Real t2759 = t2058 * t1834;
+  const Real t2760 = t2758 + t2759;
+  const Real t2761 = t2760 + t2757;
+  const Real t2762 = t1825 + t2761;
+  const Real t2763 = t1755 * t2104;
+  const Real t2764 = t1755 * t2100;
+  const Real t2765 = t2764 + t2763;
   const Real t2766 = t2765 + t2762;
-  const Real t2767 = t2229 * t1940;
-  const Real t2768 = t2767 + t2766;
-  const Real t2769 = t2331 * t1940;
-  const Real t2770 = product_error(t1940, t2229);
-  const Real t2771 = t2770 + t2769;
-  const Real t2772 = t2771 + t2768;
-  const Real t2773 = t2772 + t1916;
-  const Real t2774 = t1868 * t2264;
-  const Real t2775 = t2274 * t1868;
-  const Real t2776 = t2774 + t2775;
-  const Real t2777 = t2776 + t2773;
-  const Real t2778 = t2777 * t2586;
-  const Real t2779 = t2778 + t2749;
-  const Real t2780 = par.I_Ryy * t2190;
-  const Real t2781 = par.I_Ryy * t2208;
-  const Real t2782 = t2780 + t2781;
-  const Real t2783 = t2779 + t2782;
-  const Real t2784 = t2043 * t931;
-  const Real t2785 = t1156 * t2081;
-  const Real t2786 = t2784 - t2785;
-  const Real t2787 = t1307 * t2114;
-  const Real t2788 = t2130 * t1307;
-  const Real t2789 = t2788 + t2787;
-  const Real t2790 = t2786 + t2789;
-  const Real t2791 = t1465 * t2039;
-  const Real t2792 = t2790 - t2791;
-  const Real t2793 = t2190 * t1741;
-  const Real t2794 = t2208 * t1741;
+  const Real t2767 = t2766 * t2594;
+  const Real t2768 = t2744 + t2767;
+  const Real t2769 = t1276 * t1247;
+  const Real t2770 = t1249 * t1276;
+  const Real t2771 = t2769 + t2770;
+  const Real t2772 = t940 * t1164;
+  const Real t2773 = t2771 + t2772;
+  const Real t2774 = t1412 * t1377;
+  const Real t2775 = t1407 * t1377;
+  const Real t2776 = t2775 + t2774;
+  const Real t2777 = t2773 + t2776;
+  const Real t2778 = t1555 * t1162;
+  const Real t2779 = t1550 * t1162;
+  const Real t2780 = t2778 + t2779;
+  const Real t2781 = t2777 - t2780;
+  const Real t2782 = t1834 * t1893;
+  const Real t2783 = t1834 * t1887;
+  const Real t2784 = t2782 + t2783;
+  const Real t2785 = t2784 + t2781;
+  const Real t2786 = t2058 * t2019;
+  const Real t2787 = t2786 + t2785;
+  const Real t2788 = t2063 * t2019;
+  const Real t2789 = product_error(t2019, t2058);
+  const Real t2790 = t2789 + t2788;
+  const Real t2791 = t2790 + t2787;
+  const Real t2792 = t2791 + t1995;
+  const Real t2793 = t1947 * t2104;
+  const Real t2794 = t2100 * t1947;
   const Real t2795 = t2793 + t2794;
-  const Real t2796 = t2792 + t2795;
-  const Real t2797 = t1916 * t2331;
-  const Real t2798 = t2229 * t1916;
-  const Real t2799 = t2798 + t2797;
-  const Real t2800 = t2796 + t2799;
+  const Real t2796 = t2795 + t2792;
+  const Real t2797 = t2796 * t2605;
+  const Real t2798 = t2797 + t2768;
+  const Real t2799 = par.I_Ryy * t1893;
+  const Real t2800 = par.I_Ryy * t1887;
+  const Real t2801 = t2799 + t2800;
+  const Real t2802 = t2798 + t2801;
+  const Real t2803 = t1276 * t1239;
+  const Real t2804 = t934 * t1164;
+  const Real t2805 = t2803 - t2804;
+  const Real t2806 = t1368 * t1412;
+  const Real t2807 = t1407 * t1368;
+  const Real t2808 = t2807 + t2806;
+  const Real t2809 = t2805 + t2808;
+  const Real t2810 = t1534 * t1162;
+  const Real t2811 = t2809 - t2810;
+  const Real t2812 = t1893 * t1825;
+  const Real t2813 = t1887 * t1825;
+  const Real t2814 = t2812 + t2813;
+  const Real t2815 = t2811 + t2814;
+  const Real t2816 = t1995 * t2063;
+  const Real t2817 = t2058 * t1995;
+  const Real t2818 = t2817 + t2816;
+  const Real t2819 = t2815 + t2818;
 
   // front_wheel: acceleration
-  const Real t2801 = c_r_p_2_ * par.k2;
-  const Real t2802 = par.k1 * s_r_p_2_;
-  const Real t2803 = t2801 + t2802;
+  const Real t2820 = c_r_p_2_ * par.k2;
+  const Real t2821 = par.k1 * s_r_p_2_;
+  const Real t2822 = t2820 + t2821;
 
   // front_wheel: wrench
-  const Real t2804 = par.I_Fxx * t2803;
+  const Real t2823 = par.I_Fxx * t2822;
 
   // front_wheel: joint force
-  const Real t2805 = t2804 * s_r_p_2_;
+  const Real t2824 = t2823 * s_r_p_2_;
 
   // passive accelerations
-  const Real t2806 = par.I_Fxx * t4;
-  const Real t2807 = t2806 * c_r_p_2_;
-  const Real t2808 = t2805 + t2807;
-  const Real t2809 = t2808 * par.k1;
+  const Real t2825 = par.I_Fxx * t4;
+  const Real t2826 = t2825 * c_r_p_2_;
+  const Real t2827 = t2824 + t2826;
+  const Real t2828 = t2827 * par.k1;
 
   // front_wheel: joint force
-  const Real t2810 = c_r_p_2_ * t2804;
+  const Real t2829 = c_r_p_2_ * t2823;
 
   // passive accelerations
-  const Real t2811 = t2806 * s_r_p_2_;
-  const Real t2812 = t2810 - t2811;
-  const Real t2813 = par.k2 * t2812;
-  const Real t2814 = t2809 + t2813;
-  const Real t2815 = par.k58 + t2814;
-  const Real t2816 = par.k7 + t2815;
+  const Real t2830 = t2825 * s_r_p_2_;
+  const Real t2831 = t2829 - t2830;
+  const Real t2832 = par.k2 * t2831;
+  const Real t2833 = t2828 + t2832;
+  const Real t2834 = par.k58 + t2833;
+  const Real t2835 = par.k7 + t2834;
 
   // accelerations
-  const Real t2817 = t2800 + t2816;
-  const Real t2818 = t2817 * t2544;
-  const Real t2819 = t2783 - t2818;
-  const Real t2820 = t1684 * t2190;
-  const Real t2821 = t1684 * t2208;
-  const Real t2822 = t2820 + t2821;
-  const Real t2823 = t1422 * t2039;
-  const Real t2824 = t2822 + t2823;
-  const Real t2825 = t1868 * t2331;
-  const Real t2826 = t2229 * t1868;
-  const Real t2827 = t2825 + t2826;
-  const Real t2828 = t2824 + t2827;
-  const Real t2829 = t2264 * par.I_Fyy;
-  const Real t2830 = t2274 * par.I_Fyy;
-  const Real t2831 = t2830 + t2829;
-  const Real t2832 = t2831 + t2828;
-  const Real t2833 = t2622 * t2832;
-  const Real t2834 = t2819 + t2833;
-  const Real t2835 = t2834 - t2632;
-  const Real t2836 = sum_error(t1307, t2647);
-  const Real t2837 = sum_error(t2642, t2641);
-  const Real t2838 = t1298 * t2190;
-  const Real t2839 = product_error(t2208, t1298);
-  const Real t2840 = t2838 + t2839;
-  const Real t2841 = t2840 + t2837;
-  const Real t2842 = sum_error(t2646, t2643);
+  const Real t2836 = t2819 + t2835;
+  const Real t2837 = t2836 * t2563;
+  const Real t2838 = t2802 - t2837;
+  const Real t2839 = t1755 * t1893;
+  const Real t2840 = t1755 * t1887;
+  const Real t2841 = t2839 + t2840;
+  const Real t2842 = t1491 * t1162;
   const Real t2843 = t2841 + t2842;
-  const Real t2844 = t2836 + t2843;
-  const Real t2845 = t2130 * t2844;
-  const Real t2846 = t2114 * t2648;
-  const Real t2847 = t2846 + t2845;
-  const Real t2848 = t2130 * t2648;
-  const Real t2849 = t2848 + t2847;
-  const Real t2850 = sum_error(t2685, t2686);
-  const Real t2851 = t1147 * t2190;
-  const Real t2852 = t1171 * t2208;
-  const Real t2853 = t2852 + t2851;
-  const Real t2854 = product_error(t2208, t1147);
-  const Real t2855 = t2854 + t2853;
-  const Real t2856 = t2850 + t2855;
-  const Real t2857 = sum_error(t2690, t2687);
-  const Real t2858 = t2856 + t2857;
+  const Real t2844 = t1947 * t2063;
+  const Real t2845 = t2058 * t1947;
+  const Real t2846 = t2844 + t2845;
+  const Real t2847 = t2843 + t2846;
+  const Real t2848 = t2104 * par.I_Fyy;
+  const Real t2849 = t2100 * par.I_Fyy;
+  const Real t2850 = t2849 + t2848;
+  const Real t2851 = t2850 + t2847;
+  const Real t2852 = t2641 * t2851;
+  const Real t2853 = t2838 + t2852;
+  const Real t2854 = t2853 - t2651;
+  const Real t2855 = sum_error(t1368, t2666);
+  const Real t2856 = sum_error(t2661, t2660);
+  const Real t2857 = t1359 * t1893;
+  const Real t2858 = product_error(t1887, t1359);
+  const Real t2859 = t2857 + t2858;
+  const Real t2860 = t2859 + t2856;
+  const Real t2861 = sum_error(t2665, t2662);
+  const Real t2862 = t2860 + t2861;
+  const Real t2863 = t2855 + t2862;
+  const Real t2864 = t1407 * t2863;
+  const Real t2865 = t1412 * t2667;
+  const Real t2866 = t2865 + t2864;
+  const Real t2867 = t1407 * t2667;
+  const Real t2868 = t2867 + t2866;
+  const Real t2869 = sum_error(t2679, t2680);
+  const Real t2870 = t925 * t1893;
+  const Real t2871 = t949 * t1887;
+  const Real t2872 = t2871 + t2870;
+  const Real t2873 = product_error(t1887, t925);
+  const Real t2874 = t2873 + t2872;
+  const Real t2875 = t2869 + t2874;
+  const Real t2876 = sum_error(t2684, t2681);
+  const Real t2877 = t2875 + t2876;
 
   // front_wheel: joint force
-  const Real t2859 = -t1156;
+  const Real t2878 = -t934;
 
   // accelerations
-  const Real t2860 = sum_error(t2691, t2859);
-  const Real t2861 = t2858 + t2860;
-  const Real t2862 = t2861 * t2081;
-  const Real t2863 = t2081 * t2692;
-  const Real t2864 = t2862 + t2863;
-  const Real t2865 = t2673 * t2043;
-  const Real t2866 = t2865 + t2864;
-  const Real t2867 = t2849 + t2866;
-  const Real t2868 = t2039 * t2723;
-  const Real t2869 = t2867 - t2868;
-  const Real t2870 = t2208 * t2747;
-  const Real t2871 = t2869 + t2870;
-  const Real t2872 = t2229 * t2777;
-  const Real t2873 = t2777 * t2331;
-  const Real t2874 = t2872 + t2873;
-  const Real t2875 = t2874 + t2871;
-  const Real t2876 = t2817 + t2875;
-  const Real t2877 = t2264 * t2832;
-  const Real t2878 = t2274 * t2832;
-  const Real t2879 = t2877 + t2878;
-  const Real t2880 = t2879 + t2876;
-  const Real t2881 = t2277 * t2361;
-  const Real t2882 = t2342 * t2325;
-  const Real t2883 = t2882 + t2881;
-  const Real t2884 = t2277 * t2325;
-  const Real t2885 = t2883 + t2884;
-  const Real t2886 = t2880 - t2885;
-  const Real t2887 = constant<Real>(1.0L) / t2886;
-  const Real t2888 = t2835 * t2887;
-  const Real t2889 = t2439 * t2888;
-  const Real t2890 = t2437 - t2435;
-  const Real t2891 = -t2632;
-  const Real t2892 = sum_error(t2834, t2891);
-  const Real t2893 = product_error(t2648, t2551);
-  const Real t2894 = t2551 * t2844;
-  const Real t2895 = t2893 + t2894;
-  const Real t2896 = sum_error(t2693, t2674);
-  const Real t2897 = t2861 * t2559;
-  const Real t2898 = product_error(t2692, t2559);
-  const Real t2899 = t2897 + t2898;
-  const Real t2900 = t2896 + t2899;
-  const Real t2901 = t2900 + t2895;
-  const Real t2902 = sum_error(t2694, t2649);
-  const Real t2903 = t2901 + t2902;
-  const Real t2904 = sum_error(t2724, t2695);
-  const Real t2905 = t2904 + t2903;
-  const Real t2906 = product_error(t2747, t2575);
-  const Real t2907 = -t2735;
-  const Real t2908 = sum_error(t2734, t2907);
-  const Real t2909 = sum_error(t2733, t2730);
-  const Real t2910 = t2909 + t2908;
-  const Real t2911 = t1724 * t2190;
-  const Real t2912 = t1763 * t2208;
-  const Real t2913 = t2912 + t2911;
-  const Real t2914 = product_error(t2208, t1724);
-  const Real t2915 = t2913 + t2914;
-  const Real t2916 = t2910 + t2915;
-  const Real t2917 = sum_error(t2736, t2737);
-  const Real t2918 = t2917 + t2916;
-  const Real t2919 = sum_error(t2738, t2741);
-  const Real t2920 = t2918 + t2919;
-  const Real t2921 = sum_error(t2742, t1741);
+  const Real t2879 = sum_error(t2685, t2878);
+  const Real t2880 = t2877 + t2879;
+  const Real t2881 = t2880 * t1164;
+  const Real t2882 = t1164 * t2686;
+  const Real t2883 = t2881 + t2882;
+  const Real t2884 = t2711 * t1276;
+  const Real t2885 = t2884 + t2883;
+  const Real t2886 = t2868 + t2885;
+  const Real t2887 = t1162 * t2742;
+  const Real t2888 = t2886 - t2887;
+  const Real t2889 = t1887 * t2766;
+  const Real t2890 = t2888 + t2889;
+  const Real t2891 = t2058 * t2796;
+  const Real t2892 = t2796 * t2063;
+  const Real t2893 = t2891 + t2892;
+  const Real t2894 = t2893 + t2890;
+  const Real t2895 = t2836 + t2894;
+  const Real t2896 = t2104 * t2851;
+  const Real t2897 = t2100 * t2851;
+  const Real t2898 = t2896 + t2897;
+  const Real t2899 = t2898 + t2895;
+  const Real t2900 = t2364 * t2445;
+  const Real t2901 = t2426 * t2412;
+  const Real t2902 = t2901 + t2900;
+  const Real t2903 = t2364 * t2412;
+  const Real t2904 = t2902 + t2903;
+  const Real t2905 = t2899 - t2904;
+  const Real t2906 = constant<Real>(1.0L) / t2905;
+  const Real t2907 = t2854 * t2906;
+  const Real t2908 = t2455 * t2907;
+  const Real t2909 = t2453 - t2451;
+  const Real t2910 = -t2651;
+  const Real t2911 = sum_error(t2853, t2910);
+  const Real t2912 = product_error(t2667, t2570);
+  const Real t2913 = t2570 * t2863;
+  const Real t2914 = t2912 + t2913;
+  const Real t2915 = sum_error(t2687, t2712);
+  const Real t2916 = t2880 * t2578;
+  const Real t2917 = product_error(t2686, t2578);
+  const Real t2918 = t2916 + t2917;
+  const Real t2919 = t2915 + t2918;
+  const Real t2920 = t2914 + t2919;
+  const Real t2921 = sum_error(t2713, t2668);
   const Real t2922 = t2920 + t2921;
-  const Real t2923 = sum_error(t2746, t2743);
+  const Real t2923 = sum_error(t2743, t2714);
   const Real t2924 = t2923 + t2922;
-  const Real t2925 = t2924 * t2575;
-  const Real t2926 = t2906 + t2925;
-  const Real t2927 = t2926 + t2905;
-  const Real t2928 = sum_error(t2748, t2725);
-  const Real t2929 = t2928 + t2927;
-  const Real t2930 = sum_error(t2778, t2749);
+  const Real t2925 = -t2754;
+  const Real t2926 = sum_error(t2753, t2925);
+  const Real t2927 = sum_error(t2752, t2749);
+  const Real t2928 = t2927 + t2926;
+  const Real t2929 = t1795 * t1893;
+  const Real t2930 = t1803 * t1887;
   const Real t2931 = t2930 + t2929;
-  const Real t2932 = sum_error(t2779, t2782);
-  const Real t2933 = t2932 + t2931;
-  const Real t2934 = -t2818;
-  const Real t2935 = sum_error(t2783, t2934);
-  const Real t2936 = t2933 + t2935;
-  const Real t2937 = sum_error(t2833, t2819);
-  const Real t2938 = t2937 + t2936;
-  const Real t2939 = t2892 + t2938;
-  const Real t2940 = t2939 * t2887;
-  const Real t2941 = sum_error(t2876, t2879);
-  const Real t2942 = sum_error(t2871, t2874);
-  const Real t2943 = sum_error(t2870, t2869);
-  const Real t2944 = t2208 * t2924;
-  const Real t2945 = t2747 * t2190;
-  const Real t2946 = t2944 + t2945;
-  const Real t2947 = product_error(t2208, t2747);
+  const Real t2932 = product_error(t1887, t1795);
+  const Real t2933 = t2931 + t2932;
+  const Real t2934 = t2928 + t2933;
+  const Real t2935 = sum_error(t2755, t2756);
+  const Real t2936 = t2935 + t2934;
+  const Real t2937 = sum_error(t2757, t2760);
+  const Real t2938 = t2936 + t2937;
+  const Real t2939 = sum_error(t2761, t1825);
+  const Real t2940 = t2938 + t2939;
+  const Real t2941 = sum_error(t2765, t2762);
+  const Real t2942 = t2941 + t2940;
+  const Real t2943 = t2942 * t2594;
+  const Real t2944 = product_error(t2766, t2594);
+  const Real t2945 = t2943 + t2944;
+  const Real t2946 = t2924 + t2945;
+  const Real t2947 = sum_error(t2767, t2744);
   const Real t2948 = t2946 + t2947;
-  const Real t2949 = t2948 + t2943;
-  const Real t2950 = t2942 + t2949;
-  const Real t2951 = sum_error(t2875, t2817);
+  const Real t2949 = sum_error(t2797, t2768);
+  const Real t2950 = t2949 + t2948;
+  const Real t2951 = sum_error(t2798, t2801);
   const Real t2952 = t2950 + t2951;
-  const Real t2953 = t2941 + t2952;
-  const Real t2954 = -t2885;
-  const Real t2955 = sum_error(t2880, t2954);
-  const Real t2956 = t2953 + t2955;
-  const Real t2957 = t2956 * t2887;
-  const Real t2958 = t2957 / t2886;
-  const Real t2959 = quotient_error(constant<Real>(1.0L), t2886);
-  const Real t2960 = t2959 - t2958;
-  const Real t2961 = t2835 * t2960;
-  const Real t2962 = t2940 + t2961;
-  const Real t2963 = product_error(t2835, t2887);
-  const Real t2964 = t2963 + t2962;
-  const Real t2965 = t2890 * t2964;
-  const Real t2966 = t2965 + t2889;
-  const Real t2967 = product_error(t2890, t2888);
-  const Real t2968 = t2967 + t2966;
-  const Real t2969 = t1086 * t2554;
-  const Real t2970 = t1088 * t2554;
+  const Real t2953 = -t2837;
+  const Real t2954 = sum_error(t2802, t2953);
+  const Real t2955 = t2954 + t2952;
+  const Real t2956 = sum_error(t2852, t2838);
+  const Real t2957 = t2955 + t2956;
+  const Real t2958 = t2957 + t2911;
+  const Real t2959 = t2958 * t2906;
+  const Real t2960 = sum_error(t2895, t2898);
+  const Real t2961 = sum_error(t2890, t2893);
+  const Real t2962 = sum_error(t2889, t2888);
+  const Real t2963 = t1887 * t2942;
+  const Real t2964 = t2766 * t1893;
+  const Real t2965 = t2963 + t2964;
+  const Real t2966 = product_error(t1887, t2766);
+  const Real t2967 = t2965 + t2966;
+  const Real t2968 = t2967 + t2962;
+  const Real t2969 = t2961 + t2968;
+  const Real t2970 = sum_error(t2894, t2836);
   const Real t2971 = t2969 + t2970;
-  const Real t2972 = t2559 * t1229;
-  const Real t2973 = -t2972;
-  const Real t2974 = sum_error(t2971, t2973);
-  const Real t2975 = t1227 * t2559;
-  const Real t2976 = product_error(t1229, t2559);
-  const Real t2977 = t2975 + t2976;
-  const Real t2978 = t2974 - t2977;
-  const Real t2979 = t1344 * t2551;
-  const Real t2980 = product_error(t1346, t2551);
-  const Real t2981 = t2979 + t2980;
-  const Real t2982 = t2978 - t2981;
-  const Real t2983 = t2971 - t2972;
-  const Real t2984 = t2551 * t1346;
-  const Real t2985 = -t2984;
-  const Real t2986 = sum_error(t2983, t2985);
-  const Real t2987 = t2982 + t2986;
-  const Real t2988 = t2564 * t1612;
-  const Real t2989 = product_error(t2564, t1615);
+  const Real t2972 = t2960 + t2971;
+  const Real t2973 = -t2904;
+  const Real t2974 = sum_error(t2899, t2973);
+  const Real t2975 = t2972 + t2974;
+  const Real t2976 = t2975 * t2906;
+  const Real t2977 = t2976 / t2905;
+  const Real t2978 = quotient_error(constant<Real>(1.0L), t2905);
+  const Real t2979 = t2978 - t2977;
+  const Real t2980 = t2979 * t2854;
+  const Real t2981 = t2959 + t2980;
+  const Real t2982 = product_error(t2854, t2906);
+  const Real t2983 = t2981 + t2982;
+  const Real t2984 = t2909 * t2983;
+  const Real t2985 = t2984 + t2908;
+  const Real t2986 = product_error(t2909, t2907);
+  const Real t2987 = t2985 + t2986;
+  const Real t2988 = t1292 * t2573;
+  const Real t2989 = t1272 * t2573;
   const Real t2990 = t2989 + t2988;
-  const Real t2991 = t2987 - t2990;
-  const Real t2992 = t2983 - t2984;
-  const Real t2993 = t2564 * t1615;
-  const Real t2994 = -t2993;
-  const Real t2995 = sum_error(t2992, t2994);
-  const Real t2996 = t2991 + t2995;
-  const Real t2997 = t1812 * t2575;
-  const Real t2998 = product_error(t1815, t2575);
-  const Real t2999 = t2998 + t2997;
-  const Real t3000 = t2999 + t2996;
-  const Real t3001 = t2992 - t2993;
-  const Real t3002 = t1815 * t2575;
-  const Real t3003 = sum_error(t3001, t3002);
-  const Real t3004 = t3003 + t3000;
-  const Real t3005 = t3001 + t3002;
-  const Real t3006 = t2586 * t1977;
-  const Real t3007 = t1979 * t2586;
-  const Real t3008 = t3007 + t3006;
-  const Real t3009 = -t3008;
-  const Real t3010 = sum_error(t3005, t3009);
-  const Real t3011 = t3004 + t3010;
-  const Real t3012 = t3005 - t3008;
-  const Real t3013 = par.I_Ryy * t806;
-  const Real t3014 = par.I_Ryy * t808;
-  const Real t3015 = t3014 + t3013;
-  const Real t3016 = -t3015;
-  const Real t3017 = sum_error(t3012, t3016);
-  const Real t3018 = t3017 + t3011;
-  const Real t3019 = t3012 - t3015;
-  const Real t3020 = t2425 * t2544;
-  const Real t3021 = -t3020;
-  const Real t3022 = sum_error(t3019, t3021);
-  const Real t3023 = t3018 + t3022;
-  const Real t3024 = t3019 - t3020;
-  const Real t3025 = t1992 * t2622;
-  const Real t3026 = sum_error(t3025, t3024);
-  const Real t3027 = t3026 + t3023;
-  const Real t3028 = t2324 * t2628;
-  const Real t3029 = t1996 * t3028;
-  const Real t3030 = t2324 * t2626;
-  const Real t3031 = t2357 * t2628;
-  const Real t3032 = t3031 + t3030;
-  const Real t3033 = product_error(t2324, t2628);
+  const Real t2991 = t1166 * t2578;
+  const Real t2992 = -t2991;
+  const Real t2993 = sum_error(t2990, t2992);
+  const Real t2994 = t1119 * t2578;
+  const Real t2995 = product_error(t1166, t2578);
+  const Real t2996 = t2994 + t2995;
+  const Real t2997 = t2993 - t2996;
+  const Real t2998 = t2570 * t1405;
+  const Real t2999 = product_error(t1409, t2570);
+  const Real t3000 = t2999 + t2998;
+  const Real t3001 = t2997 - t3000;
+  const Real t3002 = t2990 - t2991;
+  const Real t3003 = t2570 * t1409;
+  const Real t3004 = -t3003;
+  const Real t3005 = sum_error(t3002, t3004);
+  const Real t3006 = t3001 + t3005;
+  const Real t3007 = t1681 * t2583;
+  const Real t3008 = product_error(t2583, t1683);
+  const Real t3009 = t3008 + t3007;
+  const Real t3010 = t3006 - t3009;
+  const Real t3011 = t3002 - t3003;
+  const Real t3012 = t1683 * t2583;
+  const Real t3013 = -t3012;
+  const Real t3014 = sum_error(t3011, t3013);
+  const Real t3015 = t3010 + t3014;
+  const Real t3016 = t1883 * t2594;
+  const Real t3017 = product_error(t1890, t2594);
+  const Real t3018 = t3017 + t3016;
+  const Real t3019 = t3015 + t3018;
+  const Real t3020 = t3011 - t3012;
+  const Real t3021 = t1890 * t2594;
+  const Real t3022 = sum_error(t3020, t3021);
+  const Real t3023 = t3022 + t3019;
+  const Real t3024 = t3021 + t3020;
+  const Real t3025 = t2056 * t2605;
+  const Real t3026 = t2060 * t2605;
+  const Real t3027 = t3025 + t3026;
+  const Real t3028 = -t3027;
+  const Real t3029 = sum_error(t3024, t3028);
+  const Real t3030 = t3029 + t3023;
+  const Real t3031 = t3024 - t3027;
+  const Real t3032 = par.I_Ryy * t815;
+  const Real t3033 = par.I_Ryy * t817;
   const Real t3034 = t3032 + t3033;
-  const Real t3035 = t2327 * t3034;
-  const Real t3036 = t3029 + t3035;
-  const Real t3037 = product_error(t3028, t2327);
-  const Real t3038 = t3037 + t3036;
-  const Real t3039 = t3027 - t3038;
-  const Real t3040 = t3024 + t3025;
-  const Real t3041 = t2327 * t3028;
-  const Real t3042 = -t3041;
-  const Real t3043 = sum_error(t3040, t3042);
-  const Real t3044 = t3043 + t3039;
-  const Real t3045 = t3044 - t2968;
-  const Real t3046 = t3040 - t3041;
-  const Real t3047 = t2890 * t2888;
-  const Real t3048 = t3046 - t3047;
-  const Real t3049 = t3045 + t3048;
-  const Real t3050 = t2835 * t2964;
-  const Real t3051 = t2939 * t2888;
-  const Real t3052 = t3051 + t3050;
-  const Real t3053 = t2835 * t2888;
-  const Real t3054 = t3052 + t3053;
-  const Real t3055 = t1124 * t2551;
-  const Real t3056 = t2554 * t888;
-  const Real t3057 = t1110 * t2559;
-  const Real t3058 = t3056 + t3057;
-  const Real t3059 = t3058 + t3055;
-  const Real t3060 = t2564 * t1365;
-  const Real t3061 = t3060 + t3059;
-  const Real t3062 = t1147 * t2575;
-  const Real t3063 = t1171 * t2575;
-  const Real t3064 = t3062 + t3063;
-  const Real t3065 = t3064 + t3061;
-  const Real t3066 = sum_error(t3060, t3059);
-  const Real t3067 = sum_error(t3055, t3058);
-  const Real t3068 = product_error(t1110, t2559);
-  const Real t3069 = t1114 * t2559;
-  const Real t3070 = t3068 + t3069;
-  const Real t3071 = sum_error(t3056, t3057);
-  const Real t3072 = t3070 + t3071;
-  const Real t3073 = t3072 + t3067;
-  const Real t3074 = t3066 + t3073;
-  const Real t3075 = t3065 + t3074;
-  const Real t3076 = t2586 * t1162;
-  const Real t3077 = t3076 + t3075;
-  const Real t3078 = t1156 * t2544;
-  const Real t3079 = t3077 + t3078;
-  const Real t3080 = t3079 * t2559;
-  const Real t3081 = t2554 * t847;
-  const Real t3082 = t849 * t2554;
+  const Real t3035 = -t3034;
+  const Real t3036 = sum_error(t3031, t3035);
+  const Real t3037 = t3030 + t3036;
+  const Real t3038 = t3031 - t3034;
+  const Real t3039 = t2087 * t2563;
+  const Real t3040 = -t3039;
+  const Real t3041 = sum_error(t3038, t3040);
+  const Real t3042 = t3041 + t3037;
+  const Real t3043 = t3038 - t3039;
+  const Real t3044 = t2641 * t2098;
+  const Real t3045 = sum_error(t3044, t3043);
+  const Real t3046 = t3042 + t3045;
+  const Real t3047 = t2411 * t2647;
+  const Real t3048 = t2151 * t3047;
+  const Real t3049 = t2411 * t2645;
+  const Real t3050 = t2441 * t2647;
+  const Real t3051 = t3050 + t3049;
+  const Real t3052 = product_error(t2411, t2647);
+  const Real t3053 = t3051 + t3052;
+  const Real t3054 = t2414 * t3053;
+  const Real t3055 = t3048 + t3054;
+  const Real t3056 = product_error(t3047, t2414);
+  const Real t3057 = t3056 + t3055;
+  const Real t3058 = t3046 - t3057;
+  const Real t3059 = t3044 + t3043;
+  const Real t3060 = t2414 * t3047;
+  const Real t3061 = -t3060;
+  const Real t3062 = sum_error(t3059, t3061);
+  const Real t3063 = t3062 + t3058;
+  const Real t3064 = t3063 - t2987;
+  const Real t3065 = t3059 - t3060;
+  const Real t3066 = t2909 * t2907;
+  const Real t3067 = t3065 - t3066;
+  const Real t3068 = t3067 + t3064;
+  const Real t3069 = t2854 * t2983;
+  const Real t3070 = t2958 * t2907;
+  const Real t3071 = t3070 + t3069;
+  const Real t3072 = t2854 * t2907;
+  const Real t3073 = t3072 + t3071;
+  const Real t3074 = t902 * t2570;
+  const Real t3075 = t860 * t2573;
+  const Real t3076 = t888 * t2578;
+  const Real t3077 = t3075 + t3076;
+  const Real t3078 = t3077 + t3074;
+  const Real t3079 = t1434 * t2583;
+  const Real t3080 = t3079 + t3078;
+  const Real t3081 = t925 * t2594;
+  const Real t3082 = t949 * t2594;
   const Real t3083 = t3081 + t3082;
-  const Real t3084 = t2559 * t888;
-  const Real t3085 = t3083 + t3084;
-  const Real t3086 = t2551 * t903;
-  const Real t3087 = t3085 + t3086;
-  const Real t3088 = t2564 * t1355;
-  const Real t3089 = t2564 * t1360;
+  const Real t3084 = t3083 + t3080;
+  const Real t3085 = sum_error(t3079, t3078);
+  const Real t3086 = sum_error(t3074, t3077);
+  const Real t3087 = sum_error(t3075, t3076);
+  const Real t3088 = product_error(t888, t2578);
+  const Real t3089 = t886 * t2578;
   const Real t3090 = t3088 + t3089;
   const Real t3091 = t3087 + t3090;
-  const Real t3092 = t920 * t2575;
-  const Real t3093 = t3091 + t3092;
-  const Real t3094 = t2586 * t939;
-  const Real t3095 = t941 * t2586;
-  const Real t3096 = t3094 + t3095;
-  const Real t3097 = t3093 + t3096;
-  const Real t3098 = t931 * t2544;
-  const Real t3099 = t3097 - t3098;
-  const Real t3100 = t2554 * t3099;
-  const Real t3101 = t3100 + t3080;
-  const Real t3102 = t2551 * t1275;
-  const Real t3103 = t2554 * t903;
-  const Real t3104 = t1124 * t2559;
-  const Real t3105 = t3103 + t3104;
-  const Real t3106 = t3102 + t3105;
-  const Real t3107 = t1370 * t2564;
-  const Real t3108 = t3107 + t3106;
-  const Real t3109 = t1298 * t2575;
-  const Real t3110 = t3108 + t3109;
-  const Real t3111 = t2586 * t1316;
+  const Real t3092 = t3086 + t3091;
+  const Real t3093 = t3085 + t3092;
+  const Real t3094 = t3084 + t3093;
+  const Real t3095 = t2605 * t940;
+  const Real t3096 = t3095 + t3094;
+  const Real t3097 = t2563 * t934;
+  const Real t3098 = t3097 + t3096;
+  const Real t3099 = t3098 * t2578;
+  const Real t3100 = t1198 * t2573;
+  const Real t3101 = t1196 * t2573;
+  const Real t3102 = t3100 + t3101;
+  const Real t3103 = t2578 * t860;
+  const Real t3104 = t3103 + t3102;
+  const Real t3105 = t2570 * t1211;
+  const Real t3106 = t3104 + t3105;
+  const Real t3107 = t2583 * t1424;
+  const Real t3108 = t1429 * t2583;
+  const Real t3109 = t3107 + t3108;
+  const Real t3110 = t3109 + t3106;
+  const Real t3111 = t1228 * t2594;
   const Real t3112 = t3111 + t3110;
-  const Real t3113 = t1307 * t2544;
-  const Real t3114 = t3112 - t3113;
-  const Real t3115 = t2551 * t3114;
-  const Real t3116 = t3115 + t3101;
-  const Real t3117 = t2554 * t1355;
-  const Real t3118 = t1360 * t2554;
-  const Real t3119 = t3117 + t3118;
-  const Real t3120 = t1365 * t2559;
-  const Real t3121 = t3120 + t3119;
-  const Real t3122 = t1370 * t2551;
-  const Real t3123 = t3121 + t3122;
-  const Real t3124 = t2159 * t2564;
-  const Real t3125 = t2564 * t2156;
-  const Real t3126 = t3124 + t3125;
-  const Real t3127 = t3123 + t3126;
-  const Real t3128 = t2575 * t1447;
+  const Real t3113 = t2605 * t1247;
+  const Real t3114 = t1249 * t2605;
+  const Real t3115 = t3113 + t3114;
+  const Real t3116 = t3112 + t3115;
+  const Real t3117 = t2563 * t1239;
+  const Real t3118 = t3116 - t3117;
+  const Real t3119 = t3118 * t2573;
+  const Real t3120 = t3119 + t3099;
+  const Real t3121 = t2570 * t1336;
+  const Real t3122 = t902 * t2578;
+  const Real t3123 = t1211 * t2573;
+  const Real t3124 = t3122 + t3123;
+  const Real t3125 = t3121 + t3124;
+  const Real t3126 = t1439 * t2583;
+  const Real t3127 = t3125 + t3126;
+  const Real t3128 = t1359 * t2594;
   const Real t3129 = t3128 + t3127;
-  const Real t3130 = t1486 * t2586;
-  const Real t3131 = t1484 * t2586;
-  const Real t3132 = t3130 + t3131;
-  const Real t3133 = t3129 + t3132;
-  const Real t3134 = t1465 * t2544;
-  const Real t3135 = t3133 - t3134;
-  const Real t3136 = t1422 * t2622;
-  const Real t3137 = t3135 - t3136;
-  const Real t3138 = t3137 * t2564;
-  const Real t3139 = t3138 + t3116;
-  const Real t3140 = t1298 * t2551;
-  const Real t3141 = t1147 * t2559;
-  const Real t3142 = t1171 * t2559;
-  const Real t3143 = t3141 + t3142;
-  const Real t3144 = t920 * t2554;
+  const Real t3130 = t2605 * t1377;
+  const Real t3131 = t3130 + t3129;
+  const Real t3132 = t1368 * t2563;
+  const Real t3133 = t3131 - t3132;
+  const Real t3134 = t2570 * t3133;
+  const Real t3135 = t3134 + t3120;
+  const Real t3136 = t1439 * t2570;
+  const Real t3137 = t1424 * t2573;
+  const Real t3138 = t1429 * t2573;
+  const Real t3139 = t3137 + t3138;
+  const Real t3140 = t1434 * t2578;
+  const Real t3141 = t3139 + t3140;
+  const Real t3142 = t3136 + t3141;
+  const Real t3143 = t2260 * t2583;
+  const Real t3144 = t2257 * t2583;
   const Real t3145 = t3143 + t3144;
-  const Real t3146 = t3140 + t3145;
-  const Real t3147 = t2564 * t1447;
-  const Real t3148 = t3147 + t3146;
-  const Real t3149 = t1763 * t2575;
-  const Real t3150 = t1724 * t2575;
+  const Real t3146 = t3142 + t3145;
+  const Real t3147 = t1516 * t2594;
+  const Real t3148 = t3146 + t3147;
+  const Real t3149 = t1550 * t2605;
+  const Real t3150 = t1555 * t2605;
   const Real t3151 = t3149 + t3150;
-  const Real t3152 = t3148 + t3151;
-  const Real t3153 = t1750 * t2586;
-  const Real t3154 = t3153 + t3152;
-  const Real t3155 = t3154 + par.I_Ryy;
-  const Real t3156 = t1741 * t2544;
-  const Real t3157 = t3155 - t3156;
-  const Real t3158 = t1684 * t2622;
-  const Real t3159 = t3158 + t3157;
-  const Real t3160 = t3159 * t2575;
-  const Real t3161 = t3160 + t3139;
-  const Real t3162 = t2551 * t1316;
-  const Real t3163 = t941 * t2554;
-  const Real t3164 = t2554 * t939;
+  const Real t3152 = t3151 + t3148;
+  const Real t3153 = t1534 * t2563;
+  const Real t3154 = t3152 - t3153;
+  const Real t3155 = t1491 * t2641;
+  const Real t3156 = t3154 - t3155;
+  const Real t3157 = t3156 * t2583;
+  const Real t3158 = t3157 + t3135;
+  const Real t3159 = t925 * t2578;
+  const Real t3160 = t949 * t2578;
+  const Real t3161 = t3159 + t3160;
+  const Real t3162 = t1228 * t2573;
+  const Real t3163 = t3162 + t3161;
+  const Real t3164 = t2570 * t1359;
   const Real t3165 = t3163 + t3164;
-  const Real t3166 = t1162 * t2559;
-  const Real t3167 = t3165 + t3166;
-  const Real t3168 = t3162 + t3167;
-  const Real t3169 = t1486 * t2564;
-  const Real t3170 = t1484 * t2564;
-  const Real t3171 = t3169 + t3170;
-  const Real t3172 = t3171 + t3168;
-  const Real t3173 = t1750 * t2575;
-  const Real t3174 = t3173 + t3172;
-  const Real t3175 = t2586 * t1940;
-  const Real t3176 = t3175 + t3174;
-  const Real t3177 = t1916 * t2544;
-  const Real t3178 = t3176 - t3177;
-  const Real t3179 = t1868 * t2622;
-  const Real t3180 = t3178 + t3179;
-  const Real t3181 = t2586 * t3180;
-  const Real t3182 = t3161 + t3181;
-  const Real t3183 = par.I_Ryy * t2575;
-  const Real t3184 = par.I_Ryy + t3183;
-  const Real t3185 = t3184 + t3182;
-  const Real t3186 = t2551 * t1307;
-  const Real t3187 = t2554 * t931;
-  const Real t3188 = t2559 * t1156;
-  const Real t3189 = t3187 - t3188;
-  const Real t3190 = t3189 + t3186;
-  const Real t3191 = t2564 * t1465;
-  const Real t3192 = t3190 + t3191;
-  const Real t3193 = t1741 * t2575;
-  const Real t3194 = t3193 + t3192;
-  const Real t3195 = t1916 * t2586;
-  const Real t3196 = t3195 + t3194;
-  const Real t3197 = t2544 * t2816;
-  const Real t3198 = t3196 - t3197;
-  const Real t3199 = t2544 * t3198;
-  const Real t3200 = t3185 - t3199;
-  const Real t3201 = t1684 * t2575;
-  const Real t3202 = t1422 * t2564;
-  const Real t3203 = t3201 - t3202;
-  const Real t3204 = t1868 * t2586;
-  const Real t3205 = t3204 + t3203;
-  const Real t3206 = t2622 * par.I_Fyy;
-  const Real t3207 = t3205 + t3206;
-  const Real t3208 = t2622 * t3207;
-  const Real t3209 = t3208 + t3200;
-  const Real t3210 = t3034 * t2628;
-  const Real t3211 = t3028 * t2626;
-  const Real t3212 = t3211 + t3210;
-  const Real t3213 = t3028 * t2628;
-  const Real t3214 = t3213 + t3212;
-  const Real t3215 = t3209 - t3214;
-  const Real t3216 = t3215 - t3054;
-  const Real t3217 = constant<Real>(1.0L) / t3216;
-  const Real t3218 = t3217 * t3049;
-  const Real t3219 = t3218 * t2964;
-  const Real t3220 = t3218 * t2888;
-  const Real t3221 = t3219 + t3220;
-  const Real t3222 = -t3221;
-  const Real t3223 = t2890 * t2887;
-  const Real t3224 = sum_error(t3223, t3222);
-  const Real t3225 = t2439 * t2887;
-  const Real t3226 = t2890 * t2960;
-  const Real t3227 = t3225 + t3226;
-  const Real t3228 = product_error(t2890, t2887);
-  const Real t3229 = t3228 + t3227;
-  const Real t3230 = t3224 + t3229;
-  const Real t3231 = t3230 * t2325;
-  const Real t3232 = t3223 - t3221;
-  const Real t3233 = t3232 * t2361;
-  const Real t3234 = t3231 + t3233;
-  const Real t3235 = t3232 * t2325;
-  const Real t3236 = t3235 + t3234;
-  const Real t3237 = -t3236;
-  const Real t3238 = t2327 * t2324;
-  const Real t3239 = sum_error(t3238, t3237);
-  const Real t3240 = t1996 * t2324;
-  const Real t3241 = t2327 * t2357;
-  const Real t3242 = t3241 + t3240;
-  const Real t3243 = product_error(t2324, t2327);
-  const Real t3244 = t3242 + t3243;
-  const Real t3245 = t3239 + t3244;
-  const Real t3246 = t3238 - t3236;
-  const Real t3247 = t3218 * t3028;
-  const Real t3248 = t3034 * t3218;
-  const Real t3249 = t3247 + t3248;
-  const Real t3250 = -t3249;
-  const Real t3251 = sum_error(t3246, t3250);
-  const Real t3252 = t3251 + t3245;
-  const Real t3253 = t3252 * t420;
-  const Real t3254 = t3246 - t3249;
-  const Real t3255 = t3254 * t420;
-  const Real t3256 = t3255 + t3253;
-  const Real t3257 = -t3256;
-  const Real t3258 = t2274 * t3232;
-  const Real t3259 = sum_error(t3258, t3257);
-  const Real t3260 = t2274 * t3230;
-  const Real t3261 = t2264 * t3232;
-  const Real t3262 = t3261 + t3260;
-  const Real t3263 = product_error(t2274, t3232);
-  const Real t3264 = t3263 + t3262;
-  const Real t3265 = t3259 + t3264;
-  const Real t3266 = t3258 - t3256;
-  const Real t3267 = t3218 * t2622;
-  const Real t3268 = sum_error(t3267, t3266);
-  const Real t3269 = t3265 + t3268;
-  const Real t3270 = t3267 + t3266;
-  const Real t3271 = t3270 - t794;
-  const Real t3272 = t3271 + t3269;
-  const Real t3273 = t3218 * t2544;
-  const Real t3274 = t3232 - t3273;
-  const Real t3275 = t3230 + t3274;
-  const Real t3276 = t3252 * t441;
-  const Real t3277 = t3254 * t441;
-  const Real t3278 = t3277 + t3276;
-  const Real t3279 = t2229 * t3230;
-  const Real t3280 = t2331 * t3232;
-  const Real t3281 = t3279 + t3280;
-  const Real t3282 = t2229 * t3232;
+  const Real t3166 = t2583 * t1516;
+  const Real t3167 = t3166 + t3165;
+  const Real t3168 = t1803 * t2594;
+  const Real t3169 = t1795 * t2594;
+  const Real t3170 = t3168 + t3169;
+  const Real t3171 = t3167 + t3170;
+  const Real t3172 = t1834 * t2605;
+  const Real t3173 = t3172 + t3171;
+  const Real t3174 = t3173 + par.I_Ryy;
+  const Real t3175 = t2563 * t1825;
+  const Real t3176 = t3174 - t3175;
+  const Real t3177 = t1755 * t2641;
+  const Real t3178 = t3176 + t3177;
+  const Real t3179 = t3178 * t2594;
+  const Real t3180 = t3158 + t3179;
+  const Real t3181 = t2570 * t1377;
+  const Real t3182 = t1247 * t2573;
+  const Real t3183 = t1249 * t2573;
+  const Real t3184 = t3182 + t3183;
+  const Real t3185 = t940 * t2578;
+  const Real t3186 = t3184 + t3185;
+  const Real t3187 = t3181 + t3186;
+  const Real t3188 = t1550 * t2583;
+  const Real t3189 = t1555 * t2583;
+  const Real t3190 = t3188 + t3189;
+  const Real t3191 = t3190 + t3187;
+  const Real t3192 = t1834 * t2594;
+  const Real t3193 = t3191 + t3192;
+  const Real t3194 = t2605 * t2019;
+  const Real t3195 = t3194 + t3193;
+  const Real t3196 = t1995 * t2563;
+  const Real t3197 = t3195 - t3196;
+  const Real t3198 = t1947 * t2641;
+  const Real t3199 = t3198 + t3197;
+  const Real t3200 = t3199 * t2605;
+  const Real t3201 = t3200 + t3180;
+  const Real t3202 = par.I_Ryy * t2594;
+  const Real t3203 = t3202 + par.I_Ryy;
+  const Real t3204 = t3201 + t3203;
+  const Real t3205 = t2570 * t1368;
+  const Real t3206 = t1239 * t2573;
+  const Real t3207 = t934 * t2578;
+  const Real t3208 = t3206 - t3207;
+  const Real t3209 = t3208 + t3205;
+  const Real t3210 = t1534 * t2583;
+  const Real t3211 = t3210 + t3209;
+  const Real t3212 = t1825 * t2594;
+  const Real t3213 = t3211 + t3212;
+  const Real t3214 = t1995 * t2605;
+  const Real t3215 = t3214 + t3213;
+  const Real t3216 = t2563 * t2835;
+  const Real t3217 = t3215 - t3216;
+  const Real t3218 = t2563 * t3217;
+  const Real t3219 = t3204 - t3218;
+  const Real t3220 = t1755 * t2594;
+  const Real t3221 = t1491 * t2583;
+  const Real t3222 = t3220 - t3221;
+  const Real t3223 = t1947 * t2605;
+  const Real t3224 = t3223 + t3222;
+  const Real t3225 = t2641 * par.I_Fyy;
+  const Real t3226 = t3224 + t3225;
+  const Real t3227 = t3226 * t2641;
+  const Real t3228 = t3227 + t3219;
+  const Real t3229 = t3053 * t2647;
+  const Real t3230 = t3047 * t2645;
+  const Real t3231 = t3229 + t3230;
+  const Real t3232 = t3047 * t2647;
+  const Real t3233 = t3232 + t3231;
+  const Real t3234 = t3228 - t3233;
+  const Real t3235 = t3234 - t3073;
+  const Real t3236 = constant<Real>(1.0L) / t3235;
+  const Real t3237 = t3236 * t3068;
+  const Real t3238 = t3237 * t2983;
+  const Real t3239 = t3237 * t2907;
+  const Real t3240 = t3238 + t3239;
+  const Real t3241 = -t3240;
+  const Real t3242 = t2909 * t2906;
+  const Real t3243 = sum_error(t3242, t3241);
+  const Real t3244 = t2455 * t2906;
+  const Real t3245 = t2909 * t2979;
+  const Real t3246 = t3244 + t3245;
+  const Real t3247 = product_error(t2909, t2906);
+  const Real t3248 = t3247 + t3246;
+  const Real t3249 = t3248 + t3243;
+  const Real t3250 = t2412 * t3249;
+  const Real t3251 = t3242 - t3240;
+  const Real t3252 = t3251 * t2445;
+  const Real t3253 = t3252 + t3250;
+  const Real t3254 = t3251 * t2412;
+  const Real t3255 = t3253 + t3254;
+  const Real t3256 = -t3255;
+  const Real t3257 = t2414 * t2411;
+  const Real t3258 = sum_error(t3257, t3256);
+  const Real t3259 = t2411 * t2151;
+  const Real t3260 = t2414 * t2441;
+  const Real t3261 = t3259 + t3260;
+  const Real t3262 = product_error(t2411, t2414);
+  const Real t3263 = t3262 + t3261;
+  const Real t3264 = t3258 + t3263;
+  const Real t3265 = t3257 - t3255;
+  const Real t3266 = t3237 * t3053;
+  const Real t3267 = t3237 * t3047;
+  const Real t3268 = t3266 + t3267;
+  const Real t3269 = -t3268;
+  const Real t3270 = sum_error(t3265, t3269);
+  const Real t3271 = t3264 + t3270;
+  const Real t3272 = t3271 * t420;
+  const Real t3273 = t3265 - t3268;
+  const Real t3274 = t3273 * t420;
+  const Real t3275 = t3274 + t3272;
+  const Real t3276 = -t3275;
+  const Real t3277 = t2100 * t3251;
+  const Real t3278 = sum_error(t3277, t3276);
+  const Real t3279 = t2100 * t3249;
+  const Real t3280 = t3251 * t2104;
+  const Real t3281 = t3280 + t3279;
+  const Real t3282 = product_error(t2100, t3251);
   const Real t3283 = t3281 + t3282;
-  const Real t3284 = t3283 - t3278;
-  const Real t3285 = t3218 * t2586;
-  const Real t3286 = t3285 + t3284;
-  const Real t3287 = t3286 + t818;
-  const Real t3288 = t3252 * t431;
-  const Real t3289 = t429 * t3254;
-  const Real t3290 = t3289 + t3288;
-  const Real t3291 = t3254 * t431;
-  const Real t3292 = t3291 + t3290;
-  const Real t3293 = -t3292;
-  const Real t3294 = t2208 * t3232;
-  const Real t3295 = sum_error(t3294, t3293);
-  const Real t3296 = t3230 * t2208;
-  const Real t3297 = t3232 * t2190;
-  const Real t3298 = t3296 + t3297;
-  const Real t3299 = product_error(t2208, t3232);
+  const Real t3284 = t3283 + t3278;
+  const Real t3285 = t3277 - t3275;
+  const Real t3286 = t2641 * t3237;
+  const Real t3287 = sum_error(t3286, t3285);
+  const Real t3288 = t3284 + t3287;
+  const Real t3289 = t3285 + t3286;
+  const Real t3290 = t3289 - t803;
+  const Real t3291 = t3288 + t3290;
+  const Real t3292 = t3237 * t2563;
+  const Real t3293 = t3251 - t3292;
+  const Real t3294 = t3293 + t3249;
+  const Real t3295 = t3271 * t441;
+  const Real t3296 = t3273 * t441;
+  const Real t3297 = t3295 + t3296;
+  const Real t3298 = t2058 * t3249;
+  const Real t3299 = t3251 * t2063;
   const Real t3300 = t3299 + t3298;
-  const Real t3301 = t3295 + t3300;
-  const Real t3302 = t3294 - t3292;
-  const Real t3303 = t3218 * t2575;
-  const Real t3304 = sum_error(t3303, t3302);
-  const Real t3305 = t3301 + t3304;
-  const Real t3306 = t806 + t3305;
-  const Real t3307 = t3302 + t3303;
-  const Real t3308 = t3307 + t808;
-  const Real t3309 = t3306 + t3308;
-  const Real t3310 = t3230 * t2039;
-  const Real t3311 = t3232 * t2039;
-  const Real t3312 = t3311 + t3310;
-  const Real t3313 = -t3312;
-  const Real t3314 = sum_error(t3254, t3313);
-  const Real t3315 = t3252 + t3314;
-  const Real t3316 = t3254 - t3312;
-  const Real t3317 = t2564 * t3218;
-  const Real t3318 = sum_error(t3316, t3317);
-  const Real t3319 = t3315 + t3318;
-  const Real t3320 = t3316 + t3317;
-  const Real t3321 = t3319 + t3320;
-  const Real t3322 = t3252 * t643;
-  const Real t3323 = t643 * t3254;
-  const Real t3324 = t3323 + t3322;
-  const Real t3325 = t3230 * t2130;
-  const Real t3326 = t3232 * t2114;
-  const Real t3327 = t3326 + t3325;
-  const Real t3328 = t2130 * t3232;
-  const Real t3329 = t3328 + t3327;
-  const Real t3330 = t3329 - t3324;
-  const Real t3331 = t3218 * t2551;
-  const Real t3332 = t3331 + t3330;
-  const Real t3333 = t3332 + t894;
-  const Real t3334 = t3252 * t620;
-  const Real t3335 = t3254 * t618;
-  const Real t3336 = t3334 + t3335;
-  const Real t3337 = t3254 * t620;
-  const Real t3338 = t3337 + t3336;
-  const Real t3339 = t3230 * t2043;
-  const Real t3340 = t3232 * t2043;
-  const Real t3341 = t3339 + t3340;
-  const Real t3342 = t3338 + t3341;
-  const Real t3343 = t3218 * t2554;
-  const Real t3344 = t3342 + t3343;
-  const Real t3345 = t820 + t3344;
-  const Real t3346 = t3252 * t670;
-  const Real t3347 = t3254 * t670;
-  const Real t3348 = t3347 + t3346;
-  const Real t3349 = t3230 * t2081;
-  const Real t3350 = t3232 * t2081;
-  const Real t3351 = t3350 + t3349;
-  const Real t3352 = t3348 + t3351;
-  const Real t3353 = t3218 * t2559;
-  const Real t3354 = t3352 + t3353;
-  const Real t3355 = t3354 + t857;
-  const Real t3356 = t2039 * t3275;
-  const Real t3357 = t3254 - t3356;
-  const Real t3358 = t3252 + t3357;
-  const Real t3359 = t3218 * t2488;
-  const Real t3360 = t3358 - t3359;
+  const Real t3301 = t2058 * t3251;
+  const Real t3302 = t3301 + t3300;
+  const Real t3303 = t3302 - t3297;
+  const Real t3304 = t3237 * t2605;
+  const Real t3305 = t3303 + t3304;
+  const Real t3306 = t827 + t3305;
+  const Real t3307 = t3271 * t431;
+  const Real t3308 = t3273 * t429;
+  const Real t3309 = t3307 + t3308;
+  const Real t3310 = t3273 * t431;
+  const Real t3311 = t3309 + t3310;
+  const Real t3312 = -t3311;
+  const Real t3313 = t3251 * t1887;
+  const Real t3314 = sum_error(t3313, t3312);
+  const Real t3315 = t1887 * t3249;
+  const Real t3316 = t3251 * t1893;
+  const Real t3317 = t3316 + t3315;
+  const Real t3318 = product_error(t1887, t3251);
+  const Real t3319 = t3318 + t3317;
+  const Real t3320 = t3314 + t3319;
+  const Real t3321 = t3313 - t3311;
+  const Real t3322 = t3237 * t2594;
+  const Real t3323 = sum_error(t3322, t3321);
+  const Real t3324 = t3320 + t3323;
+  const Real t3325 = t3324 + t815;
+  const Real t3326 = t3321 + t3322;
+  const Real t3327 = sum_error(t817, t3326);
+  const Real t3328 = t3325 + t3327;
+  const Real t3329 = t817 + t3326;
+  const Real t3330 = t3328 + t3329;
+  const Real t3331 = t1162 * t3249;
+  const Real t3332 = t3251 * t1162;
+  const Real t3333 = t3331 + t3332;
+  const Real t3334 = -t3333;
+  const Real t3335 = sum_error(t3273, t3334);
+  const Real t3336 = t3335 + t3271;
+  const Real t3337 = t3273 - t3333;
+  const Real t3338 = t3237 * t2583;
+  const Real t3339 = sum_error(t3337, t3338);
+  const Real t3340 = t3336 + t3339;
+  const Real t3341 = t3337 + t3338;
+  const Real t3342 = t3341 + t3340;
+  const Real t3343 = t3271 * t684;
+  const Real t3344 = t3273 * t684;
+  const Real t3345 = t3344 + t3343;
+  const Real t3346 = t1407 * t3249;
+  const Real t3347 = t3251 * t1412;
+  const Real t3348 = t3346 + t3347;
+  const Real t3349 = t3251 * t1407;
+  const Real t3350 = t3349 + t3348;
+  const Real t3351 = t3350 - t3345;
+  const Real t3352 = t3237 * t2570;
+  const Real t3353 = t3351 + t3352;
+  const Real t3354 = t3353 + t895;
+  const Real t3355 = t3271 * t627;
+  const Real t3356 = t3273 * t625;
+  const Real t3357 = t3356 + t3355;
+  const Real t3358 = t3273 * t627;
+  const Real t3359 = t3358 + t3357;
+  const Real t3360 = t1276 * t3249;
+  const Real t3361 = t3251 * t1276;
+  const Real t3362 = t3360 + t3361;
+  const Real t3363 = t3359 + t3362;
+  const Real t3364 = t3237 * t2573;
+  const Real t3365 = t3364 + t3363;
+  const Real t3366 = t829 + t3365;
+  const Real t3367 = t3271 * t656;
+  const Real t3368 = t3273 * t656;
+  const Real t3369 = t3368 + t3367;
+  const Real t3370 = t1164 * t3249;
+  const Real t3371 = t3251 * t1164;
+  const Real t3372 = t3370 + t3371;
+  const Real t3373 = t3369 + t3372;
+  const Real t3374 = t3237 * t2578;
+  const Real t3375 = t3373 + t3374;
+  const Real t3376 = t3375 + t867;
+  const Real t3377 = t3294 * t1162;
+  const Real t3378 = t3273 - t3377;
+  const Real t3379 = t3271 + t3378;
+  const Real t3380 = t2506 * t3237;
+  const Real t3381 = t3379 - t3380;
 
-  nu_dot_out[0] = t3360;
-  nu_dot_out[1] = t3275;
-  nu_dot_out[2] = t3218;
-  eta_dot[0] = t3355;
-  eta_dot[1] = t3345;
-  eta_dot[2] = t3333;
-  eta_dot[3] = t3321;
-  eta_dot[4] = t3309;
-  eta_dot[5] = t3287;
-  r_p_ddot[0] = t3218;
-  r_p_ddot[1] = t3275;
-  r_p_ddot[2] = t3272;
+  nu_dot_out[0] = t3381;
+  nu_dot_out[1] = t3294;
+  nu_dot_out[2] = t3237;
+  eta_dot[0] = t3376;
+  eta_dot[1] = t3366;
+  eta_dot[2] = t3354;
+  eta_dot[3] = t3342;
+  eta_dot[4] = t3330;
+  eta_dot[5] = t3306;
+  r_p_ddot[0] = t3237;
+  r_p_ddot[1] = t3294;
+  r_p_ddot[2] = t3291;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, stable forms, compensated beyond 1 ulps
-/// operations: 1009 add, 810 mul, 13 div, 17 neg, 2 sqrt, 4 sin, 3 cos
+/// route: projected recursion, stable forms, compensated beyond 0.5 ulps
+/// operations: 1524 add, 1033 mul, 15 div, 29 neg, 2 sqrt, 4 sin, 3 cos
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p     (3) rad or m: rear_spin, steer, front_spin
@@ -9104,1120 +9147,1412 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t2 = sin(t1);
 
   // joint angles
-  const Real t3 = R[6] * R[6];
-  const Real t4 = R[8] * R[8];
-  const Real t5 = t3 + t4;
-  const Real t6 = sqrt(t5);
-  const Real t7 = constant<Real>(2.0L) * t6;
-  const Real t8 = constant<Real>(1.0L) / t6;
-  const Real t9 = R[8] * t8;
-  const Real t10 = t9 * par.r_R;
-  const Real t11 = t10 - par.r_R;
-  const Real t12 = par.k2 * R[6];
-  const Real t13 = R[8] * par.k1;
-  const Real t14 = t12 - t13;
-  const Real t15 = c_r_p_1_ * t14;
-  const Real t16 = s_r_p_1_ * R[7];
-  const Real t17 = t15 + t16;
-  const Real t18 = par.k2 * t17;
-  const Real t19 = par.k1 * t17;
-  const Real t20 = par.k1 * R[6];
-  const Real t21 = R[8] * par.k2;
-  const Real t22 = t20 + t21;
-  const Real t23 = t22 * par.k2;
-  const Real t24 = t19 - t23;
-  const Real t25 = par.r_R - t10;
-  const Real t26 = c_r_p_1_ * par.k14;
-  const Real t27 = c_r_p_1_ * par.k2;
-  const Real t28 = par.k2 * t27;
-  const Real t29 = par.k20 + t28;
-  const Real t30 = par.r_F * t29;
-  const Real t31 = s_r_p_1_ * par.k2;
-  const Real t32 = t31 * par.c;
-  const Real t33 = par.k1 * c_r_p_1_;
-  const Real t34 = par.k1 * t33;
-  const Real t35 = par.k19 + t34;
-  const Real t36 = t35 * par.c;
-  const Real t37 = c_r_p_1_ * par.c;
-  const Real t38 = c_r_p_1_ * par.k24;
-  const Real t39 = t38 * par.k1;
-  const Real t40 = t39 + par.k22;
-  const Real t41 = t37 - t40;
-  const Real t42 = par.k1 * t22;
-  const Real t43 = c_r_p_1_ * par.r_F;
-  const Real t44 = t8 * R[6];
-  const Real t45 = t44 * par.r_R;
-  const Real t46 = s_r_p_1_ * par.k14;
-  const Real t47 = par.k2 * t46;
-  const Real t48 = s_r_p_1_ * par.k1;
-  const Real t49 = par.r_F * t48;
-  const Real t50 = t47 - t49;
-  const Real t51 = t31 * par.r_F;
-  const Real t52 = par.c * t48;
-  const Real t53 = t51 + t52;
-  const Real t54 = s_r_p_1_ * par.k24;
-  const Real t55 = t53 - t54;
-  const Real t56 = par.k1 * t46;
+  const Real t3 = c_r_p_1_ * par.k24;
+  const Real t4 = R[6] * R[6];
+  const Real t5 = R[8] * R[8];
+  const Real t6 = t4 + t5;
+  const Real t7 = sqrt(t6);
+  const Real t8 = constant<Real>(2.0L) * t7;
+  const Real t9 = c_r_p_1_ * par.c;
+  const Real t10 = constant<Real>(1.0L) / t7;
+  const Real t11 = R[8] * t10;
+  const Real t12 = t11 * par.r_R;
+  const Real t13 = t12 - par.r_R;
+  const Real t14 = par.k2 * R[6];
+  const Real t15 = R[8] * par.k1;
+  const Real t16 = t14 - t15;
+  const Real t17 = c_r_p_1_ * t16;
+  const Real t18 = s_r_p_1_ * R[7];
+  const Real t19 = t17 + t18;
+  const Real t20 = par.k1 * t19;
+  const Real t21 = par.k1 * R[6];
+  const Real t22 = R[8] * par.k2;
+  const Real t23 = t21 + t22;
+  const Real t24 = t23 * par.k2;
+  const Real t25 = t20 - t24;
+  const Real t26 = t25 * t25;
+  const Real t27 = par.k2 * t19;
+  const Real t28 = par.r_R - t12;
+  const Real t29 = c_r_p_1_ * par.k14;
+  const Real t30 = c_r_p_1_ * par.k2;
+  const Real t31 = par.k2 * t30;
+  const Real t32 = par.k20 + t31;
+  const Real t33 = par.r_F * t32;
+  const Real t34 = s_r_p_1_ * par.k2;
+  const Real t35 = t34 * par.c;
+  const Real t36 = par.k1 * c_r_p_1_;
+  const Real t37 = par.k1 * t36;
+  const Real t38 = par.k19 + t37;
+  const Real t39 = t38 * par.c;
+  const Real t40 = par.k1 * t23;
+  const Real t41 = c_r_p_1_ * par.r_F;
+  const Real t42 = t10 * R[6];
+  const Real t43 = t42 * par.r_R;
+  const Real t44 = s_r_p_1_ * par.k14;
+  const Real t45 = par.k2 * t44;
+  const Real t46 = s_r_p_1_ * par.k1;
+  const Real t47 = par.r_F * t46;
+  const Real t48 = t45 - t47;
+  const Real t49 = t34 * par.r_F;
+  const Real t50 = par.c * t46;
+  const Real t51 = t49 + t50;
+  const Real t52 = s_r_p_1_ * par.k24;
+  const Real t53 = t51 - t52;
+  const Real t54 = par.k1 * t44;
 
   // kernel
-  const Real t57 = product_error(c_r_p_1_, par.r_F);
-  const Real t58 = t2 * t2;
-  const Real t59 = constant<Real>(2.0L) * t58;
-  const Real t60 = par.k27 * t59;
-  const Real t61 = sum_error(t60, t43);
-  const Real t62 = t57 + t61;
-  const Real t63 = t60 + t43;
-  const Real t64 = product_error(par.k1, t17);
-  const Real t65 = sum_error(t15, t16);
-  const Real t66 = product_error(c_r_p_1_, t14);
-  const Real t67 = -t13;
-  const Real t68 = sum_error(t12, t67);
-  const Real t69 = product_error(par.k2, R[6]);
-  const Real t70 = t68 + t69;
-  const Real t71 = t70 * c_r_p_1_;
-  const Real t72 = t66 + t71;
-  const Real t73 = t65 + t72;
-  const Real t74 = par.k1 * t73;
-  const Real t75 = t64 + t74;
-  const Real t76 = product_error(t22, par.k2);
-  const Real t77 = product_error(par.k1, R[6]);
-  const Real t78 = sum_error(t20, t21);
-  const Real t79 = t77 + t78;
-  const Real t80 = par.k2 * t79;
-  const Real t81 = t76 + t80;
-  const Real t82 = t75 - t81;
-  const Real t83 = t24 + t82;
-  const Real t84 = t83 * c_r_p_1_;
-  const Real t85 = t84 * par.r_F;
-  const Real t86 = t83 * t83;
-  const Real t87 = par.k1 * t79;
-  const Real t88 = t87 + t42;
-  const Real t89 = par.k2 * t73;
-  const Real t90 = t18 + t89;
-  const Real t91 = t88 + t90;
-  const Real t92 = t91 * t91;
-  const Real t93 = t86 + t92;
-  const Real t94 = sqrt(t93);
-  const Real t95 = constant<Real>(1.0L) / t94;
-  const Real t96 = t85 * t95;
-  const Real t97 = sum_error(t63, t96);
-  const Real t98 = t62 + t97;
-  const Real t99 = t83 * t95;
-  const Real t100 = t99 * par.r_F;
-  const Real t101 = -t100;
-  const Real t102 = -t49;
-  const Real t103 = sum_error(t47, t102);
-  const Real t104 = product_error(par.k2, t46);
-  const Real t105 = product_error(s_r_p_1_, par.k14);
-  const Real t106 = par.k2 * t105;
-  const Real t107 = t104 + t106;
-  const Real t108 = t103 + t107;
-  const Real t109 = t100 * t48;
-  const Real t110 = -t109;
-  const Real t111 = sum_error(t50, t110);
-  const Real t112 = t108 + t111;
-  const Real t113 = t31 * t100;
-  const Real t114 = t91 * t95;
-  const Real t115 = par.r_F * t114;
-  const Real t116 = t115 * t48;
-  const Real t117 = t113 - t116;
-  const Real t118 = par.k1 * t8;
-  const Real t119 = par.k2 * t118;
-  const Real t120 = t119 * t2;
-  const Real t121 = t120 * t2;
-  const Real t122 = t121 * R[6];
-  const Real t123 = t122 * par.r_R;
-  const Real t124 = t123 * constant<Real>(2.0L);
-  const Real t125 = t63 + t96;
-  const Real t126 = t11 * t29;
-  const Real t127 = sum_error(par.k20, t28);
-  const Real t128 = product_error(c_r_p_1_, par.k2);
+  const Real t55 = product_error(t13, t32);
+  const Real t56 = sum_error(t12, par.k6);
+  const Real t57 = t56 * t32;
+  const Real t58 = sum_error(par.k20, t31);
+  const Real t59 = product_error(c_r_p_1_, par.k2);
+  const Real t60 = t59 * par.k2;
+  const Real t61 = product_error(par.k2, t30);
+  const Real t62 = t60 + t61;
+  const Real t63 = t58 + t62;
+  const Real t64 = t13 * t63;
+  const Real t65 = t57 + t64;
+  const Real t66 = t55 + t65;
+  const Real t67 = t2 * t2;
+  const Real t68 = constant<Real>(2.0L) * t67;
+  const Real t69 = t68 * par.k23;
+  const Real t70 = t69 * par.c;
+  const Real t71 = -t70;
+  const Real t72 = sum_error(t33, t71);
+  const Real t73 = product_error(par.r_F, t32);
+  const Real t74 = par.r_F * t63;
+  const Real t75 = t73 + t74;
+  const Real t76 = t72 + t75;
+  const Real t77 = par.k1 * t10;
+  const Real t78 = par.k2 * t77;
+  const Real t79 = t78 * t2;
+  const Real t80 = t79 * t2;
+  const Real t81 = t80 * R[6];
+  const Real t82 = t81 * par.r_R;
+  const Real t83 = t82 * constant<Real>(2.0L);
+  const Real t84 = t34 * t56;
+  const Real t85 = product_error(t34, t28);
+  const Real t86 = t34 * t43;
+  const Real t87 = -t86;
+  const Real t88 = t13 * t32;
+  const Real t89 = product_error(c_r_p_1_, par.r_F);
+  const Real t90 = t38 * t43;
+  const Real t91 = t12 * t69;
+  const Real t92 = t90 - t91;
+  const Real t93 = product_error(par.k1, R[6]);
+  const Real t94 = sum_error(t21, t22);
+  const Real t95 = t93 + t94;
+  const Real t96 = par.k1 * t95;
+  const Real t97 = t96 + t40;
+  const Real t98 = par.r_F * t69;
+  const Real t99 = t98 - t39;
+  const Real t100 = t99 + t29;
+  const Real t101 = c_r_p_1_ * t25;
+  const Real t102 = product_error(t23, par.k2);
+  const Real t103 = par.k2 * t95;
+  const Real t104 = t102 + t103;
+  const Real t105 = product_error(par.k1, t19);
+  const Real t106 = product_error(s_r_p_1_, R[7]);
+  const Real t107 = product_error(c_r_p_1_, t16);
+  const Real t108 = -t15;
+  const Real t109 = sum_error(t14, t108);
+  const Real t110 = product_error(par.k2, R[6]);
+  const Real t111 = t109 + t110;
+  const Real t112 = t111 * c_r_p_1_;
+  const Real t113 = t107 + t112;
+  const Real t114 = t106 + t113;
+  const Real t115 = sum_error(t17, t18);
+  const Real t116 = t114 + t115;
+  const Real t117 = t116 * par.k1;
+  const Real t118 = t105 + t117;
+  const Real t119 = t33 - t70;
+  const Real t120 = t116 * par.k2;
+  const Real t121 = t13 * t69;
+  const Real t122 = t69 * t56;
+  const Real t123 = t121 + t122;
+  const Real t124 = sum_error(t99, t29);
+  const Real t125 = product_error(par.k2, t44);
+  const Real t126 = s_r_p_1_ * par.k28;
+  const Real t127 = product_error(s_r_p_1_, par.k14);
+  const Real t128 = t126 + t127;
   const Real t129 = t128 * par.k2;
-  const Real t130 = product_error(par.k2, t27);
-  const Real t131 = t129 + t130;
-  const Real t132 = t127 + t131;
-  const Real t133 = t11 * t132;
-  const Real t134 = t126 + t133;
-  const Real t135 = t125 + t134;
-  const Real t136 = t124 - t135;
-  const Real t137 = t35 * t45;
-  const Real t138 = t59 * par.k23;
-  const Real t139 = t10 * t138;
-  const Real t140 = t137 - t139;
-  const Real t141 = t31 * t115;
-  const Real t142 = t141 - t32;
-  const Real t143 = t25 * t48;
-  const Real t144 = t142 + t143;
-  const Real t145 = t138 * par.c;
-  const Real t146 = t115 * par.k2;
-  const Real t147 = par.k1 * t100;
-  const Real t148 = t146 + t147;
-  const Real t149 = t148 + par.k13;
-  const Real t150 = par.r_F * t138;
-  const Real t151 = t150 - t36;
-  const Real t152 = t151 + t26;
-  const Real t153 = t100 * t138;
-  const Real t154 = t35 * t115;
-  const Real t155 = t153 + t154;
-  const Real t156 = t152 + t155;
-  const Real t157 = c_r_p_1_ * t45;
-  const Real t158 = t156 - t157;
-  const Real t159 = constant<Real>(1.0L) / t158;
-  const Real t160 = c_r_p_1_ * t25;
-  const Real t161 = t11 * t31;
-  const Real t162 = t50 - t109;
-  const Real t163 = t31 * t45;
-  const Real t164 = t162 - t163;
-  const Real t165 = t48 * t45;
-  const Real t166 = t31 * t10;
-  const Real t167 = t165 + t166;
-  const Real t168 = t115 * c_r_p_1_;
-  const Real t169 = t41 - t168;
-  const Real t170 = t11 * t138;
-  const Real t171 = t169 - t170;
-  const Real t172 = t171 + t137;
-  const Real t173 = t115 * t138;
-  const Real t174 = t100 * t132;
-  const Real t175 = t100 * t29;
-  const Real t176 = t174 + t175;
-  const Real t177 = t173 + t176;
-  const Real t178 = t138 * t45;
-  const Real t179 = t10 * t132;
-  const Real t180 = t10 * t29;
-  const Real t181 = t179 + t180;
-  const Real t182 = t178 - t181;
-  const Real t183 = t94 * constant<Real>(2.0L);
-  const Real t184 = par.k1 * t105;
-  const Real t185 = t184 + t56;
-  const Real t186 = t52 - t185;
-  const Real t187 = t186 - t116;
-  const Real t188 = t165 + t187;
-  const Real t189 = product_error(c_r_p_1_, t25);
-  const Real t190 = par.r_F * t132;
-  const Real t191 = t51 + t113;
-  const Real t192 = t31 * t25;
-  const Real t193 = t191 - t192;
+  const Real t130 = t125 + t129;
+  const Real t131 = c_r_p_1_ * t28;
+  const Real t132 = c_r_p_1_ * par.k29;
+  const Real t133 = t3 + t132;
+  const Real t134 = par.k1 * t133;
+  const Real t135 = par.k22 + t134;
+  const Real t136 = t9 - t135;
+  const Real t137 = -t135;
+  const Real t138 = sum_error(t9, t137);
+  const Real t139 = sum_error(t134, par.k22);
+  const Real t140 = t139 + par.k31;
+  const Real t141 = t138 - t140;
+  const Real t142 = t13 * t34;
+  const Real t143 = t128 * par.k1;
+  const Real t144 = t143 + t54;
+  const Real t145 = t46 * t43;
+  const Real t146 = t34 * t12;
+  const Real t147 = t145 + t146;
+  const Real t148 = c_r_p_1_ * t43;
+  const Real t149 = -t148;
+  const Real t150 = s_r_p_1_ * par.k29;
+  const Real t151 = product_error(s_r_p_1_, par.k24);
+  const Real t152 = t150 + t151;
+  const Real t153 = t69 * t43;
+  const Real t154 = t12 * t63;
+  const Real t155 = t12 * t32;
+  const Real t156 = t154 + t155;
+  const Real t157 = t153 - t156;
+  const Real t158 = product_error(t34, par.r_F);
+  const Real t159 = product_error(t13, t34);
+  const Real t160 = product_error(c_r_p_1_, par.k14);
+  const Real t161 = c_r_p_1_ * par.k28;
+  const Real t162 = t160 + t161;
+  const Real t163 = -t47;
+  const Real t164 = sum_error(t45, t163);
+  const Real t165 = t34 * t28;
+  const Real t166 = product_error(c_r_p_1_, t28);
+  const Real t167 = t28 * t46;
 
   // frame: acceleration
-  const Real t194 = par.g * R[7];
-  const Real t195 = par.g * R[8];
-  const Real t196 = par.g * R[6];
+  const Real t168 = par.g * R[7];
+  const Real t169 = par.g * R[8];
+  const Real t170 = par.g * R[6];
 
   // joint angles
-  const Real t197 = R[8] * nu[0];
-  const Real t198 = par.k2 * nu[0];
-  const Real t199 = par.k1 * nu[0];
-  const Real t200 = s_r_p_1_ * nu[1];
-  const Real t201 = t200 * t14;
-  const Real t202 = c_r_p_1_ * nu[1];
-  const Real t203 = t202 * R[7];
-  const Real t204 = nu[0] * R[7];
+  const Real t171 = R[8] * nu[0];
+  const Real t172 = par.k2 * nu[0];
+  const Real t173 = par.k1 * nu[0];
+  const Real t174 = s_r_p_1_ * nu[1];
+  const Real t175 = t174 * t16;
+  const Real t176 = c_r_p_1_ * nu[1];
+  const Real t177 = t176 * R[7];
+  const Real t178 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t205 = nu[0] * c_r_p_0_;
-  const Real t206 = nu[0] * s_r_p_0_;
+  const Real t179 = nu[0] * c_r_p_0_;
+  const Real t180 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t207 = nu[0] * nu[0];
+  const Real t181 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t208 = t112 + t164;
-  const Real t209 = t208 * t159;
-  const Real t210 = t209 * t167;
-  const Real t211 = -t210;
-  const Real t212 = sum_error(t182, t211);
-  const Real t213 = product_error(t209, t167);
-  const Real t214 = t212 - t213;
-  const Real t215 = t159 * t188;
-  const Real t216 = t215 * t167;
-  const Real t217 = -t216;
-  const Real t218 = sum_error(t140, t217);
-  const Real t219 = product_error(t215, t167);
-  const Real t220 = t218 - t219;
-  const Real t221 = t149 * t209;
-  const Real t222 = -t221;
-  const Real t223 = t200 * t70;
-  const Real t224 = t201 + t223;
-  const Real t225 = t140 - t216;
-  const Real t226 = t215 * t149;
-  const Real t227 = -t226;
-  const Real t228 = product_error(t149, t209);
-  const Real t229 = t182 - t210;
-  const Real t230 = t30 + t190;
-  const Real t231 = t230 - t145;
-  const Real t232 = t231 + t177;
-  const Real t233 = t232 - t160;
-  const Real t234 = product_error(t215, t149);
+  const Real t182 = t174 * t111;
+  const Real t183 = t175 + t182;
+  const Real t184 = t130 + t164;
+  const Real t185 = t50 - t144;
+  const Real t186 = -t123;
+  const Real t187 = sum_error(t49, t50);
+  const Real t188 = t187 + t158;
+  const Real t189 = t188 - t152;
+  const Real t190 = t189 + t53;
+  const Real t191 = t84 + t159;
+  const Real t192 = t97 + t27;
+  const Real t193 = t192 * t192;
+
+  // accelerations
+  const Real t194 = par.k66 * t68;
+  const Real t195 = sum_error(t194, t41);
+  const Real t196 = t89 + t195;
+  const Real t197 = t194 + t41;
+  const Real t198 = t124 + t162;
 
   // rear_wheel: acceleration
-  const Real t235 = nu_dot[0] * c_r_p_0_;
-  const Real t236 = nu_dot[0] * s_r_p_0_;
+  const Real t199 = nu_dot[0] * c_r_p_0_;
+  const Real t200 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t237 = nu_dot[0] * par.k2;
-  const Real t238 = par.k1 * nu_dot[0];
+  const Real t201 = nu_dot[0] * par.k2;
+  const Real t202 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t239 = t117 + t55;
-  const Real t240 = t161 + t239;
-  const Real t241 = t165 + t240;
-  const Real t242 = t241 * t209;
-  const Real t243 = t136 - t242;
-  const Real t244 = t215 * t241;
-  const Real t245 = t172 - t244;
-  const Real t246 = constant<Real>(1.0L) / t245;
-  const Real t247 = t243 * t246;
-  const Real t248 = t247 * t115;
-  const Real t249 = t248 - t100;
-  const Real t250 = quotient_error(constant<Real>(1.0L), t249);
-  const Real t251 = product_error(t243, t246);
-  const Real t252 = -t135;
-  const Real t253 = sum_error(t124, t252);
-  const Real t254 = sum_error(t134, t125);
-  const Real t255 = t98 + t254;
-  const Real t256 = t253 - t255;
-  const Real t257 = product_error(t209, t241);
-  const Real t258 = t256 - t257;
-  const Real t259 = -t242;
-  const Real t260 = sum_error(t136, t259);
-  const Real t261 = t258 + t260;
-  const Real t262 = t246 * t261;
-  const Real t263 = quotient_error(constant<Real>(1.0L), t245);
-  const Real t264 = -t244;
-  const Real t265 = sum_error(t172, t264);
-  const Real t266 = sum_error(t137, t171);
-  const Real t267 = product_error(t215, t241);
-  const Real t268 = t266 - t267;
-  const Real t269 = t265 + t268;
-  const Real t270 = t269 * t246;
-  const Real t271 = t270 / t245;
-  const Real t272 = t263 - t271;
-  const Real t273 = t243 * t272;
-  const Real t274 = t262 + t273;
-  const Real t275 = t251 + t274;
-  const Real t276 = t115 * t275;
-  const Real t277 = product_error(t115, t247);
-  const Real t278 = t276 + t277;
-  const Real t279 = sum_error(t248, t101);
+  const Real t203 = sum_error(t27, t97);
+  const Real t204 = product_error(par.k2, t19);
+  const Real t205 = t120 + t204;
+  const Real t206 = t203 + t205;
+  const Real t207 = t192 * t206;
+  const Real t208 = t207 * constant<Real>(2.0L);
+  const Real t209 = t208 + t193;
+  const Real t210 = -t24;
+  const Real t211 = sum_error(t20, t210);
+  const Real t212 = t118 - t104;
+  const Real t213 = t211 + t212;
+  const Real t214 = t25 * t213;
+  const Real t215 = t214 * constant<Real>(2.0L);
+  const Real t216 = t215 + t26;
+  const Real t217 = t209 + t216;
+  const Real t218 = sqrt(t217);
+  const Real t219 = constant<Real>(1.0L) / t218;
+  const Real t220 = product_error(t219, t192);
+  const Real t221 = t219 * t206;
+  const Real t222 = t220 + t221;
+  const Real t223 = par.r_F * t222;
+  const Real t224 = t192 * t219;
+  const Real t225 = product_error(t224, par.r_F);
+  const Real t226 = t223 + t225;
+  const Real t227 = c_r_p_1_ * t226;
+  const Real t228 = par.r_F * t224;
+  const Real t229 = c_r_p_1_ * t228;
+  const Real t230 = t227 + t229;
+  const Real t231 = t136 - t230;
+  const Real t232 = t231 - t123;
+  const Real t233 = t90 + t232;
+  const Real t234 = t219 * t25;
+  const Real t235 = product_error(par.r_F, t234);
+  const Real t236 = product_error(t25, t219);
+  const Real t237 = t219 * t213;
+  const Real t238 = t236 + t237;
+  const Real t239 = par.r_F * t238;
+  const Real t240 = t235 + t239;
+  const Real t241 = t240 * t34;
+  const Real t242 = t234 * par.r_F;
+  const Real t243 = t242 * t34;
+  const Real t244 = t241 + t243;
+  const Real t245 = t228 * t46;
+  const Real t246 = t226 * t46;
+  const Real t247 = t245 + t246;
+  const Real t248 = t244 - t247;
+  const Real t249 = t248 + t190;
+  const Real t250 = t142 + t249;
+  const Real t251 = t250 + t145;
+  const Real t252 = t240 * t69;
+  const Real t253 = t242 * t69;
+  const Real t254 = t252 + t253;
+  const Real t255 = t38 * t228;
+  const Real t256 = t38 * t226;
+  const Real t257 = t255 + t256;
+  const Real t258 = t254 + t257;
+  const Real t259 = t100 + t258;
+  const Real t260 = t259 - t148;
+  const Real t261 = constant<Real>(1.0L) / t260;
+  const Real t262 = t185 - t247;
+  const Real t263 = t145 + t262;
+  const Real t264 = t261 * t263;
+  const Real t265 = quotient_error(constant<Real>(1.0L), t260);
+  const Real t266 = sum_error(t100, t258);
+  const Real t267 = t198 + t266;
+  const Real t268 = sum_error(t259, t149);
+  const Real t269 = t267 + t268;
+  const Real t270 = t269 * t261;
+  const Real t271 = t270 / t260;
+  const Real t272 = t265 - t271;
+  const Real t273 = t272 * t263;
+  const Real t274 = t264 + t273;
+  const Real t275 = t251 * t274;
+  const Real t276 = t233 - t275;
+  const Real t277 = constant<Real>(1.0L) / t276;
+  const Real t278 = t34 * t226;
+  const Real t279 = t34 * t228;
   const Real t280 = t278 + t279;
-  const Real t281 = constant<Real>(1.0L) / t249;
-  const Real t282 = t280 * t281;
-  const Real t283 = t282 / t249;
-  const Real t284 = t250 - t283;
-  const Real t285 = product_error(t225, t247);
-  const Real t286 = t247 * t220;
-  const Real t287 = t225 * t275;
-  const Real t288 = t286 + t287;
-  const Real t289 = t285 + t288;
-  const Real t290 = t214 - t289;
-  const Real t291 = t247 * t225;
-  const Real t292 = t229 - t291;
-  const Real t293 = t290 + t292;
-  const Real t294 = t284 * t293;
-  const Real t295 = t281 * t293;
-  const Real t296 = t294 + t295;
-  const Real t297 = t115 * t296;
-  const Real t298 = t225 + t297;
-  const Real t299 = t298 * t246;
-  const Real t300 = t299 * t241;
-  const Real t301 = t167 - t300;
-  const Real t302 = sum_error(t225, t297);
-  const Real t303 = t220 + t302;
-  const Real t304 = t303 * t246;
-  const Real t305 = t298 * t272;
-  const Real t306 = t304 + t305;
-  const Real t307 = product_error(t246, t298);
+  const Real t281 = t280 - t35;
+  const Real t282 = t281 + t167;
+  const Real t283 = t242 * t32;
+  const Real t284 = t242 * t63;
+  const Real t285 = t240 * t32;
+  const Real t286 = t284 + t285;
+  const Real t287 = t283 + t286;
+  const Real t288 = t69 * t226;
+  const Real t289 = t228 * t69;
+  const Real t290 = t288 + t289;
+  const Real t291 = t287 + t290;
+  const Real t292 = t291 + t119;
+  const Real t293 = t292 - t131;
+  const Real t294 = sum_error(t119, t291);
+  const Real t295 = t76 + t294;
+  const Real t296 = t295 - t166;
+  const Real t297 = t293 + t296;
+  const Real t298 = t297 * t274;
+  const Real t299 = t282 - t298;
+  const Real t300 = sum_error(t49, t244);
+  const Real t301 = t300 + t158;
+  const Real t302 = t301 - t85;
+  const Real t303 = t244 + t49;
+  const Real t304 = t303 - t165;
+  const Real t305 = t302 + t304;
+  const Real t306 = t242 * t46;
+  const Real t307 = t240 * t46;
   const Real t308 = t306 + t307;
-  const Real t309 = t241 * t308;
-  const Real t310 = product_error(t241, t299);
-  const Real t311 = t309 + t310;
-  const Real t312 = t301 - t311;
-  const Real t313 = t312 * t159;
-  const Real t314 = t45 * t313;
-  const Real t315 = nu_dot[2] * t314;
-  const Real t316 = t233 - t189;
-  const Real t317 = t209 * t316;
-  const Real t318 = -t317;
-  const Real t319 = sum_error(t193, t318);
-  const Real t320 = product_error(t316, t209);
-  const Real t321 = t319 - t320;
-  const Real t322 = t215 * t316;
-  const Real t323 = t144 - t322;
-  const Real t324 = product_error(t247, t323);
-  const Real t325 = -t322;
-  const Real t326 = sum_error(t144, t325);
-  const Real t327 = product_error(t215, t316);
-  const Real t328 = t326 - t327;
-  const Real t329 = t247 * t328;
-  const Real t330 = t323 * t275;
-  const Real t331 = t329 + t330;
-  const Real t332 = t324 + t331;
-  const Real t333 = t321 - t332;
-  const Real t334 = t193 - t317;
-  const Real t335 = t247 * t323;
-  const Real t336 = t334 - t335;
-  const Real t337 = t333 + t336;
-  const Real t338 = t337 * t284;
-  const Real t339 = t337 * t281;
-  const Real t340 = t338 + t339;
-  const Real t341 = t115 * t340;
-  const Real t342 = t341 + t323;
-  const Real t343 = t342 * t246;
-  const Real t344 = t241 * t343;
-  const Real t345 = t316 - t344;
-  const Real t346 = sum_error(t341, t323);
-  const Real t347 = t328 + t346;
-  const Real t348 = t246 * t347;
-  const Real t349 = t342 * t272;
-  const Real t350 = t348 + t349;
-  const Real t351 = product_error(t246, t342);
+  const Real t309 = t48 - t308;
+  const Real t310 = t309 - t86;
+  const Real t311 = t310 * t261;
+  const Real t312 = t311 * t297;
+  const Real t313 = t305 - t312;
+  const Real t314 = c_r_p_1_ * t213;
+  const Real t315 = t101 + t314;
+  const Real t316 = par.r_F * t315;
+  const Real t317 = t316 * t219;
+  const Real t318 = t197 + t317;
+  const Real t319 = t318 + t88;
+  const Real t320 = t83 - t319;
+  const Real t321 = t311 * t251;
+  const Real t322 = t320 - t321;
+  const Real t323 = t277 * t322;
+  const Real t324 = t299 * t323;
+  const Real t325 = t313 - t324;
+  const Real t326 = -t312;
+  const Real t327 = sum_error(t305, t326);
+  const Real t328 = product_error(t297, t311);
+  const Real t329 = product_error(t261, t310);
+  const Real t330 = -t308;
+  const Real t331 = sum_error(t48, t330);
+  const Real t332 = t331 + t184;
+  const Real t333 = sum_error(t309, t87);
+  const Real t334 = t332 + t333;
+  const Real t335 = t261 * t334;
+  const Real t336 = t310 * t272;
+  const Real t337 = t335 + t336;
+  const Real t338 = t329 + t337;
+  const Real t339 = t297 * t338;
+  const Real t340 = t328 + t339;
+  const Real t341 = t327 - t340;
+  const Real t342 = product_error(t323, t299);
+  const Real t343 = product_error(t322, t277);
+  const Real t344 = -t321;
+  const Real t345 = sum_error(t320, t344);
+  const Real t346 = -t319;
+  const Real t347 = sum_error(t83, t346);
+  const Real t348 = sum_error(t197, t317);
+  const Real t349 = t196 + t348;
+  const Real t350 = t66 + t349;
+  const Real t351 = sum_error(t88, t318);
   const Real t352 = t350 + t351;
-  const Real t353 = t241 * t352;
-  const Real t354 = product_error(t343, t241);
-  const Real t355 = t353 + t354;
-  const Real t356 = t345 - t355;
-  const Real t357 = t159 * t356;
-  const Real t358 = t45 * t357;
-  const Real t359 = t358 - t25;
-  const Real t360 = t359 * nu_dot[0];
-  const Real t361 = t247 * t226;
-  const Real t362 = t361 - t221;
-  const Real t363 = t281 * t362;
-  const Real t364 = t115 * t363;
-  const Real t365 = t364 - t226;
-  const Real t366 = t365 * t246;
-  const Real t367 = t366 * t241;
-  const Real t368 = t149 - t367;
-  const Real t369 = product_error(t246, t365);
-  const Real t370 = product_error(t281, t362);
-  const Real t371 = t284 * t362;
-  const Real t372 = sum_error(t361, t222);
-  const Real t373 = product_error(t226, t247);
-  const Real t374 = t247 * t234;
-  const Real t375 = t226 * t275;
+  const Real t353 = t347 - t352;
+  const Real t354 = product_error(t311, t251);
+  const Real t355 = sum_error(t250, t145);
+  const Real t356 = sum_error(t142, t249);
+  const Real t357 = t191 + t356;
+  const Real t358 = t355 + t357;
+  const Real t359 = t311 * t358;
+  const Real t360 = t251 * t338;
+  const Real t361 = t359 + t360;
+  const Real t362 = t354 + t361;
+  const Real t363 = t353 - t362;
+  const Real t364 = t345 + t363;
+  const Real t365 = t277 * t364;
+  const Real t366 = quotient_error(constant<Real>(1.0L), t276);
+  const Real t367 = sum_error(t90, t232);
+  const Real t368 = -t230;
+  const Real t369 = sum_error(t136, t368);
+  const Real t370 = t141 + t369;
+  const Real t371 = sum_error(t231, t186);
+  const Real t372 = t370 + t371;
+  const Real t373 = t367 + t372;
+  const Real t374 = product_error(t274, t251);
+  const Real t375 = t358 * t274;
   const Real t376 = t374 + t375;
-  const Real t377 = t373 + t376;
-  const Real t378 = t377 - t228;
-  const Real t379 = t372 + t378;
-  const Real t380 = t281 * t379;
-  const Real t381 = t371 + t380;
-  const Real t382 = t370 + t381;
-  const Real t383 = t382 * t115;
-  const Real t384 = product_error(t115, t363);
-  const Real t385 = t383 + t384;
-  const Real t386 = t385 - t234;
-  const Real t387 = sum_error(t364, t227);
-  const Real t388 = t386 + t387;
-  const Real t389 = t246 * t388;
-  const Real t390 = t365 * t272;
-  const Real t391 = t389 + t390;
-  const Real t392 = t369 + t391;
-  const Real t393 = t241 * t392;
-  const Real t394 = product_error(t366, t241);
-  const Real t395 = t393 + t394;
-  const Real t396 = t368 - t395;
-  const Real t397 = t159 * t396;
-  const Real t398 = t397 * t45;
-  const Real t399 = nu_dot[1] * t398;
-  const Real t400 = t360 + t399;
-  const Real t401 = t315 + t400;
-  const Real t402 = nu[2] * t313;
-  const Real t403 = t397 * nu[1];
-  const Real t404 = nu[0] * t357;
-  const Real t405 = t403 + t404;
-  const Real t406 = t402 + t405;
-  const Real t407 = t352 * nu[0];
-  const Real t408 = t343 * nu[0];
-  const Real t409 = t407 + t408;
-  const Real t410 = t392 * nu[1];
-  const Real t411 = t366 * nu[1];
-  const Real t412 = t410 + t411;
-  const Real t413 = t409 + t412;
-  const Real t414 = nu[2] * t308;
-  const Real t415 = t299 * nu[2];
-  const Real t416 = t414 + t415;
-  const Real t417 = t413 + t416;
-  const Real t418 = R[8] * t417;
-  const Real t419 = t406 * R[7];
-  const Real t420 = t418 - t419;
-  const Real t421 = t420 * t8;
-  const Real t422 = t420 * R[6];
-  const Real t423 = t422 * constant<Real>(2.0L);
-  const Real t424 = t417 * R[6];
-  const Real t425 = t204 + t424;
-  const Real t426 = R[8] * t425;
-  const Real t427 = t426 * constant<Real>(2.0L);
-  const Real t428 = t423 - t427;
-  const Real t429 = t428 / t7;
-  const Real t430 = t8 * t429;
-  const Real t431 = t430 / t6;
-  const Real t432 = t431 * R[6];
-  const Real t433 = t421 - t432;
-  const Real t434 = t433 * par.r_R;
-  const Real t435 = t406 * t434;
-  const Real t436 = t8 * t425;
-  const Real t437 = R[8] * t431;
-  const Real t438 = t436 + t437;
-  const Real t439 = par.r_R * t438;
-  const Real t440 = t439 * nu[0];
-  const Real t441 = t435 - t440;
-  const Real t442 = t11 * t392;
-  const Real t443 = t366 * t11;
-  const Real t444 = t442 + t443;
-  const Real t445 = t444 * nu[1];
-  const Real t446 = t11 * t343;
-  const Real t447 = t11 * t352;
-  const Real t448 = t446 + t447;
-  const Real t449 = t448 * nu[0];
-  const Real t450 = t445 + t449;
-  const Real t451 = t11 * t299;
-  const Real t452 = t11 * t308;
-  const Real t453 = t451 + t452;
-  const Real t454 = t453 - t10;
-  const Real t455 = nu[2] * t454;
-  const Real t456 = t450 + t455;
-  const Real t457 = par.k2 * t456;
-  const Real t458 = t45 * t308;
-  const Real t459 = t299 * t45;
+  const Real t377 = t373 - t376;
+  const Real t378 = -t275;
+  const Real t379 = sum_error(t233, t378);
+  const Real t380 = t377 + t379;
+  const Real t381 = t277 * t380;
+  const Real t382 = t381 / t276;
+  const Real t383 = t366 - t382;
+  const Real t384 = t322 * t383;
+  const Real t385 = t365 + t384;
+  const Real t386 = t343 + t385;
+  const Real t387 = t299 * t386;
+  const Real t388 = -t298;
+  const Real t389 = sum_error(t282, t388);
+  const Real t390 = product_error(t274, t297);
+  const Real t391 = t389 - t390;
+  const Real t392 = t391 * t323;
+  const Real t393 = t387 + t392;
+  const Real t394 = t342 + t393;
+  const Real t395 = t341 - t394;
+  const Real t396 = t325 + t395;
+  const Real t397 = t323 * t228;
+  const Real t398 = t397 - t242;
+  const Real t399 = quotient_error(constant<Real>(1.0L), t398);
+  const Real t400 = constant<Real>(1.0L) / t398;
+  const Real t401 = -t242;
+  const Real t402 = sum_error(t397, t401);
+  const Real t403 = product_error(t228, t323);
+  const Real t404 = t323 * t226;
+  const Real t405 = t228 * t386;
+  const Real t406 = t404 + t405;
+  const Real t407 = t403 + t406;
+  const Real t408 = t407 - t240;
+  const Real t409 = t402 + t408;
+  const Real t410 = t400 * t409;
+  const Real t411 = t410 / t398;
+  const Real t412 = t399 - t411;
+  const Real t413 = t396 * t412;
+  const Real t414 = t396 * t400;
+  const Real t415 = t413 + t414;
+  const Real t416 = t228 * t415;
+  const Real t417 = t226 * t415;
+  const Real t418 = t416 + t417;
+  const Real t419 = t299 + t418;
+  const Real t420 = product_error(t277, t419);
+  const Real t421 = sum_error(t418, t299);
+  const Real t422 = t421 + t391;
+  const Real t423 = t422 * t277;
+  const Real t424 = t419 * t383;
+  const Real t425 = t423 + t424;
+  const Real t426 = t420 + t425;
+  const Real t427 = t426 * nu[0];
+  const Real t428 = t419 * t277;
+  const Real t429 = nu[0] * t428;
+  const Real t430 = t427 + t429;
+  const Real t431 = t242 * par.k1;
+  const Real t432 = t240 * par.k1;
+  const Real t433 = t431 + t432;
+  const Real t434 = par.k2 * t228;
+  const Real t435 = par.k2 * t226;
+  const Real t436 = t434 + t435;
+  const Real t437 = t433 + t436;
+  const Real t438 = t437 + par.k13;
+  const Real t439 = t438 * t274;
+  const Real t440 = t439 * t323;
+  const Real t441 = t311 * t438;
+  const Real t442 = t440 - t441;
+  const Real t443 = t442 * t400;
+  const Real t444 = t443 * t228;
+  const Real t445 = t444 - t439;
+  const Real t446 = t445 * t383;
+  const Real t447 = -t439;
+  const Real t448 = sum_error(t444, t447);
+  const Real t449 = product_error(t228, t443);
+  const Real t450 = t443 * t226;
+  const Real t451 = t442 * t412;
+  const Real t452 = product_error(t274, t438);
+  const Real t453 = t452 * t323;
+  const Real t454 = t439 * t386;
+  const Real t455 = t453 + t454;
+  const Real t456 = product_error(t439, t323);
+  const Real t457 = t455 + t456;
+  const Real t458 = t438 * t338;
+  const Real t459 = product_error(t438, t311);
   const Real t460 = t458 + t459;
-  const Real t461 = t45 - t460;
-  const Real t462 = t461 * nu[2];
-  const Real t463 = t366 * t45;
-  const Real t464 = t392 * t45;
-  const Real t465 = t463 + t464;
-  const Real t466 = t465 * nu[1];
-  const Real t467 = t352 * t45;
-  const Real t468 = t343 * t45;
-  const Real t469 = t467 + t468;
-  const Real t470 = t469 * nu[0];
-  const Real t471 = t466 + t470;
-  const Real t472 = t462 - t471;
-  const Real t473 = t417 * par.k14;
-  const Real t474 = t472 + t473;
-  const Real t475 = par.k1 * t474;
-  const Real t476 = t457 - t475;
-  const Real t477 = t476 * t202;
-  const Real t478 = nu[1] * t398;
-  const Real t479 = t359 * nu[0];
-  const Real t480 = t478 + t479;
-  const Real t481 = nu[2] * t314;
-  const Real t482 = t480 + t481;
-  const Real t483 = t406 * par.k14;
-  const Real t484 = t482 - t483;
-  const Real t485 = t484 * t200;
-  const Real t486 = t477 + t485;
-  const Real t487 = t417 * t202;
-  const Real t488 = t406 * par.k1;
-  const Real t489 = t198 + t488;
-  const Real t490 = t489 * t200;
-  const Real t491 = t487 + t490;
-  const Real t492 = t491 * par.k2;
-  const Real t493 = par.r_F * t492;
-  const Real t494 = t491 * par.k1;
-  const Real t495 = t494 * par.c;
-  const Real t496 = t493 + t495;
-  const Real t497 = t486 + t496;
-  const Real t498 = t406 * par.k2;
-  const Real t499 = t199 - t498;
-  const Real t500 = t499 + nu[1];
-  const Real t501 = par.k1 * t500;
-  const Real t502 = t489 * c_r_p_1_;
-  const Real t503 = s_r_p_1_ * t417;
-  const Real t504 = t502 - t503;
-  const Real t505 = t504 * par.k2;
-  const Real t506 = t501 + t505;
-  const Real t507 = t406 * R[6];
-  const Real t508 = t507 + t197;
-  const Real t509 = t508 * s_r_p_1_;
-  const Real t510 = t509 + t203;
-  const Real t511 = par.k1 * t425;
-  const Real t512 = t420 * par.k2;
-  const Real t513 = t511 + t512;
-  const Real t514 = c_r_p_1_ * t513;
-  const Real t515 = t514 - t224;
-  const Real t516 = t510 + t515;
-  const Real t517 = t516 * par.k1;
-  const Real t518 = t420 * par.k1;
-  const Real t519 = par.k2 * t425;
-  const Real t520 = t518 - t519;
-  const Real t521 = t520 * par.k2;
-  const Real t522 = t517 - t521;
-  const Real t523 = t522 * t95;
-  const Real t524 = t520 * par.k1;
-  const Real t525 = t516 * par.k2;
-  const Real t526 = t524 + t525;
-  const Real t527 = t91 * t526;
-  const Real t528 = t527 * constant<Real>(2.0L);
-  const Real t529 = t522 * t83;
-  const Real t530 = t529 * constant<Real>(2.0L);
-  const Real t531 = t528 + t530;
-  const Real t532 = t531 / t183;
-  const Real t533 = t95 * t532;
-  const Real t534 = t533 / t94;
-  const Real t535 = t83 * t534;
-  const Real t536 = t523 - t535;
-  const Real t537 = par.r_F * t536;
-  const Real t538 = t506 * t537;
-  const Real t539 = t100 * t492;
-  const Real t540 = t538 - t539;
-  const Real t541 = t494 * t115;
-  const Real t542 = t95 * t526;
-  const Real t543 = t91 * t534;
-  const Real t544 = t542 - t543;
-  const Real t545 = t544 * par.r_F;
-  const Real t546 = par.k2 * t500;
-  const Real t547 = t504 * par.k1;
-  const Real t548 = t546 - t547;
-  const Real t549 = t545 * t548;
-  const Real t550 = t541 + t549;
-  const Real t551 = t540 + t550;
-  const Real t552 = t497 - t551;
-  const Real t553 = nu[2] - t417;
-  const Real t554 = t439 * t553;
-  const Real t555 = t31 * t554;
+  const Real t461 = t457 - t460;
+  const Real t462 = -t441;
+  const Real t463 = sum_error(t440, t462);
+  const Real t464 = t461 + t463;
+  const Real t465 = t400 * t464;
+  const Real t466 = t451 + t465;
+  const Real t467 = product_error(t400, t442);
+  const Real t468 = t466 + t467;
+  const Real t469 = t468 * t228;
+  const Real t470 = t450 + t469;
+  const Real t471 = t449 + t470;
+  const Real t472 = t471 - t452;
+  const Real t473 = t448 + t472;
+  const Real t474 = t473 * t277;
+  const Real t475 = t446 + t474;
+  const Real t476 = product_error(t277, t445);
+  const Real t477 = t475 + t476;
+  const Real t478 = t477 * nu[1];
+  const Real t479 = t445 * t277;
+  const Real t480 = t479 * nu[1];
+  const Real t481 = t478 + t480;
+  const Real t482 = t430 + t481;
+  const Real t483 = t311 * t147;
+  const Real t484 = t157 - t483;
+  const Real t485 = t147 * t274;
+  const Real t486 = t92 - t485;
+  const Real t487 = t323 * t486;
+  const Real t488 = t484 - t487;
+  const Real t489 = -t483;
+  const Real t490 = sum_error(t157, t489);
+  const Real t491 = t147 * t338;
+  const Real t492 = product_error(t311, t147);
+  const Real t493 = t491 + t492;
+  const Real t494 = t490 - t493;
+  const Real t495 = t386 * t486;
+  const Real t496 = -t485;
+  const Real t497 = sum_error(t92, t496);
+  const Real t498 = product_error(t274, t147);
+  const Real t499 = t497 - t498;
+  const Real t500 = t323 * t499;
+  const Real t501 = t495 + t500;
+  const Real t502 = product_error(t486, t323);
+  const Real t503 = t501 + t502;
+  const Real t504 = t494 - t503;
+  const Real t505 = t488 + t504;
+  const Real t506 = t505 * t412;
+  const Real t507 = t400 * t505;
+  const Real t508 = t506 + t507;
+  const Real t509 = t228 * t508;
+  const Real t510 = t226 * t508;
+  const Real t511 = t509 + t510;
+  const Real t512 = t511 + t486;
+  const Real t513 = product_error(t277, t512);
+  const Real t514 = sum_error(t486, t511);
+  const Real t515 = t514 + t499;
+  const Real t516 = t515 * t277;
+  const Real t517 = t512 * t383;
+  const Real t518 = t516 + t517;
+  const Real t519 = t513 + t518;
+  const Real t520 = nu[2] * t519;
+  const Real t521 = t512 * t277;
+  const Real t522 = t521 * nu[2];
+  const Real t523 = t520 + t522;
+  const Real t524 = t482 + t523;
+  const Real t525 = t524 * R[8];
+  const Real t526 = t251 * t521;
+  const Real t527 = t147 - t526;
+  const Real t528 = t251 * t519;
+  const Real t529 = t521 * t358;
+  const Real t530 = t528 + t529;
+  const Real t531 = product_error(t251, t521);
+  const Real t532 = t530 + t531;
+  const Real t533 = t527 - t532;
+  const Real t534 = t533 * t261;
+  const Real t535 = t533 * t272;
+  const Real t536 = t534 + t535;
+  const Real t537 = t536 * nu[2];
+  const Real t538 = t251 * t428;
+  const Real t539 = t297 - t538;
+  const Real t540 = t358 * t428;
+  const Real t541 = t426 * t251;
+  const Real t542 = t540 + t541;
+  const Real t543 = product_error(t428, t251);
+  const Real t544 = t542 + t543;
+  const Real t545 = t539 - t544;
+  const Real t546 = t272 * t545;
+  const Real t547 = t261 * t545;
+  const Real t548 = t546 + t547;
+  const Real t549 = t548 * nu[0];
+  const Real t550 = t251 * t479;
+  const Real t551 = t438 - t550;
+  const Real t552 = product_error(t479, t251);
+  const Real t553 = t251 * t477;
+  const Real t554 = t358 * t479;
+  const Real t555 = t553 + t554;
   const Real t556 = t552 + t555;
-  const Real t557 = t441 * c_r_p_1_;
-  const Real t558 = t556 - t557;
-  const Real t559 = t553 * t434;
-  const Real t560 = t559 * t48;
-  const Real t561 = t558 - t560;
-  const Real t562 = t441 * t48;
-  const Real t563 = t484 * t202;
-  const Real t564 = t200 * t476;
-  const Real t565 = t563 - t564;
-  const Real t566 = t565 * par.k1;
-  const Real t567 = t489 * t202;
-  const Real t568 = t200 * t417;
-  const Real t569 = t567 - t568;
-  const Real t570 = t569 * par.c;
-  const Real t571 = t566 + t570;
-  const Real t572 = t115 * t569;
-  const Real t573 = t489 * s_r_p_1_;
-  const Real t574 = c_r_p_1_ * t417;
-  const Real t575 = t573 + t574;
-  const Real t576 = t340 * nu[0];
-  const Real t577 = nu[1] * t363;
-  const Real t578 = t382 * nu[1];
-  const Real t579 = t577 + t578;
-  const Real t580 = t576 + t579;
-  const Real t581 = t296 * nu[2];
-  const Real t582 = t580 + t581;
-  const Real t583 = t575 + t582;
-  const Real t584 = t583 * t545;
-  const Real t585 = t572 + t584;
-  const Real t586 = t571 - t585;
-  const Real t587 = t138 * t554;
-  const Real t588 = t586 - t587;
-  const Real t589 = t562 + t588;
-  const Real t590 = t35 * t559;
-  const Real t591 = t589 - t590;
-  const Real t592 = t215 * t561;
-  const Real t593 = t591 - t592;
-  const Real t594 = t247 * t593;
-  const Real t595 = t209 * t561;
-  const Real t596 = t559 * t138;
-  const Real t597 = t100 * t569;
-  const Real t598 = t583 * t537;
+  const Real t557 = t551 - t556;
+  const Real t558 = t557 * t261;
+  const Real t559 = t557 * t272;
+  const Real t560 = t558 + t559;
+  const Real t561 = t560 * nu[1];
+  const Real t562 = t549 + t561;
+  const Real t563 = t537 + t562;
+  const Real t564 = t563 * R[7];
+  const Real t565 = t525 - t564;
+  const Real t566 = t565 * t10;
+  const Real t567 = t565 * R[6];
+  const Real t568 = t567 * constant<Real>(2.0L);
+  const Real t569 = t524 * R[6];
+  const Real t570 = t178 + t569;
+  const Real t571 = R[8] * t570;
+  const Real t572 = t571 * constant<Real>(2.0L);
+  const Real t573 = t568 - t572;
+  const Real t574 = t573 / t8;
+  const Real t575 = t10 * t574;
+  const Real t576 = t575 / t7;
+  const Real t577 = t576 * R[6];
+  const Real t578 = t566 - t577;
+  const Real t579 = t578 * par.r_R;
+  const Real t580 = nu[2] - t524;
+  const Real t581 = t579 * t580;
+  const Real t582 = t560 * t43;
+  const Real t583 = t582 * nu[1];
+  const Real t584 = t548 * t43;
+  const Real t585 = t584 - t28;
+  const Real t586 = t585 * nu[0];
+  const Real t587 = t583 + t586;
+  const Real t588 = t536 * t43;
+  const Real t589 = t588 * nu[2];
+  const Real t590 = t587 + t589;
+  const Real t591 = t563 * par.k14;
+  const Real t592 = t563 * par.k28;
+  const Real t593 = t591 + t592;
+  const Real t594 = t590 - t593;
+  const Real t595 = t176 * t594;
+  const Real t596 = t13 * t428;
+  const Real t597 = t56 * t428;
+  const Real t598 = t426 * t13;
   const Real t599 = t597 + t598;
-  const Real t600 = t565 * par.k2;
-  const Real t601 = par.r_F * t569;
-  const Real t602 = t600 + t601;
-  const Real t603 = t599 + t602;
-  const Real t604 = t132 * t554;
-  const Real t605 = t554 * t29;
-  const Real t606 = t604 + t605;
-  const Real t607 = t603 + t606;
-  const Real t608 = t441 * t31;
-  const Real t609 = t607 + t608;
-  const Real t610 = t596 + t609;
-  const Real t611 = t595 + t610;
-  const Real t612 = t594 + t611;
-  const Real t613 = product_error(t209, t561);
-  const Real t614 = sum_error(t610, t595);
-  const Real t615 = t613 + t614;
-  const Real t616 = t593 * t275;
-  const Real t617 = product_error(t247, t593);
-  const Real t618 = t616 + t617;
-  const Real t619 = t615 + t618;
-  const Real t620 = t612 + t619;
-  const Real t621 = t620 * t284;
-  const Real t622 = t620 * t281;
-  const Real t623 = t621 + t622;
-  const Real t624 = t623 * t115;
-  const Real t625 = t593 - t624;
-  const Real t626 = t625 * t246;
-  const Real t627 = t241 * t626;
-  const Real t628 = t561 - t627;
-  const Real t629 = product_error(t241, t626);
-  const Real t630 = product_error(t246, t625);
-  const Real t631 = t625 * t272;
-  const Real t632 = -t624;
-  const Real t633 = sum_error(t593, t632);
-  const Real t634 = t633 * t246;
-  const Real t635 = t631 + t634;
-  const Real t636 = t630 + t635;
-  const Real t637 = t636 * t241;
-  const Real t638 = t629 + t637;
-  const Real t639 = t628 - t638;
-  const Real t640 = t159 * t639;
-  const Real t641 = t640 * t45;
-  const Real t642 = t441 - t641;
-  const Real t643 = t401 + t642;
-  const Real t644 = t406 * t456;
-  const Real t645 = t472 * nu[0];
-  const Real t646 = t644 + t645;
-  const Real t647 = t643 - t646;
-  const Real t648 = t647 - t194;
-  const Real t649 = nu_dot[2] * t313;
-  const Real t650 = nu_dot[1] * t397;
-  const Real t651 = nu_dot[0] * t357;
-  const Real t652 = t650 + t651;
-  const Real t653 = t649 + t652;
-  const Real t654 = t640 - t653;
-  const Real t655 = t417 * nu[0];
-  const Real t656 = t654 - t655;
-  const Real t657 = t656 * par.k14;
-  const Real t658 = t648 + t657;
-  const Real t659 = t658 * s_r_p_1_;
-  const Real t660 = t406 * t482;
-  const Real t661 = t472 * t417;
-  const Real t662 = t660 - t661;
-  const Real t663 = t11 * t626;
-  const Real t664 = t11 * t636;
-  const Real t665 = t663 + t664;
-  const Real t666 = t554 - t665;
-  const Real t667 = nu_dot[2] * t454;
-  const Real t668 = nu_dot[1] * t444;
-  const Real t669 = nu_dot[0] * t448;
-  const Real t670 = t668 + t669;
-  const Real t671 = t667 + t670;
-  const Real t672 = t666 + t671;
-  const Real t673 = t662 + t672;
-  const Real t674 = t673 - t196;
-  const Real t675 = t417 * t417;
-  const Real t676 = t406 * t406;
-  const Real t677 = t675 + t676;
-  const Real t678 = par.k14 * t677;
-  const Real t679 = t674 - t678;
-  const Real t680 = t679 * par.k2;
-  const Real t681 = nu_dot[2] * t461;
-  const Real t682 = t465 * nu_dot[1];
-  const Real t683 = nu_dot[0] * t469;
-  const Real t684 = t682 + t683;
-  const Real t685 = t681 - t684;
-  const Real t686 = t636 * t45;
-  const Real t687 = t626 * t45;
-  const Real t688 = t686 + t687;
-  const Real t689 = t559 + t688;
-  const Real t690 = t685 + t689;
-  const Real t691 = t482 * nu[0];
-  const Real t692 = t417 * t456;
-  const Real t693 = t691 + t692;
-  const Real t694 = t690 + t693;
-  const Real t695 = t694 - t195;
-  const Real t696 = t406 * nu[0];
-  const Real t697 = nu_dot[2] * t308;
-  const Real t698 = nu_dot[2] * t299;
+  const Real t600 = t596 + t599;
+  const Real t601 = t600 * nu[0];
+  const Real t602 = t13 * t479;
+  const Real t603 = t13 * t477;
+  const Real t604 = t56 * t479;
+  const Real t605 = t603 + t604;
+  const Real t606 = t602 + t605;
+  const Real t607 = t606 * nu[1];
+  const Real t608 = t601 + t607;
+  const Real t609 = t521 * t56;
+  const Real t610 = t13 * t519;
+  const Real t611 = t609 + t610;
+  const Real t612 = t13 * t521;
+  const Real t613 = t611 + t612;
+  const Real t614 = t613 - t12;
+  const Real t615 = t614 * nu[2];
+  const Real t616 = t608 + t615;
+  const Real t617 = t616 * par.k2;
+  const Real t618 = t521 * t43;
+  const Real t619 = t43 * t519;
+  const Real t620 = t618 + t619;
+  const Real t621 = t43 - t620;
+  const Real t622 = t621 * nu[2];
+  const Real t623 = t477 * t43;
+  const Real t624 = t43 * t479;
+  const Real t625 = t623 + t624;
+  const Real t626 = t625 * nu[1];
+  const Real t627 = t43 * t428;
+  const Real t628 = t426 * t43;
+  const Real t629 = t627 + t628;
+  const Real t630 = t629 * nu[0];
+  const Real t631 = t626 + t630;
+  const Real t632 = t622 - t631;
+  const Real t633 = t524 * par.k14;
+  const Real t634 = t524 * par.k28;
+  const Real t635 = t633 + t634;
+  const Real t636 = t632 + t635;
+  const Real t637 = par.k1 * t636;
+  const Real t638 = t617 - t637;
+  const Real t639 = t174 * t638;
+  const Real t640 = t595 - t639;
+  const Real t641 = par.k1 * t640;
+  const Real t642 = t563 * par.k1;
+  const Real t643 = t172 + t642;
+  const Real t644 = t643 * t176;
+  const Real t645 = t524 * t174;
+  const Real t646 = t644 - t645;
+  const Real t647 = par.c * t646;
+  const Real t648 = t641 + t647;
+  const Real t649 = t228 * t646;
+  const Real t650 = t226 * t646;
+  const Real t651 = t649 + t650;
+  const Real t652 = par.k1 * t570;
+  const Real t653 = t565 * par.k2;
+  const Real t654 = t652 + t653;
+  const Real t655 = c_r_p_1_ * t654;
+  const Real t656 = t655 - t183;
+  const Real t657 = t563 * R[6];
+  const Real t658 = t171 + t657;
+  const Real t659 = s_r_p_1_ * t658;
+  const Real t660 = t659 + t177;
+  const Real t661 = t656 + t660;
+  const Real t662 = t661 * par.k2;
+  const Real t663 = t565 * par.k1;
+  const Real t664 = t570 * par.k2;
+  const Real t665 = t663 - t664;
+  const Real t666 = par.k1 * t665;
+  const Real t667 = t662 + t666;
+  const Real t668 = t667 * t219;
+  const Real t669 = t661 * par.k1;
+  const Real t670 = par.k2 * t665;
+  const Real t671 = t669 - t670;
+  const Real t672 = t213 * t671;
+  const Real t673 = t25 * t671;
+  const Real t674 = t672 + t673;
+  const Real t675 = t674 * constant<Real>(2.0L);
+  const Real t676 = t667 * t206;
+  const Real t677 = t192 * t667;
+  const Real t678 = t676 + t677;
+  const Real t679 = t678 * constant<Real>(2.0L);
+  const Real t680 = t675 + t679;
+  const Real t681 = t218 * constant<Real>(2.0L);
+  const Real t682 = t680 / t681;
+  const Real t683 = t219 * t682;
+  const Real t684 = t683 / t218;
+  const Real t685 = t192 * t684;
+  const Real t686 = t684 * t206;
+  const Real t687 = t685 + t686;
+  const Real t688 = t668 - t687;
+  const Real t689 = par.r_F * t688;
+  const Real t690 = t524 * c_r_p_1_;
+  const Real t691 = s_r_p_1_ * t643;
+  const Real t692 = t690 + t691;
+  const Real t693 = t468 * nu[1];
+  const Real t694 = t443 * nu[1];
+  const Real t695 = t693 + t694;
+  const Real t696 = t415 * nu[0];
+  const Real t697 = t695 + t696;
+  const Real t698 = nu[2] * t508;
   const Real t699 = t697 + t698;
-  const Real t700 = nu_dot[1] * t392;
-  const Real t701 = t366 * nu_dot[1];
-  const Real t702 = t700 + t701;
-  const Real t703 = nu_dot[0] * t343;
-  const Real t704 = nu_dot[0] * t352;
-  const Real t705 = t703 + t704;
-  const Real t706 = t702 + t705;
-  const Real t707 = t699 + t706;
-  const Real t708 = t626 - t707;
-  const Real t709 = t708 + t636;
-  const Real t710 = t696 + t709;
-  const Real t711 = t710 * par.k14;
-  const Real t712 = t695 - t711;
-  const Real t713 = t712 * par.k1;
-  const Real t714 = t680 - t713;
-  const Real t715 = t714 * c_r_p_1_;
-  const Real t716 = t659 + t715;
-  const Real t717 = t504 * t500;
-  const Real t718 = c_r_p_1_ * t709;
-  const Real t719 = t654 * par.k1;
-  const Real t720 = t237 - t719;
-  const Real t721 = s_r_p_1_ * t720;
-  const Real t722 = t718 - t721;
-  const Real t723 = t504 * nu[1];
-  const Real t724 = t722 - t723;
-  const Real t725 = t717 + t724;
-  const Real t726 = par.k12 * t725;
-  const Real t727 = t500 * t500;
-  const Real t728 = t575 * t575;
+  const Real t700 = t692 + t699;
+  const Real t701 = t689 * t700;
+  const Real t702 = t651 + t701;
+  const Real t703 = t648 - t702;
+  const Real t704 = t570 * t10;
+  const Real t705 = R[8] * t576;
+  const Real t706 = t704 + t705;
+  const Real t707 = t706 * par.r_R;
+  const Real t708 = t580 * t707;
+  const Real t709 = t69 * t708;
+  const Real t710 = t703 - t709;
+  const Real t711 = t563 * t579;
+  const Real t712 = t707 * nu[0];
+  const Real t713 = t711 - t712;
+  const Real t714 = t713 * t46;
+  const Real t715 = t710 + t714;
+  const Real t716 = t581 * t38;
+  const Real t717 = t715 - t716;
+  const Real t718 = t34 * t708;
+  const Real t719 = t524 * t176;
+  const Real t720 = t643 * t174;
+  const Real t721 = t719 + t720;
+  const Real t722 = par.k1 * t721;
+  const Real t723 = t722 * par.c;
+  const Real t724 = par.k2 * t721;
+  const Real t725 = t724 * par.r_F;
+  const Real t726 = t723 + t725;
+  const Real t727 = t176 * t638;
+  const Real t728 = t174 * t594;
   const Real t729 = t727 + t728;
-  const Real t730 = t729 * par.k13;
-  const Real t731 = t726 + t730;
-  const Real t732 = t716 - t731;
-  const Real t733 = par.k2 * t732;
-  const Real t734 = t504 * t504;
-  const Real t735 = t728 + t734;
-  const Real t736 = par.k12 * t735;
-  const Real t737 = t717 - t724;
-  const Real t738 = t737 * par.k13;
-  const Real t739 = t736 + t738;
-  const Real t740 = t679 * par.k1;
-  const Real t741 = t712 * par.k2;
-  const Real t742 = t740 + t741;
-  const Real t743 = t739 + t742;
-  const Real t744 = par.k1 * t743;
-  const Real t745 = t733 + t744;
-  const Real t746 = t745 * s_r_p_2_;
-  const Real t747 = par.k2 * t743;
-  const Real t748 = par.k1 * t732;
-  const Real t749 = t747 - t748;
-  const Real t750 = t749 * c_r_p_2_;
-  const Real t751 = t746 + t750;
-  const Real t752 = t751 * par.m_F;
-  const Real t753 = t752 * s_r_p_2_;
-  const Real t754 = t745 * c_r_p_2_;
-  const Real t755 = t749 * s_r_p_2_;
-  const Real t756 = t754 - t755;
-  const Real t757 = par.m_F * t756;
-  const Real t758 = c_r_p_2_ * t757;
-  const Real t759 = t753 + t758;
-  const Real t760 = t759 * par.k2;
-  const Real t761 = t752 * c_r_p_2_;
-  const Real t762 = t757 * s_r_p_2_;
+  const Real t730 = t726 + t729;
+  const Real t731 = t643 * c_r_p_1_;
+  const Real t732 = t524 * s_r_p_1_;
+  const Real t733 = t731 - t732;
+  const Real t734 = par.k2 * t733;
+  const Real t735 = t563 * par.k2;
+  const Real t736 = t173 - t735;
+  const Real t737 = t736 + nu[1];
+  const Real t738 = t737 * par.k1;
+  const Real t739 = t734 + t738;
+  const Real t740 = t219 * t671;
+  const Real t741 = t213 * t684;
+  const Real t742 = t25 * t684;
+  const Real t743 = t741 + t742;
+  const Real t744 = t740 - t743;
+  const Real t745 = t744 * par.r_F;
+  const Real t746 = t739 * t745;
+  const Real t747 = t242 * t724;
+  const Real t748 = t240 * t724;
+  const Real t749 = t747 + t748;
+  const Real t750 = t746 - t749;
+  const Real t751 = t737 * par.k2;
+  const Real t752 = par.k1 * t733;
+  const Real t753 = t751 - t752;
+  const Real t754 = t689 * t753;
+  const Real t755 = t722 * t226;
+  const Real t756 = t722 * t228;
+  const Real t757 = t755 + t756;
+  const Real t758 = t754 + t757;
+  const Real t759 = t750 + t758;
+  const Real t760 = t730 - t759;
+  const Real t761 = t718 + t760;
+  const Real t762 = t713 * c_r_p_1_;
   const Real t763 = t761 - t762;
-  const Real t764 = par.k1 * t763;
-  const Real t765 = t760 - t764;
-  const Real t766 = t716 * par.m_H;
-  const Real t767 = par.k9 * t725;
-  const Real t768 = par.k11 * t729;
-  const Real t769 = t767 - t768;
-  const Real t770 = t766 + t769;
-  const Real t771 = t765 + t770;
-  const Real t772 = c_r_p_1_ * t771;
-  const Real t773 = t658 * c_r_p_1_;
-  const Real t774 = s_r_p_1_ * t714;
-  const Real t775 = t773 - t774;
-  const Real t776 = c_r_p_1_ * t720;
-  const Real t777 = s_r_p_1_ * t709;
-  const Real t778 = t776 + t777;
-  const Real t779 = t575 * nu[1];
-  const Real t780 = t778 - t779;
-  const Real t781 = t575 * t500;
-  const Real t782 = t780 + t781;
-  const Real t783 = t782 * par.k12;
-  const Real t784 = t654 * par.k2;
-  const Real t785 = t238 + t784;
-  const Real t786 = nu_dot[1] + t785;
-  const Real t787 = t504 * t575;
-  const Real t788 = t786 - t787;
-  const Real t789 = t788 * par.k13;
-  const Real t790 = t783 + t789;
-  const Real t791 = t775 + t790;
-  const Real t792 = par.m_F * t791;
-  const Real t793 = par.m_H * t775;
-  const Real t794 = t788 * par.k11;
-  const Real t795 = par.k9 * t782;
-  const Real t796 = t794 - t795;
-  const Real t797 = t793 + t796;
-  const Real t798 = t792 + t797;
-  const Real t799 = s_r_p_1_ * t798;
-  const Real t800 = t772 - t799;
-  const Real t801 = par.k2 * t800;
-  const Real t802 = par.k2 * t763;
-  const Real t803 = par.k1 * t759;
-  const Real t804 = t802 + t803;
-  const Real t805 = par.m_H * t742;
-  const Real t806 = t737 * par.k11;
-  const Real t807 = par.k9 * t735;
-  const Real t808 = t806 - t807;
-  const Real t809 = t805 + t808;
-  const Real t810 = t804 + t809;
-  const Real t811 = t810 * par.k1;
-  const Real t812 = t801 + t811;
-  const Real t813 = t674 * par.m_B;
-  const Real t814 = t709 - t696;
-  const Real t815 = t814 * par.k16;
-  const Real t816 = t677 * par.k17;
-  const Real t817 = t815 - t816;
-  const Real t818 = t813 + t817;
-  const Real t819 = t812 + t818;
-  const Real t820 = t814 * par.r_R;
-  const Real t821 = t674 - t820;
-  const Real t822 = t821 * c_r_p_0_;
-  const Real t823 = t207 + t675;
-  const Real t824 = par.r_R * t823;
-  const Real t825 = t695 + t824;
-  const Real t826 = t825 * s_r_p_0_;
-  const Real t827 = t822 - t826;
-  const Real t828 = t827 * par.m_R;
-  const Real t829 = c_r_p_0_ * t828;
-  const Real t830 = t825 * c_r_p_0_;
-  const Real t831 = t821 * s_r_p_0_;
-  const Real t832 = t830 + t831;
-  const Real t833 = t832 * par.m_R;
-  const Real t834 = t833 * s_r_p_0_;
-  const Real t835 = t829 + t834;
-  const Real t836 = t819 + t835;
-  const Real t837 = nu_dot[2] + t709;
-  const Real t838 = par.I_Ryy * t837;
-  const Real t839 = par.r_R * t835;
-  const Real t840 = t838 - t839;
-  const Real t841 = t674 * par.k16;
-  const Real t842 = t695 * par.k17;
-  const Real t843 = t841 - t842;
-  const Real t844 = t406 + nu[0];
-  const Real t845 = t406 - nu[0];
-  const Real t846 = t844 * t845;
-  const Real t847 = par.k3 * t846;
-  const Real t848 = par.k4 * t709;
-  const Real t849 = t696 * par.k34;
-  const Real t850 = t848 - t849;
+  const Real t764 = t581 * t46;
+  const Real t765 = t763 - t764;
+  const Real t766 = t765 * t274;
+  const Real t767 = t717 - t766;
+  const Real t768 = t767 * t323;
+  const Real t769 = t311 * t765;
+  const Real t770 = t581 * t69;
+  const Real t771 = t713 * t34;
+  const Real t772 = t745 * t700;
+  const Real t773 = t240 * t646;
+  const Real t774 = t242 * t646;
+  const Real t775 = t773 + t774;
+  const Real t776 = t772 + t775;
+  const Real t777 = par.k2 * t640;
+  const Real t778 = par.r_F * t646;
+  const Real t779 = t777 + t778;
+  const Real t780 = t776 + t779;
+  const Real t781 = t32 * t708;
+  const Real t782 = t63 * t708;
+  const Real t783 = t781 + t782;
+  const Real t784 = t780 + t783;
+  const Real t785 = t771 + t784;
+  const Real t786 = t770 + t785;
+  const Real t787 = t769 + t786;
+  const Real t788 = t768 + t787;
+  const Real t789 = t765 * t338;
+  const Real t790 = product_error(t311, t765);
+  const Real t791 = t789 + t790;
+  const Real t792 = sum_error(t786, t769);
+  const Real t793 = t791 + t792;
+  const Real t794 = t767 * t386;
+  const Real t795 = -t766;
+  const Real t796 = sum_error(t717, t795);
+  const Real t797 = product_error(t274, t765);
+  const Real t798 = t796 - t797;
+  const Real t799 = t798 * t323;
+  const Real t800 = t794 + t799;
+  const Real t801 = product_error(t323, t767);
+  const Real t802 = t800 + t801;
+  const Real t803 = t793 + t802;
+  const Real t804 = t788 + t803;
+  const Real t805 = t400 * t804;
+  const Real t806 = t804 * t412;
+  const Real t807 = t805 + t806;
+  const Real t808 = t807 * t226;
+  const Real t809 = t807 * t228;
+  const Real t810 = t808 + t809;
+  const Real t811 = t767 - t810;
+  const Real t812 = t277 * t811;
+  const Real t813 = t43 * t812;
+  const Real t814 = product_error(t277, t811);
+  const Real t815 = -t810;
+  const Real t816 = sum_error(t767, t815);
+  const Real t817 = t798 + t816;
+  const Real t818 = t817 * t277;
+  const Real t819 = t811 * t383;
+  const Real t820 = t818 + t819;
+  const Real t821 = t814 + t820;
+  const Real t822 = t43 * t821;
+  const Real t823 = t813 + t822;
+  const Real t824 = t581 + t823;
+  const Real t825 = nu_dot[2] * t621;
+  const Real t826 = t629 * nu_dot[0];
+  const Real t827 = nu_dot[1] * t625;
+  const Real t828 = t826 + t827;
+  const Real t829 = t825 - t828;
+  const Real t830 = t824 + t829;
+  const Real t831 = t590 * nu[0];
+  const Real t832 = t524 * t616;
+  const Real t833 = t831 + t832;
+  const Real t834 = t830 + t833;
+  const Real t835 = t834 - t169;
+  const Real t836 = par.m_B * t835;
+  const Real t837 = t524 * t524;
+  const Real t838 = t837 + t181;
+  const Real t839 = t838 * par.k16;
+  const Real t840 = par.k62 * t838;
+  const Real t841 = t839 + t840;
+  const Real t842 = nu_dot[2] * t519;
+  const Real t843 = nu_dot[2] * t521;
+  const Real t844 = t842 + t843;
+  const Real t845 = nu_dot[1] * t479;
+  const Real t846 = nu_dot[1] * t477;
+  const Real t847 = t845 + t846;
+  const Real t848 = t426 * nu_dot[0];
+  const Real t849 = nu_dot[0] * t428;
+  const Real t850 = t848 + t849;
   const Real t851 = t847 + t850;
-  const Real t852 = t843 + t851;
-  const Real t853 = par.k8 * t724;
-  const Real t854 = t717 * par.k38;
-  const Real t855 = t853 + t854;
-  const Real t856 = t500 - t504;
-  const Real t857 = t504 + t500;
-  const Real t858 = t856 * t857;
-  const Real t859 = par.k5 * t858;
-  const Real t860 = t855 + t859;
-  const Real t861 = par.k9 * t716;
-  const Real t862 = par.k11 * t742;
-  const Real t863 = t861 - t862;
-  const Real t864 = t860 + t863;
-  const Real t865 = nu_dot[2] * t296;
-  const Real t866 = nu_dot[1] * t363;
-  const Real t867 = nu_dot[1] * t382;
-  const Real t868 = t866 + t867;
-  const Real t869 = nu_dot[0] * t340;
-  const Real t870 = t868 + t869;
-  const Real t871 = t865 + t870;
-  const Real t872 = t871 + t623;
-  const Real t873 = t724 - t872;
-  const Real t874 = t873 * par.I_Fyy;
-  const Real t875 = t804 * par.k13;
-  const Real t876 = par.k12 * t765;
-  const Real t877 = t875 + t876;
-  const Real t878 = t874 - t877;
-  const Real t879 = t864 + t878;
-  const Real t880 = c_r_p_1_ * t879;
-  const Real t881 = t788 * par.k5;
-  const Real t882 = t780 * par.k18;
-  const Real t883 = par.k37 * t781;
+  const Real t852 = t844 + t851;
+  const Real t853 = t812 - t852;
+  const Real t854 = t853 + t821;
+  const Real t855 = t563 * nu[0];
+  const Real t856 = t854 + t855;
+  const Real t857 = t856 * par.k17;
+  const Real t858 = t841 + t857;
+  const Real t859 = t836 - t858;
+  const Real t860 = t737 * t733;
+  const Real t861 = t854 * c_r_p_1_;
+  const Real t862 = t251 * t812;
+  const Real t863 = t765 - t862;
+  const Real t864 = product_error(t251, t812);
+  const Real t865 = t358 * t812;
+  const Real t866 = t251 * t821;
+  const Real t867 = t865 + t866;
+  const Real t868 = t864 + t867;
+  const Real t869 = t863 - t868;
+  const Real t870 = t869 * t261;
+  const Real t871 = t869 * t272;
+  const Real t872 = t870 + t871;
+  const Real t873 = t536 * nu_dot[2];
+  const Real t874 = t548 * nu_dot[0];
+  const Real t875 = nu_dot[1] * t560;
+  const Real t876 = t874 + t875;
+  const Real t877 = t873 + t876;
+  const Real t878 = t872 - t877;
+  const Real t879 = par.k1 * t878;
+  const Real t880 = t201 - t879;
+  const Real t881 = s_r_p_1_ * t880;
+  const Real t882 = t861 - t881;
+  const Real t883 = t733 * nu[1];
   const Real t884 = t882 - t883;
-  const Real t885 = t881 + t884;
-  const Real t886 = par.k9 * t775;
-  const Real t887 = t885 - t886;
-  const Real t888 = t780 * par.k2;
-  const Real t889 = t786 * par.k1;
-  const Real t890 = t888 + t889;
-  const Real t891 = t890 * s_r_p_2_;
-  const Real t892 = t786 * par.k2;
-  const Real t893 = t780 * par.k1;
-  const Real t894 = t892 - t893;
-  const Real t895 = t894 * c_r_p_2_;
-  const Real t896 = t891 + t895;
-  const Real t897 = c_r_p_2_ * t506;
-  const Real t898 = t548 * s_r_p_2_;
+  const Real t885 = t860 - t884;
+  const Real t886 = par.k11 * t885;
+  const Real t887 = t733 * t733;
+  const Real t888 = t692 * t692;
+  const Real t889 = t887 + t888;
+  const Real t890 = t889 * par.k9;
+  const Real t891 = t886 - t890;
+  const Real t892 = t856 * par.k14;
+  const Real t893 = t856 * par.k28;
+  const Real t894 = t892 + t893;
+  const Real t895 = t835 - t894;
+  const Real t896 = t895 * par.k2;
+  const Real t897 = t563 * t590;
+  const Real t898 = t524 * t632;
   const Real t899 = t897 - t898;
-  const Real t900 = t899 * t582;
-  const Real t901 = t896 - t900;
-  const Real t902 = par.I_Fxx * t901;
-  const Real t903 = t899 * t583;
-  const Real t904 = par.k43 * t903;
-  const Real t905 = t902 - t904;
-  const Real t906 = t905 * s_r_p_2_;
-  const Real t907 = t890 * c_r_p_2_;
-  const Real t908 = t894 * s_r_p_2_;
-  const Real t909 = t907 - t908;
-  const Real t910 = t506 * s_r_p_2_;
-  const Real t911 = c_r_p_2_ * t548;
-  const Real t912 = t910 + t911;
-  const Real t913 = t912 * t582;
-  const Real t914 = t909 + t913;
-  const Real t915 = par.I_Fxx * t914;
-  const Real t916 = t912 * t583;
-  const Real t917 = par.k42 * t916;
-  const Real t918 = t915 - t917;
-  const Real t919 = c_r_p_2_ * t918;
-  const Real t920 = t906 + t919;
-  const Real t921 = par.k2 * t920;
-  const Real t922 = c_r_p_2_ * t905;
-  const Real t923 = t918 * s_r_p_2_;
-  const Real t924 = t922 - t923;
+  const Real t900 = nu_dot[2] * t614;
+  const Real t901 = t600 * nu_dot[0];
+  const Real t902 = nu_dot[1] * t606;
+  const Real t903 = t901 + t902;
+  const Real t904 = t900 + t903;
+  const Real t905 = t13 * t812;
+  const Real t906 = t56 * t812;
+  const Real t907 = t13 * t821;
+  const Real t908 = t906 + t907;
+  const Real t909 = t905 + t908;
+  const Real t910 = t708 - t909;
+  const Real t911 = t904 + t910;
+  const Real t912 = t899 + t911;
+  const Real t913 = t912 - t170;
+  const Real t914 = t563 * t563;
+  const Real t915 = t837 + t914;
+  const Real t916 = par.k28 * t915;
+  const Real t917 = par.k14 * t915;
+  const Real t918 = t916 + t917;
+  const Real t919 = t913 - t918;
+  const Real t920 = -t170;
+  const Real t921 = sum_error(t912, t920);
+  const Real t922 = product_error(par.g, R[6]);
+  const Real t923 = t921 - t922;
+  const Real t924 = t919 + t923;
   const Real t925 = t924 * par.k1;
-  const Real t926 = t921 - t925;
-  const Real t927 = t792 * par.k12;
-  const Real t928 = t926 + t927;
-  const Real t929 = t887 + t928;
-  const Real t930 = s_r_p_1_ * t929;
-  const Real t931 = t880 + t930;
-  const Real t932 = t810 * par.k2;
-  const Real t933 = par.k1 * t800;
-  const Real t934 = t932 - t933;
-  const Real t935 = t934 * par.k14;
-  const Real t936 = t931 - t935;
-  const Real t937 = t852 + t936;
-  const Real t938 = t840 + t937;
-  const Real t939 = t11 * t836;
-  const Real t940 = t938 - t939;
-  const Real t941 = t833 * c_r_p_0_;
-  const Real t942 = s_r_p_0_ * t828;
-  const Real t943 = t941 - t942;
-  const Real t944 = t695 * par.m_B;
-  const Real t945 = par.k16 * t823;
-  const Real t946 = t710 * par.k17;
-  const Real t947 = t945 + t946;
-  const Real t948 = t944 - t947;
-  const Real t949 = t948 + t934;
-  const Real t950 = t943 + t949;
-  const Real t951 = t950 * t45;
-  const Real t952 = t940 + t951;
-  const Real t953 = t406 * s_r_p_0_;
-  const Real t954 = t205 + t953;
-  const Real t955 = t553 * t954;
-  const Real t956 = par.k35 * t955;
-  const Real t957 = t954 * nu[2];
-  const Real t958 = t654 * c_r_p_0_;
-  const Real t959 = t958 + t236;
-  const Real t960 = t957 + t959;
-  const Real t961 = par.I_Rxx * t960;
-  const Real t962 = t956 + t961;
-  const Real t963 = t962 * c_r_p_0_;
-  const Real t964 = t654 * s_r_p_0_;
-  const Real t965 = t235 - t964;
-  const Real t966 = t406 * c_r_p_0_;
-  const Real t967 = t206 - t966;
-  const Real t968 = t967 * nu[2];
-  const Real t969 = t965 - t968;
-  const Real t970 = par.I_Rxx * t969;
-  const Real t971 = t967 * t553;
-  const Real t972 = par.k36 * t971;
-  const Real t973 = t970 + t972;
-  const Real t974 = t973 * s_r_p_0_;
-  const Real t975 = t963 - t974;
-  const Real t976 = t786 * par.k7;
-  const Real t977 = t787 * par.k39;
-  const Real t978 = t976 - t977;
-  const Real t979 = par.k5 * t782;
-  const Real t980 = t978 + t979;
-  const Real t981 = par.k11 * t775;
-  const Real t982 = t980 + t981;
-  const Real t983 = t792 * par.k13;
-  const Real t984 = par.k1 * t920;
-  const Real t985 = t924 * par.k2;
-  const Real t986 = t984 + t985;
-  const Real t987 = t983 + t986;
-  const Real t988 = t982 + t987;
-  const Real t989 = par.k2 * t988;
-  const Real t990 = c_r_p_1_ * t929;
-  const Real t991 = s_r_p_1_ * t879;
+  const Real t926 = t896 + t925;
+  const Real t927 = par.m_H * t926;
+  const Real t928 = t891 + t927;
+  const Real t929 = t889 * par.k12;
+  const Real t930 = par.k13 * t885;
+  const Real t931 = t929 + t930;
+  const Real t932 = t931 + t926;
+  const Real t933 = par.k1 * t932;
+  const Real t934 = t924 * par.k2;
+  const Real t935 = par.k1 * t895;
+  const Real t936 = t934 - t935;
+  const Real t937 = c_r_p_1_ * t936;
+  const Real t938 = t524 * nu[0];
+  const Real t939 = t878 - t938;
+  const Real t940 = par.k28 * t939;
+  const Real t941 = par.k14 * t939;
+  const Real t942 = t940 + t941;
+  const Real t943 = nu_dot[2] * t588;
+  const Real t944 = nu_dot[0] * t585;
+  const Real t945 = t582 * nu_dot[1];
+  const Real t946 = t944 + t945;
+  const Real t947 = t943 + t946;
+  const Real t948 = t872 * t43;
+  const Real t949 = t713 - t948;
+  const Real t950 = t947 + t949;
+  const Real t951 = t563 * t616;
+  const Real t952 = t632 * nu[0];
+  const Real t953 = t951 + t952;
+  const Real t954 = t950 - t953;
+  const Real t955 = t954 - t168;
+  const Real t956 = t942 + t955;
+  const Real t957 = s_r_p_1_ * t956;
+  const Real t958 = t937 + t957;
+  const Real t959 = t860 + t884;
+  const Real t960 = t959 * par.k12;
+  const Real t961 = t737 * t737;
+  const Real t962 = t961 + t888;
+  const Real t963 = par.k13 * t962;
+  const Real t964 = t960 + t963;
+  const Real t965 = t958 - t964;
+  const Real t966 = par.k2 * t965;
+  const Real t967 = t933 + t966;
+  const Real t968 = t967 * c_r_p_2_;
+  const Real t969 = par.k2 * t932;
+  const Real t970 = par.k1 * t965;
+  const Real t971 = t969 - t970;
+  const Real t972 = t971 * s_r_p_2_;
+  const Real t973 = t968 - t972;
+  const Real t974 = t973 * par.m_F;
+  const Real t975 = c_r_p_2_ * t974;
+  const Real t976 = t967 * s_r_p_2_;
+  const Real t977 = c_r_p_2_ * t971;
+  const Real t978 = t976 + t977;
+  const Real t979 = t978 * par.m_F;
+  const Real t980 = t979 * s_r_p_2_;
+  const Real t981 = t975 + t980;
+  const Real t982 = par.k1 * t981;
+  const Real t983 = t979 * c_r_p_2_;
+  const Real t984 = t974 * s_r_p_2_;
+  const Real t985 = t983 - t984;
+  const Real t986 = par.k2 * t985;
+  const Real t987 = t982 + t986;
+  const Real t988 = t928 + t987;
+  const Real t989 = t988 * par.k2;
+  const Real t990 = par.k2 * t981;
+  const Real t991 = par.k1 * t985;
   const Real t992 = t990 - t991;
-  const Real t993 = t992 * par.k1;
-  const Real t994 = t989 - t993;
-  const Real t995 = s_r_p_1_ * t771;
-  const Real t996 = c_r_p_1_ * t798;
+  const Real t993 = t959 * par.k9;
+  const Real t994 = par.k11 * t962;
+  const Real t995 = t993 - t994;
+  const Real t996 = par.m_H * t958;
   const Real t997 = t995 + t996;
-  const Real t998 = t997 * par.k14;
-  const Real t999 = t994 + t998;
-  const Real t1000 = t654 * par.k15;
-  const Real t1001 = t655 * par.k32;
-  const Real t1002 = t1000 - t1001;
-  const Real t1003 = t406 * t417;
-  const Real t1004 = t1003 - nu_dot[0];
-  const Real t1005 = par.k3 * t1004;
-  const Real t1006 = t1002 - t1005;
-  const Real t1007 = t648 * par.k17;
-  const Real t1008 = t1006 + t1007;
-  const Real t1009 = t999 + t1008;
-  const Real t1010 = t975 + t1009;
-  const Real t1011 = t656 * par.k17;
-  const Real t1012 = t1004 * par.k16;
-  const Real t1013 = t1011 + t1012;
-  const Real t1014 = t648 * par.m_B;
-  const Real t1015 = t1013 + t1014;
-  const Real t1016 = t1015 + t997;
-  const Real t1017 = t1004 * par.r_R;
-  const Real t1018 = t648 - t1017;
-  const Real t1019 = par.m_R * t1018;
-  const Real t1020 = t1016 + t1019;
-  const Real t1021 = t1020 * t45;
-  const Real t1022 = t1010 - t1021;
-  const Real t1023 = t159 * t1022;
-  const Real t1024 = t241 * t1023;
-  const Real t1025 = t952 - t1024;
-  const Real t1026 = t1025 * t246;
-  const Real t1027 = t115 * t1026;
-  const Real t1028 = t1025 * t272;
-  const Real t1029 = -t1024;
-  const Real t1030 = sum_error(t952, t1029);
-  const Real t1031 = product_error(t241, t1023);
-  const Real t1032 = t1030 - t1031;
-  const Real t1033 = t1032 * t246;
-  const Real t1034 = t1028 + t1033;
-  const Real t1035 = product_error(t246, t1025);
-  const Real t1036 = t1034 + t1035;
-  const Real t1037 = t1036 * t115;
-  const Real t1038 = t1027 + t1037;
-  const Real t1039 = t1038 + t874;
-  const Real t1040 = t281 * t1039;
-  const Real t1041 = t284 * t1039;
-  const Real t1042 = t1040 + t1041;
-  const Real t1043 = t247 * t1042;
-  const Real t1044 = t1026 - t1043;
-  const Real t1045 = t1044 * t138;
-  const Real t1046 = -t1043;
-  const Real t1047 = sum_error(t1026, t1046);
-  const Real t1048 = product_error(t1042, t247);
-  const Real t1049 = t1042 * t275;
-  const Real t1050 = t1048 + t1049;
-  const Real t1051 = t1036 - t1050;
-  const Real t1052 = t1047 + t1051;
-  const Real t1053 = t1052 * t138;
-  const Real t1054 = t1045 + t1053;
-  const Real t1055 = t836 - t1054;
-  const Real t1056 = t215 * t1044;
-  const Real t1057 = -t1056;
-  const Real t1058 = sum_error(t1023, t1057);
-  const Real t1059 = product_error(t215, t1044);
-  const Real t1060 = t1052 * t215;
-  const Real t1061 = t1059 + t1060;
-  const Real t1062 = t1058 - t1061;
-  const Real t1063 = product_error(t209, t1042);
-  const Real t1064 = t1062 - t1063;
-  const Real t1065 = t1023 - t1056;
-  const Real t1066 = t1042 * t209;
-  const Real t1067 = t1065 - t1066;
-  const Real t1068 = t1064 + t1067;
-  const Real t1069 = t31 * t1068;
-  const Real t1070 = t1055 + t1069;
-  const Real t1071 = t1042 * t29;
-  const Real t1072 = t1042 * t132;
-  const Real t1073 = t1071 + t1072;
-  const Real t1074 = t1070 - t1073;
-  const Real t1075 = t1052 + t1044;
-  const Real t1076 = t35 * t1052;
-  const Real t1077 = t35 * t1044;
-  const Real t1078 = t1076 + t1077;
-  const Real t1079 = t950 - t1078;
-  const Real t1080 = t48 * t1068;
-  const Real t1081 = t1079 - t1080;
-  const Real t1082 = t1042 * t138;
-  const Real t1083 = t1081 - t1082;
-  const Real t1084 = t1044 * t48;
-  const Real t1085 = t1052 * t48;
-  const Real t1086 = t1084 + t1085;
-  const Real t1087 = t1086 + t1020;
-  const Real t1088 = c_r_p_1_ * t1068;
+  const Real t998 = t992 + t997;
+  const Real t999 = c_r_p_1_ * t998;
+  const Real t1000 = t854 * s_r_p_1_;
+  const Real t1001 = c_r_p_1_ * t880;
+  const Real t1002 = t1000 + t1001;
+  const Real t1003 = t692 * nu[1];
+  const Real t1004 = t1002 - t1003;
+  const Real t1005 = t737 * t692;
+  const Real t1006 = t1004 + t1005;
+  const Real t1007 = par.k12 * t1006;
+  const Real t1008 = par.k2 * t878;
+  const Real t1009 = t202 + t1008;
+  const Real t1010 = t1009 + nu_dot[1];
+  const Real t1011 = t692 * t733;
+  const Real t1012 = t1010 - t1011;
+  const Real t1013 = t1012 * par.k13;
+  const Real t1014 = t1007 + t1013;
+  const Real t1015 = c_r_p_1_ * t956;
+  const Real t1016 = s_r_p_1_ * t936;
+  const Real t1017 = t1015 - t1016;
+  const Real t1018 = t1014 + t1017;
+  const Real t1019 = par.m_F * t1018;
+  const Real t1020 = t1012 * par.k11;
+  const Real t1021 = par.k9 * t1006;
+  const Real t1022 = t1020 - t1021;
+  const Real t1023 = par.m_H * t1017;
+  const Real t1024 = t1022 + t1023;
+  const Real t1025 = t1019 + t1024;
+  const Real t1026 = s_r_p_1_ * t1025;
+  const Real t1027 = t999 - t1026;
+  const Real t1028 = par.k1 * t1027;
+  const Real t1029 = t989 - t1028;
+  const Real t1030 = t859 + t1029;
+  const Real t1031 = t838 * par.r_R;
+  const Real t1032 = t1031 + t835;
+  const Real t1033 = t1032 * c_r_p_0_;
+  const Real t1034 = t854 - t855;
+  const Real t1035 = t1034 * par.r_R;
+  const Real t1036 = t913 - t1035;
+  const Real t1037 = t1036 + t923;
+  const Real t1038 = t1037 * s_r_p_0_;
+  const Real t1039 = t1033 + t1038;
+  const Real t1040 = t1039 * par.m_R;
+  const Real t1041 = t1040 * c_r_p_0_;
+  const Real t1042 = t1037 * c_r_p_0_;
+  const Real t1043 = t1032 * s_r_p_0_;
+  const Real t1044 = t1042 - t1043;
+  const Real t1045 = t1044 * par.m_R;
+  const Real t1046 = t1045 * s_r_p_0_;
+  const Real t1047 = t1041 - t1046;
+  const Real t1048 = t1030 + t1047;
+  const Real t1049 = sum_error(t1047, t1030);
+  const Real t1050 = -t858;
+  const Real t1051 = sum_error(t836, t1050);
+  const Real t1052 = product_error(t835, par.m_B);
+  const Real t1053 = t1051 + t1052;
+  const Real t1054 = sum_error(t1029, t859);
+  const Real t1055 = t1053 + t1054;
+  const Real t1056 = t1049 + t1055;
+  const Real t1057 = t1056 * t43;
+  const Real t1058 = t1048 * t43;
+  const Real t1059 = t1057 + t1058;
+  const Real t1060 = t854 + nu_dot[2];
+  const Real t1061 = par.I_Ryy * t1060;
+  const Real t1062 = t1045 * c_r_p_0_;
+  const Real t1063 = t1040 * s_r_p_0_;
+  const Real t1064 = t1062 + t1063;
+  const Real t1065 = t1064 * par.r_R;
+  const Real t1066 = t1061 - t1065;
+  const Real t1067 = t563 - nu[0];
+  const Real t1068 = t563 + nu[0];
+  const Real t1069 = t1067 * t1068;
+  const Real t1070 = par.k3 * t1069;
+  const Real t1071 = t854 * par.k4;
+  const Real t1072 = par.k34 * t855;
+  const Real t1073 = t1071 - t1072;
+  const Real t1074 = t1070 + t1073;
+  const Real t1075 = t913 * par.k16;
+  const Real t1076 = par.k17 * t835;
+  const Real t1077 = t1075 - t1076;
+  const Real t1078 = t1074 + t1077;
+  const Real t1079 = par.k8 * t884;
+  const Real t1080 = t860 * par.k38;
+  const Real t1081 = t1079 + t1080;
+  const Real t1082 = t737 - t733;
+  const Real t1083 = t737 + t733;
+  const Real t1084 = t1082 * t1083;
+  const Real t1085 = par.k5 * t1084;
+  const Real t1086 = t1081 + t1085;
+  const Real t1087 = par.k9 * t958;
+  const Real t1088 = par.k11 * t926;
   const Real t1089 = t1087 - t1088;
-  const Real t1090 = t31 * t1042;
-  const Real t1091 = t1089 - t1090;
+  const Real t1090 = t1086 + t1089;
+  const Real t1091 = nu_dot[2] * t508;
+  const Real t1092 = nu_dot[0] * t415;
+  const Real t1093 = t443 * nu_dot[1];
+  const Real t1094 = nu_dot[1] * t468;
+  const Real t1095 = t1093 + t1094;
+  const Real t1096 = t1092 + t1095;
+  const Real t1097 = t1091 + t1096;
+  const Real t1098 = t807 + t1097;
+  const Real t1099 = t884 - t1098;
+  const Real t1100 = t1099 * par.I_Fyy;
+  const Real t1101 = t992 * par.k12;
+  const Real t1102 = par.k13 * t987;
+  const Real t1103 = t1101 + t1102;
+  const Real t1104 = t1100 - t1103;
+  const Real t1105 = t1090 + t1104;
+  const Real t1106 = c_r_p_1_ * t1105;
+  const Real t1107 = t1010 * par.k2;
+  const Real t1108 = t1004 * par.k1;
+  const Real t1109 = t1107 - t1108;
+  const Real t1110 = c_r_p_2_ * t1109;
+  const Real t1111 = t1010 * par.k1;
+  const Real t1112 = t1004 * par.k2;
+  const Real t1113 = t1111 + t1112;
+  const Real t1114 = t1113 * s_r_p_2_;
+  const Real t1115 = t1110 + t1114;
+  const Real t1116 = t739 * c_r_p_2_;
+  const Real t1117 = t753 * s_r_p_2_;
+  const Real t1118 = t1116 - t1117;
+  const Real t1119 = t699 * t1118;
+  const Real t1120 = t1115 - t1119;
+  const Real t1121 = t1120 * par.I_Fxx;
+  const Real t1122 = t1118 * t700;
+  const Real t1123 = par.k43 * t1122;
+  const Real t1124 = t1121 - t1123;
+  const Real t1125 = t1124 * s_r_p_2_;
+  const Real t1126 = t1113 * c_r_p_2_;
+  const Real t1127 = t1109 * s_r_p_2_;
+  const Real t1128 = t1126 - t1127;
+  const Real t1129 = t753 * c_r_p_2_;
+  const Real t1130 = t739 * s_r_p_2_;
+  const Real t1131 = t1129 + t1130;
+  const Real t1132 = t699 * t1131;
+  const Real t1133 = t1128 + t1132;
+  const Real t1134 = par.I_Fxx * t1133;
+  const Real t1135 = t1131 * t700;
+  const Real t1136 = par.k42 * t1135;
+  const Real t1137 = t1134 - t1136;
+  const Real t1138 = t1137 * c_r_p_2_;
+  const Real t1139 = t1125 + t1138;
+  const Real t1140 = par.k2 * t1139;
+  const Real t1141 = t1124 * c_r_p_2_;
+  const Real t1142 = t1137 * s_r_p_2_;
+  const Real t1143 = t1141 - t1142;
+  const Real t1144 = t1143 * par.k1;
+  const Real t1145 = t1140 - t1144;
+  const Real t1146 = t1019 * par.k12;
+  const Real t1147 = t1145 + t1146;
+  const Real t1148 = t1004 * par.k18;
+  const Real t1149 = t1005 * par.k37;
+  const Real t1150 = t1148 - t1149;
+  const Real t1151 = t1012 * par.k5;
+  const Real t1152 = t1150 + t1151;
+  const Real t1153 = par.k9 * t1017;
+  const Real t1154 = t1152 - t1153;
+  const Real t1155 = t1147 + t1154;
+  const Real t1156 = s_r_p_1_ * t1155;
+  const Real t1157 = t1106 + t1156;
+  const Real t1158 = t1029 * par.k14;
+  const Real t1159 = t1029 * par.k28;
+  const Real t1160 = t1158 + t1159;
+  const Real t1161 = t1157 - t1160;
+  const Real t1162 = t1078 + t1161;
+  const Real t1163 = t1066 + t1162;
+  const Real t1164 = t913 * par.m_B;
+  const Real t1165 = t923 * par.m_B;
+  const Real t1166 = t1164 + t1165;
+  const Real t1167 = t1034 * par.k16;
+  const Real t1168 = par.k62 * t1034;
+  const Real t1169 = t1167 + t1168;
+  const Real t1170 = par.k17 * t915;
+  const Real t1171 = t1169 - t1170;
+  const Real t1172 = t1166 + t1171;
+  const Real t1173 = t1027 * par.k2;
+  const Real t1174 = t988 * par.k1;
+  const Real t1175 = t1173 + t1174;
+  const Real t1176 = t1172 + t1175;
+  const Real t1177 = t1176 + t1064;
+  const Real t1178 = t1177 * t56;
+  const Real t1179 = t13 * t1177;
+  const Real t1180 = t1178 + t1179;
+  const Real t1181 = t1163 - t1180;
+  const Real t1182 = sum_error(t1066, t1162);
+  const Real t1183 = sum_error(t1074, t1077);
+  const Real t1184 = par.k62 * t913;
+  const Real t1185 = t923 * par.k16;
+  const Real t1186 = t1184 + t1185;
+  const Real t1187 = product_error(par.k16, t913);
+  const Real t1188 = t1186 + t1187;
+  const Real t1189 = -t1076;
+  const Real t1190 = sum_error(t1075, t1189);
+  const Real t1191 = t1188 + t1190;
+  const Real t1192 = t1183 + t1191;
+  const Real t1193 = sum_error(t1078, t1161);
+  const Real t1194 = t1192 + t1193;
+  const Real t1195 = t1182 + t1194;
+  const Real t1196 = t1181 + t1195;
+  const Real t1197 = t1059 + t1196;
+  const Real t1198 = par.k17 * t955;
+  const Real t1199 = t878 * par.k15;
+  const Real t1200 = par.k32 * t938;
+  const Real t1201 = t1199 - t1200;
+  const Real t1202 = t563 * t524;
+  const Real t1203 = t1202 - nu_dot[0];
+  const Real t1204 = par.k3 * t1203;
+  const Real t1205 = t1201 - t1204;
+  const Real t1206 = t1198 + t1205;
+  const Real t1207 = t1025 * c_r_p_1_;
+  const Real t1208 = s_r_p_1_ * t998;
+  const Real t1209 = t1207 + t1208;
+  const Real t1210 = t1209 * par.k14;
+  const Real t1211 = t1209 * par.k28;
+  const Real t1212 = t1210 + t1211;
+  const Real t1213 = t1010 * par.k7;
+  const Real t1214 = t1011 * par.k39;
+  const Real t1215 = t1213 - t1214;
+  const Real t1216 = par.k5 * t1006;
+  const Real t1217 = t1215 + t1216;
+  const Real t1218 = par.k11 * t1017;
+  const Real t1219 = t1217 + t1218;
+  const Real t1220 = t1143 * par.k2;
+  const Real t1221 = par.k1 * t1139;
+  const Real t1222 = t1220 + t1221;
+  const Real t1223 = t1019 * par.k13;
+  const Real t1224 = t1222 + t1223;
+  const Real t1225 = t1219 + t1224;
+  const Real t1226 = par.k2 * t1225;
+  const Real t1227 = t1155 * c_r_p_1_;
+  const Real t1228 = s_r_p_1_ * t1105;
+  const Real t1229 = t1227 - t1228;
+  const Real t1230 = par.k1 * t1229;
+  const Real t1231 = t1226 - t1230;
+  const Real t1232 = t1212 + t1231;
+  const Real t1233 = t1206 + t1232;
+  const Real t1234 = t563 * s_r_p_0_;
+  const Real t1235 = t179 + t1234;
+  const Real t1236 = t580 * t1235;
+  const Real t1237 = par.k35 * t1236;
+  const Real t1238 = t878 * c_r_p_0_;
+  const Real t1239 = t1238 + t200;
+  const Real t1240 = nu[2] * t1235;
+  const Real t1241 = t1239 + t1240;
+  const Real t1242 = par.I_Rxx * t1241;
+  const Real t1243 = t1237 + t1242;
+  const Real t1244 = t1243 * c_r_p_0_;
+  const Real t1245 = t878 * s_r_p_0_;
+  const Real t1246 = t199 - t1245;
+  const Real t1247 = t563 * c_r_p_0_;
+  const Real t1248 = t180 - t1247;
+  const Real t1249 = t1248 * nu[2];
+  const Real t1250 = t1246 - t1249;
+  const Real t1251 = t1250 * par.I_Rxx;
+  const Real t1252 = t580 * t1248;
+  const Real t1253 = t1252 * par.k36;
+  const Real t1254 = t1251 + t1253;
+  const Real t1255 = t1254 * s_r_p_0_;
+  const Real t1256 = t1244 - t1255;
+  const Real t1257 = t1233 + t1256;
+  const Real t1258 = t955 * par.m_B;
+  const Real t1259 = t1203 * par.k16;
+  const Real t1260 = t1203 * par.k62;
+  const Real t1261 = t1259 + t1260;
+  const Real t1262 = t939 * par.k17;
+  const Real t1263 = t1261 + t1262;
+  const Real t1264 = t1258 + t1263;
+  const Real t1265 = t1209 + t1264;
+  const Real t1266 = t1203 * par.r_R;
+  const Real t1267 = t955 - t1266;
+  const Real t1268 = t1267 * par.m_R;
+  const Real t1269 = t1265 + t1268;
+  const Real t1270 = t1269 * t43;
+  const Real t1271 = sum_error(t1268, t1265);
+  const Real t1272 = sum_error(t1258, t1263);
+  const Real t1273 = product_error(t955, par.m_B);
+  const Real t1274 = t1272 + t1273;
+  const Real t1275 = sum_error(t1209, t1264);
+  const Real t1276 = t1274 + t1275;
+  const Real t1277 = t1271 + t1276;
+  const Real t1278 = t43 * t1277;
+  const Real t1279 = t1270 + t1278;
+  const Real t1280 = t1257 - t1279;
+  const Real t1281 = t1280 * t272;
+  const Real t1282 = t1280 * t261;
+  const Real t1283 = t1281 + t1282;
+  const Real t1284 = t1283 * t251;
+  const Real t1285 = t1197 - t1284;
+  const Real t1286 = t1285 * t277;
+  const Real t1287 = t228 * t1286;
+  const Real t1288 = t1100 + t1287;
+  const Real t1289 = t1288 * t400;
+  const Real t1290 = t1289 * t323;
+  const Real t1291 = -t1290;
+  const Real t1292 = sum_error(t1286, t1291);
+  const Real t1293 = product_error(t277, t1285);
+  const Real t1294 = -t1284;
+  const Real t1295 = sum_error(t1197, t1294);
+  const Real t1296 = t1283 * t358;
+  const Real t1297 = product_error(t251, t1283);
+  const Real t1298 = t1296 + t1297;
+  const Real t1299 = t1295 - t1298;
+  const Real t1300 = t277 * t1299;
+  const Real t1301 = t1285 * t383;
+  const Real t1302 = t1300 + t1301;
+  const Real t1303 = t1293 + t1302;
+  const Real t1304 = product_error(t1289, t323);
+  const Real t1305 = product_error(t400, t1288);
+  const Real t1306 = t1288 * t412;
+  const Real t1307 = product_error(t228, t1286);
+  const Real t1308 = t226 * t1286;
+  const Real t1309 = t1303 * t228;
+  const Real t1310 = t1308 + t1309;
+  const Real t1311 = t1307 + t1310;
+  const Real t1312 = sum_error(t1287, t1100);
+  const Real t1313 = t1311 + t1312;
+  const Real t1314 = t1313 * t400;
+  const Real t1315 = t1306 + t1314;
+  const Real t1316 = t1305 + t1315;
+  const Real t1317 = t1316 * t323;
+  const Real t1318 = t1289 * t386;
+  const Real t1319 = t1317 + t1318;
+  const Real t1320 = t1304 + t1319;
+  const Real t1321 = t1303 - t1320;
+  const Real t1322 = t1292 + t1321;
+  const Real t1323 = t38 * t1322;
+  const Real t1324 = t1286 - t1290;
+  const Real t1325 = t38 * t1324;
+  const Real t1326 = t1323 + t1325;
+  const Real t1327 = t1048 - t1326;
+  const Real t1328 = t1327 + t1056;
+  const Real t1329 = t1324 * t274;
+  const Real t1330 = -t1329;
+  const Real t1331 = sum_error(t1283, t1330);
+  const Real t1332 = t274 * t1322;
+  const Real t1333 = product_error(t274, t1324);
+  const Real t1334 = t1332 + t1333;
+  const Real t1335 = t1331 - t1334;
+  const Real t1336 = product_error(t311, t1289);
+  const Real t1337 = t1289 * t338;
+  const Real t1338 = t1316 * t311;
+  const Real t1339 = t1337 + t1338;
+  const Real t1340 = t1336 + t1339;
+  const Real t1341 = t1335 - t1340;
+  const Real t1342 = t1283 - t1329;
+  const Real t1343 = t311 * t1289;
+  const Real t1344 = t1342 - t1343;
+  const Real t1345 = t1341 + t1344;
+  const Real t1346 = t1345 * t46;
+  const Real t1347 = t1328 - t1346;
+  const Real t1348 = t1289 * t69;
+  const Real t1349 = t1316 * t69;
+  const Real t1350 = t1348 + t1349;
+  const Real t1351 = t1347 - t1350;
+  const Real t1352 = t1316 + t1289;
+  const Real t1353 = t1324 * t46;
+  const Real t1354 = t46 * t1322;
+  const Real t1355 = t1353 + t1354;
+  const Real t1356 = sum_error(t1355, t1269);
+  const Real t1357 = t1356 + t1277;
+  const Real t1358 = t1269 + t1355;
+  const Real t1359 = c_r_p_1_ * t1345;
+  const Real t1360 = -t1359;
+  const Real t1361 = sum_error(t1358, t1360);
+  const Real t1362 = t1357 + t1361;
+  const Real t1363 = t1358 - t1359;
+  const Real t1364 = t34 * t1289;
+  const Real t1365 = t1316 * t34;
+  const Real t1366 = t1364 + t1365;
+  const Real t1367 = t1363 - t1366;
+  const Real t1368 = t1362 + t1367;
+  const Real t1369 = t1324 + t1322;
+  const Real t1370 = t34 * t1345;
+  const Real t1371 = t69 * t1322;
+  const Real t1372 = t1324 * t69;
+  const Real t1373 = t1371 + t1372;
+  const Real t1374 = t1177 - t1373;
+  const Real t1375 = t1370 + t1374;
+  const Real t1376 = t1316 * t32;
+  const Real t1377 = t1289 * t63;
+  const Real t1378 = t1376 + t1377;
+  const Real t1379 = t1289 * t32;
+  const Real t1380 = t1378 + t1379;
+  const Real t1381 = t1375 - t1380;
 
-  lambda[0] = t1074;
-  lambda[1] = t1091;
-  lambda[2] = t1083;
-  lambda[3] = t1042;
-  lambda[4] = t1068;
-  lambda[5] = t1075;
+  lambda[0] = t1381;
+  lambda[1] = t1368;
+  lambda[2] = t1351;
+  lambda[3] = t1352;
+  lambda[4] = t1345;
+  lambda[5] = t1369;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.

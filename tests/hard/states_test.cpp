@@ -289,7 +289,7 @@ TEST(HardStates, VerifyNamesWhatLosesItsDigits) {
   EXPECT_GT(worst->worst, 1e-3) << worst->function << " " << worst->output;
   EXPECT_FALSE(worst->passed);
   const Verification kept = verify_program(model, *derive(model), {.samples = 100}, {});
-  for (const OutputError& e : kept.outputs) EXPECT_TRUE(e.passed) << e.function << " " << e.output;
+  for (const OutputError& e : kept.outputs) EXPECT_LT(e.worst, 1e-9) << e.function << " " << e.output;
 }
 
 }  // namespace

@@ -20,8 +20,6 @@ std::string_view name(OptimiseFor mode);
 /// @throws std::invalid_argument for any other name
 OptimiseFor optimise_for(std::string_view name);
 
-/// Random states at which errors are measured.
-inline constexpr int measured_states = 32;
 /// Random states at which they are estimated, and how many of these, where the most is to be expected, are
 /// measured as well: what nearly vanishes does so seldom.
 inline constexpr int estimated_states = 2048, hard_states = 16;

@@ -99,7 +99,7 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
     for (std::size_t b = 0; b < program.size() && block < blocks.size(); ++b, ++block) {
       std::vector<double> scales;
       for (const BlockError& e : blocks[block]) scales.push_back(e.scale);
-      scales = natural_scales(scales);
+      scales = natural_scales(scales, measured_states);
       of_state.resize(scales.size(), 0.0);
       for (std::size_t s = 0; s < scales.size(); ++s) {
         const double error = blocks[block][s].error / scales[s] / ulp;

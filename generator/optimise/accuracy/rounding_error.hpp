@@ -15,8 +15,11 @@
 
 namespace anholon {
 
+/// Random states at which errors are measured; further ones are chosen.
+inline constexpr int measured_states = 32;
+
 /// In units of 2^-52 of an output's natural scale: the largest entry of its block, at this state or, where
-/// that is larger, at the median one. Of a state's outputs the worst counts.
+/// that is larger, at the median of the random ones. Of a state's outputs the worst counts.
 struct RoundingError {
   double median = std::numeric_limits<double>::quiet_NaN();  // of the states
   double worst = std::numeric_limits<double>::quiet_NaN();   // not a number: not measured

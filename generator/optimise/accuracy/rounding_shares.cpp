@@ -76,7 +76,8 @@ class Evaluation {
 
 /// The natural scale of each block at each state.
 std::vector<std::vector<double>> scales_of(Evaluation& evaluation, const std::vector<OutputBlock>& outputs,
-                                           const std::vector<std::vector<double>>& states) {
+                                           const std::vector<std::vector<double>>& states,
+                                           std::size_t random) {
   std::vector<std::vector<double>> scales(outputs.size());
   for (const std::vector<double>& state : states) {
     evaluation.run(state);
@@ -86,7 +87,7 @@ std::vector<std::vector<double>> scales_of(Evaluation& evaluation, const std::ve
       scales[b].push_back(largest);
     }
   }
-  for (std::vector<double>& of_block : scales) of_block = natural_scales(of_block);
+  for (std::vector<double>& of_block : scales) of_block = natural_scales(of_block, random);
   return scales;
 }
 
@@ -97,7 +98,7 @@ double allowance_of(double kappa) { return std::max(1.0, kappa / 5); }
 RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>& outputs,
                                const std::vector<std::vector<double>>& states) {
   Evaluation evaluation(tape, roots_of(outputs));
-  const auto scales = scales_of(evaluation, outputs, states);
+  const auto scales = scales_of(evaluation, outputs, states, measured_states);
   RoundingShares result{std::vector(tape.size(), 0.0), {}};
   std::vector<double> at_state(tape.size(), 0.0);
   for (std::size_t s = 0; s < states.size(); ++s) {
@@ -131,7 +132,7 @@ RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>&
 std::vector<double> expected_errors(const Tape& tape, const std::vector<OutputBlock>& outputs,
                                     const std::vector<std::vector<double>>& states) {
   Evaluation evaluation(tape, roots_of(outputs));
-  const auto scales = scales_of(evaluation, outputs, states);
+  const auto scales = scales_of(evaluation, outputs, states, states.size());
   std::vector<double> result;
   SampleSource signs;
   for (std::size_t s = 0; s < states.size(); ++s) {
