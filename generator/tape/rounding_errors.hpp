@@ -35,8 +35,7 @@ S product_error([[maybe_unused]] const S& a, [[maybe_unused]] const S& b) {
 template <class S>
 S quotient_error([[maybe_unused]] const S& a, [[maybe_unused]] const S& b) {
   if constexpr (std::is_floating_point_v<S>) {
-    const S quotient = a / b, product = quotient * b;
-    return ((a - product) - product_error(quotient, b)) / b;
+    return std::fma(-(a / b), b, a) / b;  // the remainder is exact
   } else {
     return S(0);
   }
