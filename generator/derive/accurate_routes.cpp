@@ -95,23 +95,101 @@ std::pair<std::vector<Expr>, std::vector<Expr>> Deriver::solved_modes_first(
   return {std::move(nu_dot), std::move(v_dot)};
 }
 
+bool Deriver::have_inertia(const Matrix<Expr>& M, const SymmetricFactors& factors) {
+  constexpr double rounded_zero = 1e-9;  // pivots that should be zero come out as 1e-16 or so of the diagonal
+  std::vector<NodeId> nodes;
+  for (int i = 0; i < M.rows(); ++i)
+    nodes.push_back((factors.pivots()[static_cast<std::size_t>(i)] / M(i, i)).id(tape_));
+  for (const std::vector<double>& state : states_of(atlas_, chart_, measured_states)) {
+    for (const double pivot : reproducible_values(tape_, nodes, state)) {
+      if (!(pivot > rounded_zero)) return false;
+    }
+  }
+  return true;
+}
+
+std::optional<std::pair<std::vector<Expr>, std::vector<Expr>>> Deriver::solved_with_multipliers(
+    const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+    const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force) {
+  const KinematicReduction& k = *of.reduction;
+  const Partition& p = of.partition;
+  const int rows = k.rows().A.rows();
+  if (rows == 0 || rows != of.ranks.m_locked || k.kernel().content_divided) return std::nullopt;
+  const auto reversed = [](std::vector<Expr> v) {
+    std::ranges::reverse(v);
+    return v;
+  };
+  tape_.section("admissible velocities");
+  const std::vector<Expr> velocity = merged(p, k.velocities(r_a_dot, nu), r_a_dot);
+  const State<Expr> state = symbols_.moving(velocity);
+  const std::vector<Expr> bias = dynamics_.constraints(state).second;
+  const Matrix<Expr> M = dynamics_.mass_matrix(state);
+  std::vector<Expr> force = input_force;
+  const std::vector<Expr> free = picked(dynamics_.forces(state), p.passive);
+  const std::vector<Expr> carried = M.block(p.passive, p.active) * r_a_ddot;
+  for (std::size_t i = 0; i < force.size(); ++i) force[i] += free[i] - carried[i];
+
+  tape_.section("factors of the mass matrix");
+  std::vector<int> leaves_first = p.passive;  // a tree's branches then meet in their trunk only
+  std::ranges::reverse(leaves_first);
+  const Matrix<Expr> M_p = M.block(leaves_first, leaves_first);
+  const SymmetricFactors factors(M_p);
+  if (!have_inertia(M_p, factors)) return std::nullopt;
+  const std::vector<Expr> along_force = factors.forward(reversed(force));
+  const std::vector<Expr> without_rows = factors.scaled(along_force);
+  std::vector<std::vector<Expr>> along_rows, scaled_rows;
+  for (int i = 0; i < rows; ++i) {
+    std::vector<Expr> row;
+    for (int j = 0; j < k.rows().A.cols(); ++j) row.push_back(k.rows().A(i, j));
+    along_rows.push_back(factors.forward(reversed(std::move(row))));
+    scaled_rows.push_back(factors.scaled(along_rows.back()));
+  }
+
+  tape_.section("multipliers");
+  const auto inner = [](const std::vector<Expr>& a, const std::vector<Expr>& b) {
+    Expr sum = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+    return sum;
+  };
+  Matrix<Expr> S(rows, rows);  // A M^-1 A^T
+  std::vector<Expr> missing;   // accelerations of the rows
+  const std::vector<Expr> driven = k.rows().B * r_a_ddot;
+  for (std::size_t i = 0; i < along_rows.size(); ++i) {
+    for (std::size_t j = i; j < along_rows.size(); ++j) {
+      const Expr product = inner(along_rows[i], scaled_rows[j]);
+      S(static_cast<int>(i), static_cast<int>(j)) = S(static_cast<int>(j), static_cast<int>(i)) = product;
+    }
+    missing.push_back(-(inner(along_rows[i], without_rows) + bias[i] + driven[i]));
+  }
+  const std::vector<Expr> lambda = solve_symmetric(S, {missing}).front();
+
+  tape_.section("accelerations");
+  std::vector<Expr> v_dot = without_rows;
+  for (std::size_t j = 0; j < v_dot.size(); ++j) {
+    for (std::size_t i = 0; i < lambda.size(); ++i) v_dot[j] += scaled_rows[i][j] * lambda[i];
+  }
+  v_dot = reversed(factors.backward(std::move(v_dot)));
+  return std::pair{picked(v_dot, k.kernel().free), merged(p, v_dot, r_a_ddot)};
+}
+
 std::vector<Route> Deriver::accurate_routes(const Reduced& of, const std::string& name,
                                             const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
                                             const std::vector<Expr>& r_a_ddot,
                                             const std::vector<Expr>& input_force) {
   std::vector<Route> routes;
-  if (of.k() < 2) return routes;  // one column is orthogonal
-  for (const bool project : {true, false}) {
-    routes.push_back(
-        {std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
-         acceleration_blocks(of, name,
-                             solved_on_orthogonal_basis(of, nu, r_a_dot, r_a_ddot, input_force, project))});
+  const auto add = [&](const std::string& route, const auto& solution) {
+    routes.push_back({route, acceleration_blocks(of, name, solution)});
+  };
+  if (of.k() > 1) {  // one column is orthogonal
+    for (const bool project : {true, false}) {
+      add(std::string("orthogonal basis, ") + (project ? "projected recursion" : "all blocks"),
+          solved_on_orthogonal_basis(of, nu, r_a_dot, r_a_ddot, input_force, project));
+    }
   }
-  if (const std::size_t modes = modal_columns(of).size(); modes > 0 && static_cast<int>(modes) < of.k()) {
-    routes.push_back(
-        {"modes first",
-         acceleration_blocks(of, name, solved_modes_first(of, nu, r_a_dot, r_a_ddot, input_force))});
-  }
+  if (const std::size_t modes = modal_columns(of).size(); modes > 0 && static_cast<int>(modes) < of.k())
+    add("modes first", solved_modes_first(of, nu, r_a_dot, r_a_ddot, input_force));
+  if (const auto solution = solved_with_multipliers(of, nu, r_a_dot, r_a_ddot, input_force))
+    add("multipliers", *solution);
   return routes;
 }
 

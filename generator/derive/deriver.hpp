@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,7 @@
 #include "describe/mechanise.hpp"
 #include "optimise/accuracy/variants.hpp"
 #include "optimise/model/merge_fixed.hpp"
+#include "reduce/symmetric_factors.hpp"
 
 namespace anholon {
 
@@ -184,6 +186,14 @@ class Deriver {
                                                                      const std::vector<Expr>& r_a_dot,
                                                                      const std::vector<Expr>& r_a_ddot,
                                                                      const std::vector<Expr>& input_force);
+  /// The same from the equations of motion with multipliers, in which no basis of the kernel has a part but
+  /// for the velocities.
+  /// @return nothing where rows are redundant, velocities have no inertia or nu names no velocities
+  std::optional<std::pair<std::vector<Expr>, std::vector<Expr>>> solved_with_multipliers(
+      const Reduced& of, const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
+      const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& input_force);
+  /// Whether factors of a mass matrix M divide by nothing that is zero.
+  bool have_inertia(const Matrix<Expr>& M, const SymmetricFactors& factors);
   /// Columns of the kernel that are the rate of one mode, which is in no other.
   [[nodiscard]] std::vector<UnitColumn> modal_columns(const Reduced& of) const;
   /// All of these that may differ from `solved`.

@@ -86,17 +86,24 @@ void Deriver::derive_compatibility() {
   const KinematicReduction& k = *motion_.reduction;
   tape_.section("compatibility");
   const Matrix<Expr> Nt = k.static_basis().transposed();
-  const std::vector<Expr> velocity = Nt * (k.rows().B * r_a_dot_);
+  const std::vector<Expr> velocity = k.rows().B * r_a_dot_;
   const State<Expr> state = symbols_.moving(merged(motion_partition_, k.velocities(r_a_dot_, nu_), r_a_dot_));
-  std::vector<Expr> sum = k.rows().B * r_a_ddot_;
+  std::vector<Expr> acceleration = k.rows().B * r_a_ddot_;
   const std::vector<Expr> bias = dynamics_.constraints(state).second;
-  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += bias[i];
+  for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] += bias[i];
+  const auto residuals = [&](const std::vector<Expr>& of_velocity, const std::vector<Expr>& of_acceleration) {
+    return std::vector<OutputBlock>{
+        block("velocity_residual", "mixed", "N^T B_a r_a_dot", Nt * of_velocity),
+        block("acceleration_residual", "mixed", "N^T (B_a r_a_ddot + bias)", Nt * of_acceleration)};
+  };
+  const auto projected = [&] {  // errors of N towards the rows then meet nothing
+    return std::vector<Route>{
+        {"projected twice", residuals(k.out_of_range(velocity), k.out_of_range(acceleration))}};
+  };
   emit("compatibility",
        "Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must "
        "vanish.",
-       {{"kernel",
-         {block("velocity_residual", "mixed", "N^T B_a r_a_dot", velocity),
-          block("acceleration_residual", "mixed", "N^T (B_a r_a_ddot + bias)", Nt * sum)}}});
+       {{"kernel", residuals(velocity, acceleration)}}, "", true, projected);
 }
 
 void Deriver::derive_position_conditions() {

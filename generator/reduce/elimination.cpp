@@ -6,6 +6,8 @@
 #include <limits>
 #include <stdexcept>
 
+#include "reduce/symmetric_factors.hpp"
+
 namespace anholon {
 
 Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& columns, const Sampler& sampler)
@@ -137,30 +139,10 @@ std::vector<Expr> Elimination::solve_transposed(const std::vector<Expr>& c) cons
 
 std::vector<std::vector<Expr>> solve_symmetric(const Matrix<Expr>& K,
                                                const std::vector<std::vector<Expr>>& right_hand_sides) {
-  const int n = K.rows();
-  Matrix<Expr> L(n, n);
-  std::vector<Expr> inverse(static_cast<std::size_t>(n));
-  Matrix<Expr> W(n, n);  // L D
-  for (int j = 0; j < n; ++j) {
-    for (int i = j; i < n; ++i) {
-      Expr sum = K(i, j);
-      for (int k = 0; k < j; ++k) sum -= W(i, k) * L(j, k);
-      W(i, j) = sum;
-    }
-    inverse[static_cast<std::size_t>(j)] = Expr(1) / W(j, j);
-    for (int i = j + 1; i < n; ++i) L(i, j) = W(i, j) * inverse[static_cast<std::size_t>(j)];
-  }
-  std::vector<std::vector<Expr>> solutions = right_hand_sides;
-  for (std::vector<Expr>& x : solutions) {
-    const auto at = [&](int i) -> Expr& { return x[static_cast<std::size_t>(i)]; };
-    for (int i = 0; i < n; ++i) {
-      for (int k = 0; k < i; ++k) at(i) -= L(i, k) * at(k);
-    }
-    for (int i = 0; i < n; ++i) at(i) = at(i) * inverse[static_cast<std::size_t>(i)];
-    for (int i = n; i-- > 0;) {
-      for (int k = i + 1; k < n; ++k) at(i) -= L(k, i) * at(k);
-    }
-  }
+  const SymmetricFactors factors(K);
+  std::vector<std::vector<Expr>> solutions;
+  for (const std::vector<Expr>& b : right_hand_sides)
+    solutions.push_back(factors.backward(factors.scaled(factors.forward(b))));
   return solutions;
 }
 

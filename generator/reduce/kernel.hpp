@@ -80,6 +80,10 @@ class KinematicReduction {
                                               const std::vector<Expr>& lambda_stat) const;
   /// N: basis of ker A‡^T, rows x (rows - m°).
   [[nodiscard]] const Matrix<Expr>& static_basis() const { return N_; }
+  /// b without its part in the range of A‡, which N^T takes to zero.
+  [[nodiscard]] std::vector<Expr> out_of_range(const std::vector<Expr>& b) const {
+    return weights_.residual(b);
+  }
   /// nu from passive velocities that satisfy the constraints.
   [[nodiscard]] std::vector<Expr> reduced_velocities(const std::vector<Expr>& passive,
                                                      const std::vector<Expr>& r_a_dot) const;
