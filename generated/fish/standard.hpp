@@ -18,7 +18,7 @@
 //   inverse_torques           179 add, 264 mul, 6 sin, 6 cos, 12 other
 //   torque_driven_kinematics  none
 //   torque_driven_velocities  none
-//   torque_driven_dynamics    2073 add, 1347 mul, 7 div, 48 neg, 6 sin, 6 cos, 16 other
+//   torque_driven_dynamics    2414 add, 1516 mul, 11 div, 52 neg, 6 sin, 6 cos, 16 other
 //   energies                  114 add, 240 mul, 6 sin, 6 cos, 16 other
 //   body_poses                39 add, 56 mul, 4 neg, 7 sin, 7 cos
 //   prepare                   20 add, 134 mul, 7 div, 1 neg, once per set of parameters
@@ -6430,8 +6430,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: modes first, compensated beyond 4 ulps
-/// operations: 2073 add, 1347 mul, 7 div, 48 neg, 6 sin, 6 cos, 16 other
+/// route: modes first, compensated beyond 2.8 ulps
+/// operations: 2414 add, 1516 mul, 11 div, 52 neg, 6 sin, 6 cos, 16 other
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (1) rad or m: e1
 /// @param[in]  r_a           (3) rad or m: r1, r2, r3
@@ -6458,6 +6458,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   using std::sin;
   using detail::constant;
   using detail::product_error;
+  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_a_0_ = sin(r_a[0]);
   const Real c_r_a_0_ = cos(r_a[0]);
@@ -6481,3080 +6482,2995 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   // rear: acceleration
   const Real t11 = t10 + par.l1;
   const Real t12 = c_r_a_1_ * t11;
+  const Real t13 = -t12;
 
   // trunk: acceleration
-  const Real t13 = par.k8 * s_r_a_0_;
+  const Real t14 = par.k8 * s_r_a_0_;
 
   // rear: acceleration
-  const Real t14 = t13 * s_r_a_1_;
-  const Real t15 = t14 - t12;
-
-  // peduncle: acceleration
-  const Real t16 = t15 - par.l2;
-  const Real t17 = t16 * c_r_a_2_;
+  const Real t15 = t14 * s_r_a_1_;
 
   // accelerations
-  const Real t18 = sum_error(t15, par.k32);
-  const Real t19 = c_r_a_2_ * t18;
-  const Real t20 = t17 + t19;
+  const Real t16 = sum_error(t15, t13);
+  const Real t17 = sum_error(t10, par.l1);
+  const Real t18 = c_r_a_1_ * t17;
+  const Real t19 = product_error(c_r_a_1_, t11);
+  const Real t20 = t18 + t19;
+  const Real t21 = t16 - t20;
 
   // rear: acceleration
-  const Real t21 = t11 * s_r_a_1_;
-  const Real t22 = c_r_a_1_ * t13;
-  const Real t23 = t22 + t21;
-
-  // peduncle: acceleration
-  const Real t24 = t23 * s_r_a_2_;
+  const Real t22 = t15 - t12;
 
   // accelerations
-  const Real t25 = t24 + t20;
-  const Real t26 = -t25;
-  const Real t27 = sum_error(par.l3, t26);
-  const Real t28 = par.l3 - t25;
+  const Real t23 = sum_error(t22, par.k32);
+  const Real t24 = t21 + t23;
+  const Real t25 = t24 * s_r_a_2_;
+
+  // peduncle: acceleration
+  const Real t26 = t22 - par.l2;
+  const Real t27 = t26 * s_r_a_2_;
+
+  // accelerations
+  const Real t28 = t25 + t27;
+  const Real t29 = t17 * s_r_a_1_;
+
+  // rear: acceleration
+  const Real t30 = t11 * s_r_a_1_;
+
+  // accelerations
+  const Real t31 = t29 + t30;
+
+  // rear: acceleration
+  const Real t32 = c_r_a_1_ * t14;
+
+  // accelerations
+  const Real t33 = t31 + t32;
+  const Real t34 = t33 * c_r_a_2_;
+  const Real t35 = t34 - t28;
 
   // fin_section_2: station
-  const Real t29 = r_p[0] * par.k52;
+  const Real t36 = constant<Real>(0.710077701790478711739L) * r_p[0];
+
+  // accelerations
+  const Real t37 = t35 - t36;
+  const Real t38 = t37 * t2;
+  const Real t39 = -t38;
+
+  // peduncle: acceleration
+  const Real t40 = t26 * c_r_a_2_;
+
+  // accelerations
+  const Real t41 = t33 * s_r_a_2_;
+  const Real t42 = t40 + t41;
+  const Real t43 = par.l3 - t42;
+
+  // fin_section_2: station
+  const Real t44 = r_p[0] * par.k52;
 
   // fin_tip: station
-  const Real t30 = constant<Real>(0.5L) * r_p[0];
+  const Real t45 = constant<Real>(0.5L) * r_p[0];
 
   // fin_section_2: station
-  const Real t31 = t29 * t30;
-  const Real t32 = par.k10 - t31;
+  const Real t46 = t44 * t45;
+  const Real t47 = par.k10 - t46;
 
   // accelerations
-  const Real t33 = t32 + t28;
-  const Real t34 = t27 + t33;
-  const Real t35 = product_error(t34, t3);
-  const Real t36 = t18 * s_r_a_2_;
-
-  // peduncle: acceleration
-  const Real t37 = t16 * s_r_a_2_;
-
-  // accelerations
-  const Real t38 = t36 + t37;
-
-  // peduncle: acceleration
-  const Real t39 = t23 * c_r_a_2_;
-
-  // accelerations
-  const Real t40 = t39 - t38;
-
-  // fin_section_2: station
-  const Real t41 = constant<Real>(0.710077701790478711739L) * r_p[0];
-
-  // accelerations
-  const Real t42 = t40 - t41;
-  const Real t43 = product_error(t42, t2);
-  const Real t44 = t35 - t43;
-  const Real t45 = t34 * t3;
-  const Real t46 = t42 * t2;
-  const Real t47 = -t46;
-  const Real t48 = sum_error(t45, t47);
-  const Real t49 = t44 + t48;
-  const Real t50 = par.k4 * t49;
-  const Real t51 = t45 - t46;
-  const Real t52 = product_error(par.k4, t51);
-  const Real t53 = t52 + t50;
-  const Real t54 = t53 * t2;
-  const Real t55 = par.k4 * t51;
-  const Real t56 = t55 * t2;
-  const Real t57 = t54 + t56;
-  const Real t58 = t29 * t57;
-  const Real t59 = t55 * t3;
-  const Real t60 = constant<Real>(0.710077701790478711739L) * t59;
-  const Real t61 = t60 + t58;
-  const Real t62 = t27 * par.k41;
-  const Real t63 = par.k41 * t28;
-  const Real t64 = t62 + t63;
+  const Real t48 = t47 + t43;
+  const Real t49 = t48 * t3;
+  const Real t50 = sum_error(t49, t39);
+  const Real t51 = t24 * c_r_a_2_;
+  const Real t52 = product_error(t26, c_r_a_2_);
+  const Real t53 = t51 + t52;
+  const Real t54 = sum_error(t40, t41);
+  const Real t55 = t54 + t53;
+  const Real t56 = -t42;
+  const Real t57 = sum_error(par.l3, t56);
+  const Real t58 = t57 - t55;
+  const Real t59 = sum_error(t43, t47);
+  const Real t60 = t58 + t59;
+  const Real t61 = t60 * t3;
+  const Real t62 = product_error(t48, t3);
+  const Real t63 = t62 + t61;
+  const Real t64 = t50 + t63;
+  const Real t65 = par.k4 * t64;
+  const Real t66 = t49 - t38;
+  const Real t67 = product_error(par.k4, t66);
+  const Real t68 = t65 + t67;
+  const Real t69 = t68 * t2;
+  const Real t70 = par.k4 * t66;
+  const Real t71 = t70 * t2;
+  const Real t72 = t69 + t71;
+  const Real t73 = t44 * t72;
+  const Real t74 = t70 * t3;
+  const Real t75 = constant<Real>(0.710077701790478711739L) * t74;
+  const Real t76 = t75 + t73;
+  const Real t77 = t58 * par.k41;
+  const Real t78 = t43 * par.k41;
+  const Real t79 = t77 + t78;
 
   // fin: inertia in its present shape
-  const Real t65 = par.k24 * r_p[0];
+  const Real t80 = par.k24 * r_p[0];
 
   // accelerations
-  const Real t66 = t65 * t40;
-  const Real t67 = t64 - t66;
-  const Real t68 = t67 + par.k47;
-  const Real t69 = t61 + t68;
+  const Real t81 = t80 * t35;
+  const Real t82 = t79 - t81;
+  const Real t83 = t82 + par.k47;
+  const Real t84 = t83 + t76;
 
   // fin_section_1: station
-  const Real t70 = par.k9 * r_p[0];
-  const Real t71 = t70 * t30;
-  const Real t72 = par.k46 - t71;
+  const Real t85 = par.k9 * r_p[0];
+  const Real t86 = t85 * t45;
+  const Real t87 = par.k46 - t86;
 
   // accelerations
-  const Real t73 = sum_error(t28, t72);
-  const Real t74 = t27 + t73;
-  const Real t75 = t9 * t74;
-  const Real t76 = t72 + t28;
-  const Real t77 = t76 * t9;
-  const Real t78 = t77 + t75;
+  const Real t88 = sum_error(t43, t87);
+  const Real t89 = t58 + t88;
+  const Real t90 = t89 * t9;
+  const Real t91 = t43 + t87;
+  const Real t92 = t91 * t9;
+  const Real t93 = t92 + t90;
 
   // fin_section_1: station
-  const Real t79 = constant<Real>(0.0709020735931204697442L) * r_p[0];
+  const Real t94 = constant<Real>(0.0709020735931204697442L) * r_p[0];
 
   // accelerations
-  const Real t80 = t40 - t79;
-  const Real t81 = t80 * t8;
-  const Real t82 = t78 - t81;
-  const Real t83 = par.k4 * t82;
-  const Real t84 = t83 * t8;
-  const Real t85 = t70 * t84;
-  const Real t86 = t83 * t9;
-  const Real t87 = constant<Real>(0.0709020735931204697442L) * t86;
-  const Real t88 = t85 + t87;
-  const Real t89 = sum_error(t69, t88);
-  const Real t90 = t53 * t3;
-  const Real t91 = product_error(t55, t3);
-  const Real t92 = t91 + t90;
-  const Real t93 = constant<Real>(0.710077701790478711739L) * t92;
-  const Real t94 = product_error(constant<Real>(0.710077701790478711739L), t59);
-  const Real t95 = t93 + t94;
-  const Real t96 = sum_error(t60, t58);
-  const Real t97 = t95 + t96;
-  const Real t98 = sum_error(t61, t68);
-  const Real t99 = t97 + t98;
-  const Real t100 = t89 + t99;
+  const Real t95 = t35 - t94;
+  const Real t96 = t95 * t8;
+  const Real t97 = t93 - t96;
+  const Real t98 = par.k4 * t97;
+  const Real t99 = t98 * t9;
+  const Real t100 = constant<Real>(0.0709020735931204697442L) * t99;
+  const Real t101 = t98 * t8;
+  const Real t102 = t85 * t101;
+  const Real t103 = t100 + t102;
+  const Real t104 = sum_error(t84, t103);
+  const Real t105 = sum_error(t75, t73);
+  const Real t106 = t68 * t3;
+  const Real t107 = product_error(t70, t3);
+  const Real t108 = t107 + t106;
+  const Real t109 = constant<Real>(0.710077701790478711739L) * t108;
+  const Real t110 = product_error(constant<Real>(0.710077701790478711739L), t74);
+  const Real t111 = t110 + t109;
+  const Real t112 = t105 + t111;
+  const Real t113 = sum_error(t76, t83);
+  const Real t114 = t112 + t113;
+  const Real t115 = t104 + t114;
 
   // fin_section_2: acceleration
-  const Real t101 = t29 * t2;
-  const Real t102 = constant<Real>(0.710077701790478711739L) * t3;
-  const Real t103 = t101 + t102;
+  const Real t116 = t44 * t2;
+  const Real t117 = constant<Real>(0.710077701790478711739L) * t3;
+
+  // accelerations
+  const Real t118 = sum_error(t116, t117);
+  const Real t119 = t118 * par.k4;
+
+  // fin_section_2: acceleration
+  const Real t120 = t116 + t117;
+
+  // accelerations
+  const Real t121 = product_error(par.k4, t120);
+  const Real t122 = t119 + t121;
+  const Real t123 = t122 * t3;
 
   // fin_section_2: wrench of the fluid
-  const Real t104 = par.k4 * t103;
+  const Real t124 = par.k4 * t120;
 
   // fin_section_2: joint force
-  const Real t105 = t104 * t3;
-  const Real t106 = constant<Real>(0.710077701790478711739L) * t105;
-  const Real t107 = t104 * t2;
-  const Real t108 = t29 * t107;
-  const Real t109 = t106 + t108;
-  const Real t110 = par.k44 + t109;
+  const Real t125 = t124 * t3;
+
+  // accelerations
+  const Real t126 = t125 + t123;
+  const Real t127 = constant<Real>(0.710077701790478711739L) * t126;
+  const Real t128 = t122 * t2;
+
+  // fin_section_2: joint force
+  const Real t129 = t124 * t2;
+
+  // accelerations
+  const Real t130 = t129 + t128;
+  const Real t131 = t44 * t130;
+  const Real t132 = t127 + t131;
+  const Real t133 = t132 + par.k44;
 
   // fin_section_1: acceleration
-  const Real t111 = t70 * t8;
-  const Real t112 = constant<Real>(0.0709020735931204697442L) * t9;
-  const Real t113 = t111 + t112;
+  const Real t134 = t85 * t8;
+  const Real t135 = constant<Real>(0.0709020735931204697442L) * t9;
+  const Real t136 = t134 + t135;
 
   // fin_section_1: wrench of the fluid
-  const Real t114 = par.k4 * t113;
+  const Real t137 = par.k4 * t136;
 
   // fin_section_1: joint force
-  const Real t115 = t9 * t114;
-  const Real t116 = constant<Real>(0.0709020735931204697442L) * t115;
-  const Real t117 = t114 * t8;
-  const Real t118 = t117 * t70;
-  const Real t119 = t116 + t118;
-  const Real t120 = t119 + t110;
-
-  // modified blocks
-  const Real t121 = constant<Real>(1.0L) / t120;
+  const Real t138 = t9 * t137;
+  const Real t139 = constant<Real>(0.0709020735931204697442L) * t138;
+  const Real t140 = t137 * t8;
+  const Real t141 = t140 * t85;
+  const Real t142 = t139 + t141;
 
   // accelerations
-  const Real t122 = t121 * t100;
-  const Real t123 = t69 + t88;
-  const Real t124 = product_error(t121, t123);
-  const Real t125 = t124 + t122;
-  const Real t126 = constant<Real>(0.0709020735931204697442L) * t125;
-  const Real t127 = t121 * t123;
-  const Real t128 = constant<Real>(0.0709020735931204697442L) * t127;
-  const Real t129 = t128 + t126;
-  const Real t130 = -t129;
-  const Real t131 = sum_error(t76, t130);
-  const Real t132 = t131 + t74;
-  const Real t133 = t9 * t132;
-  const Real t134 = t76 - t129;
-  const Real t135 = product_error(t9, t134);
-  const Real t136 = t133 + t135;
-  const Real t137 = t70 * t125;
-  const Real t138 = t70 * t127;
-  const Real t139 = t137 + t138;
-  const Real t140 = t80 + t139;
-  const Real t141 = t140 * t8;
-  const Real t142 = -t141;
-  const Real t143 = t134 * t9;
-  const Real t144 = sum_error(t143, t142);
-  const Real t145 = t144 + t136;
-  const Real t146 = par.k4 * t145;
-  const Real t147 = t143 - t141;
-  const Real t148 = product_error(par.k4, t147);
-  const Real t149 = t148 + t146;
-  const Real t150 = t9 * t149;
-  const Real t151 = par.k4 * t147;
-  const Real t152 = product_error(t9, t151);
-  const Real t153 = t152 + t150;
-  const Real t154 = constant<Real>(0.710077701790478711739L) * t125;
-  const Real t155 = product_error(constant<Real>(0.710077701790478711739L), t127);
-  const Real t156 = t155 + t154;
-  const Real t157 = constant<Real>(0.710077701790478711739L) * t127;
-  const Real t158 = t34 - t157;
-  const Real t159 = t158 - t156;
-  const Real t160 = t159 * t3;
-  const Real t161 = t29 * t125;
-  const Real t162 = t29 * t127;
-  const Real t163 = t161 + t162;
-  const Real t164 = t163 + t42;
-  const Real t165 = t164 * t2;
-  const Real t166 = t160 - t165;
-  const Real t167 = par.k4 * t166;
-  const Real t168 = t167 * t3;
-  const Real t169 = t125 * par.k41;
-  const Real t170 = t127 * par.k41;
-  const Real t171 = t169 + t170;
-  const Real t172 = t27 * par.k6;
-  const Real t173 = par.k6 * t28;
-  const Real t174 = t172 + t173;
+  const Real t143 = t142 + t133;
+  const Real t144 = constant<Real>(1.0L) / t143;
+  const Real t145 = t144 * t115;
+  const Real t146 = t103 + t84;
+  const Real t147 = sum_error(t142, t133);
+  const Real t148 = sum_error(par.k44, t132);
+  const Real t149 = sum_error(t127, t131);
+  const Real t150 = t148 + t149;
+  const Real t151 = t147 + t150;
+  const Real t152 = t144 * t151;
+  const Real t153 = t152 / t143;
+  const Real t154 = quotient_error(constant<Real>(1.0L), t143);
+  const Real t155 = t154 - t153;
+  const Real t156 = t155 * t146;
+  const Real t157 = t156 + t145;
+  const Real t158 = product_error(t144, t146);
+  const Real t159 = t157 + t158;
+  const Real t160 = constant<Real>(0.0709020735931204697442L) * t159;
+  const Real t161 = t144 * t146;
+  const Real t162 = constant<Real>(0.0709020735931204697442L) * t161;
+  const Real t163 = t162 + t160;
+  const Real t164 = -t163;
+  const Real t165 = sum_error(t91, t164);
+  const Real t166 = t165 + t89;
+  const Real t167 = t9 * t166;
+  const Real t168 = t91 - t163;
+  const Real t169 = product_error(t9, t168);
+  const Real t170 = t169 + t167;
+  const Real t171 = t85 * t159;
+  const Real t172 = t85 * t161;
+  const Real t173 = t172 + t171;
+  const Real t174 = t173 + t95;
+  const Real t175 = t174 * t8;
+  const Real t176 = -t175;
+  const Real t177 = t168 * t9;
+  const Real t178 = sum_error(t177, t176);
+  const Real t179 = t170 + t178;
+  const Real t180 = par.k4 * t179;
+  const Real t181 = t177 - t175;
+  const Real t182 = product_error(par.k4, t181);
+  const Real t183 = t182 + t180;
+  const Real t184 = t9 * t183;
+  const Real t185 = par.k4 * t181;
+  const Real t186 = product_error(t9, t185);
+  const Real t187 = t184 + t186;
+  const Real t188 = constant<Real>(0.710077701790478711739L) * t159;
+  const Real t189 = product_error(constant<Real>(0.710077701790478711739L), t161);
+  const Real t190 = t189 + t188;
+  const Real t191 = t60 - t190;
+  const Real t192 = constant<Real>(0.710077701790478711739L) * t161;
+  const Real t193 = t48 - t192;
+  const Real t194 = t191 + t193;
+  const Real t195 = t194 * t3;
+  const Real t196 = t44 * t159;
+  const Real t197 = t44 * t161;
+  const Real t198 = t197 + t196;
+  const Real t199 = t198 + t37;
+  const Real t200 = t199 * t2;
+  const Real t201 = t195 - t200;
+  const Real t202 = par.k4 * t201;
+  const Real t203 = t202 * t3;
+  const Real t204 = par.k41 * t159;
+  const Real t205 = t161 * par.k41;
+  const Real t206 = t205 + t204;
+  const Real t207 = t58 * par.k6;
+  const Real t208 = t43 * par.k6;
+  const Real t209 = t208 + t207;
 
   // fin: inertia in its present shape
-  const Real t175 = constant<Real>(0.5L) * t65;
-  const Real t176 = t175 * r_p[0];
-  const Real t177 = par.k25 - t176;
+  const Real t210 = constant<Real>(0.5L) * t80;
+  const Real t211 = t210 * r_p[0];
+  const Real t212 = par.k25 - t211;
 
   // accelerations
-  const Real t178 = t174 + t177;
-  const Real t179 = t178 - t171;
-  const Real t180 = t168 + t179;
-  const Real t181 = t151 * t9;
-  const Real t182 = sum_error(t180, t181);
-  const Real t183 = t182 + t153;
-  const Real t184 = t181 + t180;
-  const Real t185 = -t184;
-  const Real t186 = t25 * par.k31;
-  const Real t187 = t186 - par.k29;
-  const Real t188 = par.k18 * t25;
-  const Real t189 = t188 - par.k37;
-  const Real t190 = t187 + t189;
-  const Real t191 = sum_error(t190, t185);
-  const Real t192 = t191 - t183;
-  const Real t193 = t192 * c_r_a_2_;
-  const Real t194 = t190 - t184;
-  const Real t195 = product_error(t194, c_r_a_2_);
-  const Real t196 = t195 + t193;
-  const Real t197 = t8 * t149;
-  const Real t198 = t151 * t8;
-  const Real t199 = t197 + t198;
-  const Real t200 = t167 * t2;
-  const Real t201 = t65 * t125;
-  const Real t202 = t65 * t127;
-  const Real t203 = t202 + t201;
-  const Real t204 = par.k6 * t40;
+  const Real t213 = t209 + t212;
+  const Real t214 = t213 - t206;
+  const Real t215 = t214 + t203;
+  const Real t216 = t9 * t185;
+  const Real t217 = sum_error(t215, t216);
+  const Real t218 = t217 + t187;
+  const Real t219 = t216 + t215;
+  const Real t220 = -t219;
+  const Real t221 = par.k18 * t55;
+  const Real t222 = t42 * par.k18;
+  const Real t223 = t222 + t221;
+  const Real t224 = t223 - par.k37;
+  const Real t225 = t55 * par.k31;
+  const Real t226 = t42 * par.k31;
+  const Real t227 = t226 + t225;
+  const Real t228 = t227 - par.k29;
+  const Real t229 = t224 + t228;
+  const Real t230 = sum_error(t229, t220);
+  const Real t231 = t230 - t218;
+  const Real t232 = t231 * c_r_a_2_;
+  const Real t233 = t229 - t219;
+  const Real t234 = product_error(t233, c_r_a_2_);
+  const Real t235 = t234 + t232;
+  const Real t236 = t8 * t183;
+  const Real t237 = t8 * t185;
+  const Real t238 = t237 + t236;
+  const Real t239 = t202 * t2;
+  const Real t240 = t80 * t159;
+  const Real t241 = t80 * t161;
+  const Real t242 = t241 + t240;
+  const Real t243 = t35 * par.k6;
 
   // fin: inertia in its present shape
-  const Real t205 = r_p[0] * par.k41;
+  const Real t244 = r_p[0] * par.k41;
 
   // accelerations
-  const Real t206 = t204 - t205;
-  const Real t207 = t203 + t206;
-  const Real t208 = t207 - t200;
-  const Real t209 = t199 - t208;
-  const Real t210 = t38 - t39;
-  const Real t211 = par.k18 * t210;
-  const Real t212 = t211 + t209;
-  const Real t213 = t212 * s_r_a_2_;
-  const Real t214 = c_r_a_2_ * t194;
-  const Real t215 = sum_error(t213, t214);
-  const Real t216 = t196 + t215;
+  const Real t245 = t243 - t244;
+  const Real t246 = t242 + t245;
+  const Real t247 = t246 - t239;
+  const Real t248 = t238 - t247;
+  const Real t249 = t28 - t34;
+  const Real t250 = par.k18 * t249;
+  const Real t251 = t248 + t250;
+  const Real t252 = t251 * s_r_a_2_;
+  const Real t253 = c_r_a_2_ * t233;
+  const Real t254 = sum_error(t252, t253);
+  const Real t255 = t235 + t254;
+  const Real t256 = par.k22 * t21;
 
   // rear: wrench
-  const Real t217 = t15 * par.k22;
-  const Real t218 = t217 - par.k30;
+  const Real t257 = t22 * par.k22;
+
+  // accelerations
+  const Real t258 = t256 + t257;
+  const Real t259 = t258 - par.k30;
+  const Real t260 = t21 * par.k53;
 
   // rear: wrench of the fluid
-  const Real t219 = t15 * par.k53;
-  const Real t220 = t219 - par.k43;
+  const Real t261 = t22 * par.k53;
 
   // accelerations
-  const Real t221 = sum_error(t218, t220);
-  const Real t222 = t221 + t216;
-  const Real t223 = t213 + t214;
-
-  // rear: wrench of the fluid
-  const Real t224 = t218 + t220;
-
-  // accelerations
-  const Real t225 = sum_error(t224, t223);
-  const Real t226 = t225 + t222;
-  const Real t227 = c_r_a_1_ * t226;
-  const Real t228 = t224 + t223;
-  const Real t229 = product_error(c_r_a_1_, t228);
-  const Real t230 = t227 + t229;
-  const Real t231 = t192 * s_r_a_2_;
-  const Real t232 = t194 * s_r_a_2_;
-  const Real t233 = t232 + t231;
-  const Real t234 = t212 * c_r_a_2_;
-  const Real t235 = t234 - t233;
-
-  // rear: wrench
-  const Real t236 = par.k22 * t23;
-
-  // accelerations
-  const Real t237 = t235 - t236;
-  const Real t238 = s_r_a_1_ * t237;
-  const Real t239 = c_r_a_1_ * t228;
-  const Real t240 = sum_error(t239, t238);
-  const Real t241 = t240 + t230;
-  const Real t242 = t239 + t238;
-
-  // trunk: wrench of the fluid
-  const Real t243 = t10 * par.k12;
-  const Real t244 = t243 + par.k49;
+  const Real t262 = t260 + t261;
+  const Real t263 = t262 - par.k43;
+  const Real t264 = sum_error(t259, t263);
+  const Real t265 = t264 + t255;
+  const Real t266 = t253 + t252;
+  const Real t267 = t259 + t263;
+  const Real t268 = sum_error(t267, t266);
+  const Real t269 = t265 + t268;
+  const Real t270 = s_r_a_1_ * t269;
+  const Real t271 = t266 + t267;
+  const Real t272 = s_r_a_1_ * t271;
+  const Real t273 = t272 + t270;
+  const Real t274 = t231 * s_r_a_2_;
+  const Real t275 = s_r_a_2_ * t233;
+  const Real t276 = t275 + t274;
+  const Real t277 = t251 * c_r_a_2_;
+  const Real t278 = t277 - t276;
+  const Real t279 = par.k22 * t33;
+  const Real t280 = t278 - t279;
+  const Real t281 = c_r_a_1_ * t280;
+  const Real t282 = t281 - t273;
 
   // trunk: wrench
-  const Real t245 = t10 * par.k1;
-  const Real t246 = par.k2 + t245;
+  const Real t283 = t14 * par.k1;
+
+  // accelerations
+  const Real t284 = t282 - t283;
+  const Real t285 = s_r_a_0_ * t284;
+  const Real t286 = c_r_a_1_ * t269;
+  const Real t287 = product_error(c_r_a_1_, t271);
+  const Real t288 = t286 + t287;
+  const Real t289 = t280 * s_r_a_1_;
+  const Real t290 = c_r_a_1_ * t271;
+  const Real t291 = sum_error(t290, t289);
+  const Real t292 = t291 + t288;
+  const Real t293 = t290 + t289;
 
   // trunk: wrench of the fluid
-  const Real t247 = t244 + t246;
-
-  // accelerations
-  const Real t248 = t242 - t247;
-  const Real t249 = t248 + t241;
-  const Real t250 = t249 * c_r_a_0_;
-  const Real t251 = s_r_a_1_ * t226;
-  const Real t252 = s_r_a_1_ * t228;
-  const Real t253 = t251 + t252;
-  const Real t254 = c_r_a_1_ * t237;
-  const Real t255 = t254 - t253;
+  const Real t294 = t10 * par.k12;
+  const Real t295 = t294 + par.k49;
 
   // trunk: wrench
-  const Real t256 = t13 * par.k1;
-
-  // accelerations
-  const Real t257 = t255 - t256;
-  const Real t258 = t257 * s_r_a_0_;
-  const Real t259 = t250 + t258;
-  const Real t260 = par.k8 * t259;
-  const Real t261 = -t260;
-  const Real t262 = par.l1 * t242;
-  const Real t263 = t153 * t72;
-  const Real t264 = t181 * t72;
-  const Real t265 = t264 + t263;
-  const Real t266 = t199 * t79;
-  const Real t267 = t266 + t265;
-  const Real t268 = t32 * t168;
-  const Real t269 = t200 * t41;
-  const Real t270 = t268 + t269;
-  const Real t271 = t125 * par.k47;
-  const Real t272 = t127 * par.k47;
-  const Real t273 = t271 + t272;
-  const Real t274 = t27 * t177;
-  const Real t275 = t177 * t28;
-  const Real t276 = t274 + t275;
-  const Real t277 = t205 * t40;
-  const Real t278 = t276 - t277;
-
-  // fin: inertia in its present shape
-  const Real t279 = r_p[0] * par.k44;
-  const Real t280 = par.k7 * r_p[0];
-  const Real t281 = t279 - t280;
-  const Real t282 = t281 * r_p[0];
-  const Real t283 = par.k17 + t282;
-
-  // accelerations
-  const Real t284 = t283 + t278;
-  const Real t285 = t284 - t273;
-  const Real t286 = t285 + t270;
-  const Real t287 = t286 + t267;
-  const Real t288 = t184 * par.l3;
-  const Real t289 = t287 + t288;
-  const Real t290 = t25 * par.k37;
-  const Real t291 = par.k19 - t290;
-  const Real t292 = t25 * par.k29;
-  const Real t293 = par.k45 - t292;
-  const Real t294 = t291 + t293;
-  const Real t295 = t289 + t294;
-  const Real t296 = par.l2 * t223;
-  const Real t297 = t295 - t296;
-
-  // rear: wrench
-  const Real t298 = t15 * par.k30;
-  const Real t299 = par.k23 - t298;
-
-  // rear: wrench of the fluid
-  const Real t300 = t15 * par.k43;
-  const Real t301 = par.k36 - t300;
-  const Real t302 = t299 + t301;
-
-  // accelerations
-  const Real t303 = t297 + t302;
-  const Real t304 = t303 - t262;
-
-  // trunk: wrench
-  const Real t305 = par.k2 * t10;
-  const Real t306 = t305 + par.k42;
+  const Real t296 = t10 * par.k1;
+  const Real t297 = par.k2 + t296;
 
   // trunk: wrench of the fluid
-  const Real t307 = t10 * par.k49;
-  const Real t308 = t307 + par.k40;
-  const Real t309 = t306 + t308;
+  const Real t298 = t295 + t297;
 
   // accelerations
-  const Real t310 = t309 + t304;
-  const Real t311 = sum_error(t310, t261);
-  const Real t312 = t241 * par.l1;
-  const Real t313 = product_error(t242, par.l1);
-  const Real t314 = t313 + t312;
-  const Real t315 = sum_error(t294, t289);
-  const Real t316 = sum_error(t287, t288);
-  const Real t317 = t183 * par.l3;
-  const Real t318 = product_error(par.l3, t184);
+  const Real t299 = t293 - t298;
+  const Real t300 = t299 + t292;
+  const Real t301 = t300 * c_r_a_0_;
+  const Real t302 = t285 + t301;
+  const Real t303 = par.k8 * t302;
+  const Real t304 = -t303;
+  const Real t305 = par.l1 * t293;
+  const Real t306 = t238 * t94;
+  const Real t307 = t216 * t87;
+  const Real t308 = sum_error(t307, t306);
+  const Real t309 = t187 * t87;
+  const Real t310 = product_error(t216, t87);
+  const Real t311 = t309 + t310;
+  const Real t312 = t308 + t311;
+  const Real t313 = t306 + t307;
+  const Real t314 = t36 * t239;
+  const Real t315 = t47 * t203;
+  const Real t316 = t314 + t315;
+  const Real t317 = par.k47 * t159;
+  const Real t318 = t161 * par.k47;
   const Real t319 = t317 + t318;
-  const Real t320 = t316 + t319;
-  const Real t321 = t315 + t320;
-  const Real t322 = par.l2 * t216;
-  const Real t323 = product_error(par.l2, t223);
-  const Real t324 = t323 + t322;
-  const Real t325 = t321 - t324;
-  const Real t326 = -t296;
-  const Real t327 = sum_error(t295, t326);
-  const Real t328 = t325 + t327;
-  const Real t329 = sum_error(t299, t301);
-  const Real t330 = t328 + t329;
-  const Real t331 = sum_error(t297, t302);
-  const Real t332 = t331 + t330;
-  const Real t333 = t332 - t314;
-  const Real t334 = -t262;
-  const Real t335 = sum_error(t303, t334);
-  const Real t336 = t335 + t333;
-  const Real t337 = sum_error(t309, t304);
-  const Real t338 = t336 + t337;
-  const Real t339 = t338 + t311;
-  const Real t340 = t310 - t260;
-  const Real t341 = sum_error(t340, par.k56);
-  const Real t342 = t339 + t341;
-  const Real t343 = par.k56 + t340;
+  const Real t320 = t58 * t212;
+  const Real t321 = t43 * t212;
+  const Real t322 = t321 + t320;
+  const Real t323 = t244 * t35;
+  const Real t324 = t322 - t323;
 
-  // rear: acceleration
-  const Real t344 = s_r_a_1_ * c_r_a_0_;
-  const Real t345 = c_r_a_1_ * s_r_a_0_;
-  const Real t346 = t344 + t345;
+  // fin: inertia in its present shape
+  const Real t325 = r_p[0] * par.k44;
+  const Real t326 = par.k7 * r_p[0];
+  const Real t327 = t325 - t326;
+  const Real t328 = t327 * r_p[0];
+  const Real t329 = par.k17 + t328;
 
-  // peduncle: acceleration
-  const Real t347 = c_r_a_2_ * t346;
+  // accelerations
+  const Real t330 = t329 + t324;
+  const Real t331 = t330 - t319;
+  const Real t332 = t331 + t316;
+  const Real t333 = t332 + t313;
+  const Real t334 = t312 + t333;
+  const Real t335 = t219 * par.l3;
+  const Real t336 = t334 + t335;
+  const Real t337 = t55 * par.k37;
+  const Real t338 = t42 * par.k37;
+  const Real t339 = t338 + t337;
+  const Real t340 = par.k19 - t339;
+  const Real t341 = par.k29 * t55;
+  const Real t342 = t42 * par.k29;
+  const Real t343 = t342 + t341;
+  const Real t344 = par.k45 - t343;
+  const Real t345 = t340 + t344;
+  const Real t346 = t345 + t336;
+  const Real t347 = par.l2 * t266;
+  const Real t348 = t346 - t347;
+  const Real t349 = t21 * par.k43;
 
-  // rear: acceleration
-  const Real t348 = c_r_a_1_ * c_r_a_0_;
-  const Real t349 = s_r_a_0_ * s_r_a_1_;
-  const Real t350 = t348 - t349;
+  // rear: wrench of the fluid
+  const Real t350 = t22 * par.k43;
 
-  // peduncle: acceleration
-  const Real t351 = t350 * s_r_a_2_;
-  const Real t352 = t347 + t351;
+  // accelerations
+  const Real t351 = t349 + t350;
+  const Real t352 = par.k36 - t351;
+  const Real t353 = t21 * par.k30;
 
-  // fin_section_2: acceleration
-  const Real t353 = t352 * t3;
+  // rear: wrench
+  const Real t354 = t22 * par.k30;
 
-  // peduncle: acceleration
-  const Real t354 = s_r_a_2_ * t346;
-  const Real t355 = t350 * c_r_a_2_;
+  // accelerations
+  const Real t355 = t353 + t354;
+  const Real t356 = par.k23 - t355;
+  const Real t357 = t352 + t356;
+  const Real t358 = t348 + t357;
+  const Real t359 = t358 - t305;
 
-  // fin: acceleration
-  const Real t356 = t354 - t355;
+  // trunk: wrench
+  const Real t360 = par.k2 * t10;
+  const Real t361 = t360 + par.k42;
 
-  // fin_section_2: acceleration
-  const Real t357 = t356 * t2;
-  const Real t358 = t353 - t357;
-
-  // fin_section_2: wrench of the fluid
-  const Real t359 = par.k4 * t358;
-
-  // fin_section_2: joint force
-  const Real t360 = t359 * t2;
-  const Real t361 = t29 * t360;
-  const Real t362 = t359 * t3;
-  const Real t363 = constant<Real>(0.710077701790478711739L) * t362;
+  // trunk: wrench of the fluid
+  const Real t362 = t10 * par.k49;
+  const Real t363 = t362 + par.k40;
   const Real t364 = t361 + t363;
 
-  // fin: wrench
-  const Real t365 = t352 * par.k41;
-  const Real t366 = t65 * t356;
-  const Real t367 = t365 - t366;
+  // accelerations
+  const Real t365 = t364 + t359;
+  const Real t366 = sum_error(t365, t304);
+  const Real t367 = par.l1 * t292;
+  const Real t368 = product_error(t293, par.l1);
+  const Real t369 = t368 + t367;
+  const Real t370 = sum_error(t334, t335);
+  const Real t371 = t218 * par.l3;
+  const Real t372 = product_error(par.l3, t219);
+  const Real t373 = t371 + t372;
+  const Real t374 = t373 + t370;
+  const Real t375 = sum_error(t345, t336);
+  const Real t376 = t374 + t375;
+  const Real t377 = par.l2 * t255;
+  const Real t378 = product_error(par.l2, t266);
+  const Real t379 = t378 + t377;
+  const Real t380 = t376 - t379;
+  const Real t381 = -t347;
+  const Real t382 = sum_error(t346, t381);
+  const Real t383 = t382 + t380;
+  const Real t384 = sum_error(t356, t352);
+  const Real t385 = t383 + t384;
+  const Real t386 = sum_error(t348, t357);
+  const Real t387 = t385 + t386;
+  const Real t388 = t387 - t369;
+  const Real t389 = -t305;
+  const Real t390 = sum_error(t358, t389);
+  const Real t391 = t390 + t388;
+  const Real t392 = sum_error(t364, t359);
+  const Real t393 = t392 + t391;
+  const Real t394 = t393 + t366;
+  const Real t395 = t365 - t303;
+  const Real t396 = sum_error(t395, par.k56);
+  const Real t397 = t396 + t394;
+  const Real t398 = par.k56 + t395;
 
-  // fin_section_2: joint force
-  const Real t368 = t367 + t364;
-
-  // fin_section_1: acceleration
-  const Real t369 = t352 * t9;
-  const Real t370 = t8 * t356;
-  const Real t371 = t369 - t370;
-
-  // fin_section_1: wrench of the fluid
-  const Real t372 = par.k4 * t371;
-
-  // fin_section_1: joint force
-  const Real t373 = t9 * t372;
-  const Real t374 = constant<Real>(0.0709020735931204697442L) * t373;
-  const Real t375 = t372 * t8;
-  const Real t376 = t375 * t70;
-  const Real t377 = t374 + t376;
-  const Real t378 = t368 + t377;
-
-  // modified blocks
-  const Real t379 = t121 * t378;
-
-  // fin_section_2: acceleration
-  const Real t380 = t379 * constant<Real>(0.710077701790478711739L);
-  const Real t381 = t352 - t380;
-  const Real t382 = t381 * t3;
-  const Real t383 = t379 * t29;
-  const Real t384 = t383 + t356;
-  const Real t385 = t384 * t2;
-  const Real t386 = t382 - t385;
-
-  // fin_section_2: wrench of the fluid
-  const Real t387 = par.k4 * t386;
-
-  // fin_section_2: joint force
-  const Real t388 = t387 * t2;
-
-  // fin: wrench
-  const Real t389 = t379 * t65;
-
-  // fin: wrench
-  const Real t390 = par.k6 * t356;
-
-  // fin: wrench
-  const Real t391 = t389 + t390;
-
-  // fin_section_2: joint force
-  const Real t392 = t391 - t388;
-
-  // fin_section_1: acceleration
-  const Real t393 = t379 * constant<Real>(0.0709020735931204697442L);
-  const Real t394 = t352 - t393;
-  const Real t395 = t9 * t394;
-  const Real t396 = t379 * t70;
-  const Real t397 = t396 + t356;
-  const Real t398 = t397 * t8;
-  const Real t399 = t395 - t398;
-
-  // fin_section_1: wrench of the fluid
-  const Real t400 = par.k4 * t399;
-
-  // fin_section_1: joint force
-  const Real t401 = t400 * t8;
-
-  // fin: joint force
-  const Real t402 = t401 - t392;
+  // rear: acceleration
+  const Real t399 = s_r_a_1_ * c_r_a_0_;
+  const Real t400 = c_r_a_1_ * s_r_a_0_;
+  const Real t401 = t399 + t400;
 
   // peduncle: acceleration
-  const Real t403 = t355 - t354;
+  const Real t402 = c_r_a_2_ * t401;
 
-  // peduncle: wrench
-  const Real t404 = par.k18 * t403;
+  // rear: acceleration
+  const Real t403 = c_r_a_1_ * c_r_a_0_;
+  const Real t404 = s_r_a_0_ * s_r_a_1_;
+  const Real t405 = t403 - t404;
 
-  // fin: joint force
-  const Real t405 = t402 + t404;
-
-  // peduncle: joint force
+  // peduncle: acceleration
   const Real t406 = t405 * s_r_a_2_;
+  const Real t407 = t402 + t406;
+
+  // fin_section_2: acceleration
+  const Real t408 = t407 * t3;
+
+  // peduncle: acceleration
+  const Real t409 = s_r_a_2_ * t401;
+  const Real t410 = t405 * c_r_a_2_;
+
+  // fin: acceleration
+  const Real t411 = t409 - t410;
+
+  // fin_section_2: acceleration
+  const Real t412 = t411 * t2;
+  const Real t413 = t408 - t412;
+
+  // fin_section_2: wrench of the fluid
+  const Real t414 = par.k4 * t413;
 
   // fin_section_2: joint force
-  const Real t407 = t387 * t3;
+  const Real t415 = t414 * t2;
+  const Real t416 = t44 * t415;
+  const Real t417 = t414 * t3;
+  const Real t418 = constant<Real>(0.710077701790478711739L) * t417;
+  const Real t419 = t416 + t418;
 
   // fin: wrench
-  const Real t408 = t379 * par.k41;
-
-  // fin: wrench
-  const Real t409 = t352 * par.k6;
-
-  // fin: wrench
-  const Real t410 = t409 - t408;
+  const Real t420 = t407 * par.k41;
+  const Real t421 = t80 * t411;
+  const Real t422 = t420 - t421;
 
   // fin_section_2: joint force
-  const Real t411 = t407 + t410;
+  const Real t423 = t422 + t419;
+
+  // fin_section_1: acceleration
+  const Real t424 = t407 * t9;
+  const Real t425 = t8 * t411;
+  const Real t426 = t424 - t425;
+
+  // fin_section_1: wrench of the fluid
+  const Real t427 = par.k4 * t426;
 
   // fin_section_1: joint force
-  const Real t412 = t9 * t400;
-  const Real t413 = t412 + t411;
+  const Real t428 = t9 * t427;
+  const Real t429 = constant<Real>(0.0709020735931204697442L) * t428;
+  const Real t430 = t427 * t8;
+  const Real t431 = t430 * t85;
+  const Real t432 = t429 + t431;
+  const Real t433 = t423 + t432;
 
-  // peduncle: wrench of the fluid
-  const Real t414 = t352 * par.k31;
+  // accelerations
+  const Real t434 = t155 * t433;
+  const Real t435 = t433 * t144;
+  const Real t436 = t435 + t434;
+  const Real t437 = constant<Real>(0.710077701790478711739L) * t436;
+  const Real t438 = t407 - t437;
+  const Real t439 = t438 * t3;
+  const Real t440 = t44 * t436;
+  const Real t441 = t440 + t411;
+  const Real t442 = t441 * t2;
+  const Real t443 = t439 - t442;
+  const Real t444 = par.k4 * t443;
+  const Real t445 = t444 * t2;
+  const Real t446 = t80 * t436;
 
-  // peduncle: wrench
-  const Real t415 = par.k18 * t352;
+  // fin: wrench
+  const Real t447 = par.k6 * t411;
 
-  // peduncle: wrench of the fluid
-  const Real t416 = t414 + t415;
-
-  // fin: joint force
-  const Real t417 = t416 + t413;
-
-  // peduncle: joint force
-  const Real t418 = t417 * c_r_a_2_;
-  const Real t419 = t406 - t418;
-
-  // rear: wrench
-  const Real t420 = par.k22 * t346;
-
-  // rear: wrench of the fluid
-  const Real t421 = t346 * par.k53;
-  const Real t422 = t420 + t421;
-
-  // peduncle: joint force
-  const Real t423 = t419 - t422;
-
-  // rear: joint force
-  const Real t424 = c_r_a_1_ * t423;
-
-  // peduncle: joint force
-  const Real t425 = t405 * c_r_a_2_;
-  const Real t426 = t417 * s_r_a_2_;
-  const Real t427 = t425 + t426;
-
-  // rear: wrench
-  const Real t428 = par.k22 * t350;
-
-  // peduncle: joint force
-  const Real t429 = t427 + t428;
-
-  // rear: joint force
-  const Real t430 = t429 * s_r_a_1_;
-  const Real t431 = t424 + t430;
-
-  // trunk: wrench
-  const Real t432 = s_r_a_0_ * par.k1;
-
-  // trunk: wrench of the fluid
-  const Real t433 = par.k12 * s_r_a_0_;
-  const Real t434 = t432 + t433;
-
-  // rear: joint force
-  const Real t435 = t431 - t434;
-
-  // trunk: joint force
-  const Real t436 = t435 * c_r_a_0_;
-
-  // rear: joint force
-  const Real t437 = c_r_a_1_ * t429;
-  const Real t438 = t423 * s_r_a_1_;
-  const Real t439 = t437 - t438;
-
-  // trunk: wrench
-  const Real t440 = par.k1 * c_r_a_0_;
-
-  // rear: joint force
-  const Real t441 = t440 + t439;
-
-  // trunk: joint force
-  const Real t442 = s_r_a_0_ * t441;
-  const Real t443 = t436 + t442;
-  const Real t444 = par.k8 * t443;
-
-  // rear: joint force
-  const Real t445 = par.l1 * t431;
-
-  // fin_section_2: joint force
-  const Real t446 = t407 * t32;
-  const Real t447 = t388 * t41;
+  // accelerations
   const Real t448 = t446 + t447;
+  const Real t449 = t448 - t445;
+  const Real t450 = constant<Real>(0.0709020735931204697442L) * t436;
+  const Real t451 = t407 - t450;
+  const Real t452 = t451 * t9;
+  const Real t453 = t85 * t436;
+  const Real t454 = t453 + t411;
+  const Real t455 = t454 * t8;
+  const Real t456 = t452 - t455;
+  const Real t457 = par.k4 * t456;
+  const Real t458 = t8 * t457;
+  const Real t459 = t458 - t449;
 
-  // fin: wrench
-  const Real t449 = t379 * par.k47;
-
-  // fin: wrench
-  const Real t450 = t352 * t177;
-  const Real t451 = t205 * t356;
-  const Real t452 = t450 - t451;
-
-  // fin: wrench
-  const Real t453 = t452 - t449;
-
-  // fin_section_2: joint force
-  const Real t454 = t448 + t453;
-
-  // fin_section_1: joint force
-  const Real t455 = t401 * t79;
-  const Real t456 = t412 * t72;
-  const Real t457 = t455 + t456;
-  const Real t458 = t457 + t454;
-
-  // fin: joint force
-  const Real t459 = par.l3 * t413;
-  const Real t460 = t458 + t459;
-
-  // peduncle: wrench of the fluid
-  const Real t461 = t352 * par.k29;
+  // peduncle: acceleration
+  const Real t460 = t410 - t409;
 
   // peduncle: wrench
-  const Real t462 = t352 * par.k37;
-
-  // peduncle: wrench of the fluid
-  const Real t463 = t461 + t462;
-
-  // fin: joint force
-  const Real t464 = t463 + t460;
-
-  // peduncle: joint force
-  const Real t465 = par.l2 * t419;
-  const Real t466 = t464 - t465;
-
-  // rear: wrench
-  const Real t467 = par.k30 * t346;
-
-  // rear: wrench of the fluid
-  const Real t468 = par.k43 * t346;
-  const Real t469 = t467 + t468;
-
-  // peduncle: joint force
-  const Real t470 = t466 + t469;
-
-  // rear: joint force
-  const Real t471 = t470 - t445;
-
-  // trunk: wrench
-  const Real t472 = par.k2 * s_r_a_0_;
-
-  // trunk: wrench of the fluid
-  const Real t473 = s_r_a_0_ * par.k49;
-  const Real t474 = t472 + t473;
-
-  // rear: joint force
-  const Real t475 = t474 + t471;
-
-  // trunk: joint force
-  const Real t476 = t475 - t444;
-  const Real t477 = c_r_a_0_ * t441;
-  const Real t478 = t435 * s_r_a_0_;
-  const Real t479 = t477 - t478;
-  const Real t480 = t479 + par.k54;
-
-  // trunk: joint force
-  const Real t481 = constant<Real>(1.0L) / t480;
-  const Real t482 = t476 * t481;
-  const Real t483 = t476 * t482;
+  const Real t461 = par.k18 * t460;
 
   // accelerations
-  const Real t484 = -t483;
-  const Real t485 = sum_error(t343, t484);
-  const Real t486 = t342 + t485;
-  const Real t487 = t343 - t483;
-
-  // trunk: joint force
-  const Real t488 = t443 * t481;
-  const Real t489 = t443 * t488;
-
-  // fin_section_2: acceleration
-  const Real t490 = t352 * t2;
-  const Real t491 = t356 * t3;
-  const Real t492 = t490 + t491;
-
-  // fin_section_2: wrench of the fluid
-  const Real t493 = par.k4 * t492;
-
-  // fin_section_2: joint force
-  const Real t494 = t493 * t3;
-  const Real t495 = constant<Real>(0.710077701790478711739L) * t494;
-  const Real t496 = t493 * t2;
-  const Real t497 = t496 * t29;
-  const Real t498 = t495 + t497;
+  const Real t462 = t461 + t459;
+  const Real t463 = t462 * c_r_a_2_;
+  const Real t464 = t444 * t3;
+  const Real t465 = par.k41 * t436;
 
   // fin: wrench
-  const Real t499 = par.k41 * t356;
-  const Real t500 = t65 * t352;
-  const Real t501 = t499 + t500;
+  const Real t466 = t407 * par.k6;
 
-  // fin_section_2: joint force
-  const Real t502 = t501 + t498;
+  // accelerations
+  const Real t467 = t466 - t465;
+  const Real t468 = t467 + t464;
+  const Real t469 = t9 * t457;
+  const Real t470 = t468 + t469;
 
-  // fin_section_1: acceleration
-  const Real t503 = t9 * t356;
-  const Real t504 = t352 * t8;
+  // peduncle: wrench of the fluid
+  const Real t471 = t407 * par.k31;
+
+  // peduncle: wrench
+  const Real t472 = par.k18 * t407;
+
+  // peduncle: wrench of the fluid
+  const Real t473 = t471 + t472;
+
+  // accelerations
+  const Real t474 = t473 + t470;
+  const Real t475 = t474 * s_r_a_2_;
+  const Real t476 = t463 + t475;
+
+  // rear: wrench
+  const Real t477 = par.k22 * t405;
+
+  // accelerations
+  const Real t478 = t477 + t476;
+  const Real t479 = c_r_a_1_ * t478;
+  const Real t480 = t462 * s_r_a_2_;
+  const Real t481 = c_r_a_2_ * t474;
+  const Real t482 = t480 - t481;
+
+  // rear: wrench
+  const Real t483 = par.k22 * t401;
+
+  // rear: wrench of the fluid
+  const Real t484 = t401 * par.k53;
+  const Real t485 = t483 + t484;
+
+  // accelerations
+  const Real t486 = t482 - t485;
+  const Real t487 = t486 * s_r_a_1_;
+  const Real t488 = t479 - t487;
+
+  // trunk: wrench
+  const Real t489 = par.k1 * c_r_a_0_;
+
+  // accelerations
+  const Real t490 = t489 + t488;
+  const Real t491 = t490 * s_r_a_0_;
+  const Real t492 = t478 * s_r_a_1_;
+  const Real t493 = c_r_a_1_ * t486;
+  const Real t494 = t492 + t493;
+
+  // trunk: wrench
+  const Real t495 = s_r_a_0_ * par.k1;
+
+  // trunk: wrench of the fluid
+  const Real t496 = par.k12 * s_r_a_0_;
+  const Real t497 = t495 + t496;
+
+  // accelerations
+  const Real t498 = t494 - t497;
+  const Real t499 = c_r_a_0_ * t498;
+  const Real t500 = t491 + t499;
+  const Real t501 = par.k8 * t500;
+  const Real t502 = t494 * par.l1;
+  const Real t503 = t47 * t464;
+  const Real t504 = t36 * t445;
   const Real t505 = t503 + t504;
-
-  // fin_section_1: wrench of the fluid
-  const Real t506 = par.k4 * t505;
-
-  // fin_section_1: joint force
-  const Real t507 = t506 * t9;
-  const Real t508 = constant<Real>(0.0709020735931204697442L) * t507;
-  const Real t509 = t506 * t8;
-  const Real t510 = t70 * t509;
-  const Real t511 = t508 + t510;
-  const Real t512 = t511 + t502;
-
-  // modified blocks
-  const Real t513 = t121 * t512;
-
-  // fin_section_2: acceleration
-  const Real t514 = constant<Real>(0.710077701790478711739L) * t513;
-  const Real t515 = t356 - t514;
-  const Real t516 = t515 * t3;
-  const Real t517 = t29 * t513;
-  const Real t518 = t517 - t352;
-  const Real t519 = t518 * t2;
-  const Real t520 = t516 - t519;
-
-  // fin_section_2: wrench of the fluid
-  const Real t521 = par.k4 * t520;
-
-  // fin_section_2: joint force
-  const Real t522 = t521 * t2;
+  const Real t506 = t436 * par.k47;
 
   // fin: wrench
-  const Real t523 = t65 * t513;
-  const Real t524 = t523 - t409;
+  const Real t507 = t407 * t212;
+  const Real t508 = t244 * t411;
+  const Real t509 = t507 - t508;
 
-  // fin_section_2: joint force
-  const Real t525 = t524 - t522;
-
-  // fin_section_1: acceleration
-  const Real t526 = constant<Real>(0.0709020735931204697442L) * t513;
-  const Real t527 = t356 - t526;
-  const Real t528 = t527 * t9;
-  const Real t529 = t70 * t513;
-  const Real t530 = t529 - t352;
-  const Real t531 = t530 * t8;
-  const Real t532 = t528 - t531;
-
-  // fin_section_1: wrench of the fluid
-  const Real t533 = par.k4 * t532;
-
-  // fin_section_1: joint force
-  const Real t534 = t533 * t8;
-
-  // fin: joint force
-  const Real t535 = t534 - t525;
-  const Real t536 = t535 + t415;
-
-  // peduncle: joint force
-  const Real t537 = t536 * c_r_a_2_;
-
-  // fin_section_2: joint force
-  const Real t538 = t521 * t3;
-
-  // fin: wrench
-  const Real t539 = par.k41 * t513;
-  const Real t540 = t390 - t539;
-
-  // fin_section_2: joint force
-  const Real t541 = t540 + t538;
-
-  // fin_section_1: joint force
-  const Real t542 = t533 * t9;
-  const Real t543 = t542 + t541;
+  // accelerations
+  const Real t510 = t509 - t506;
+  const Real t511 = t510 + t505;
+  const Real t512 = t458 * t94;
+  const Real t513 = t469 * t87;
+  const Real t514 = t512 + t513;
+  const Real t515 = t511 + t514;
+  const Real t516 = t470 * par.l3;
+  const Real t517 = t515 + t516;
 
   // peduncle: wrench of the fluid
-  const Real t544 = par.k31 * t403;
-  const Real t545 = t544 + t404;
-
-  // fin: joint force
-  const Real t546 = t545 - t543;
-
-  // peduncle: joint force
-  const Real t547 = t546 * s_r_a_2_;
-  const Real t548 = t537 - t547;
-  const Real t549 = t420 + t548;
-
-  // rear: joint force
-  const Real t550 = c_r_a_1_ * t549;
-
-  // peduncle: joint force
-  const Real t551 = t546 * c_r_a_2_;
-  const Real t552 = t536 * s_r_a_2_;
-  const Real t553 = t551 + t552;
-
-  // rear: wrench of the fluid
-  const Real t554 = t350 * par.k53;
-  const Real t555 = t554 + t428;
-
-  // peduncle: joint force
-  const Real t556 = t553 + t555;
-
-  // rear: joint force
-  const Real t557 = t556 * s_r_a_1_;
-  const Real t558 = t550 - t557;
-  const Real t559 = t432 + t558;
-
-  // trunk: joint force
-  const Real t560 = t559 * s_r_a_0_;
-
-  // rear: joint force
-  const Real t561 = c_r_a_1_ * t556;
-  const Real t562 = t549 * s_r_a_1_;
-  const Real t563 = t561 + t562;
-
-  // trunk: wrench of the fluid
-  const Real t564 = par.k12 * c_r_a_0_;
-  const Real t565 = t440 + t564;
-
-  // rear: joint force
-  const Real t566 = t563 + t565;
-
-  // trunk: joint force
-  const Real t567 = t566 * c_r_a_0_;
-  const Real t568 = t560 + t567;
-  const Real t569 = t568 + par.k55;
-
-  // trunk: joint force
-  const Real t570 = t569 - t489;
-  const Real t571 = constant<Real>(1.0L) / t570;
-  const Real t572 = t476 * t488;
-
-  // trunk: joint force
-  const Real t573 = par.k8 * t568;
-
-  // rear: joint force
-  const Real t574 = par.l1 * t563;
-
-  // fin_section_2: joint force
-  const Real t575 = t32 * t538;
-  const Real t576 = t41 * t522;
-  const Real t577 = t575 + t576;
-
-  // fin: wrench
-  const Real t578 = par.k47 * t513;
-
-  // fin: wrench
-  const Real t579 = t205 * t352;
-  const Real t580 = t177 * t356;
-  const Real t581 = t579 + t580;
-
-  // fin: wrench
-  const Real t582 = t581 - t578;
-
-  // fin_section_2: joint force
-  const Real t583 = t582 + t577;
-
-  // fin_section_1: joint force
-  const Real t584 = t534 * t79;
-  const Real t585 = t542 * t72;
-  const Real t586 = t584 + t585;
-  const Real t587 = t586 + t583;
-
-  // fin: joint force
-  const Real t588 = t543 * par.l3;
-  const Real t589 = t587 + t588;
+  const Real t518 = t407 * par.k29;
 
   // peduncle: wrench
-  const Real t590 = t403 * par.k37;
+  const Real t519 = t407 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t591 = par.k29 * t403;
-  const Real t592 = t590 + t591;
+  const Real t520 = t518 + t519;
 
-  // fin: joint force
-  const Real t593 = t589 - t592;
-
-  // peduncle: joint force
-  const Real t594 = par.l2 * t553;
-  const Real t595 = t593 - t594;
+  // accelerations
+  const Real t521 = t520 + t517;
+  const Real t522 = par.l2 * t482;
+  const Real t523 = t521 - t522;
 
   // rear: wrench
-  const Real t596 = par.k30 * t350;
+  const Real t524 = par.k30 * t401;
 
   // rear: wrench of the fluid
-  const Real t597 = t350 * par.k43;
-  const Real t598 = t596 + t597;
+  const Real t525 = par.k43 * t401;
+  const Real t526 = t524 + t525;
 
-  // peduncle: joint force
-  const Real t599 = t595 - t598;
-
-  // rear: joint force
-  const Real t600 = t599 - t574;
-
-  // trunk: wrench of the fluid
-  const Real t601 = c_r_a_0_ * par.k49;
+  // accelerations
+  const Real t527 = t523 + t526;
+  const Real t528 = t527 - t502;
 
   // trunk: wrench
-  const Real t602 = par.k2 * c_r_a_0_;
+  const Real t529 = par.k2 * s_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t603 = t601 + t602;
-
-  // rear: joint force
-  const Real t604 = t600 - t603;
-
-  // trunk: joint force
-  const Real t605 = t604 - t573;
-
-  // trunk: joint force
-  const Real t606 = t605 - t572;
-  const Real t607 = t571 * t606;
-  const Real t608 = t607 * t606;
+  const Real t530 = s_r_a_0_ * par.k49;
+  const Real t531 = t529 + t530;
 
   // accelerations
-  const Real t609 = t487 - t608;
-  const Real t610 = t609 + t486;
-  const Real t611 = constant<Real>(1.0L) / t610;
-
-  // trunk: joint force
-  const Real t612 = t475 * t482;
-
-  // accelerations
-  const Real t613 = t310 - t612;
-
-  // trunk: joint force
-  const Real t614 = t488 * t475;
-  const Real t615 = t604 - t614;
-  const Real t616 = t607 * t615;
-
-  // accelerations
-  const Real t617 = t613 - t616;
-  const Real t618 = t611 * t617;
-  const Real t619 = product_error(t475, t482);
-  const Real t620 = t338 - t619;
-  const Real t621 = -t612;
-  const Real t622 = sum_error(t310, t621);
-  const Real t623 = t622 + t620;
-  const Real t624 = product_error(t607, t615);
-  const Real t625 = t623 - t624;
-  const Real t626 = -t616;
-  const Real t627 = sum_error(t613, t626);
-  const Real t628 = t627 + t625;
-  const Real t629 = t628 * t611;
-  const Real t630 = t618 + t629;
-  const Real t631 = product_error(t617, t630);
-  const Real t632 = t628 * t630;
-  const Real t633 = t631 + t632;
-
-  // rear: acceleration
-  const Real t634 = c_r_a_1_ * par.l1;
-
-  // peduncle: acceleration
-  const Real t635 = par.l2 + t634;
-  const Real t636 = c_r_a_2_ * t635;
-
-  // rear: acceleration
-  const Real t637 = par.l1 * s_r_a_1_;
-
-  // peduncle: acceleration
-  const Real t638 = t637 * s_r_a_2_;
-  const Real t639 = t638 - t636;
-
-  // fin: acceleration
-  const Real t640 = par.l3 - t639;
-
-  // accelerations
-  const Real t641 = sum_error(t32, t640);
-  const Real t642 = t636 - t638;
-  const Real t643 = sum_error(par.l3, t642);
-  const Real t644 = t643 + t641;
-  const Real t645 = t644 * t3;
+  const Real t532 = t531 + t528;
+  const Real t533 = t532 - t501;
+  const Real t534 = t490 * c_r_a_0_;
+  const Real t535 = s_r_a_0_ * t498;
+  const Real t536 = t534 - t535;
+  const Real t537 = par.k54 + t536;
+  const Real t538 = constant<Real>(1.0L) / t537;
+  const Real t539 = product_error(t533, t538);
+  const Real t540 = t539 * t533;
+  const Real t541 = t538 * t533;
+  const Real t542 = t541 * t533;
+  const Real t543 = t540 + t542;
+  const Real t544 = -t543;
+  const Real t545 = sum_error(t398, t544);
+  const Real t546 = t397 + t545;
+  const Real t547 = t500 * t538;
+  const Real t548 = t500 * t547;
 
   // fin_section_2: acceleration
-  const Real t646 = t32 + t640;
-
-  // accelerations
-  const Real t647 = product_error(t646, t3);
-  const Real t648 = t645 + t647;
-
-  // peduncle: acceleration
-  const Real t649 = t635 * s_r_a_2_;
-  const Real t650 = t637 * c_r_a_2_;
-  const Real t651 = t649 + t650;
-
-  // fin_section_2: acceleration
-  const Real t652 = t651 - t41;
-
-  // accelerations
-  const Real t653 = product_error(t652, t2);
-  const Real t654 = t648 - t653;
-
-  // fin_section_2: acceleration
-  const Real t655 = t646 * t3;
-  const Real t656 = t652 * t2;
-
-  // accelerations
-  const Real t657 = -t656;
-  const Real t658 = sum_error(t655, t657);
-  const Real t659 = t658 + t654;
-  const Real t660 = par.k4 * t659;
-
-  // fin_section_2: acceleration
-  const Real t661 = t655 - t656;
-
-  // accelerations
-  const Real t662 = product_error(par.k4, t661);
-  const Real t663 = t660 + t662;
-  const Real t664 = t663 * t3;
+  const Real t549 = t407 * t2;
+  const Real t550 = t411 * t3;
+  const Real t551 = t549 + t550;
 
   // fin_section_2: wrench of the fluid
-  const Real t665 = par.k4 * t661;
-
-  // accelerations
-  const Real t666 = product_error(t665, t3);
-  const Real t667 = t664 + t666;
-  const Real t668 = t667 * constant<Real>(0.710077701790478711739L);
+  const Real t552 = par.k4 * t551;
 
   // fin_section_2: joint force
-  const Real t669 = t665 * t3;
-
-  // accelerations
-  const Real t670 = product_error(constant<Real>(0.710077701790478711739L), t669);
-  const Real t671 = t670 + t668;
-  const Real t672 = t663 * t2;
-
-  // fin_section_2: joint force
-  const Real t673 = t665 * t2;
-
-  // accelerations
-  const Real t674 = t673 + t672;
-  const Real t675 = t29 * t674;
-
-  // fin_section_2: joint force
-  const Real t676 = constant<Real>(0.710077701790478711739L) * t669;
-
-  // accelerations
-  const Real t677 = sum_error(t675, t676);
-  const Real t678 = t671 + t677;
-  const Real t679 = t675 + t676;
-  const Real t680 = t643 * par.k41;
+  const Real t553 = t552 * t3;
+  const Real t554 = constant<Real>(0.710077701790478711739L) * t553;
+  const Real t555 = t552 * t2;
+  const Real t556 = t555 * t44;
+  const Real t557 = t554 + t556;
 
   // fin: wrench
-  const Real t681 = par.k41 * t640;
+  const Real t558 = par.k41 * t411;
+  const Real t559 = t80 * t407;
+  const Real t560 = t558 + t559;
+
+  // fin_section_2: joint force
+  const Real t561 = t560 + t557;
+
+  // fin_section_1: acceleration
+  const Real t562 = t9 * t411;
+  const Real t563 = t407 * t8;
+  const Real t564 = t562 + t563;
+
+  // fin_section_1: wrench of the fluid
+  const Real t565 = par.k4 * t564;
+
+  // fin_section_1: joint force
+  const Real t566 = t565 * t9;
+  const Real t567 = constant<Real>(0.0709020735931204697442L) * t566;
+  const Real t568 = t565 * t8;
+  const Real t569 = t85 * t568;
+  const Real t570 = t567 + t569;
+  const Real t571 = t570 + t561;
 
   // accelerations
-  const Real t682 = t680 + t681;
+  const Real t572 = t155 * t571;
+  const Real t573 = t144 * t571;
+  const Real t574 = t572 + t573;
+  const Real t575 = constant<Real>(0.710077701790478711739L) * t574;
+  const Real t576 = t411 - t575;
+  const Real t577 = t576 * t3;
+  const Real t578 = t44 * t574;
+  const Real t579 = t578 - t407;
+  const Real t580 = t579 * t2;
+  const Real t581 = t577 - t580;
+  const Real t582 = par.k4 * t581;
+  const Real t583 = t582 * t2;
+  const Real t584 = t80 * t574;
+  const Real t585 = t584 - t466;
+  const Real t586 = t585 - t583;
+  const Real t587 = constant<Real>(0.0709020735931204697442L) * t574;
+  const Real t588 = t411 - t587;
+  const Real t589 = t588 * t9;
+  const Real t590 = t85 * t574;
+  const Real t591 = t590 - t407;
+  const Real t592 = t591 * t8;
+  const Real t593 = t589 - t592;
+  const Real t594 = par.k4 * t593;
+  const Real t595 = t8 * t594;
+  const Real t596 = t595 - t586;
+  const Real t597 = t596 + t472;
+  const Real t598 = t597 * c_r_a_2_;
+  const Real t599 = t582 * t3;
+  const Real t600 = t574 * par.k41;
+  const Real t601 = t447 - t600;
+  const Real t602 = t599 + t601;
+  const Real t603 = t9 * t594;
+  const Real t604 = t602 + t603;
+
+  // peduncle: wrench of the fluid
+  const Real t605 = par.k31 * t460;
+  const Real t606 = t605 + t461;
+
+  // accelerations
+  const Real t607 = t606 - t604;
+  const Real t608 = t607 * s_r_a_2_;
+  const Real t609 = t598 - t608;
+  const Real t610 = t483 + t609;
+  const Real t611 = t610 * s_r_a_1_;
+  const Real t612 = t607 * c_r_a_2_;
+  const Real t613 = t597 * s_r_a_2_;
+  const Real t614 = t612 + t613;
+
+  // rear: wrench of the fluid
+  const Real t615 = t405 * par.k53;
+  const Real t616 = t615 + t477;
+
+  // accelerations
+  const Real t617 = t616 + t614;
+  const Real t618 = c_r_a_1_ * t617;
+  const Real t619 = t611 + t618;
+
+  // trunk: wrench of the fluid
+  const Real t620 = par.k12 * c_r_a_0_;
+  const Real t621 = t489 + t620;
+
+  // accelerations
+  const Real t622 = t619 + t621;
+  const Real t623 = t622 * c_r_a_0_;
+  const Real t624 = t610 * c_r_a_1_;
+  const Real t625 = t617 * s_r_a_1_;
+  const Real t626 = t624 - t625;
+  const Real t627 = t495 + t626;
+  const Real t628 = s_r_a_0_ * t627;
+  const Real t629 = t623 + t628;
+  const Real t630 = par.k55 + t629;
+  const Real t631 = t630 - t548;
+  const Real t632 = constant<Real>(1.0L) / t631;
+  const Real t633 = t547 * t533;
+  const Real t634 = par.k8 * t629;
+  const Real t635 = par.l1 * t619;
+  const Real t636 = t599 * t47;
+  const Real t637 = t36 * t583;
+  const Real t638 = t636 + t637;
+  const Real t639 = t574 * par.k47;
 
   // fin: wrench
-  const Real t683 = t65 * t651;
+  const Real t640 = t244 * t407;
+  const Real t641 = t212 * t411;
+  const Real t642 = t640 + t641;
 
   // accelerations
-  const Real t684 = t682 - t683;
-  const Real t685 = t684 + par.k47;
-  const Real t686 = sum_error(t679, t685);
-  const Real t687 = t678 + t686;
-  const Real t688 = t685 + t679;
-  const Real t689 = sum_error(t72, t640);
-  const Real t690 = t643 + t689;
-  const Real t691 = t690 * t9;
+  const Real t643 = t642 - t639;
+  const Real t644 = t643 + t638;
+  const Real t645 = t595 * t94;
+  const Real t646 = t603 * t87;
+  const Real t647 = t645 + t646;
+  const Real t648 = t647 + t644;
+  const Real t649 = t604 * par.l3;
+  const Real t650 = t649 + t648;
 
-  // fin_section_1: acceleration
-  const Real t692 = t72 + t640;
-  const Real t693 = t9 * t692;
+  // peduncle: wrench
+  const Real t651 = t460 * par.k37;
 
-  // accelerations
-  const Real t694 = t691 + t693;
-
-  // fin_section_1: acceleration
-  const Real t695 = t651 - t79;
-  const Real t696 = t695 * t8;
+  // peduncle: wrench of the fluid
+  const Real t652 = par.k29 * t460;
+  const Real t653 = t651 + t652;
 
   // accelerations
-  const Real t697 = t694 - t696;
-  const Real t698 = par.k4 * t697;
-  const Real t699 = t698 * t9;
-  const Real t700 = t699 * constant<Real>(0.0709020735931204697442L);
-  const Real t701 = t698 * t8;
-  const Real t702 = t70 * t701;
-  const Real t703 = t700 + t702;
-  const Real t704 = sum_error(t703, t688);
-  const Real t705 = t687 + t704;
-  const Real t706 = t121 * t705;
-  const Real t707 = t703 + t688;
-  const Real t708 = product_error(t121, t707);
-  const Real t709 = t708 + t706;
-  const Real t710 = constant<Real>(0.0709020735931204697442L) * t709;
-  const Real t711 = t707 * t121;
-  const Real t712 = constant<Real>(0.0709020735931204697442L) * t711;
-  const Real t713 = t710 + t712;
-  const Real t714 = -t713;
-  const Real t715 = sum_error(t692, t714);
-  const Real t716 = t690 + t715;
-  const Real t717 = t716 * t9;
-  const Real t718 = t692 - t713;
-  const Real t719 = product_error(t9, t718);
-  const Real t720 = t717 + t719;
-  const Real t721 = t70 * t709;
-  const Real t722 = t70 * t711;
-  const Real t723 = t721 + t722;
-  const Real t724 = t695 + t723;
-  const Real t725 = t724 * t8;
-  const Real t726 = -t725;
-  const Real t727 = t718 * t9;
-  const Real t728 = sum_error(t727, t726);
-  const Real t729 = t720 + t728;
-  const Real t730 = par.k4 * t729;
-  const Real t731 = t727 - t725;
-  const Real t732 = product_error(par.k4, t731);
-  const Real t733 = t730 + t732;
-  const Real t734 = t733 * t8;
-  const Real t735 = par.k4 * t731;
-  const Real t736 = t735 * t8;
-  const Real t737 = t734 + t736;
-  const Real t738 = constant<Real>(0.710077701790478711739L) * t709;
-  const Real t739 = product_error(constant<Real>(0.710077701790478711739L), t711);
-  const Real t740 = t739 + t738;
-  const Real t741 = t644 - t740;
-  const Real t742 = constant<Real>(0.710077701790478711739L) * t711;
-  const Real t743 = t646 - t742;
-  const Real t744 = t743 + t741;
-  const Real t745 = t744 * t3;
-  const Real t746 = t29 * t709;
-  const Real t747 = t29 * t711;
-  const Real t748 = t746 + t747;
-  const Real t749 = t652 + t748;
-  const Real t750 = t749 * t2;
-  const Real t751 = t745 - t750;
+  const Real t654 = t650 - t653;
+  const Real t655 = par.l2 * t614;
+  const Real t656 = t654 - t655;
+
+  // rear: wrench
+  const Real t657 = par.k30 * t405;
+
+  // rear: wrench of the fluid
+  const Real t658 = t405 * par.k43;
+  const Real t659 = t657 + t658;
+
+  // accelerations
+  const Real t660 = t656 - t659;
+  const Real t661 = t660 - t635;
+
+  // trunk: wrench of the fluid
+  const Real t662 = c_r_a_0_ * par.k49;
+
+  // trunk: wrench
+  const Real t663 = par.k2 * c_r_a_0_;
+
+  // trunk: wrench of the fluid
+  const Real t664 = t662 + t663;
+
+  // accelerations
+  const Real t665 = t661 - t664;
+  const Real t666 = t665 - t634;
+  const Real t667 = t666 - t633;
+  const Real t668 = t632 * t667;
+  const Real t669 = product_error(t668, t667);
+  const Real t670 = product_error(t632, t667);
+  const Real t671 = t667 * t670;
+  const Real t672 = t669 + t671;
+  const Real t673 = t546 - t672;
+  const Real t674 = t398 - t543;
+  const Real t675 = t668 * t667;
+  const Real t676 = -t675;
+  const Real t677 = sum_error(t674, t676);
+  const Real t678 = t673 + t677;
+  const Real t679 = t674 - t675;
+  const Real t680 = constant<Real>(1.0L) / t679;
+  const Real t681 = t678 * t680;
+  const Real t682 = t681 / t679;
+  const Real t683 = quotient_error(constant<Real>(1.0L), t679);
+  const Real t684 = t683 - t682;
+  const Real t685 = t541 * t532;
+  const Real t686 = t365 - t685;
+  const Real t687 = t547 * t532;
+  const Real t688 = t665 - t687;
+  const Real t689 = t668 * t688;
+  const Real t690 = t686 - t689;
+  const Real t691 = t684 * t690;
+  const Real t692 = product_error(t532, t541);
+  const Real t693 = t539 * t532;
+  const Real t694 = t692 + t693;
+  const Real t695 = t393 - t694;
+  const Real t696 = -t685;
+  const Real t697 = sum_error(t365, t696);
+  const Real t698 = t697 + t695;
+  const Real t699 = product_error(t668, t688);
+  const Real t700 = t688 * t670;
+  const Real t701 = t699 + t700;
+  const Real t702 = t698 - t701;
+  const Real t703 = -t689;
+  const Real t704 = sum_error(t686, t703);
+  const Real t705 = t704 + t702;
+  const Real t706 = t680 * t705;
+  const Real t707 = t691 + t706;
+  const Real t708 = product_error(t690, t680);
+  const Real t709 = t707 + t708;
+  const Real t710 = t709 * t690;
+  const Real t711 = t680 * t690;
+  const Real t712 = t705 * t711;
+  const Real t713 = t712 + t710;
+  const Real t714 = product_error(t690, t711);
+  const Real t715 = t713 + t714;
+
+  // rear: acceleration
+  const Real t716 = c_r_a_1_ * par.l1;
+
+  // accelerations
+  const Real t717 = sum_error(par.l2, t716);
+  const Real t718 = product_error(c_r_a_1_, par.l1);
+  const Real t719 = t718 + t717;
+  const Real t720 = t719 * s_r_a_2_;
+
+  // peduncle: acceleration
+  const Real t721 = par.l2 + t716;
+  const Real t722 = t721 * s_r_a_2_;
+
+  // accelerations
+  const Real t723 = t722 + t720;
+
+  // rear: acceleration
+  const Real t724 = par.l1 * s_r_a_1_;
+
+  // peduncle: acceleration
+  const Real t725 = t724 * c_r_a_2_;
+
+  // accelerations
+  const Real t726 = t723 + t725;
+  const Real t727 = t726 - t36;
+  const Real t728 = t727 * t2;
+  const Real t729 = -t728;
+
+  // peduncle: acceleration
+  const Real t730 = c_r_a_2_ * t721;
+  const Real t731 = t724 * s_r_a_2_;
+  const Real t732 = t731 - t730;
+
+  // fin: acceleration
+  const Real t733 = par.l3 - t732;
+
+  // fin_section_2: acceleration
+  const Real t734 = t47 + t733;
+  const Real t735 = t734 * t3;
+
+  // accelerations
+  const Real t736 = sum_error(t735, t729);
+  const Real t737 = t719 * c_r_a_2_;
+  const Real t738 = product_error(c_r_a_2_, t721);
+  const Real t739 = t737 + t738;
+
+  // peduncle: acceleration
+  const Real t740 = -t730;
+
+  // accelerations
+  const Real t741 = sum_error(t731, t740);
+  const Real t742 = t739 - t741;
+  const Real t743 = t730 - t731;
+  const Real t744 = sum_error(par.l3, t743);
+  const Real t745 = t742 + t744;
+  const Real t746 = sum_error(t47, t733);
+  const Real t747 = t746 + t745;
+  const Real t748 = t3 * t747;
+  const Real t749 = product_error(t734, t3);
+  const Real t750 = t748 + t749;
+  const Real t751 = t736 + t750;
   const Real t752 = par.k4 * t751;
-  const Real t753 = t752 * t2;
-  const Real t754 = t65 * t709;
-  const Real t755 = t65 * t711;
-  const Real t756 = t754 + t755;
-
-  // fin: wrench
-  const Real t757 = par.k6 * t651;
-  const Real t758 = t757 - t205;
-
-  // accelerations
+  const Real t753 = t735 - t728;
+  const Real t754 = product_error(par.k4, t753);
+  const Real t755 = t752 + t754;
+  const Real t756 = t755 * t2;
+  const Real t757 = par.k4 * t753;
+  const Real t758 = t757 * t2;
   const Real t759 = t756 + t758;
-  const Real t760 = t759 - t753;
-  const Real t761 = t737 - t760;
-
-  // peduncle: wrench
-  const Real t762 = par.k18 * t651;
-
-  // accelerations
-  const Real t763 = t761 - t762;
-  const Real t764 = t763 * s_r_a_2_;
-  const Real t765 = t752 * t3;
-  const Real t766 = par.k41 * t709;
-  const Real t767 = par.k41 * t711;
-  const Real t768 = t766 + t767;
+  const Real t760 = t44 * t759;
+  const Real t761 = t757 * t3;
+  const Real t762 = constant<Real>(0.710077701790478711739L) * t761;
+  const Real t763 = t762 + t760;
+  const Real t764 = par.k41 * t745;
 
   // fin: wrench
-  const Real t769 = par.k6 * t640;
+  const Real t765 = par.k41 * t733;
 
   // accelerations
-  const Real t770 = t643 * par.k6;
-  const Real t771 = t769 + t770;
-  const Real t772 = t771 + t177;
-  const Real t773 = t772 - t768;
-  const Real t774 = t773 + t765;
-  const Real t775 = t735 * t9;
-  const Real t776 = t775 + t774;
+  const Real t766 = t765 + t764;
+  const Real t767 = t80 * t726;
+  const Real t768 = t766 - t767;
+  const Real t769 = par.k47 + t768;
+  const Real t770 = t769 + t763;
+  const Real t771 = sum_error(t87, t733);
+  const Real t772 = t771 + t745;
+  const Real t773 = t772 * t9;
+
+  // fin_section_1: acceleration
+  const Real t774 = t87 + t733;
+  const Real t775 = t9 * t774;
+
+  // accelerations
+  const Real t776 = t773 + t775;
+  const Real t777 = t726 - t94;
+  const Real t778 = t777 * t8;
+  const Real t779 = t776 - t778;
+  const Real t780 = par.k4 * t779;
+  const Real t781 = t8 * t780;
+  const Real t782 = t781 * t85;
+  const Real t783 = t9 * t780;
+  const Real t784 = t783 * constant<Real>(0.0709020735931204697442L);
+  const Real t785 = t782 + t784;
+  const Real t786 = sum_error(t785, t770);
+  const Real t787 = sum_error(t763, t769);
+  const Real t788 = sum_error(t760, t762);
+  const Real t789 = t755 * t3;
+  const Real t790 = product_error(t757, t3);
+  const Real t791 = t789 + t790;
+  const Real t792 = constant<Real>(0.710077701790478711739L) * t791;
+  const Real t793 = product_error(constant<Real>(0.710077701790478711739L), t761);
+  const Real t794 = t793 + t792;
+  const Real t795 = t788 + t794;
+  const Real t796 = t787 + t795;
+  const Real t797 = t786 + t796;
+  const Real t798 = t797 * t144;
+  const Real t799 = t770 + t785;
+  const Real t800 = t155 * t799;
+  const Real t801 = t800 + t798;
+  const Real t802 = product_error(t144, t799);
+  const Real t803 = t801 + t802;
+  const Real t804 = constant<Real>(0.0709020735931204697442L) * t803;
+  const Real t805 = t144 * t799;
+  const Real t806 = constant<Real>(0.0709020735931204697442L) * t805;
+  const Real t807 = t804 + t806;
+  const Real t808 = -t807;
+  const Real t809 = sum_error(t774, t808);
+  const Real t810 = t772 + t809;
+  const Real t811 = t9 * t810;
+  const Real t812 = t774 - t807;
+  const Real t813 = product_error(t9, t812);
+  const Real t814 = t813 + t811;
+  const Real t815 = t85 * t803;
+  const Real t816 = t85 * t805;
+  const Real t817 = t815 + t816;
+  const Real t818 = t777 + t817;
+  const Real t819 = t818 * t8;
+  const Real t820 = -t819;
+  const Real t821 = t9 * t812;
+  const Real t822 = sum_error(t821, t820);
+  const Real t823 = t822 + t814;
+  const Real t824 = par.k4 * t823;
+  const Real t825 = t821 - t819;
+  const Real t826 = product_error(par.k4, t825);
+  const Real t827 = t824 + t826;
+  const Real t828 = t9 * t827;
+  const Real t829 = par.k4 * t825;
+  const Real t830 = product_error(t829, t9);
+  const Real t831 = t830 + t828;
+  const Real t832 = constant<Real>(0.710077701790478711739L) * t803;
+  const Real t833 = product_error(constant<Real>(0.710077701790478711739L), t805);
+  const Real t834 = t832 + t833;
+  const Real t835 = t747 - t834;
+  const Real t836 = constant<Real>(0.710077701790478711739L) * t805;
+  const Real t837 = t734 - t836;
+  const Real t838 = t837 + t835;
+  const Real t839 = t838 * t3;
+  const Real t840 = t44 * t803;
+  const Real t841 = t44 * t805;
+  const Real t842 = t841 + t840;
+  const Real t843 = t842 + t727;
+  const Real t844 = t843 * t2;
+  const Real t845 = t839 - t844;
+  const Real t846 = par.k4 * t845;
+  const Real t847 = t846 * t3;
+  const Real t848 = t803 * par.k41;
+  const Real t849 = t805 * par.k41;
+  const Real t850 = t848 + t849;
+  const Real t851 = par.k6 * t745;
+
+  // fin: wrench
+  const Real t852 = par.k6 * t733;
+
+  // accelerations
+  const Real t853 = t852 + t851;
+  const Real t854 = t853 + t212;
+  const Real t855 = t854 - t850;
+  const Real t856 = t847 + t855;
+  const Real t857 = t9 * t829;
+  const Real t858 = sum_error(t857, t856);
+  const Real t859 = t858 + t831;
+  const Real t860 = t741 - t739;
+  const Real t861 = par.k18 * t860;
 
   // peduncle: wrench
-  const Real t777 = par.k18 * t639;
-  const Real t778 = t777 - par.k37;
+  const Real t862 = par.k18 * t732;
+
+  // accelerations
+  const Real t863 = t861 + t862;
+  const Real t864 = t863 - par.k37;
+  const Real t865 = par.k31 * t860;
 
   // peduncle: wrench of the fluid
-  const Real t779 = par.k31 * t639;
-  const Real t780 = t779 - par.k29;
-  const Real t781 = t778 + t780;
+  const Real t866 = par.k31 * t732;
 
   // accelerations
-  const Real t782 = t781 - t776;
-  const Real t783 = t782 * c_r_a_2_;
-  const Real t784 = sum_error(t764, t783);
-  const Real t785 = t733 * t9;
-  const Real t786 = product_error(t735, t9);
-  const Real t787 = t786 + t785;
-  const Real t788 = sum_error(t775, t774);
-  const Real t789 = t787 + t788;
-  const Real t790 = -t776;
-  const Real t791 = sum_error(t781, t790);
-  const Real t792 = t791 - t789;
-  const Real t793 = t792 * c_r_a_2_;
-  const Real t794 = product_error(t782, c_r_a_2_);
-  const Real t795 = t793 + t794;
-  const Real t796 = t784 + t795;
-
-  // rear: wrench of the fluid
-  const Real t797 = t634 * par.k53;
-  const Real t798 = t797 + par.k43;
-
-  // rear: wrench
-  const Real t799 = par.k22 * t634;
-  const Real t800 = par.k30 + t799;
-
-  // accelerations
-  const Real t801 = sum_error(t798, t800);
-  const Real t802 = t796 - t801;
-  const Real t803 = t783 + t764;
-
-  // rear: wrench of the fluid
-  const Real t804 = t798 + t800;
-  const Real t805 = -t804;
-
-  // accelerations
-  const Real t806 = sum_error(t803, t805);
-  const Real t807 = t802 + t806;
-  const Real t808 = c_r_a_1_ * t807;
-  const Real t809 = t803 - t804;
-  const Real t810 = product_error(t809, c_r_a_1_);
-  const Real t811 = t810 + t808;
-  const Real t812 = t792 * s_r_a_2_;
-  const Real t813 = t782 * s_r_a_2_;
-  const Real t814 = t812 + t813;
-  const Real t815 = t763 * c_r_a_2_;
-  const Real t816 = t815 - t814;
-
-  // rear: wrench
-  const Real t817 = par.k22 * t637;
-
-  // accelerations
-  const Real t818 = t816 - t817;
-  const Real t819 = t818 * s_r_a_1_;
-  const Real t820 = t809 * c_r_a_1_;
-  const Real t821 = sum_error(t820, t819);
-  const Real t822 = t811 + t821;
-  const Real t823 = t822 * par.l1;
-  const Real t824 = t820 + t819;
-  const Real t825 = product_error(t824, par.l1);
-  const Real t826 = t823 + t825;
-  const Real t827 = t737 * t79;
-  const Real t828 = t775 * t72;
-  const Real t829 = sum_error(t828, t827);
-  const Real t830 = t787 * t72;
-  const Real t831 = product_error(t775, t72);
-  const Real t832 = t830 + t831;
-  const Real t833 = t829 + t832;
-  const Real t834 = t827 + t828;
-  const Real t835 = t753 * t41;
-  const Real t836 = t32 * t765;
-  const Real t837 = t835 + t836;
-  const Real t838 = par.k47 * t709;
-  const Real t839 = par.k47 * t711;
-  const Real t840 = t839 + t838;
-  const Real t841 = t643 * t177;
-
-  // fin: wrench
-  const Real t842 = t177 * t640;
-
-  // accelerations
-  const Real t843 = t841 + t842;
-
-  // fin: wrench
-  const Real t844 = t205 * t651;
-
-  // accelerations
-  const Real t845 = t843 - t844;
-  const Real t846 = t283 + t845;
-  const Real t847 = t846 - t840;
-  const Real t848 = t847 + t837;
-  const Real t849 = t834 + t848;
-  const Real t850 = t833 + t849;
-  const Real t851 = par.l3 * t776;
-  const Real t852 = sum_error(t850, t851);
-  const Real t853 = t789 * par.l3;
-  const Real t854 = product_error(t776, par.l3);
-  const Real t855 = t854 + t853;
-  const Real t856 = t852 + t855;
-  const Real t857 = t851 + t850;
-
-  // peduncle: wrench
-  const Real t858 = par.k37 * t639;
-  const Real t859 = par.k19 - t858;
-
-  // peduncle: wrench of the fluid
-  const Real t860 = par.k29 * t639;
-  const Real t861 = par.k45 - t860;
-  const Real t862 = t859 + t861;
-
-  // accelerations
-  const Real t863 = sum_error(t862, t857);
-  const Real t864 = t856 + t863;
-  const Real t865 = par.l2 * t796;
-  const Real t866 = product_error(par.l2, t803);
   const Real t867 = t865 + t866;
-  const Real t868 = t864 - t867;
-  const Real t869 = t862 + t857;
-  const Real t870 = par.l2 * t803;
-  const Real t871 = -t870;
-  const Real t872 = sum_error(t869, t871);
-  const Real t873 = t868 + t872;
+  const Real t868 = t867 - par.k29;
+  const Real t869 = sum_error(t864, t868);
+  const Real t870 = t869 - t859;
+  const Real t871 = t857 + t856;
+  const Real t872 = -t871;
+  const Real t873 = t864 + t868;
+  const Real t874 = sum_error(t873, t872);
+  const Real t875 = t874 + t870;
+  const Real t876 = t875 * c_r_a_2_;
+  const Real t877 = t873 - t871;
+  const Real t878 = product_error(t877, c_r_a_2_);
+  const Real t879 = t876 + t878;
+  const Real t880 = t827 * t8;
+  const Real t881 = t829 * t8;
+  const Real t882 = t880 + t881;
+  const Real t883 = t846 * t2;
+  const Real t884 = t80 * t803;
+  const Real t885 = t80 * t805;
+  const Real t886 = t885 + t884;
+  const Real t887 = par.k6 * t726;
+  const Real t888 = t887 - t244;
+  const Real t889 = t888 + t886;
+  const Real t890 = t889 - t883;
+  const Real t891 = t882 - t890;
+  const Real t892 = par.k18 * t726;
+  const Real t893 = t891 - t892;
+  const Real t894 = t893 * s_r_a_2_;
+  const Real t895 = t877 * c_r_a_2_;
+  const Real t896 = sum_error(t894, t895);
+  const Real t897 = t896 + t879;
+  const Real t898 = t718 * par.k53;
 
   // rear: wrench of the fluid
-  const Real t874 = t634 * par.k43;
-  const Real t875 = par.k36 + t874;
+  const Real t899 = t716 * par.k53;
+
+  // accelerations
+  const Real t900 = t898 + t899;
+  const Real t901 = par.k43 + t900;
+  const Real t902 = par.k22 * t718;
 
   // rear: wrench
-  const Real t876 = par.k30 * t634;
-  const Real t877 = par.k23 + t876;
+  const Real t903 = par.k22 * t716;
 
   // accelerations
-  const Real t878 = sum_error(t875, t877);
-  const Real t879 = sum_error(par.k36, t874);
-  const Real t880 = t879 + t878;
-  const Real t881 = t873 + t880;
-  const Real t882 = t869 - t870;
+  const Real t904 = t902 + t903;
+  const Real t905 = par.k30 + t904;
+  const Real t906 = sum_error(t901, t905);
+  const Real t907 = t897 - t906;
+  const Real t908 = t895 + t894;
+  const Real t909 = t905 + t901;
+  const Real t910 = -t909;
+  const Real t911 = sum_error(t908, t910);
+  const Real t912 = t907 + t911;
+  const Real t913 = c_r_a_1_ * t912;
+  const Real t914 = t908 - t909;
+  const Real t915 = product_error(t914, c_r_a_1_);
+  const Real t916 = t915 + t913;
+  const Real t917 = t875 * s_r_a_2_;
+  const Real t918 = t877 * s_r_a_2_;
+  const Real t919 = t918 + t917;
+  const Real t920 = t893 * c_r_a_2_;
+  const Real t921 = t920 - t919;
+
+  // rear: wrench
+  const Real t922 = par.k22 * t724;
+
+  // accelerations
+  const Real t923 = t921 - t922;
+  const Real t924 = t923 * s_r_a_1_;
+  const Real t925 = c_r_a_1_ * t914;
+  const Real t926 = sum_error(t925, t924);
+  const Real t927 = t926 + t916;
+  const Real t928 = par.l1 * t927;
+  const Real t929 = t924 + t925;
+  const Real t930 = product_error(t929, par.l1);
+  const Real t931 = t928 + t930;
+  const Real t932 = par.l2 * t897;
+  const Real t933 = product_error(par.l2, t908);
+  const Real t934 = t933 + t932;
+  const Real t935 = t882 * t94;
+  const Real t936 = t857 * t87;
+  const Real t937 = sum_error(t936, t935);
+  const Real t938 = t831 * t87;
+  const Real t939 = product_error(t857, t87);
+  const Real t940 = t938 + t939;
+  const Real t941 = t937 + t940;
+  const Real t942 = t936 + t935;
+  const Real t943 = t36 * t883;
+  const Real t944 = t847 * t47;
+  const Real t945 = t943 + t944;
+  const Real t946 = t803 * par.k47;
+  const Real t947 = t805 * par.k47;
+  const Real t948 = t946 + t947;
+  const Real t949 = t212 * t745;
+
+  // fin: wrench
+  const Real t950 = t212 * t733;
+
+  // accelerations
+  const Real t951 = t950 + t949;
+  const Real t952 = t244 * t726;
+  const Real t953 = t951 - t952;
+  const Real t954 = t329 + t953;
+  const Real t955 = t954 - t948;
+  const Real t956 = t955 + t945;
+  const Real t957 = t942 + t956;
+  const Real t958 = t941 + t957;
+  const Real t959 = t871 * par.l3;
+  const Real t960 = t959 + t958;
+  const Real t961 = par.k37 * t860;
+
+  // peduncle: wrench
+  const Real t962 = par.k37 * t732;
+
+  // accelerations
+  const Real t963 = t961 + t962;
+  const Real t964 = par.k19 - t963;
+  const Real t965 = par.k29 * t860;
+
+  // peduncle: wrench of the fluid
+  const Real t966 = par.k29 * t732;
+
+  // accelerations
+  const Real t967 = t965 + t966;
+  const Real t968 = par.k45 - t967;
+  const Real t969 = t964 + t968;
+  const Real t970 = sum_error(t969, t960);
+  const Real t971 = sum_error(t958, t959);
+  const Real t972 = t859 * par.l3;
+  const Real t973 = product_error(t871, par.l3);
+  const Real t974 = t973 + t972;
+  const Real t975 = t974 + t971;
+  const Real t976 = t970 + t975;
+  const Real t977 = t976 - t934;
+  const Real t978 = t960 + t969;
+  const Real t979 = par.l2 * t908;
+  const Real t980 = -t979;
+  const Real t981 = sum_error(t978, t980);
+  const Real t982 = t977 + t981;
 
   // rear: wrench of the fluid
-  const Real t883 = t875 + t877;
+  const Real t983 = t716 * par.k43;
 
   // accelerations
-  const Real t884 = sum_error(t882, t883);
-  const Real t885 = t881 + t884;
-  const Real t886 = t885 - t826;
-  const Real t887 = t824 * par.l1;
-  const Real t888 = -t887;
-  const Real t889 = t882 + t883;
-  const Real t890 = sum_error(t889, t888);
-  const Real t891 = t890 + t886;
-  const Real t892 = t889 - t887;
-  const Real t893 = sum_error(t892, par.k57);
-  const Real t894 = t893 + t891;
+  const Real t984 = t718 * par.k43;
+  const Real t985 = t983 + t984;
+  const Real t986 = par.k36 + t985;
 
-  // trunk: joint force
-  const Real t895 = t481 * t475;
+  // rear: wrench
+  const Real t987 = par.k30 * t716;
 
   // accelerations
-  const Real t896 = product_error(t475, t895);
-  const Real t897 = t894 - t896;
-  const Real t898 = t892 + par.k57;
-
-  // trunk: joint force
-  const Real t899 = t475 * t895;
-
-  // accelerations
-  const Real t900 = -t899;
-  const Real t901 = sum_error(t898, t900);
-  const Real t902 = t901 + t897;
-
-  // trunk: joint force
-  const Real t903 = t571 * t615;
-
-  // accelerations
-  const Real t904 = product_error(t903, t615);
-  const Real t905 = t902 - t904;
-  const Real t906 = t898 - t899;
-
-  // trunk: joint force
-  const Real t907 = t903 * t615;
-
-  // accelerations
-  const Real t908 = -t907;
-  const Real t909 = sum_error(t906, t908);
-  const Real t910 = t905 + t909;
-  const Real t911 = t910 - t633;
-  const Real t912 = t617 * t630;
-  const Real t913 = t906 - t907;
-  const Real t914 = t913 - t912;
-  const Real t915 = t914 + t911;
-  const Real t916 = constant<Real>(1.0L) / t915;
-
-  // trunk: joint force
-  const Real t917 = t470 * t482;
-
-  // accelerations
-  const Real t918 = t303 - t917;
-
-  // trunk: joint force
-  const Real t919 = t470 * t488;
-  const Real t920 = t599 - t919;
-  const Real t921 = t920 * t607;
-
-  // accelerations
-  const Real t922 = t918 - t921;
-  const Real t923 = t922 * t630;
-  const Real t924 = -t923;
-
-  // trunk: joint force
-  const Real t925 = t470 * t895;
-
-  // accelerations
-  const Real t926 = t889 - t925;
-
-  // trunk: joint force
-  const Real t927 = t903 * t920;
-
-  // accelerations
-  const Real t928 = t926 - t927;
-  const Real t929 = sum_error(t928, t924);
-  const Real t930 = product_error(t470, t482);
-  const Real t931 = t332 - t930;
-  const Real t932 = -t917;
-  const Real t933 = sum_error(t303, t932);
-  const Real t934 = t933 + t931;
-  const Real t935 = product_error(t920, t607);
-  const Real t936 = t934 - t935;
-  const Real t937 = -t921;
-  const Real t938 = sum_error(t918, t937);
-  const Real t939 = t938 + t936;
-  const Real t940 = t939 * t630;
-  const Real t941 = product_error(t922, t630);
-  const Real t942 = t940 + t941;
-  const Real t943 = product_error(t470, t895);
-  const Real t944 = t885 - t943;
-  const Real t945 = -t925;
-  const Real t946 = sum_error(t889, t945);
-  const Real t947 = t946 + t944;
-  const Real t948 = product_error(t903, t920);
-  const Real t949 = t947 - t948;
-  const Real t950 = -t927;
-  const Real t951 = sum_error(t926, t950);
-  const Real t952 = t949 + t951;
-  const Real t953 = t952 - t942;
-  const Real t954 = t929 + t953;
-  const Real t955 = t916 * t954;
-  const Real t956 = t928 - t923;
-  const Real t957 = product_error(t916, t956);
-  const Real t958 = t955 + t957;
-  const Real t959 = t958 * t956;
-  const Real t960 = t916 * t956;
-  const Real t961 = t960 * t954;
-  const Real t962 = t959 + t961;
-  const Real t963 = t960 * t956;
-  const Real t964 = t963 + t962;
-  const Real t965 = t922 * t611;
-  const Real t966 = t939 * t611;
-  const Real t967 = t965 + t966;
-  const Real t968 = t967 * t922;
+  const Real t988 = t718 * par.k30;
+  const Real t989 = t987 + t988;
+  const Real t990 = par.k23 + t989;
+  const Real t991 = sum_error(t986, t990);
+  const Real t992 = sum_error(par.k36, t985);
+  const Real t993 = t991 + t992;
+  const Real t994 = t993 + t982;
+  const Real t995 = t978 - t979;
+  const Real t996 = t990 + t986;
+  const Real t997 = sum_error(t995, t996);
+  const Real t998 = t997 + t994;
+  const Real t999 = t998 - t931;
+  const Real t1000 = par.l1 * t929;
+  const Real t1001 = -t1000;
+  const Real t1002 = t996 + t995;
+  const Real t1003 = sum_error(t1002, t1001);
+  const Real t1004 = t999 + t1003;
+  const Real t1005 = t1002 - t1000;
+  const Real t1006 = sum_error(t1005, par.k57);
+  const Real t1007 = t1004 + t1006;
+  const Real t1008 = t532 * t538;
+  const Real t1009 = product_error(t532, t1008);
+  const Real t1010 = t1007 - t1009;
+  const Real t1011 = par.k57 + t1005;
+  const Real t1012 = t532 * t1008;
+  const Real t1013 = -t1012;
+  const Real t1014 = sum_error(t1011, t1013);
+  const Real t1015 = t1010 + t1014;
+  const Real t1016 = t632 * t688;
+  const Real t1017 = product_error(t1016, t688);
+  const Real t1018 = t1015 - t1017;
+  const Real t1019 = t1011 - t1012;
+  const Real t1020 = t1016 * t688;
+  const Real t1021 = -t1020;
+  const Real t1022 = sum_error(t1019, t1021);
+  const Real t1023 = t1022 + t1018;
+  const Real t1024 = t1023 - t715;
+  const Real t1025 = t711 * t690;
+  const Real t1026 = t1019 - t1020;
+  const Real t1027 = t1026 - t1025;
+  const Real t1028 = t1024 + t1027;
+  const Real t1029 = constant<Real>(1.0L) / t1028;
+  const Real t1030 = t527 * t541;
+  const Real t1031 = t358 - t1030;
+  const Real t1032 = t527 * t547;
+  const Real t1033 = t660 - t1032;
+  const Real t1034 = t668 * t1033;
+  const Real t1035 = t1031 - t1034;
+  const Real t1036 = t711 * t1035;
+  const Real t1037 = t527 * t1008;
+  const Real t1038 = t1002 - t1037;
+  const Real t1039 = t1016 * t1033;
+  const Real t1040 = t1038 - t1039;
+  const Real t1041 = t1040 - t1036;
+  const Real t1042 = product_error(t1029, t1041);
+  const Real t1043 = t709 * t1035;
+  const Real t1044 = t527 * t539;
+  const Real t1045 = product_error(t527, t541);
+  const Real t1046 = t1044 + t1045;
+  const Real t1047 = t387 - t1046;
+  const Real t1048 = -t1030;
+  const Real t1049 = sum_error(t358, t1048);
+  const Real t1050 = t1049 + t1047;
+  const Real t1051 = product_error(t1033, t668);
+  const Real t1052 = t1033 * t670;
+  const Real t1053 = t1051 + t1052;
+  const Real t1054 = t1050 - t1053;
+  const Real t1055 = -t1034;
+  const Real t1056 = sum_error(t1031, t1055);
+  const Real t1057 = t1054 + t1056;
+  const Real t1058 = t1057 * t711;
+  const Real t1059 = t1058 + t1043;
+  const Real t1060 = product_error(t1035, t711);
+  const Real t1061 = t1059 + t1060;
+  const Real t1062 = product_error(t527, t1008);
+  const Real t1063 = t998 - t1062;
+  const Real t1064 = -t1037;
+  const Real t1065 = sum_error(t1002, t1064);
+  const Real t1066 = t1063 + t1065;
+  const Real t1067 = product_error(t1016, t1033);
+  const Real t1068 = t1066 - t1067;
+  const Real t1069 = -t1039;
+  const Real t1070 = sum_error(t1038, t1069);
+  const Real t1071 = t1068 + t1070;
+  const Real t1072 = t1071 - t1061;
+  const Real t1073 = -t1036;
+  const Real t1074 = sum_error(t1040, t1073);
+  const Real t1075 = t1074 + t1072;
+  const Real t1076 = t1075 * t1029;
+  const Real t1077 = t1042 + t1076;
+  const Real t1078 = t1041 * t1077;
+  const Real t1079 = t1041 * t1029;
+  const Real t1080 = t1075 * t1079;
+  const Real t1081 = t1080 + t1078;
+  const Real t1082 = product_error(t1079, t1041);
+  const Real t1083 = t1081 + t1082;
+  const Real t1084 = t684 * t1035;
+  const Real t1085 = t680 * t1057;
+  const Real t1086 = t1084 + t1085;
+  const Real t1087 = t680 * t1035;
+  const Real t1088 = t1087 + t1086;
+  const Real t1089 = t1035 * t1088;
+  const Real t1090 = -t1089;
+  const Real t1091 = t632 * t1033;
+  const Real t1092 = t1091 * t1033;
 
   // peduncle: acceleration
-  const Real t969 = par.l2 * c_r_a_2_;
+  const Real t1093 = par.l2 * c_r_a_2_;
 
   // fin: acceleration
-  const Real t970 = t969 + par.l3;
+  const Real t1094 = t1093 + par.l3;
 
   // fin_section_2: acceleration
-  const Real t971 = t970 + t32;
-  const Real t972 = t971 * t3;
+  const Real t1095 = t1094 + t47;
+
+  // accelerations
+  const Real t1096 = sum_error(t1093, par.l3);
+  const Real t1097 = product_error(par.l2, c_r_a_2_);
+  const Real t1098 = t1097 + t1096;
+  const Real t1099 = t1095 + t1098;
+  const Real t1100 = t1099 * t3;
 
   // peduncle: acceleration
-  const Real t973 = par.l2 * s_r_a_2_;
+  const Real t1101 = par.l2 * s_r_a_2_;
 
   // fin_section_2: acceleration
-  const Real t974 = t973 - t41;
-  const Real t975 = t974 * t2;
+  const Real t1102 = t1101 - t36;
+  const Real t1103 = t1102 * t2;
 
   // accelerations
-  const Real t976 = -t975;
-  const Real t977 = sum_error(t972, t976);
-  const Real t978 = product_error(t971, t3);
-  const Real t979 = t978 + t977;
-  const Real t980 = par.k4 * t979;
-
-  // fin_section_2: acceleration
-  const Real t981 = t972 - t975;
-
-  // accelerations
-  const Real t982 = product_error(par.k4, t981);
-  const Real t983 = t982 + t980;
-  const Real t984 = t983 * t3;
-
-  // fin_section_2: wrench of the fluid
-  const Real t985 = par.k4 * t981;
-
-  // accelerations
-  const Real t986 = product_error(t3, t985);
-  const Real t987 = t984 + t986;
-  const Real t988 = constant<Real>(0.710077701790478711739L) * t987;
-
-  // fin_section_2: joint force
-  const Real t989 = t3 * t985;
-
-  // accelerations
-  const Real t990 = product_error(constant<Real>(0.710077701790478711739L), t989);
-  const Real t991 = t990 + t988;
-  const Real t992 = t983 * t2;
-
-  // fin_section_2: joint force
-  const Real t993 = t985 * t2;
-
-  // accelerations
-  const Real t994 = t993 + t992;
-  const Real t995 = t29 * t994;
-
-  // fin_section_2: joint force
-  const Real t996 = constant<Real>(0.710077701790478711739L) * t989;
-
-  // accelerations
-  const Real t997 = sum_error(t996, t995);
-  const Real t998 = t991 + t997;
-  const Real t999 = t996 + t995;
+  const Real t1104 = -t1103;
+  const Real t1105 = sum_error(t1100, t1104);
+  const Real t1106 = product_error(t1099, t3);
+  const Real t1107 = t1106 + t1105;
+  const Real t1108 = par.k4 * t1107;
+  const Real t1109 = t1100 - t1103;
+  const Real t1110 = product_error(par.k4, t1109);
+  const Real t1111 = t1110 + t1108;
+  const Real t1112 = t1111 * t2;
+  const Real t1113 = par.k4 * t1109;
+  const Real t1114 = t1113 * t2;
+  const Real t1115 = t1114 + t1112;
+  const Real t1116 = t44 * t1115;
+  const Real t1117 = t1113 * t3;
+  const Real t1118 = constant<Real>(0.710077701790478711739L) * t1117;
+  const Real t1119 = t1118 + t1116;
+  const Real t1120 = t1098 * par.k41;
 
   // fin: wrench
-  const Real t1000 = t970 * par.k41;
-  const Real t1001 = t65 * t973;
-  const Real t1002 = t1000 - t1001;
-  const Real t1003 = t1002 + par.k47;
+  const Real t1121 = t1094 * par.k41;
 
   // accelerations
-  const Real t1004 = sum_error(t999, t1003);
-  const Real t1005 = t998 + t1004;
-  const Real t1006 = t1003 + t999;
-  const Real t1007 = sum_error(t970, t72);
-  const Real t1008 = t9 * t1007;
+  const Real t1122 = t1121 + t1120;
+
+  // fin: wrench
+  const Real t1123 = t80 * t1101;
+
+  // accelerations
+  const Real t1124 = t1122 - t1123;
+  const Real t1125 = t1124 + par.k47;
+  const Real t1126 = t1125 + t1119;
+  const Real t1127 = sum_error(t1094, t87);
+  const Real t1128 = t1098 + t1127;
+  const Real t1129 = t1128 * t9;
 
   // fin_section_1: acceleration
-  const Real t1009 = t970 + t72;
-  const Real t1010 = t9 * t1009;
+  const Real t1130 = t1094 + t87;
+  const Real t1131 = t9 * t1130;
 
   // accelerations
-  const Real t1011 = t1008 + t1010;
+  const Real t1132 = t1129 + t1131;
 
   // fin_section_1: acceleration
-  const Real t1012 = t973 - t79;
-  const Real t1013 = t8 * t1012;
+  const Real t1133 = t1101 - t94;
+  const Real t1134 = t8 * t1133;
 
   // accelerations
-  const Real t1014 = t1011 - t1013;
-  const Real t1015 = par.k4 * t1014;
-  const Real t1016 = t1015 * t8;
-  const Real t1017 = t70 * t1016;
-  const Real t1018 = t1015 * t9;
-  const Real t1019 = constant<Real>(0.0709020735931204697442L) * t1018;
-  const Real t1020 = t1017 + t1019;
-  const Real t1021 = sum_error(t1006, t1020);
-  const Real t1022 = t1005 + t1021;
-  const Real t1023 = t121 * t1022;
-  const Real t1024 = t1006 + t1020;
-  const Real t1025 = product_error(t121, t1024);
-  const Real t1026 = t1025 + t1023;
-  const Real t1027 = constant<Real>(0.0709020735931204697442L) * t1026;
-  const Real t1028 = t1024 * t121;
-  const Real t1029 = constant<Real>(0.0709020735931204697442L) * t1028;
-  const Real t1030 = t1029 + t1027;
-  const Real t1031 = -t1030;
-  const Real t1032 = sum_error(t1009, t1031);
-  const Real t1033 = t1032 + t1007;
-  const Real t1034 = t9 * t1033;
-  const Real t1035 = t1009 - t1030;
-  const Real t1036 = product_error(t1035, t9);
-  const Real t1037 = t1034 + t1036;
-  const Real t1038 = t70 * t1026;
-  const Real t1039 = t70 * t1028;
-  const Real t1040 = t1038 + t1039;
-  const Real t1041 = t1040 + t1012;
-  const Real t1042 = t8 * t1041;
-  const Real t1043 = -t1042;
-  const Real t1044 = t9 * t1035;
-  const Real t1045 = sum_error(t1044, t1043);
-  const Real t1046 = t1037 + t1045;
-  const Real t1047 = par.k4 * t1046;
-  const Real t1048 = t1044 - t1042;
-  const Real t1049 = product_error(par.k4, t1048);
-  const Real t1050 = t1047 + t1049;
-  const Real t1051 = t1050 * t9;
-  const Real t1052 = par.k4 * t1048;
-  const Real t1053 = product_error(t1052, t9);
-  const Real t1054 = t1053 + t1051;
-  const Real t1055 = t1054 * t72;
-  const Real t1056 = t1052 * t9;
-  const Real t1057 = t72 * t1056;
-  const Real t1058 = t1055 + t1057;
-  const Real t1059 = t1050 * t8;
-  const Real t1060 = t1052 * t8;
-  const Real t1061 = t1060 + t1059;
-  const Real t1062 = t1061 * t79;
-  const Real t1063 = t1058 + t1062;
-  const Real t1064 = constant<Real>(0.710077701790478711739L) * t1026;
-  const Real t1065 = product_error(t1028, constant<Real>(0.710077701790478711739L));
-  const Real t1066 = t1065 + t1064;
-  const Real t1067 = constant<Real>(0.710077701790478711739L) * t1028;
-  const Real t1068 = t971 - t1067;
-  const Real t1069 = t1068 - t1066;
-  const Real t1070 = t1069 * t3;
-  const Real t1071 = t29 * t1026;
-  const Real t1072 = t29 * t1028;
-  const Real t1073 = t1072 + t1071;
-  const Real t1074 = t974 + t1073;
-  const Real t1075 = t1074 * t2;
-  const Real t1076 = t1070 - t1075;
-  const Real t1077 = par.k4 * t1076;
-  const Real t1078 = t1077 * t2;
-  const Real t1079 = t41 * t1078;
-  const Real t1080 = t1077 * t3;
-  const Real t1081 = t32 * t1080;
-  const Real t1082 = t1079 + t1081;
-  const Real t1083 = t1026 * par.k47;
-  const Real t1084 = par.k47 * t1028;
-  const Real t1085 = t1083 + t1084;
-
-  // fin: wrench
-  const Real t1086 = t970 * t177;
-  const Real t1087 = t205 * t973;
-  const Real t1088 = t1086 - t1087;
-  const Real t1089 = t283 + t1088;
-
-  // accelerations
-  const Real t1090 = t1089 - t1085;
-  const Real t1091 = t1090 + t1082;
-  const Real t1092 = t1091 + t1063;
-  const Real t1093 = t1026 * par.k41;
-  const Real t1094 = par.k41 * t1028;
-  const Real t1095 = t1094 + t1093;
-
-  // fin: wrench
-  const Real t1096 = t970 * par.k6;
-  const Real t1097 = t1096 + t177;
-
-  // accelerations
-  const Real t1098 = t1097 - t1095;
-  const Real t1099 = t1080 + t1098;
-  const Real t1100 = t1099 + t1056;
-  const Real t1101 = t1100 * par.l3;
-  const Real t1102 = t1101 + t1092;
-
-  // peduncle: wrench
-  const Real t1103 = t969 * par.k37;
-  const Real t1104 = par.k19 + t1103;
-
-  // peduncle: wrench of the fluid
-  const Real t1105 = t969 * par.k29;
-  const Real t1106 = t1105 + par.k45;
-  const Real t1107 = t1104 + t1106;
-
-  // accelerations
-  const Real t1108 = t1102 + t1107;
-  const Real t1109 = t65 * t1026;
-  const Real t1110 = t65 * t1028;
-  const Real t1111 = t1110 + t1109;
-
-  // fin: wrench
-  const Real t1112 = t973 * par.k6;
-  const Real t1113 = t1112 - t205;
-
-  // accelerations
-  const Real t1114 = t1111 + t1113;
-  const Real t1115 = t1114 - t1078;
-  const Real t1116 = t1061 - t1115;
-
-  // peduncle: wrench
-  const Real t1117 = par.k18 * t973;
-
-  // accelerations
-  const Real t1118 = t1116 - t1117;
-  const Real t1119 = t1118 * s_r_a_2_;
-
-  // peduncle: wrench
-  const Real t1120 = par.k18 * t969;
-  const Real t1121 = t1120 + par.k37;
-
-  // peduncle: wrench of the fluid
-  const Real t1122 = t969 * par.k31;
-  const Real t1123 = par.k29 + t1122;
-  const Real t1124 = t1121 + t1123;
-
-  // accelerations
-  const Real t1125 = t1100 + t1124;
-  const Real t1126 = c_r_a_2_ * t1125;
-  const Real t1127 = t1119 - t1126;
-  const Real t1128 = par.l2 * t1127;
-  const Real t1129 = t1108 - t1128;
-  const Real t1130 = par.k58 + t1129;
-
-  // trunk: joint force
-  const Real t1131 = t470 * t481;
-  const Real t1132 = t470 * t1131;
-
-  // accelerations
-  const Real t1133 = t1130 - t1132;
-
-  // trunk: joint force
-  const Real t1134 = t571 * t920;
-  const Real t1135 = t920 * t1134;
-
-  // accelerations
-  const Real t1136 = t1133 - t1135;
-  const Real t1137 = t1136 - t968;
-  const Real t1138 = t1137 - t964;
-  const Real t1139 = product_error(t967, t922);
-  const Real t1140 = t939 * t967;
-  const Real t1141 = t1139 + t1140;
-  const Real t1142 = sum_error(t1092, t1101);
-  const Real t1143 = sum_error(t1056, t1099);
-  const Real t1144 = t1143 + t1054;
-  const Real t1145 = t1144 * par.l3;
-  const Real t1146 = product_error(t1100, par.l3);
-  const Real t1147 = t1145 + t1146;
-  const Real t1148 = t1147 + t1142;
-  const Real t1149 = sum_error(t1102, t1107);
+  const Real t1135 = t1132 - t1134;
+  const Real t1136 = par.k4 * t1135;
+  const Real t1137 = t1136 * t8;
+  const Real t1138 = t85 * t1137;
+  const Real t1139 = t9 * t1136;
+  const Real t1140 = constant<Real>(0.0709020735931204697442L) * t1139;
+  const Real t1141 = t1138 + t1140;
+  const Real t1142 = sum_error(t1126, t1141);
+  const Real t1143 = t1111 * t3;
+  const Real t1144 = product_error(t3, t1113);
+  const Real t1145 = t1143 + t1144;
+  const Real t1146 = constant<Real>(0.710077701790478711739L) * t1145;
+  const Real t1147 = product_error(constant<Real>(0.710077701790478711739L), t1117);
+  const Real t1148 = t1147 + t1146;
+  const Real t1149 = sum_error(t1118, t1116);
   const Real t1150 = t1148 + t1149;
-  const Real t1151 = -t1126;
-  const Real t1152 = sum_error(t1119, t1151);
-  const Real t1153 = sum_error(t1124, t1100);
-  const Real t1154 = t1144 + t1153;
-  const Real t1155 = t1154 * c_r_a_2_;
-  const Real t1156 = product_error(t1125, c_r_a_2_);
-  const Real t1157 = t1156 + t1155;
-  const Real t1158 = t1152 - t1157;
-  const Real t1159 = par.l2 * t1158;
-  const Real t1160 = product_error(par.l2, t1127);
-  const Real t1161 = t1159 + t1160;
-  const Real t1162 = t1150 - t1161;
-  const Real t1163 = -t1128;
-  const Real t1164 = sum_error(t1108, t1163);
-  const Real t1165 = t1164 + t1162;
-  const Real t1166 = sum_error(t1129, par.k58);
-  const Real t1167 = t1166 + t1165;
-  const Real t1168 = product_error(t470, t1131);
-  const Real t1169 = t1167 - t1168;
-  const Real t1170 = -t1132;
-  const Real t1171 = sum_error(t1130, t1170);
-  const Real t1172 = t1169 + t1171;
-  const Real t1173 = product_error(t920, t1134);
-  const Real t1174 = t1172 - t1173;
-  const Real t1175 = -t1135;
-  const Real t1176 = sum_error(t1133, t1175);
-  const Real t1177 = t1176 + t1174;
-  const Real t1178 = t1177 - t1141;
-  const Real t1179 = -t968;
-  const Real t1180 = sum_error(t1136, t1179);
-  const Real t1181 = t1178 + t1180;
-  const Real t1182 = t1138 + t1181;
-  const Real t1183 = constant<Real>(1.0L) / t1182;
+  const Real t1151 = sum_error(t1119, t1125);
+  const Real t1152 = t1150 + t1151;
+  const Real t1153 = t1142 + t1152;
+  const Real t1154 = t1153 * t144;
+  const Real t1155 = t1141 + t1126;
+  const Real t1156 = t155 * t1155;
+  const Real t1157 = t1154 + t1156;
+  const Real t1158 = product_error(t144, t1155);
+  const Real t1159 = t1158 + t1157;
+  const Real t1160 = constant<Real>(0.0709020735931204697442L) * t1159;
+  const Real t1161 = t144 * t1155;
+  const Real t1162 = t1161 * constant<Real>(0.0709020735931204697442L);
+  const Real t1163 = t1162 + t1160;
+  const Real t1164 = -t1163;
+  const Real t1165 = sum_error(t1130, t1164);
+  const Real t1166 = t1128 + t1165;
+  const Real t1167 = t9 * t1166;
+  const Real t1168 = t1130 - t1163;
+  const Real t1169 = product_error(t1168, t9);
+  const Real t1170 = t1167 + t1169;
+  const Real t1171 = t85 * t1159;
+  const Real t1172 = t1161 * t85;
+  const Real t1173 = t1171 + t1172;
+  const Real t1174 = t1133 + t1173;
+  const Real t1175 = t1174 * t8;
+  const Real t1176 = -t1175;
+  const Real t1177 = t9 * t1168;
+  const Real t1178 = sum_error(t1177, t1176);
+  const Real t1179 = t1170 + t1178;
+  const Real t1180 = par.k4 * t1179;
+  const Real t1181 = t1177 - t1175;
+  const Real t1182 = product_error(par.k4, t1181);
+  const Real t1183 = t1182 + t1180;
+  const Real t1184 = t1183 * t9;
+  const Real t1185 = par.k4 * t1181;
+  const Real t1186 = product_error(t1185, t9);
+  const Real t1187 = t1184 + t1186;
+  const Real t1188 = t1187 * t87;
+  const Real t1189 = t1185 * t9;
+  const Real t1190 = t1189 * t87;
+  const Real t1191 = t1188 + t1190;
+  const Real t1192 = t1183 * t8;
+  const Real t1193 = t1185 * t8;
+  const Real t1194 = t1193 + t1192;
+  const Real t1195 = t1194 * t94;
+  const Real t1196 = t1195 + t1191;
+  const Real t1197 = constant<Real>(0.710077701790478711739L) * t1159;
+  const Real t1198 = product_error(t1161, constant<Real>(0.710077701790478711739L));
+  const Real t1199 = t1198 + t1197;
+  const Real t1200 = constant<Real>(0.710077701790478711739L) * t1161;
+  const Real t1201 = t1099 - t1200;
+  const Real t1202 = t1201 - t1199;
+  const Real t1203 = t1202 * t3;
+  const Real t1204 = t44 * t1159;
+  const Real t1205 = t44 * t1161;
+  const Real t1206 = t1205 + t1204;
+  const Real t1207 = t1102 + t1206;
+  const Real t1208 = t1207 * t2;
+  const Real t1209 = t1203 - t1208;
+  const Real t1210 = par.k4 * t1209;
+  const Real t1211 = t1210 * t3;
+  const Real t1212 = t47 * t1211;
+  const Real t1213 = t1210 * t2;
+  const Real t1214 = t1213 * t36;
+  const Real t1215 = t1212 + t1214;
+  const Real t1216 = t1159 * par.k47;
+  const Real t1217 = t1161 * par.k47;
+  const Real t1218 = t1216 + t1217;
 
-  // trunk: joint force
-  const Real t1184 = t482 * t464;
-
-  // accelerations
-  const Real t1185 = t295 - t1184;
-
-  // trunk: joint force
-  const Real t1186 = t488 * t464;
-  const Real t1187 = t593 - t1186;
-  const Real t1188 = t1187 * t607;
-
-  // accelerations
-  const Real t1189 = t1185 - t1188;
-  const Real t1190 = t1189 * t630;
-
-  // trunk: joint force
-  const Real t1191 = t464 * t895;
-
-  // accelerations
-  const Real t1192 = t869 - t1191;
-
-  // trunk: joint force
-  const Real t1193 = t1187 * t903;
-
-  // accelerations
-  const Real t1194 = t1192 - t1193;
-  const Real t1195 = t1194 - t1190;
-  const Real t1196 = t1195 * t958;
-  const Real t1197 = -t1190;
-  const Real t1198 = sum_error(t1194, t1197);
-  const Real t1199 = product_error(t1189, t630);
-  const Real t1200 = product_error(t482, t464);
-  const Real t1201 = t321 - t1200;
-  const Real t1202 = -t1184;
-  const Real t1203 = sum_error(t295, t1202);
-  const Real t1204 = t1201 + t1203;
-  const Real t1205 = product_error(t1187, t607);
-  const Real t1206 = t1204 - t1205;
-  const Real t1207 = -t1188;
-  const Real t1208 = sum_error(t1185, t1207);
-  const Real t1209 = t1206 + t1208;
-  const Real t1210 = t1209 * t630;
-  const Real t1211 = t1199 + t1210;
-  const Real t1212 = product_error(t464, t895);
-  const Real t1213 = t864 - t1212;
-  const Real t1214 = -t1191;
-  const Real t1215 = sum_error(t869, t1214);
-  const Real t1216 = t1215 + t1213;
-  const Real t1217 = product_error(t1187, t903);
-  const Real t1218 = t1216 - t1217;
-  const Real t1219 = -t1193;
-  const Real t1220 = sum_error(t1192, t1219);
-  const Real t1221 = t1218 + t1220;
-  const Real t1222 = t1221 - t1211;
-  const Real t1223 = t1198 + t1222;
-  const Real t1224 = t960 * t1223;
-  const Real t1225 = t1196 + t1224;
-  const Real t1226 = t960 * t1195;
-  const Real t1227 = t1225 + t1226;
-  const Real t1228 = t1189 * t967;
-
-  // trunk: joint force
-  const Real t1229 = t1187 * t1134;
-  const Real t1230 = t1131 * t464;
+  // fin: wrench
+  const Real t1219 = t1094 * t212;
 
   // accelerations
-  const Real t1231 = t1108 - t1230;
-  const Real t1232 = t1231 - t1229;
-  const Real t1233 = t1232 - t1228;
-  const Real t1234 = t1233 - t1227;
-  const Real t1235 = t967 * t1209;
-  const Real t1236 = product_error(t1189, t967);
-  const Real t1237 = t1235 + t1236;
-  const Real t1238 = -t1229;
-  const Real t1239 = sum_error(t1231, t1238);
-  const Real t1240 = -t1230;
-  const Real t1241 = sum_error(t1108, t1240);
-  const Real t1242 = t1150 + t1241;
-  const Real t1243 = t1242 + t1239;
-  const Real t1244 = t1243 - t1237;
-  const Real t1245 = -t1228;
-  const Real t1246 = sum_error(t1232, t1245);
-  const Real t1247 = t1244 + t1246;
-  const Real t1248 = t1234 + t1247;
-  const Real t1249 = t1248 * t1183;
-  const Real t1250 = t1248 * t1249;
-  const Real t1251 = t916 * t1195;
-  const Real t1252 = t1223 * t916;
-  const Real t1253 = t1251 + t1252;
-  const Real t1254 = t1253 * t1195;
-  const Real t1255 = t1253 * t1223;
-  const Real t1256 = t1254 + t1255;
-  const Real t1257 = t1189 * t611;
-  const Real t1258 = t1209 * t611;
-  const Real t1259 = t1257 + t1258;
-  const Real t1260 = t1189 * t1259;
-  const Real t1261 = t1259 * t1209;
-  const Real t1262 = t1260 + t1261;
+  const Real t1220 = t1098 * t212;
+  const Real t1221 = t1219 + t1220;
 
-  // trunk: joint force
-  const Real t1263 = t1187 * t571;
-  const Real t1264 = t1187 * t1263;
-
-  // fin_section_2: acceleration
-  const Real t1265 = t32 + par.l3;
-  const Real t1266 = t1265 * t3;
-  const Real t1267 = t41 * t2;
+  // fin: wrench
+  const Real t1222 = t244 * t1101;
 
   // accelerations
-  const Real t1268 = sum_error(t1267, t1266);
-  const Real t1269 = product_error(t1265, t3);
-  const Real t1270 = t1268 + t1269;
-  const Real t1271 = par.k4 * t1270;
+  const Real t1223 = t1221 - t1222;
+  const Real t1224 = t1223 + t329;
+  const Real t1225 = t1224 - t1218;
+  const Real t1226 = t1225 + t1215;
+  const Real t1227 = t1226 + t1196;
+  const Real t1228 = t1159 * par.k41;
+  const Real t1229 = t1161 * par.k41;
+  const Real t1230 = t1229 + t1228;
+  const Real t1231 = t1098 * par.k6;
 
-  // fin_section_2: acceleration
-  const Real t1272 = t1267 + t1266;
-
-  // accelerations
-  const Real t1273 = product_error(par.k4, t1272);
-  const Real t1274 = t1271 + t1273;
-  const Real t1275 = t1274 * t2;
-
-  // fin_section_2: wrench of the fluid
-  const Real t1276 = par.k4 * t1272;
-
-  // fin_section_2: joint force
-  const Real t1277 = t1276 * t2;
+  // fin: wrench
+  const Real t1232 = t1094 * par.k6;
 
   // accelerations
-  const Real t1278 = t1275 + t1277;
-  const Real t1279 = t29 * t1278;
+  const Real t1233 = t1232 + t1231;
+  const Real t1234 = t1233 + t212;
+  const Real t1235 = t1234 - t1230;
+  const Real t1236 = t1235 + t1211;
+  const Real t1237 = t1236 + t1189;
+  const Real t1238 = t1237 * par.l3;
+  const Real t1239 = t1227 + t1238;
 
-  // fin_section_2: joint force
-  const Real t1280 = t1276 * t3;
-  const Real t1281 = constant<Real>(0.710077701790478711739L) * t1280;
-
-  // accelerations
-  const Real t1282 = t1281 + t1279;
-  const Real t1283 = par.k60 + t1282;
-
-  // fin_section_1: acceleration
-  const Real t1284 = t72 + par.l3;
-  const Real t1285 = t9 * t1284;
+  // peduncle: wrench of the fluid
+  const Real t1240 = t1093 * par.k29;
 
   // accelerations
-  const Real t1286 = sum_error(t72, par.l3);
-  const Real t1287 = t9 * t1286;
-  const Real t1288 = t1285 + t1287;
+  const Real t1241 = par.k29 * t1097;
+  const Real t1242 = t1240 + t1241;
+  const Real t1243 = t1242 + par.k45;
 
-  // fin_section_1: acceleration
-  const Real t1289 = t8 * t79;
+  // peduncle: wrench
+  const Real t1244 = t1093 * par.k37;
 
   // accelerations
+  const Real t1245 = t1097 * par.k37;
+  const Real t1246 = t1244 + t1245;
+  const Real t1247 = par.k19 + t1246;
+  const Real t1248 = t1243 + t1247;
+  const Real t1249 = t1239 + t1248;
+  const Real t1250 = t80 * t1159;
+  const Real t1251 = t1161 * t80;
+  const Real t1252 = t1251 + t1250;
+
+  // fin: wrench
+  const Real t1253 = t1101 * par.k6;
+  const Real t1254 = t1253 - t244;
+
+  // accelerations
+  const Real t1255 = t1252 + t1254;
+  const Real t1256 = t1255 - t1213;
+  const Real t1257 = t1194 - t1256;
+
+  // peduncle: wrench
+  const Real t1258 = par.k18 * t1101;
+
+  // accelerations
+  const Real t1259 = t1257 - t1258;
+  const Real t1260 = t1259 * s_r_a_2_;
+
+  // peduncle: wrench of the fluid
+  const Real t1261 = t1093 * par.k31;
+
+  // accelerations
+  const Real t1262 = t1097 * par.k31;
+  const Real t1263 = t1261 + t1262;
+  const Real t1264 = par.k29 + t1263;
+
+  // peduncle: wrench
+  const Real t1265 = par.k18 * t1093;
+
+  // accelerations
+  const Real t1266 = par.k18 * t1097;
+  const Real t1267 = t1265 + t1266;
+  const Real t1268 = t1267 + par.k37;
+  const Real t1269 = t1264 + t1268;
+  const Real t1270 = t1237 + t1269;
+  const Real t1271 = t1270 * c_r_a_2_;
+  const Real t1272 = t1260 - t1271;
+  const Real t1273 = par.l2 * t1272;
+  const Real t1274 = t1249 - t1273;
+  const Real t1275 = t1274 + par.k58;
+  const Real t1276 = t527 * t538;
+  const Real t1277 = t527 * t1276;
+  const Real t1278 = t1275 - t1277;
+  const Real t1279 = t1278 - t1092;
+  const Real t1280 = sum_error(t1279, t1090);
+  const Real t1281 = t1057 * t1088;
+  const Real t1282 = product_error(t1088, t1035);
+  const Real t1283 = t1281 + t1282;
+  const Real t1284 = sum_error(t1239, t1248);
+  const Real t1285 = sum_error(t1227, t1238);
+  const Real t1286 = sum_error(t1189, t1236);
+  const Real t1287 = t1286 + t1187;
+  const Real t1288 = t1287 * par.l3;
+  const Real t1289 = product_error(t1237, par.l3);
   const Real t1290 = t1289 + t1288;
-  const Real t1291 = par.k4 * t1290;
-  const Real t1292 = t1291 * t8;
-  const Real t1293 = t70 * t1292;
-  const Real t1294 = t1291 * t9;
-  const Real t1295 = t1294 * constant<Real>(0.0709020735931204697442L);
-  const Real t1296 = t1293 + t1295;
-  const Real t1297 = sum_error(t1283, t1296);
-  const Real t1298 = sum_error(par.k60, t1282);
-  const Real t1299 = sum_error(t1281, t1279);
-  const Real t1300 = t1274 * t3;
-  const Real t1301 = product_error(t1276, t3);
-  const Real t1302 = t1301 + t1300;
-  const Real t1303 = constant<Real>(0.710077701790478711739L) * t1302;
-  const Real t1304 = product_error(constant<Real>(0.710077701790478711739L), t1280);
-  const Real t1305 = t1304 + t1303;
-  const Real t1306 = t1299 + t1305;
-  const Real t1307 = t1298 + t1306;
-  const Real t1308 = t1297 + t1307;
-  const Real t1309 = t121 * t1308;
-  const Real t1310 = t1283 + t1296;
-  const Real t1311 = product_error(t121, t1310);
-  const Real t1312 = t1309 + t1311;
-  const Real t1313 = constant<Real>(0.0709020735931204697442L) * t1312;
-  const Real t1314 = t121 * t1310;
-  const Real t1315 = constant<Real>(0.0709020735931204697442L) * t1314;
-  const Real t1316 = t1315 + t1313;
-  const Real t1317 = -t1316;
-  const Real t1318 = sum_error(t1284, t1317);
-  const Real t1319 = t1318 + t1286;
-  const Real t1320 = t9 * t1319;
-  const Real t1321 = t1284 - t1316;
-  const Real t1322 = product_error(t9, t1321);
-  const Real t1323 = t1322 + t1320;
-  const Real t1324 = t70 * t1312;
-  const Real t1325 = t70 * t1314;
-  const Real t1326 = t1325 + t1324;
-  const Real t1327 = t1326 - t79;
-  const Real t1328 = t1327 * t8;
-  const Real t1329 = -t1328;
-  const Real t1330 = t1321 * t9;
-  const Real t1331 = sum_error(t1330, t1329);
-  const Real t1332 = t1331 + t1323;
-  const Real t1333 = par.k4 * t1332;
-  const Real t1334 = t1330 - t1328;
-  const Real t1335 = product_error(par.k4, t1334);
-  const Real t1336 = t1335 + t1333;
-  const Real t1337 = t1336 * t9;
-  const Real t1338 = par.k4 * t1334;
-  const Real t1339 = product_error(t9, t1338);
-  const Real t1340 = t1339 + t1337;
-  const Real t1341 = t1340 * t72;
-  const Real t1342 = t9 * t1338;
-  const Real t1343 = t1342 * t72;
-  const Real t1344 = t1343 + t1341;
-  const Real t1345 = t1336 * t8;
-  const Real t1346 = t1338 * t8;
-  const Real t1347 = t1345 + t1346;
-  const Real t1348 = t1347 * t79;
-  const Real t1349 = t1344 + t1348;
-  const Real t1350 = constant<Real>(0.710077701790478711739L) * t1312;
-  const Real t1351 = product_error(constant<Real>(0.710077701790478711739L), t1314);
-  const Real t1352 = t1351 + t1350;
-  const Real t1353 = constant<Real>(0.710077701790478711739L) * t1314;
-  const Real t1354 = t1265 - t1353;
-  const Real t1355 = t1354 - t1352;
-  const Real t1356 = t1355 * t3;
-  const Real t1357 = t29 * t1312;
-  const Real t1358 = t29 * t1314;
-  const Real t1359 = t1357 + t1358;
-  const Real t1360 = t1359 - t41;
-  const Real t1361 = t1360 * t2;
-  const Real t1362 = t1356 - t1361;
-  const Real t1363 = par.k4 * t1362;
-  const Real t1364 = t1363 * t3;
-  const Real t1365 = t1364 * t32;
-  const Real t1366 = t1363 * t2;
-  const Real t1367 = t41 * t1366;
-  const Real t1368 = t1365 + t1367;
-  const Real t1369 = t1312 * par.k47;
-  const Real t1370 = t1314 * par.k47;
-  const Real t1371 = t1370 + t1369;
+  const Real t1291 = t1285 + t1290;
+  const Real t1292 = t1284 + t1291;
+  const Real t1293 = -t1271;
+  const Real t1294 = sum_error(t1260, t1293);
+  const Real t1295 = sum_error(t1269, t1237);
+  const Real t1296 = t1295 + t1287;
+  const Real t1297 = c_r_a_2_ * t1296;
+  const Real t1298 = product_error(t1270, c_r_a_2_);
+  const Real t1299 = t1298 + t1297;
+  const Real t1300 = t1294 - t1299;
+  const Real t1301 = par.l2 * t1300;
+  const Real t1302 = product_error(par.l2, t1272);
+  const Real t1303 = t1302 + t1301;
+  const Real t1304 = t1292 - t1303;
+  const Real t1305 = -t1273;
+  const Real t1306 = sum_error(t1249, t1305);
+  const Real t1307 = t1306 + t1304;
+  const Real t1308 = sum_error(t1274, par.k58);
+  const Real t1309 = t1307 + t1308;
+  const Real t1310 = product_error(t527, t1276);
+  const Real t1311 = t1309 - t1310;
+  const Real t1312 = -t1277;
+  const Real t1313 = sum_error(t1275, t1312);
+  const Real t1314 = t1311 + t1313;
+  const Real t1315 = product_error(t1033, t1091);
+  const Real t1316 = t1314 - t1315;
+  const Real t1317 = -t1092;
+  const Real t1318 = sum_error(t1278, t1317);
+  const Real t1319 = t1316 + t1318;
+  const Real t1320 = t1319 - t1283;
+  const Real t1321 = t1280 + t1320;
+  const Real t1322 = t1321 - t1083;
+  const Real t1323 = t1041 * t1079;
+  const Real t1324 = t1279 - t1089;
+  const Real t1325 = t1324 - t1323;
+  const Real t1326 = t1325 + t1322;
+  const Real t1327 = constant<Real>(1.0L) / t1326;
+  const Real t1328 = t521 * t541;
+  const Real t1329 = t346 - t1328;
+  const Real t1330 = t521 * t547;
+  const Real t1331 = t654 - t1330;
+  const Real t1332 = t668 * t1331;
+  const Real t1333 = t1329 - t1332;
+  const Real t1334 = t1333 * t711;
+  const Real t1335 = t521 * t1008;
+  const Real t1336 = t978 - t1335;
+  const Real t1337 = t1016 * t1331;
+  const Real t1338 = t1336 - t1337;
+  const Real t1339 = t1338 - t1334;
+  const Real t1340 = t1077 * t1339;
+  const Real t1341 = t709 * t1333;
+  const Real t1342 = product_error(t541, t521);
+  const Real t1343 = t521 * t539;
+  const Real t1344 = t1342 + t1343;
+  const Real t1345 = t376 - t1344;
+  const Real t1346 = -t1328;
+  const Real t1347 = sum_error(t346, t1346);
+  const Real t1348 = t1347 + t1345;
+  const Real t1349 = t1331 * t670;
+  const Real t1350 = product_error(t1331, t668);
+  const Real t1351 = t1349 + t1350;
+  const Real t1352 = t1348 - t1351;
+  const Real t1353 = -t1332;
+  const Real t1354 = sum_error(t1329, t1353);
+  const Real t1355 = t1352 + t1354;
+  const Real t1356 = t1355 * t711;
+  const Real t1357 = t1341 + t1356;
+  const Real t1358 = product_error(t1333, t711);
+  const Real t1359 = t1358 + t1357;
+  const Real t1360 = product_error(t521, t1008);
+  const Real t1361 = t976 - t1360;
+  const Real t1362 = -t1335;
+  const Real t1363 = sum_error(t978, t1362);
+  const Real t1364 = t1363 + t1361;
+  const Real t1365 = product_error(t1331, t1016);
+  const Real t1366 = t1364 - t1365;
+  const Real t1367 = -t1337;
+  const Real t1368 = sum_error(t1336, t1367);
+  const Real t1369 = t1366 + t1368;
+  const Real t1370 = t1369 - t1359;
+  const Real t1371 = -t1334;
+  const Real t1372 = sum_error(t1338, t1371);
+  const Real t1373 = t1370 + t1372;
+  const Real t1374 = t1079 * t1373;
+  const Real t1375 = t1374 + t1340;
+  const Real t1376 = product_error(t1339, t1079);
+  const Real t1377 = t1376 + t1375;
+  const Real t1378 = t1333 * t1088;
+  const Real t1379 = -t1378;
+  const Real t1380 = t1331 * t1091;
+  const Real t1381 = t521 * t1276;
+  const Real t1382 = t1249 - t1381;
+  const Real t1383 = t1382 - t1380;
+  const Real t1384 = sum_error(t1383, t1379);
+  const Real t1385 = product_error(t1333, t1088);
+  const Real t1386 = t1355 * t1088;
+  const Real t1387 = t1385 + t1386;
+  const Real t1388 = -t1380;
+  const Real t1389 = sum_error(t1382, t1388);
+  const Real t1390 = product_error(t1276, t521);
+  const Real t1391 = t1292 - t1390;
+  const Real t1392 = -t1381;
+  const Real t1393 = sum_error(t1249, t1392);
+  const Real t1394 = t1391 + t1393;
+  const Real t1395 = t1389 + t1394;
+  const Real t1396 = t1395 - t1387;
+  const Real t1397 = t1384 + t1396;
+  const Real t1398 = t1397 - t1377;
+  const Real t1399 = t1079 * t1339;
+  const Real t1400 = t1383 - t1378;
+  const Real t1401 = t1400 - t1399;
+  const Real t1402 = t1401 + t1398;
+  const Real t1403 = t1327 * t1402;
+  const Real t1404 = t1403 * t1402;
+  const Real t1405 = t1029 * t1339;
+  const Real t1406 = t1029 * t1373;
+  const Real t1407 = t1405 + t1406;
+  const Real t1408 = t1407 * t1339;
+  const Real t1409 = t1407 * t1373;
+  const Real t1410 = t1408 + t1409;
+  const Real t1411 = t684 * t1333;
+  const Real t1412 = t680 * t1355;
+  const Real t1413 = t1412 + t1411;
+  const Real t1414 = product_error(t1333, t680);
+  const Real t1415 = t1413 + t1414;
+  const Real t1416 = t1333 * t1415;
+  const Real t1417 = t680 * t1333;
+  const Real t1418 = t1355 * t1417;
+  const Real t1419 = t1416 + t1418;
+  const Real t1420 = t1333 * t1417;
+  const Real t1421 = t1419 + t1420;
+  const Real t1422 = t632 * t1331;
+  const Real t1423 = t1422 * t1331;
+  const Real t1424 = t521 * t538;
+  const Real t1425 = t1424 * t521;
 
-  // fin: wrench
-  const Real t1372 = t177 * par.l3;
-  const Real t1373 = t1372 + t283;
+  // fin_section_2: acceleration
+  const Real t1426 = t47 + par.l3;
+  const Real t1427 = t1426 * t3;
+  const Real t1428 = t36 * t2;
 
   // accelerations
-  const Real t1374 = t1373 - t1371;
-  const Real t1375 = t1374 + t1368;
-  const Real t1376 = t1349 + t1375;
-  const Real t1377 = t1312 * par.k41;
-  const Real t1378 = t1314 * par.k41;
-  const Real t1379 = t1378 + t1377;
+  const Real t1429 = sum_error(t1428, t1427);
+  const Real t1430 = product_error(t1426, t3);
+  const Real t1431 = t1429 + t1430;
+  const Real t1432 = par.k4 * t1431;
 
-  // fin: wrench
-  const Real t1380 = t177 + par.k61;
+  // fin_section_2: acceleration
+  const Real t1433 = t1428 + t1427;
 
   // accelerations
-  const Real t1381 = t1380 - t1379;
-  const Real t1382 = t1364 + t1381;
-  const Real t1383 = t1342 + t1382;
-  const Real t1384 = t1383 + t1340;
-  const Real t1385 = t1384 * par.l3;
-  const Real t1386 = t1385 + t1376;
-  const Real t1387 = t1386 + par.k59;
-
-  // trunk: joint force
-  const Real t1388 = t481 * t464;
-  const Real t1389 = t1388 * t464;
-
-  // accelerations
-  const Real t1390 = t1387 - t1389;
-  const Real t1391 = t1390 - t1264;
-  const Real t1392 = t1391 - t1262;
-  const Real t1393 = -t1264;
-  const Real t1394 = sum_error(t1390, t1393);
-  const Real t1395 = -t1389;
-  const Real t1396 = sum_error(t1387, t1395);
-  const Real t1397 = sum_error(par.k59, t1386);
-  const Real t1398 = sum_error(t1385, t1376);
-  const Real t1399 = t1397 + t1398;
-  const Real t1400 = t1396 + t1399;
-  const Real t1401 = t1400 + t1394;
-  const Real t1402 = t1401 + t1392;
-  const Real t1403 = t1402 - t1256;
-  const Real t1404 = t1403 - t1250;
-  const Real t1405 = constant<Real>(1.0L) / t1404;
-
-  // trunk: twist
-  const Real t1406 = par.k8 * w[2];
-  const Real t1407 = w[1] - t1406;
-  const Real t1408 = t1407 * c_r_a_0_;
-  const Real t1409 = s_r_a_0_ * w[0];
-  const Real t1410 = t1408 - t1409;
-  const Real t1411 = w[2] + w[4];
-
-  // rear: twist
-  const Real t1412 = t1411 * par.l1;
-  const Real t1413 = t1410 - t1412;
-  const Real t1414 = c_r_a_1_ * t1413;
-
-  // trunk: twist
-  const Real t1415 = t1407 * s_r_a_0_;
-  const Real t1416 = w[0] * c_r_a_0_;
-  const Real t1417 = t1416 + t1415;
-
-  // rear: twist
-  const Real t1418 = t1417 * s_r_a_1_;
-  const Real t1419 = t1414 - t1418;
-  const Real t1420 = w[5] + t1411;
-
-  // peduncle: twist
-  const Real t1421 = par.l2 * t1420;
-  const Real t1422 = t1419 - t1421;
-  const Real t1423 = t1422 * c_r_a_2_;
-
-  // rear: twist
-  const Real t1424 = s_r_a_1_ * t1413;
-  const Real t1425 = c_r_a_1_ * t1417;
-  const Real t1426 = t1425 + t1424;
-
-  // peduncle: twist
-  const Real t1427 = t1426 * s_r_a_2_;
-  const Real t1428 = t1423 - t1427;
-  const Real t1429 = t1420 + w[6];
-
-  // fin: twist
-  const Real t1430 = t1429 * par.l3;
-  const Real t1431 = t1430 - t1428;
-
-  // fin_section_2: twist
-  const Real t1432 = t32 * t1429;
-  const Real t1433 = t1431 + t1432;
-  const Real t1434 = constant<Real>(0.710077701790478711739L) * w[3];
-  const Real t1435 = t1433 + t1434;
+  const Real t1434 = product_error(par.k4, t1433);
+  const Real t1435 = t1432 + t1434;
   const Real t1436 = t1435 * t2;
 
-  // peduncle: twist
-  const Real t1437 = t1422 * s_r_a_2_;
-  const Real t1438 = t1426 * c_r_a_2_;
-  const Real t1439 = t1438 + t1437;
-
-  // fin_section_2: twist
-  const Real t1440 = t41 * t1429;
-  const Real t1441 = t1440 + t1439;
-  const Real t1442 = t29 * w[3];
-  const Real t1443 = t1442 + t1441;
-  const Real t1444 = t1443 * t3;
-  const Real t1445 = t1436 - t1444;
-
-  // applied wrenches
-  const Real t1446 = abs(t1445);
-  const Real t1447 = t1446 * par.k68;
-  const Real t1448 = t1447 * par.k3;
-  const Real t1449 = t1448 * t1445;
-
-  // fin_section_2: twist
-  const Real t1450 = t1435 * t3;
-  const Real t1451 = t1443 * t2;
-  const Real t1452 = t1450 + t1451;
-
   // fin_section_2: wrench of the fluid
-  const Real t1453 = par.k4 * t1452;
-
-  // fin_section_2: twist
-  const Real t1454 = par.k16 * w[3];
-  const Real t1455 = t1454 + t1429;
-
-  // fin_section_2: wrench of the fluid
-  const Real t1456 = t1455 * t1453;
-
-  // applied wrenches
-  const Real t1457 = t1449 - t1456;
+  const Real t1437 = par.k4 * t1433;
 
   // fin_section_2: joint force
-  const Real t1458 = t1457 * t3;
+  const Real t1438 = t1437 * t2;
 
-  // head: acceleration
-  const Real t1459 = w[2] * w[2];
-
-  // trunk: acceleration
-  const Real t1460 = par.k8 * t1459;
-
-  // head: acceleration
-  const Real t1461 = w[2] * w[1];
-
-  // trunk: acceleration
-  const Real t1462 = t1460 - t1461;
-  const Real t1463 = c_r_a_0_ * t1462;
-
-  // head: acceleration
-  const Real t1464 = w[2] * w[0];
-
-  // trunk: acceleration
-  const Real t1465 = s_r_a_0_ * t1464;
-  const Real t1466 = t1465 + t1463;
-  const Real t1467 = t1411 * t1411;
-
-  // rear: acceleration
-  const Real t1468 = t1467 * par.l1;
-  const Real t1469 = t1468 + t1466;
-  const Real t1470 = c_r_a_1_ * t1469;
-
-  // trunk: acceleration
-  const Real t1471 = s_r_a_0_ * t1462;
-  const Real t1472 = t1464 * c_r_a_0_;
-  const Real t1473 = t1472 - t1471;
-
-  // rear: acceleration
-  const Real t1474 = s_r_a_1_ * t1473;
-  const Real t1475 = t1474 + t1470;
-  const Real t1476 = t1420 * t1420;
-
-  // peduncle: acceleration
-  const Real t1477 = par.l2 * t1476;
-  const Real t1478 = t1477 + t1475;
-  const Real t1479 = t1478 * c_r_a_2_;
-
-  // rear: acceleration
-  const Real t1480 = t1469 * s_r_a_1_;
-  const Real t1481 = c_r_a_1_ * t1473;
-  const Real t1482 = t1481 - t1480;
-
-  // peduncle: acceleration
-  const Real t1483 = t1482 * s_r_a_2_;
-  const Real t1484 = t1479 + t1483;
-  const Real t1485 = t1429 * t1429;
-
-  // fin: acceleration
-  const Real t1486 = t1485 * par.l3;
-  const Real t1487 = t1486 + t1484;
-
-  // fin_section_2: acceleration
-  const Real t1488 = t32 * t1485;
-  const Real t1489 = t1488 + t1487;
-  const Real t1490 = t1434 * t1429;
-  const Real t1491 = t1490 * constant<Real>(2.0L);
-  const Real t1492 = t1491 + t1489;
-
-  // fin_tip: acceleration
-  const Real t1493 = w[3] * w[3];
-
-  // fin_section_2: acceleration
-  const Real t1494 = t1493 * par.k52;
-  const Real t1495 = t1494 + t1492;
-  const Real t1496 = t1495 * t2;
-
-  // peduncle: acceleration
-  const Real t1497 = t1478 * s_r_a_2_;
-  const Real t1498 = t1482 * c_r_a_2_;
-
-  // fin: acceleration
-  const Real t1499 = t1497 - t1498;
-
-  // fin_section_2: acceleration
-  const Real t1500 = t41 * t1485;
-  const Real t1501 = t1499 - t1500;
-  const Real t1502 = t1442 * t1429;
-  const Real t1503 = t1502 * constant<Real>(2.0L);
-  const Real t1504 = t1501 - t1503;
-  const Real t1505 = t1504 * t3;
-  const Real t1506 = t1496 + t1505;
-
-  // fin_section_2: wrench of the fluid
-  const Real t1507 = t1455 * t1445;
-  const Real t1508 = t1506 - t1507;
-  const Real t1509 = par.k4 * t1508;
-
-  // applied wrenches
-  const Real t1510 = abs(t1452);
-  const Real t1511 = par.k62 * t1510;
-  const Real t1512 = par.k3 * t1511;
-  const Real t1513 = t1452 * t1512;
-  const Real t1514 = t1509 + t1513;
+  // accelerations
+  const Real t1439 = t1436 + t1438;
+  const Real t1440 = t44 * t1439;
 
   // fin_section_2: joint force
-  const Real t1515 = t1514 * t2;
-  const Real t1516 = t1458 - t1515;
+  const Real t1441 = t1437 * t3;
+  const Real t1442 = constant<Real>(0.710077701790478711739L) * t1441;
 
-  // fin: wrench
-  const Real t1517 = t1487 * par.k6;
-  const Real t1518 = t1485 * t177;
-  const Real t1519 = t1517 + t1518;
-  const Real t1520 = w[3] * par.k41;
-  const Real t1521 = t1520 * t1429;
-  const Real t1522 = t1521 * constant<Real>(2.0L);
-  const Real t1523 = t1493 * par.k24;
-  const Real t1524 = t1523 + t1522;
-  const Real t1525 = t1524 + t1519;
-
-  // fin_section_2: joint force
-  const Real t1526 = t1516 - t1525;
-
-  // fin_section_1: twist
-  const Real t1527 = t1429 * t72;
-  const Real t1528 = t1527 + t1431;
-  const Real t1529 = constant<Real>(0.0709020735931204697442L) * w[3];
-  const Real t1530 = t1529 + t1528;
-  const Real t1531 = t1530 * t8;
-  const Real t1532 = t1429 * t79;
-  const Real t1533 = t1532 + t1439;
-  const Real t1534 = t70 * w[3];
-  const Real t1535 = t1533 + t1534;
-  const Real t1536 = t9 * t1535;
-  const Real t1537 = t1531 - t1536;
-
-  // applied wrenches
-  const Real t1538 = abs(t1537);
-  const Real t1539 = t1538 * par.k68;
-  const Real t1540 = par.k3 * t1539;
-  const Real t1541 = t1540 * t1537;
-
-  // fin_section_1: twist
-  const Real t1542 = t9 * t1530;
-  const Real t1543 = t1535 * t8;
-  const Real t1544 = t1543 + t1542;
-
-  // fin_section_1: wrench of the fluid
-  const Real t1545 = par.k4 * t1544;
-
-  // fin_section_1: twist
-  const Real t1546 = par.k5 * w[3];
-  const Real t1547 = t1546 + t1429;
-
-  // fin_section_1: wrench of the fluid
-  const Real t1548 = t1547 * t1545;
-
-  // applied wrenches
-  const Real t1549 = t1541 - t1548;
-
-  // fin_section_1: joint force
-  const Real t1550 = t9 * t1549;
-
-  // applied wrenches
-  const Real t1551 = abs(t1544);
-  const Real t1552 = par.k62 * t1551;
-  const Real t1553 = par.k3 * t1552;
-  const Real t1554 = t1544 * t1553;
+  // accelerations
+  const Real t1443 = t1442 + t1440;
+  const Real t1444 = par.k60 + t1443;
 
   // fin_section_1: acceleration
-  const Real t1555 = t1485 * t72;
-  const Real t1556 = t1555 + t1487;
-  const Real t1557 = t1529 * t1429;
-  const Real t1558 = t1557 * constant<Real>(2.0L);
-  const Real t1559 = t1558 + t1556;
-  const Real t1560 = par.k9 * t1493;
-  const Real t1561 = t1560 + t1559;
-  const Real t1562 = t1561 * t8;
-  const Real t1563 = t1485 * t79;
-  const Real t1564 = t1499 - t1563;
-  const Real t1565 = t1429 * t1534;
-  const Real t1566 = constant<Real>(2.0L) * t1565;
-  const Real t1567 = t1564 - t1566;
-  const Real t1568 = t1567 * t9;
-  const Real t1569 = t1562 + t1568;
+  const Real t1445 = t87 + par.l3;
+  const Real t1446 = t9 * t1445;
 
-  // fin_section_1: wrench of the fluid
-  const Real t1570 = t1547 * t1537;
-  const Real t1571 = t1569 - t1570;
-  const Real t1572 = t1571 * par.k4;
+  // accelerations
+  const Real t1447 = sum_error(t87, par.l3);
+  const Real t1448 = t9 * t1447;
+  const Real t1449 = t1446 + t1448;
 
-  // applied wrenches
-  const Real t1573 = t1554 + t1572;
+  // fin_section_1: acceleration
+  const Real t1450 = t8 * t94;
 
-  // fin_section_1: joint force
-  const Real t1574 = t1573 * t8;
-  const Real t1575 = t1550 - t1574;
-  const Real t1576 = t1575 + t1526;
-
-  // fin_tip: station
-  const Real t1577 = r_p[0] * par.k48;
-  const Real t1578 = t1577 * t30;
-  const Real t1579 = par.lf - t1578;
-
-  // fin_tip: twist
-  const Real t1580 = t1429 * t1579;
-  const Real t1581 = t1431 + t1580;
-  const Real t1582 = t1581 + w[3];
-  const Real t1583 = t6 * t1582;
-  const Real t1584 = t1429 * r_p[0];
-  const Real t1585 = t1439 + t1584;
-  const Real t1586 = t1577 * w[3];
-  const Real t1587 = t1585 + t1586;
-  const Real t1588 = t1587 * t5;
-  const Real t1589 = t1583 + t1588;
-
-  // applied wrenches
-  const Real t1590 = t1589 * t1589;
-  const Real t1591 = par.m_w * t1590;
-  const Real t1592 = t1591 * constant<Real>(0.5L);
-
-  // fin_tip: joint force
-  const Real t1593 = t6 * t1592;
-
-  // fin_tip: twist
-  const Real t1594 = t1582 * t5;
-  const Real t1595 = t1587 * t6;
-  const Real t1596 = t1594 - t1595;
-
-  // applied wrenches
-  const Real t1597 = t1589 * t1596;
-  const Real t1598 = par.m_w * t1597;
-
-  // fin_tip: joint force
-  const Real t1599 = t1598 * t5;
-  const Real t1600 = t1593 + t1599;
-  const Real t1601 = t1576 + t1600;
-
-  // peduncle: wrench
-  const Real t1602 = t1484 * par.k18;
-  const Real t1603 = t1485 * par.k37;
-  const Real t1604 = t1602 + t1603;
-
-  // peduncle: wrench of the fluid
-  const Real t1605 = t1428 * par.k31;
-  const Real t1606 = par.k29 * t1429;
-  const Real t1607 = t1605 - t1606;
-  const Real t1608 = t1429 * t1607;
-  const Real t1609 = t1604 - t1608;
-
-  // applied wrenches
-  const Real t1610 = abs(t1439);
-  const Real t1611 = par.k63 * t1610;
-  const Real t1612 = t1611 * par.k27;
-  const Real t1613 = t1439 * t1612;
-  const Real t1614 = t1609 + t1613;
-  const Real t1615 = t1614 + t1613;
-
-  // fin: joint force
-  const Real t1616 = t1615 - t1601;
-
-  // peduncle: joint force
-  const Real t1617 = c_r_a_2_ * t1616;
-
-  // fin_section_2: joint force
-  const Real t1618 = t1457 * t2;
-  const Real t1619 = t1514 * t3;
-  const Real t1620 = t1618 + t1619;
+  // accelerations
+  const Real t1451 = t1450 + t1449;
+  const Real t1452 = par.k4 * t1451;
+  const Real t1453 = t1452 * t8;
+  const Real t1454 = t85 * t1453;
+  const Real t1455 = t1452 * t9;
+  const Real t1456 = t1455 * constant<Real>(0.0709020735931204697442L);
+  const Real t1457 = t1454 + t1456;
+  const Real t1458 = sum_error(t1444, t1457);
+  const Real t1459 = sum_error(par.k60, t1443);
+  const Real t1460 = sum_error(t1442, t1440);
+  const Real t1461 = t1435 * t3;
+  const Real t1462 = product_error(t1437, t3);
+  const Real t1463 = t1462 + t1461;
+  const Real t1464 = constant<Real>(0.710077701790478711739L) * t1463;
+  const Real t1465 = product_error(constant<Real>(0.710077701790478711739L), t1441);
+  const Real t1466 = t1465 + t1464;
+  const Real t1467 = t1460 + t1466;
+  const Real t1468 = t1459 + t1467;
+  const Real t1469 = t1458 + t1468;
+  const Real t1470 = t144 * t1469;
+  const Real t1471 = t1444 + t1457;
+  const Real t1472 = t155 * t1471;
+  const Real t1473 = t1470 + t1472;
+  const Real t1474 = product_error(t144, t1471);
+  const Real t1475 = t1473 + t1474;
+  const Real t1476 = t1475 * constant<Real>(0.0709020735931204697442L);
+  const Real t1477 = t144 * t1471;
+  const Real t1478 = constant<Real>(0.0709020735931204697442L) * t1477;
+  const Real t1479 = t1476 + t1478;
+  const Real t1480 = -t1479;
+  const Real t1481 = sum_error(t1445, t1480);
+  const Real t1482 = t1481 + t1447;
+  const Real t1483 = t1482 * t9;
+  const Real t1484 = t1445 - t1479;
+  const Real t1485 = product_error(t9, t1484);
+  const Real t1486 = t1483 + t1485;
+  const Real t1487 = t1475 * t85;
+  const Real t1488 = t85 * t1477;
+  const Real t1489 = t1487 + t1488;
+  const Real t1490 = t1489 - t94;
+  const Real t1491 = t1490 * t8;
+  const Real t1492 = -t1491;
+  const Real t1493 = t1484 * t9;
+  const Real t1494 = sum_error(t1493, t1492);
+  const Real t1495 = t1486 + t1494;
+  const Real t1496 = par.k4 * t1495;
+  const Real t1497 = t1493 - t1491;
+  const Real t1498 = product_error(par.k4, t1497);
+  const Real t1499 = t1498 + t1496;
+  const Real t1500 = t9 * t1499;
+  const Real t1501 = par.k4 * t1497;
+  const Real t1502 = product_error(t9, t1501);
+  const Real t1503 = t1502 + t1500;
+  const Real t1504 = t1503 * t87;
+  const Real t1505 = t9 * t1501;
+  const Real t1506 = t1505 * t87;
+  const Real t1507 = t1504 + t1506;
+  const Real t1508 = t1499 * t8;
+  const Real t1509 = t8 * t1501;
+  const Real t1510 = t1508 + t1509;
+  const Real t1511 = t1510 * t94;
+  const Real t1512 = t1507 + t1511;
+  const Real t1513 = constant<Real>(0.710077701790478711739L) * t1475;
+  const Real t1514 = product_error(constant<Real>(0.710077701790478711739L), t1477);
+  const Real t1515 = t1513 + t1514;
+  const Real t1516 = constant<Real>(0.710077701790478711739L) * t1477;
+  const Real t1517 = t1426 - t1516;
+  const Real t1518 = t1517 - t1515;
+  const Real t1519 = t1518 * t3;
+  const Real t1520 = t1475 * t44;
+  const Real t1521 = t44 * t1477;
+  const Real t1522 = t1521 + t1520;
+  const Real t1523 = t1522 - t36;
+  const Real t1524 = t1523 * t2;
+  const Real t1525 = t1519 - t1524;
+  const Real t1526 = par.k4 * t1525;
+  const Real t1527 = t1526 * t3;
+  const Real t1528 = t47 * t1527;
+  const Real t1529 = t1526 * t2;
+  const Real t1530 = t36 * t1529;
+  const Real t1531 = t1528 + t1530;
+  const Real t1532 = t1475 * par.k47;
+  const Real t1533 = par.k47 * t1477;
+  const Real t1534 = t1533 + t1532;
 
   // fin: wrench
-  const Real t1621 = par.k6 * t1499;
-  const Real t1622 = t205 * t1485;
-  const Real t1623 = t1621 - t1622;
-  const Real t1624 = t65 * w[3];
-  const Real t1625 = t1429 * t1624;
-  const Real t1626 = constant<Real>(2.0L) * t1625;
-  const Real t1627 = t1623 - t1626;
+  const Real t1535 = t212 * par.l3;
+  const Real t1536 = t1535 + t329;
 
-  // fin_section_2: joint force
-  const Real t1628 = t1627 + t1620;
+  // accelerations
+  const Real t1537 = t1536 - t1534;
+  const Real t1538 = t1537 + t1531;
+  const Real t1539 = t1512 + t1538;
+  const Real t1540 = t1475 * par.k41;
+  const Real t1541 = par.k41 * t1477;
+  const Real t1542 = t1541 + t1540;
 
-  // fin_section_1: joint force
-  const Real t1629 = t8 * t1549;
-  const Real t1630 = t1573 * t9;
-  const Real t1631 = t1629 + t1630;
-  const Real t1632 = t1628 + t1631;
+  // fin: wrench
+  const Real t1543 = t212 + par.k61;
 
-  // fin_tip: joint force
-  const Real t1633 = t1592 * t5;
-  const Real t1634 = t6 * t1598;
-  const Real t1635 = t1633 - t1634;
-  const Real t1636 = t1635 + t1632;
+  // accelerations
+  const Real t1544 = t1543 - t1542;
+  const Real t1545 = t1544 + t1527;
+  const Real t1546 = t1505 + t1545;
+  const Real t1547 = t1546 * par.l3;
+  const Real t1548 = t1539 + t1547;
+  const Real t1549 = t1548 + par.k59;
+  const Real t1550 = t1549 - t1425;
+  const Real t1551 = t1550 - t1423;
+  const Real t1552 = t1551 - t1421;
+  const Real t1553 = -t1423;
+  const Real t1554 = sum_error(t1550, t1553);
+  const Real t1555 = -t1425;
+  const Real t1556 = sum_error(t1549, t1555);
+  const Real t1557 = sum_error(t1547, t1539);
+  const Real t1558 = sum_error(t1505, t1545);
+  const Real t1559 = t1503 + t1558;
+  const Real t1560 = t1559 * par.l3;
+  const Real t1561 = product_error(t1546, par.l3);
+  const Real t1562 = t1561 + t1560;
+  const Real t1563 = t1562 + t1557;
+  const Real t1564 = sum_error(par.k59, t1548);
+  const Real t1565 = t1563 + t1564;
+  const Real t1566 = t1565 + t1556;
+  const Real t1567 = t1566 + t1554;
+  const Real t1568 = t1567 + t1552;
+  const Real t1569 = t1568 - t1410;
+  const Real t1570 = t1569 - t1404;
+  const Real t1571 = constant<Real>(1.0L) / t1570;
 
-  // applied wrenches
-  const Real t1637 = par.k28 * t1429;
-  const Real t1638 = t1428 - t1637;
-  const Real t1639 = abs(t1638);
-  const Real t1640 = par.k66 * t1639;
-  const Real t1641 = t1640 * par.k27;
-  const Real t1642 = t1641 * t1638;
+  // trunk: twist
+  const Real t1572 = par.k8 * w[2];
+  const Real t1573 = w[1] - t1572;
+  const Real t1574 = t1573 * c_r_a_0_;
+  const Real t1575 = s_r_a_0_ * w[0];
+  const Real t1576 = t1574 - t1575;
+  const Real t1577 = w[2] + w[4];
 
-  // peduncle: acceleration
-  const Real t1643 = t1498 - t1497;
+  // rear: twist
+  const Real t1578 = t1577 * par.l1;
+  const Real t1579 = t1576 - t1578;
+  const Real t1580 = c_r_a_1_ * t1579;
 
-  // peduncle: wrench of the fluid
-  const Real t1644 = t1439 * t1429;
-  const Real t1645 = t1643 - t1644;
-  const Real t1646 = t1645 * par.k31;
+  // trunk: twist
+  const Real t1581 = t1573 * s_r_a_0_;
+  const Real t1582 = w[0] * c_r_a_0_;
+  const Real t1583 = t1582 + t1581;
 
-  // peduncle: wrench
-  const Real t1647 = par.k18 * t1643;
+  // rear: twist
+  const Real t1584 = t1583 * s_r_a_1_;
+  const Real t1585 = t1580 - t1584;
+  const Real t1586 = w[5] + t1577;
 
-  // peduncle: wrench of the fluid
-  const Real t1648 = t1647 + t1646;
+  // peduncle: twist
+  const Real t1587 = par.l2 * t1586;
+  const Real t1588 = t1585 - t1587;
+  const Real t1589 = t1588 * c_r_a_2_;
 
-  // applied wrenches
-  const Real t1649 = t1648 + t1642;
-  const Real t1650 = par.k26 * t1429;
-  const Real t1651 = t1428 - t1650;
-  const Real t1652 = abs(t1651);
-  const Real t1653 = t1652 * par.k66;
-  const Real t1654 = par.k27 * t1653;
-  const Real t1655 = t1654 * t1651;
-  const Real t1656 = t1649 + t1655;
+  // rear: twist
+  const Real t1590 = s_r_a_1_ * t1579;
+  const Real t1591 = c_r_a_1_ * t1583;
+  const Real t1592 = t1591 + t1590;
 
-  // fin: joint force
-  const Real t1657 = t1656 - t1636;
+  // peduncle: twist
+  const Real t1593 = t1592 * s_r_a_2_;
+  const Real t1594 = t1589 - t1593;
+  const Real t1595 = t1586 + w[6];
 
-  // peduncle: joint force
-  const Real t1658 = t1657 * s_r_a_2_;
-  const Real t1659 = t1617 - t1658;
+  // fin: twist
+  const Real t1596 = t1595 * par.l3;
+  const Real t1597 = t1596 - t1594;
 
-  // rear: wrench
-  const Real t1660 = par.k22 * t1475;
-  const Real t1661 = par.k30 * t1476;
-  const Real t1662 = t1661 + t1660;
+  // fin_section_2: twist
+  const Real t1598 = t47 * t1595;
+  const Real t1599 = t1597 + t1598;
+  const Real t1600 = constant<Real>(0.710077701790478711739L) * w[3];
+  const Real t1601 = t1599 + t1600;
+  const Real t1602 = t1601 * t2;
 
-  // rear: wrench of the fluid
-  const Real t1663 = t1419 * par.k53;
-  const Real t1664 = t1420 * par.k43;
-  const Real t1665 = t1663 - t1664;
-  const Real t1666 = t1420 * t1665;
-  const Real t1667 = t1662 - t1666;
+  // peduncle: twist
+  const Real t1603 = t1588 * s_r_a_2_;
+  const Real t1604 = t1592 * c_r_a_2_;
+  const Real t1605 = t1604 + t1603;
 
-  // applied wrenches
-  const Real t1668 = abs(t1426);
-  const Real t1669 = t1668 * par.k67;
-  const Real t1670 = t1669 * par.k34;
-  const Real t1671 = t1426 * t1670;
-  const Real t1672 = t1667 + t1671;
-  const Real t1673 = t1672 + t1671;
-
-  // peduncle: joint force
-  const Real t1674 = t1659 + t1673;
-
-  // rear: joint force
-  const Real t1675 = t1674 * c_r_a_1_;
-
-  // peduncle: joint force
-  const Real t1676 = t1657 * c_r_a_2_;
-  const Real t1677 = t1616 * s_r_a_2_;
-  const Real t1678 = t1676 + t1677;
-
-  // applied wrenches
-  const Real t1679 = t1420 * par.k35;
-  const Real t1680 = t1419 - t1679;
-  const Real t1681 = abs(t1680);
-  const Real t1682 = par.k65 * t1681;
-  const Real t1683 = t1682 * par.k34;
-  const Real t1684 = t1680 * t1683;
-
-  // rear: wrench of the fluid
-  const Real t1685 = t1426 * t1420;
-  const Real t1686 = t1482 - t1685;
-  const Real t1687 = t1686 * par.k53;
-
-  // rear: wrench
-  const Real t1688 = par.k22 * t1482;
-
-  // rear: wrench of the fluid
-  const Real t1689 = t1687 + t1688;
+  // fin_section_2: twist
+  const Real t1606 = t36 * t1595;
+  const Real t1607 = t1606 + t1605;
+  const Real t1608 = t44 * w[3];
+  const Real t1609 = t1608 + t1607;
+  const Real t1610 = t1609 * t3;
+  const Real t1611 = t1602 - t1610;
 
   // applied wrenches
-  const Real t1690 = t1689 + t1684;
-  const Real t1691 = t1420 * par.k33;
-  const Real t1692 = t1419 - t1691;
-  const Real t1693 = abs(t1692);
-  const Real t1694 = par.k65 * t1693;
-  const Real t1695 = t1694 * par.k34;
-  const Real t1696 = t1692 * t1695;
-  const Real t1697 = t1696 + t1690;
+  const Real t1612 = abs(t1611);
+  const Real t1613 = t1612 * par.k68;
+  const Real t1614 = t1613 * par.k3;
+  const Real t1615 = t1614 * t1611;
 
-  // peduncle: joint force
-  const Real t1698 = t1697 + t1678;
-
-  // rear: joint force
-  const Real t1699 = s_r_a_1_ * t1698;
-  const Real t1700 = t1675 - t1699;
-
-  // applied wrenches
-  const Real t1701 = abs(t1417);
-  const Real t1702 = t1701 * par.k70;
-  const Real t1703 = par.k11 * t1702;
-  const Real t1704 = t1417 * t1703;
-
-  // trunk: wrench
-  const Real t1705 = par.k1 * t1466;
-  const Real t1706 = par.k2 * t1467;
-  const Real t1707 = t1705 + t1706;
-
-  // trunk: wrench of the fluid
-  const Real t1708 = t1410 * par.k12;
-  const Real t1709 = t1411 * par.k49;
-  const Real t1710 = t1708 - t1709;
-  const Real t1711 = t1710 * t1411;
-  const Real t1712 = t1707 - t1711;
-
-  // applied wrenches
-  const Real t1713 = t1704 + t1712;
-  const Real t1714 = t1713 + t1704;
-
-  // rear: joint force
-  const Real t1715 = t1700 + t1714;
-
-  // trunk: joint force
-  const Real t1716 = s_r_a_0_ * t1715;
-
-  // rear: joint force
-  const Real t1717 = c_r_a_1_ * t1698;
-  const Real t1718 = t1674 * s_r_a_1_;
-  const Real t1719 = t1717 + t1718;
-
-  // applied wrenches
-  const Real t1720 = t1411 * par.k38;
-  const Real t1721 = t1410 - t1720;
-  const Real t1722 = abs(t1721);
-  const Real t1723 = t1722 * par.k69;
-  const Real t1724 = par.k11 * t1723;
-  const Real t1725 = t1724 * t1721;
-
-  // trunk: wrench of the fluid
-  const Real t1726 = t1411 * t1417;
-  const Real t1727 = t1473 - t1726;
-  const Real t1728 = t1727 * par.k12;
-
-  // trunk: wrench
-  const Real t1729 = par.k1 * t1473;
-
-  // trunk: wrench of the fluid
-  const Real t1730 = t1728 + t1729;
-
-  // applied wrenches
-  const Real t1731 = t1725 + t1730;
-  const Real t1732 = t1411 * par.k39;
-  const Real t1733 = t1410 - t1732;
-  const Real t1734 = abs(t1733);
-  const Real t1735 = par.k69 * t1734;
-  const Real t1736 = par.k11 * t1735;
-  const Real t1737 = t1733 * t1736;
-  const Real t1738 = t1737 + t1731;
-
-  // rear: joint force
-  const Real t1739 = t1738 + t1719;
-
-  // trunk: joint force
-  const Real t1740 = t1739 * c_r_a_0_;
-  const Real t1741 = t1716 + t1740;
-  const Real t1742 = t1741 * par.k8;
-
-  // fin_section_2: joint force
-  const Real t1743 = t32 * t1620;
-  const Real t1744 = t41 * t1516;
-  const Real t1745 = t1743 - t1744;
+  // fin_section_2: twist
+  const Real t1616 = t1601 * t3;
+  const Real t1617 = t1609 * t2;
+  const Real t1618 = t1616 + t1617;
 
   // fin_section_2: wrench of the fluid
-  const Real t1746 = t1445 * t1453;
+  const Real t1619 = par.k4 * t1618;
+
+  // fin_section_2: twist
+  const Real t1620 = par.k16 * w[3];
+  const Real t1621 = t1620 + t1595;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1622 = t1621 * t1619;
+
+  // applied wrenches
+  const Real t1623 = t1615 - t1622;
 
   // fin_section_2: joint force
-  const Real t1747 = t1745 + t1746;
+  const Real t1624 = t1623 * t3;
+
+  // head: acceleration
+  const Real t1625 = w[2] * w[2];
+
+  // trunk: acceleration
+  const Real t1626 = par.k8 * t1625;
+
+  // head: acceleration
+  const Real t1627 = w[2] * w[1];
+
+  // trunk: acceleration
+  const Real t1628 = t1626 - t1627;
+  const Real t1629 = c_r_a_0_ * t1628;
+
+  // head: acceleration
+  const Real t1630 = w[2] * w[0];
+
+  // trunk: acceleration
+  const Real t1631 = s_r_a_0_ * t1630;
+  const Real t1632 = t1631 + t1629;
+  const Real t1633 = t1577 * t1577;
+
+  // rear: acceleration
+  const Real t1634 = t1633 * par.l1;
+  const Real t1635 = t1634 + t1632;
+  const Real t1636 = c_r_a_1_ * t1635;
+
+  // trunk: acceleration
+  const Real t1637 = s_r_a_0_ * t1628;
+  const Real t1638 = t1630 * c_r_a_0_;
+  const Real t1639 = t1638 - t1637;
+
+  // rear: acceleration
+  const Real t1640 = s_r_a_1_ * t1639;
+  const Real t1641 = t1640 + t1636;
+  const Real t1642 = t1586 * t1586;
+
+  // peduncle: acceleration
+  const Real t1643 = par.l2 * t1642;
+  const Real t1644 = t1643 + t1641;
+  const Real t1645 = t1644 * c_r_a_2_;
+
+  // rear: acceleration
+  const Real t1646 = t1635 * s_r_a_1_;
+  const Real t1647 = c_r_a_1_ * t1639;
+  const Real t1648 = t1647 - t1646;
+
+  // peduncle: acceleration
+  const Real t1649 = t1648 * s_r_a_2_;
+  const Real t1650 = t1645 + t1649;
+  const Real t1651 = t1595 * t1595;
+
+  // fin: acceleration
+  const Real t1652 = t1651 * par.l3;
+  const Real t1653 = t1652 + t1650;
+
+  // fin_section_2: acceleration
+  const Real t1654 = t47 * t1651;
+  const Real t1655 = t1654 + t1653;
+  const Real t1656 = t1600 * t1595;
+  const Real t1657 = t1656 * constant<Real>(2.0L);
+  const Real t1658 = t1657 + t1655;
+
+  // fin_tip: acceleration
+  const Real t1659 = w[3] * w[3];
+
+  // fin_section_2: acceleration
+  const Real t1660 = t1659 * par.k52;
+  const Real t1661 = t1660 + t1658;
+  const Real t1662 = t1661 * t2;
+
+  // peduncle: acceleration
+  const Real t1663 = t1644 * s_r_a_2_;
+  const Real t1664 = t1648 * c_r_a_2_;
+
+  // fin: acceleration
+  const Real t1665 = t1663 - t1664;
+
+  // fin_section_2: acceleration
+  const Real t1666 = t36 * t1651;
+  const Real t1667 = t1665 - t1666;
+  const Real t1668 = t1608 * t1595;
+  const Real t1669 = t1668 * constant<Real>(2.0L);
+  const Real t1670 = t1667 - t1669;
+  const Real t1671 = t1670 * t3;
+  const Real t1672 = t1662 + t1671;
+
+  // fin_section_2: wrench of the fluid
+  const Real t1673 = t1621 * t1611;
+  const Real t1674 = t1672 - t1673;
+  const Real t1675 = par.k4 * t1674;
+
+  // applied wrenches
+  const Real t1676 = abs(t1618);
+  const Real t1677 = par.k62 * t1676;
+  const Real t1678 = par.k3 * t1677;
+  const Real t1679 = t1618 * t1678;
+  const Real t1680 = t1675 + t1679;
+
+  // fin_section_2: joint force
+  const Real t1681 = t1680 * t2;
+  const Real t1682 = t1624 - t1681;
 
   // fin: wrench
-  const Real t1748 = t205 * t1487;
-  const Real t1749 = t177 * t1499;
-  const Real t1750 = t1748 + t1749;
-  const Real t1751 = w[3] * t279;
-  const Real t1752 = t280 * w[3];
-  const Real t1753 = t1751 - t1752;
-  const Real t1754 = t1429 * t1753;
-  const Real t1755 = constant<Real>(2.0L) * t1754;
-  const Real t1756 = t1750 + t1755;
+  const Real t1683 = t1653 * par.k6;
+  const Real t1684 = t1651 * t212;
+  const Real t1685 = t1683 + t1684;
+  const Real t1686 = w[3] * par.k41;
+  const Real t1687 = t1686 * t1595;
+  const Real t1688 = t1687 * constant<Real>(2.0L);
+  const Real t1689 = t1659 * par.k24;
+  const Real t1690 = t1689 + t1688;
+  const Real t1691 = t1690 + t1685;
 
   // fin_section_2: joint force
-  const Real t1757 = t1747 + t1756;
+  const Real t1692 = t1682 - t1691;
 
-  // fin_section_1: joint force
-  const Real t1758 = t72 * t1631;
-  const Real t1759 = t1575 * t79;
-  const Real t1760 = t1758 - t1759;
+  // fin_section_1: twist
+  const Real t1693 = t1595 * t87;
+  const Real t1694 = t1693 + t1597;
+  const Real t1695 = constant<Real>(0.0709020735931204697442L) * w[3];
+  const Real t1696 = t1695 + t1694;
+  const Real t1697 = t1696 * t8;
+  const Real t1698 = t1595 * t94;
+  const Real t1699 = t1698 + t1605;
+  const Real t1700 = t85 * w[3];
+  const Real t1701 = t1699 + t1700;
+  const Real t1702 = t9 * t1701;
+  const Real t1703 = t1697 - t1702;
+
+  // applied wrenches
+  const Real t1704 = abs(t1703);
+  const Real t1705 = t1704 * par.k68;
+  const Real t1706 = par.k3 * t1705;
+  const Real t1707 = t1706 * t1703;
+
+  // fin_section_1: twist
+  const Real t1708 = t9 * t1696;
+  const Real t1709 = t1701 * t8;
+  const Real t1710 = t1709 + t1708;
 
   // fin_section_1: wrench of the fluid
-  const Real t1761 = t1537 * t1545;
+  const Real t1711 = par.k4 * t1710;
 
-  // fin_section_1: joint force
-  const Real t1762 = t1761 + t1760;
-  const Real t1763 = t1762 + t1757;
+  // fin_section_1: twist
+  const Real t1712 = par.k5 * w[3];
+  const Real t1713 = t1712 + t1595;
 
-  // fin_tip: joint force
-  const Real t1764 = t1635 * t1579;
-  const Real t1765 = t1600 * r_p[0];
-  const Real t1766 = t1764 - t1765;
-  const Real t1767 = t1766 + t1763;
-
-  // fin: joint force
-  const Real t1768 = t1636 * par.l3;
-  const Real t1769 = t1768 + t1767;
+  // fin_section_1: wrench of the fluid
+  const Real t1714 = t1713 * t1711;
 
   // applied wrenches
-  const Real t1770 = par.k28 * t1642;
+  const Real t1715 = t1707 - t1714;
 
-  // peduncle: wrench of the fluid
-  const Real t1771 = t1439 * t1607;
-  const Real t1772 = par.k29 * t1645;
-  const Real t1773 = t1771 - t1772;
+  // fin_section_1: joint force
+  const Real t1716 = t9 * t1715;
+
+  // applied wrenches
+  const Real t1717 = abs(t1710);
+  const Real t1718 = par.k62 * t1717;
+  const Real t1719 = par.k3 * t1718;
+  const Real t1720 = t1710 * t1719;
+
+  // fin_section_1: acceleration
+  const Real t1721 = t1651 * t87;
+  const Real t1722 = t1721 + t1653;
+  const Real t1723 = t1695 * t1595;
+  const Real t1724 = t1723 * constant<Real>(2.0L);
+  const Real t1725 = t1724 + t1722;
+  const Real t1726 = par.k9 * t1659;
+  const Real t1727 = t1726 + t1725;
+  const Real t1728 = t1727 * t8;
+  const Real t1729 = t1651 * t94;
+  const Real t1730 = t1665 - t1729;
+  const Real t1731 = t1595 * t1700;
+  const Real t1732 = constant<Real>(2.0L) * t1731;
+  const Real t1733 = t1730 - t1732;
+  const Real t1734 = t1733 * t9;
+  const Real t1735 = t1728 + t1734;
+
+  // fin_section_1: wrench of the fluid
+  const Real t1736 = t1713 * t1703;
+  const Real t1737 = t1735 - t1736;
+  const Real t1738 = t1737 * par.k4;
+
+  // applied wrenches
+  const Real t1739 = t1720 + t1738;
+
+  // fin_section_1: joint force
+  const Real t1740 = t1739 * t8;
+  const Real t1741 = t1716 - t1740;
+  const Real t1742 = t1741 + t1692;
+
+  // fin_tip: station
+  const Real t1743 = r_p[0] * par.k48;
+  const Real t1744 = t1743 * t45;
+  const Real t1745 = par.lf - t1744;
+
+  // fin_tip: twist
+  const Real t1746 = t1595 * t1745;
+  const Real t1747 = t1597 + t1746;
+  const Real t1748 = t1747 + w[3];
+  const Real t1749 = t6 * t1748;
+  const Real t1750 = t1595 * r_p[0];
+  const Real t1751 = t1605 + t1750;
+  const Real t1752 = t1743 * w[3];
+  const Real t1753 = t1751 + t1752;
+  const Real t1754 = t1753 * t5;
+  const Real t1755 = t1749 + t1754;
+
+  // applied wrenches
+  const Real t1756 = t1755 * t1755;
+  const Real t1757 = par.m_w * t1756;
+  const Real t1758 = t1757 * constant<Real>(0.5L);
+
+  // fin_tip: joint force
+  const Real t1759 = t6 * t1758;
+
+  // fin_tip: twist
+  const Real t1760 = t1748 * t5;
+  const Real t1761 = t1753 * t6;
+  const Real t1762 = t1760 - t1761;
+
+  // applied wrenches
+  const Real t1763 = t1755 * t1762;
+  const Real t1764 = par.m_w * t1763;
+
+  // fin_tip: joint force
+  const Real t1765 = t1764 * t5;
+  const Real t1766 = t1759 + t1765;
+  const Real t1767 = t1742 + t1766;
 
   // peduncle: wrench
-  const Real t1774 = t1643 * par.k37;
+  const Real t1768 = t1650 * par.k18;
+  const Real t1769 = t1651 * par.k37;
+  const Real t1770 = t1768 + t1769;
 
   // peduncle: wrench of the fluid
-  const Real t1775 = t1773 - t1774;
+  const Real t1771 = t1594 * par.k31;
+  const Real t1772 = par.k29 * t1595;
+  const Real t1773 = t1771 - t1772;
+  const Real t1774 = t1595 * t1773;
+  const Real t1775 = t1770 - t1774;
 
   // applied wrenches
-  const Real t1776 = t1775 - t1770;
-  const Real t1777 = par.k26 * t1655;
-  const Real t1778 = t1776 - t1777;
+  const Real t1776 = abs(t1605);
+  const Real t1777 = par.k63 * t1776;
+  const Real t1778 = t1777 * par.k27;
+  const Real t1779 = t1605 * t1778;
+  const Real t1780 = t1775 + t1779;
+  const Real t1781 = t1780 + t1779;
 
   // fin: joint force
-  const Real t1779 = t1769 + t1778;
+  const Real t1782 = t1781 - t1767;
 
   // peduncle: joint force
-  const Real t1780 = par.l2 * t1678;
-  const Real t1781 = t1779 - t1780;
-
-  // applied wrenches
-  const Real t1782 = t1684 * par.k35;
-
-  // rear: wrench of the fluid
-  const Real t1783 = t1426 * t1665;
-  const Real t1784 = t1686 * par.k43;
-  const Real t1785 = t1783 - t1784;
-
-  // rear: wrench
-  const Real t1786 = par.k30 * t1482;
-
-  // rear: wrench of the fluid
-  const Real t1787 = t1785 - t1786;
-
-  // applied wrenches
-  const Real t1788 = t1787 - t1782;
-  const Real t1789 = t1696 * par.k33;
-  const Real t1790 = t1788 - t1789;
-
-  // peduncle: joint force
-  const Real t1791 = t1781 + t1790;
-
-  // rear: joint force
-  const Real t1792 = t1719 * par.l1;
-  const Real t1793 = t1791 - t1792;
-
-  // applied wrenches
-  const Real t1794 = t1725 * par.k38;
-
-  // trunk: wrench of the fluid
-  const Real t1795 = t1710 * t1417;
-  const Real t1796 = t1727 * par.k49;
-  const Real t1797 = t1795 - t1796;
-
-  // trunk: wrench
-  const Real t1798 = par.k2 * t1473;
-
-  // trunk: wrench of the fluid
-  const Real t1799 = t1797 - t1798;
-
-  // applied wrenches
-  const Real t1800 = t1799 - t1794;
-  const Real t1801 = t1737 * par.k39;
-  const Real t1802 = t1800 - t1801;
-
-  // rear: joint force
-  const Real t1803 = t1802 + t1793;
-
-  // trunk: joint force
-  const Real t1804 = t1803 - t1742;
-
-  // applied wrenches
-  const Real t1805 = w[2] * par.k20;
-  const Real t1806 = w[1] - t1805;
-  const Real t1807 = abs(t1806);
-  const Real t1808 = t1807 * par.k71;
-  const Real t1809 = par.k14 * t1808;
-  const Real t1810 = t1806 * t1809;
-  const Real t1811 = t1810 * par.k20;
-
-  // head: wrench of the fluid
-  const Real t1812 = par.k15 * w[1];
-  const Real t1813 = t1812 * w[0];
-  const Real t1814 = par.m_x * w[0];
-  const Real t1815 = t1814 * w[1];
-  const Real t1816 = t1813 - t1815;
-
-  // applied wrenches
-  const Real t1817 = t1816 - t1811;
-  const Real t1818 = t1805 + w[1];
-  const Real t1819 = abs(t1818);
-  const Real t1820 = t1819 * par.k71;
-  const Real t1821 = par.k14 * t1820;
-  const Real t1822 = t1818 * t1821;
-  const Real t1823 = t1822 * par.k20;
-  const Real t1824 = t1817 + t1823;
-
-  // trunk: joint force
-  const Real t1825 = t1824 + t1804;
+  const Real t1783 = c_r_a_2_ * t1782;
 
   // fin_section_2: joint force
-  const Real t1826 = constant<Real>(0.710077701790478711739L) * t1620;
-  const Real t1827 = t29 * t1516;
-  const Real t1828 = t1826 - t1827;
-  const Real t1829 = par.k16 * t1746;
-  const Real t1830 = t1828 + t1829;
+  const Real t1784 = t1623 * t2;
+  const Real t1785 = t1680 * t3;
+  const Real t1786 = t1784 + t1785;
 
   // fin: wrench
-  const Real t1831 = t65 * t1487;
-  const Real t1832 = par.k41 * t1499;
-  const Real t1833 = t1832 + t1831;
-  const Real t1834 = t280 * t1485;
-  const Real t1835 = t1834 + t1833;
-  const Real t1836 = t1485 * t279;
-  const Real t1837 = t1835 - t1836;
+  const Real t1787 = par.k6 * t1665;
+  const Real t1788 = t244 * t1651;
+  const Real t1789 = t1787 - t1788;
+  const Real t1790 = t80 * w[3];
+  const Real t1791 = t1595 * t1790;
+  const Real t1792 = constant<Real>(2.0L) * t1791;
+  const Real t1793 = t1789 - t1792;
 
   // fin_section_2: joint force
-  const Real t1838 = t1830 + t1837;
+  const Real t1794 = t1793 + t1786;
 
   // fin_section_1: joint force
-  const Real t1839 = constant<Real>(0.0709020735931204697442L) * t1631;
-  const Real t1840 = t70 * t1575;
-  const Real t1841 = t1839 - t1840;
-  const Real t1842 = par.k5 * t1761;
-  const Real t1843 = t1842 + t1841;
-  const Real t1844 = t1838 + t1843;
+  const Real t1795 = t8 * t1715;
+  const Real t1796 = t1739 * t9;
+  const Real t1797 = t1795 + t1796;
+  const Real t1798 = t1794 + t1797;
 
   // fin_tip: joint force
-  const Real t1845 = t1600 * t1577;
-  const Real t1846 = t1635 - t1845;
-  const Real t1847 = t1846 + t1844;
-
-  // springs, dampers and generalised forces
-  const Real t1848 = r_p[0] * constant<Real>(2.0L);
-  const Real t1849 = t1848 * par.k72;
-
-  // springs, dampers and generalised forces
-  const Real t1850 = w[3] * constant<Real>(2.0L);
-  const Real t1851 = par.k73 * t1850;
-  const Real t1852 = t1849 + t1851;
-  const Real t1853 = t1847 + t1852;
-
-  // accelerations
-  const Real t1854 = t1853 * t127;
-  const Real t1855 = t1853 * t125;
-  const Real t1856 = t1854 + t1855;
-  const Real t1857 = t1856 - t1825;
-
-  // trunk: joint force
-  const Real t1858 = t1715 * c_r_a_0_;
-  const Real t1859 = t1739 * s_r_a_0_;
-  const Real t1860 = t1858 - t1859;
+  const Real t1799 = t1758 * t5;
+  const Real t1800 = t6 * t1764;
+  const Real t1801 = t1799 - t1800;
+  const Real t1802 = t1801 + t1798;
 
   // applied wrenches
-  const Real t1861 = abs(w[0]);
-  const Real t1862 = par.k64 * t1861;
-  const Real t1863 = par.k14 * t1862;
-  const Real t1864 = t1863 * w[0];
+  const Real t1803 = par.k28 * t1595;
+  const Real t1804 = t1594 - t1803;
+  const Real t1805 = abs(t1804);
+  const Real t1806 = par.k66 * t1805;
+  const Real t1807 = t1806 * par.k27;
+  const Real t1808 = t1807 * t1804;
+
+  // peduncle: acceleration
+  const Real t1809 = t1664 - t1663;
+
+  // peduncle: wrench of the fluid
+  const Real t1810 = t1605 * t1595;
+  const Real t1811 = t1809 - t1810;
+  const Real t1812 = t1811 * par.k31;
+
+  // peduncle: wrench
+  const Real t1813 = par.k18 * t1809;
+
+  // peduncle: wrench of the fluid
+  const Real t1814 = t1813 + t1812;
+
+  // applied wrenches
+  const Real t1815 = t1814 + t1808;
+  const Real t1816 = par.k26 * t1595;
+  const Real t1817 = t1594 - t1816;
+  const Real t1818 = abs(t1817);
+  const Real t1819 = t1818 * par.k66;
+  const Real t1820 = par.k27 * t1819;
+  const Real t1821 = t1820 * t1817;
+  const Real t1822 = t1815 + t1821;
+
+  // fin: joint force
+  const Real t1823 = t1822 - t1802;
+
+  // peduncle: joint force
+  const Real t1824 = t1823 * s_r_a_2_;
+  const Real t1825 = t1783 - t1824;
+
+  // rear: wrench
+  const Real t1826 = par.k22 * t1641;
+  const Real t1827 = par.k30 * t1642;
+  const Real t1828 = t1827 + t1826;
+
+  // rear: wrench of the fluid
+  const Real t1829 = t1585 * par.k53;
+  const Real t1830 = t1586 * par.k43;
+  const Real t1831 = t1829 - t1830;
+  const Real t1832 = t1586 * t1831;
+  const Real t1833 = t1828 - t1832;
+
+  // applied wrenches
+  const Real t1834 = abs(t1592);
+  const Real t1835 = t1834 * par.k67;
+  const Real t1836 = t1835 * par.k34;
+  const Real t1837 = t1592 * t1836;
+  const Real t1838 = t1833 + t1837;
+  const Real t1839 = t1838 + t1837;
+
+  // peduncle: joint force
+  const Real t1840 = t1825 + t1839;
+
+  // rear: joint force
+  const Real t1841 = t1840 * c_r_a_1_;
+
+  // peduncle: joint force
+  const Real t1842 = t1823 * c_r_a_2_;
+  const Real t1843 = t1782 * s_r_a_2_;
+  const Real t1844 = t1842 + t1843;
+
+  // applied wrenches
+  const Real t1845 = t1586 * par.k35;
+  const Real t1846 = t1585 - t1845;
+  const Real t1847 = abs(t1846);
+  const Real t1848 = par.k65 * t1847;
+  const Real t1849 = t1848 * par.k34;
+  const Real t1850 = t1846 * t1849;
+
+  // rear: wrench of the fluid
+  const Real t1851 = t1592 * t1586;
+  const Real t1852 = t1648 - t1851;
+  const Real t1853 = t1852 * par.k53;
+
+  // rear: wrench
+  const Real t1854 = par.k22 * t1648;
+
+  // rear: wrench of the fluid
+  const Real t1855 = t1853 + t1854;
+
+  // applied wrenches
+  const Real t1856 = t1855 + t1850;
+  const Real t1857 = t1586 * par.k33;
+  const Real t1858 = t1585 - t1857;
+  const Real t1859 = abs(t1858);
+  const Real t1860 = par.k65 * t1859;
+  const Real t1861 = t1860 * par.k34;
+  const Real t1862 = t1858 * t1861;
+  const Real t1863 = t1862 + t1856;
+
+  // peduncle: joint force
+  const Real t1864 = t1863 + t1844;
+
+  // rear: joint force
+  const Real t1865 = s_r_a_1_ * t1864;
+  const Real t1866 = t1841 - t1865;
+
+  // applied wrenches
+  const Real t1867 = abs(t1583);
+  const Real t1868 = t1867 * par.k70;
+  const Real t1869 = par.k11 * t1868;
+  const Real t1870 = t1583 * t1869;
+
+  // trunk: wrench
+  const Real t1871 = par.k1 * t1632;
+  const Real t1872 = par.k2 * t1633;
+  const Real t1873 = t1871 + t1872;
+
+  // trunk: wrench of the fluid
+  const Real t1874 = t1576 * par.k12;
+  const Real t1875 = t1577 * par.k49;
+  const Real t1876 = t1874 - t1875;
+  const Real t1877 = t1876 * t1577;
+  const Real t1878 = t1873 - t1877;
+
+  // applied wrenches
+  const Real t1879 = t1870 + t1878;
+  const Real t1880 = t1879 + t1870;
+
+  // rear: joint force
+  const Real t1881 = t1866 + t1880;
+
+  // trunk: joint force
+  const Real t1882 = t1881 * c_r_a_0_;
+
+  // rear: joint force
+  const Real t1883 = c_r_a_1_ * t1864;
+  const Real t1884 = t1840 * s_r_a_1_;
+  const Real t1885 = t1883 + t1884;
+
+  // applied wrenches
+  const Real t1886 = t1577 * par.k38;
+  const Real t1887 = t1576 - t1886;
+  const Real t1888 = abs(t1887);
+  const Real t1889 = t1888 * par.k69;
+  const Real t1890 = par.k11 * t1889;
+  const Real t1891 = t1890 * t1887;
+
+  // trunk: wrench of the fluid
+  const Real t1892 = t1577 * t1583;
+  const Real t1893 = t1639 - t1892;
+  const Real t1894 = t1893 * par.k12;
+
+  // trunk: wrench
+  const Real t1895 = par.k1 * t1639;
+
+  // trunk: wrench of the fluid
+  const Real t1896 = t1894 + t1895;
+
+  // applied wrenches
+  const Real t1897 = t1891 + t1896;
+  const Real t1898 = t1577 * par.k39;
+  const Real t1899 = t1576 - t1898;
+  const Real t1900 = abs(t1899);
+  const Real t1901 = par.k69 * t1900;
+  const Real t1902 = par.k11 * t1901;
+  const Real t1903 = t1899 * t1902;
+  const Real t1904 = t1903 + t1897;
+
+  // rear: joint force
+  const Real t1905 = t1904 + t1885;
+
+  // trunk: joint force
+  const Real t1906 = t1905 * s_r_a_0_;
+  const Real t1907 = t1882 - t1906;
+
+  // applied wrenches
+  const Real t1908 = abs(w[0]);
+  const Real t1909 = par.k64 * t1908;
+  const Real t1910 = par.k14 * t1909;
+  const Real t1911 = t1910 * w[0];
 
   // head: wrench
-  const Real t1865 = par.k50 * t1461;
+  const Real t1912 = par.k50 * t1627;
 
   // head: wrench of the fluid
-  const Real t1866 = w[2] * t1812;
-  const Real t1867 = t1865 + t1866;
+  const Real t1913 = par.k15 * w[1];
+  const Real t1914 = w[2] * t1913;
+  const Real t1915 = t1912 + t1914;
 
   // applied wrenches
-  const Real t1868 = t1864 - t1867;
-  const Real t1869 = t1864 + t1868;
+  const Real t1916 = t1911 - t1915;
+  const Real t1917 = t1911 + t1916;
 
   // trunk: joint force
-  const Real t1870 = t1860 + t1869;
+  const Real t1918 = t1907 + t1917;
 
-  // trunk: joint force
-  const Real t1871 = t379 * t1853;
-  const Real t1872 = t1871 - t1870;
+  // fin_section_2: joint force
+  const Real t1919 = constant<Real>(0.710077701790478711739L) * t1786;
+  const Real t1920 = t44 * t1682;
+  const Real t1921 = t1919 - t1920;
 
-  // trunk: joint force
-  const Real t1873 = t1872 * t482;
+  // fin_section_2: wrench of the fluid
+  const Real t1922 = t1611 * t1619;
 
-  // accelerations
-  const Real t1874 = t1857 - t1873;
+  // fin_section_2: joint force
+  const Real t1923 = par.k16 * t1922;
+  const Real t1924 = t1921 + t1923;
 
-  // trunk: joint force
-  const Real t1875 = t1872 * t488;
+  // fin: wrench
+  const Real t1925 = t80 * t1653;
+  const Real t1926 = par.k41 * t1665;
+  const Real t1927 = t1926 + t1925;
+  const Real t1928 = t326 * t1651;
+  const Real t1929 = t1928 + t1927;
+  const Real t1930 = t1651 * t325;
+  const Real t1931 = t1929 - t1930;
 
-  // head: wrench
-  const Real t1876 = par.k50 * t1464;
+  // fin_section_2: joint force
+  const Real t1932 = t1924 + t1931;
 
-  // head: wrench of the fluid
-  const Real t1877 = t1814 * w[2];
-  const Real t1878 = t1876 + t1877;
+  // fin_section_1: joint force
+  const Real t1933 = constant<Real>(0.0709020735931204697442L) * t1797;
+  const Real t1934 = t85 * t1741;
+  const Real t1935 = t1933 - t1934;
 
-  // applied wrenches
-  const Real t1879 = t1878 + t1810;
-  const Real t1880 = t1822 + t1879;
+  // fin_section_1: wrench of the fluid
+  const Real t1936 = t1703 * t1711;
 
-  // trunk: joint force
-  const Real t1881 = t1741 + t1880;
+  // fin_section_1: joint force
+  const Real t1937 = par.k5 * t1936;
+  const Real t1938 = t1937 + t1935;
+  const Real t1939 = t1932 + t1938;
 
-  // trunk: joint force
-  const Real t1882 = t1853 * t513;
-  const Real t1883 = t1882 - t1881;
-
-  // trunk: joint force
-  const Real t1884 = t1883 - t1875;
-  const Real t1885 = t607 * t1884;
-
-  // accelerations
-  const Real t1886 = t1874 - t1885;
-  const Real t1887 = t1886 * t630;
+  // fin_tip: joint force
+  const Real t1940 = t1766 * t1743;
+  const Real t1941 = t1801 - t1940;
+  const Real t1942 = t1941 + t1939;
 
   // springs, dampers and generalised forces
-  const Real t1888 = -t1803;
+  const Real t1943 = r_p[0] * constant<Real>(2.0L);
+  const Real t1944 = t1943 * par.k72;
+
+  // springs, dampers and generalised forces
+  const Real t1945 = w[3] * constant<Real>(2.0L);
+  const Real t1946 = par.k73 * t1945;
+  const Real t1947 = t1944 + t1946;
+  const Real t1948 = t1942 + t1947;
 
   // accelerations
-  const Real t1889 = sum_error(tau_a[0], t1888);
-  const Real t1890 = t1853 * t709;
-  const Real t1891 = product_error(t1853, t711);
-  const Real t1892 = t1890 + t1891;
-  const Real t1893 = t1889 + t1892;
-
-  // reduced forces
-  const Real t1894 = tau_a[0] - t1803;
-
-  // accelerations
-  const Real t1895 = t1853 * t711;
-  const Real t1896 = sum_error(t1894, t1895);
-  const Real t1897 = t1893 + t1896;
+  const Real t1949 = t1948 * t436;
+  const Real t1950 = t1949 - t1918;
+  const Real t1951 = t1950 * t547;
 
   // trunk: joint force
-  const Real t1898 = t1872 * t895;
+  const Real t1952 = s_r_a_0_ * t1881;
+  const Real t1953 = t1905 * c_r_a_0_;
+  const Real t1954 = t1952 + t1953;
 
-  // accelerations
-  const Real t1899 = t1894 + t1895;
-  const Real t1900 = t1899 - t1898;
-  const Real t1901 = t1897 + t1900;
+  // applied wrenches
+  const Real t1955 = w[2] * par.k20;
+  const Real t1956 = w[1] - t1955;
+  const Real t1957 = abs(t1956);
+  const Real t1958 = t1957 * par.k71;
+  const Real t1959 = par.k14 * t1958;
+  const Real t1960 = t1956 * t1959;
 
-  // trunk: joint force
-  const Real t1902 = t903 * t1884;
+  // head: wrench
+  const Real t1961 = par.k50 * t1630;
 
-  // accelerations
-  const Real t1903 = t1901 - t1902;
-  const Real t1904 = t1903 - t1887;
-  const Real t1905 = t958 * t1904;
-  const Real t1906 = t960 * t1904;
-  const Real t1907 = t1906 + t1905;
-  const Real t1908 = t967 * t1886;
+  // head: wrench of the fluid
+  const Real t1962 = par.m_x * w[0];
+  const Real t1963 = t1962 * w[2];
+  const Real t1964 = t1961 + t1963;
 
-  // trunk: joint force
-  const Real t1909 = t1884 * t1134;
-  const Real t1910 = t1872 * t1131;
-
-  // reduced forces
-  const Real t1911 = tau_a[1] - t1791;
-
-  // accelerations
-  const Real t1912 = t1853 * t1028;
-  const Real t1913 = t1853 * t1026;
-  const Real t1914 = t1912 + t1913;
-  const Real t1915 = t1911 + t1914;
-  const Real t1916 = t1915 - t1910;
-  const Real t1917 = t1916 - t1909;
-  const Real t1918 = t1917 - t1908;
-  const Real t1919 = t1918 - t1907;
-  const Real t1920 = t1919 * t1249;
-  const Real t1921 = t1253 * t1904;
-  const Real t1922 = t1259 * t1886;
+  // applied wrenches
+  const Real t1965 = t1964 + t1960;
+  const Real t1966 = t1955 + w[1];
+  const Real t1967 = abs(t1966);
+  const Real t1968 = t1967 * par.k71;
+  const Real t1969 = par.k14 * t1968;
+  const Real t1970 = t1966 * t1969;
+  const Real t1971 = t1970 + t1965;
 
   // trunk: joint force
-  const Real t1923 = t1263 * t1884;
-  const Real t1924 = t1872 * t1388;
+  const Real t1972 = t1954 + t1971;
 
   // accelerations
-  const Real t1925 = t1853 * t1312;
-  const Real t1926 = t1853 * t1314;
-  const Real t1927 = t1925 + t1926;
-
-  // reduced forces
-  const Real t1928 = tau_a[2] - t1779;
-
-  // accelerations
-  const Real t1929 = t1927 + t1928;
-  const Real t1930 = t1929 - t1924;
-  const Real t1931 = t1930 - t1923;
-  const Real t1932 = t1931 - t1922;
-  const Real t1933 = t1932 - t1921;
-  const Real t1934 = t1933 - t1920;
-  const Real t1935 = t1934 * t1405;
-  const Real t1936 = t1935 * t1249;
-  const Real t1937 = t1919 * t1183;
-  const Real t1938 = t1937 - t1936;
-  const Real t1939 = t960 * t1938;
-  const Real t1940 = -t1939;
-  const Real t1941 = t916 * t1904;
-  const Real t1942 = sum_error(t1941, t1940);
-  const Real t1943 = t958 * t1938;
-  const Real t1944 = product_error(t960, t1938);
-  const Real t1945 = t1943 + t1944;
-  const Real t1946 = t1942 - t1945;
-  const Real t1947 = t1941 - t1939;
-  const Real t1948 = t1253 * t1935;
-  const Real t1949 = t1947 - t1948;
-  const Real t1950 = t1949 + t1946;
-  const Real t1951 = t1950 * t630;
-  const Real t1952 = t1886 * t611;
-  const Real t1953 = t1952 - t1951;
-  const Real t1954 = t967 * t1938;
-  const Real t1955 = t1953 - t1954;
-  const Real t1956 = t1259 * t1935;
-  const Real t1957 = t1955 - t1956;
-  const Real t1958 = t1957 * t607;
+  const Real t1973 = t1948 * t574;
+  const Real t1974 = t1973 - t1972;
+  const Real t1975 = t1974 - t1951;
+  const Real t1976 = t1975 * t668;
+  const Real t1977 = t1975 * t670;
+  const Real t1978 = t1976 + t1977;
+  const Real t1979 = t1950 * t539;
+  const Real t1980 = t1950 * t541;
+  const Real t1981 = t1979 + t1980;
 
   // trunk: joint force
-  const Real t1959 = t571 * t1884;
+  const Real t1982 = t1954 * par.k8;
 
-  // accelerations
-  const Real t1960 = t1959 - t1958;
-  const Real t1961 = t903 * t1950;
-  const Real t1962 = t1960 - t1961;
-  const Real t1963 = t1938 * t1134;
-  const Real t1964 = t1962 - t1963;
-  const Real t1965 = t1263 * t1935;
-  const Real t1966 = t1964 - t1965;
-  const Real t1967 = t488 * t1966;
+  // fin_section_2: joint force
+  const Real t1983 = t47 * t1786;
+  const Real t1984 = t36 * t1682;
+  const Real t1985 = t1983 - t1984;
+  const Real t1986 = t1985 + t1922;
 
-  // trunk: joint force
-  const Real t1968 = t1872 * t481;
-
-  // accelerations
-  const Real t1969 = t1968 - t1967;
-  const Real t1970 = t1957 * t482;
-  const Real t1971 = t1969 - t1970;
-  const Real t1972 = t1950 * t895;
-  const Real t1973 = t1971 - t1972;
-  const Real t1974 = t1131 * t1938;
-  const Real t1975 = t1973 - t1974;
-  const Real t1976 = t1388 * t1935;
-  const Real t1977 = t1975 - t1976;
-  const Real t1978 = t379 * t1977;
-
-  // trunk: joint force
-  const Real t1979 = t121 * t1853;
-
-  // accelerations
-  const Real t1980 = t1979 + t1978;
-  const Real t1981 = t1966 * t513;
-  const Real t1982 = t1981 + t1980;
-  const Real t1983 = t1957 * t125;
-  const Real t1984 = t1957 * t127;
-  const Real t1985 = t1983 + t1984;
-  const Real t1986 = t1982 + t1985;
-  const Real t1987 = t1950 * t709;
-  const Real t1988 = t1950 * t711;
+  // fin: wrench
+  const Real t1987 = t244 * t1653;
+  const Real t1988 = t212 * t1665;
   const Real t1989 = t1987 + t1988;
-  const Real t1990 = t1986 + t1989;
-  const Real t1991 = t1026 * t1938;
-  const Real t1992 = t1938 * t1028;
-  const Real t1993 = t1991 + t1992;
-  const Real t1994 = t1990 + t1993;
-  const Real t1995 = t1314 * t1935;
-  const Real t1996 = t1312 * t1935;
-  const Real t1997 = t1995 + t1996;
-  const Real t1998 = t1997 + t1994;
-  const Real t1999 = -t1998;
+  const Real t1990 = w[3] * t325;
+  const Real t1991 = t326 * w[3];
+  const Real t1992 = t1990 - t1991;
+  const Real t1993 = t1595 * t1992;
+  const Real t1994 = constant<Real>(2.0L) * t1993;
+  const Real t1995 = t1989 + t1994;
 
-  w_dot[0] = t1977;
-  w_dot[1] = t1966;
-  w_dot[2] = t1957;
-  w_dot[3] = t1999;
-  w_dot[4] = t1950;
-  w_dot[5] = t1938;
-  w_dot[6] = t1935;
-  eta_dot[0] = t1977;
-  eta_dot[1] = t1966;
-  eta_dot[2] = t1957;
-  r_p_ddot[0] = t1999;
-  r_a_ddot_out[0] = t1950;
-  r_a_ddot_out[1] = t1938;
-  r_a_ddot_out[2] = t1935;
+  // fin_section_2: joint force
+  const Real t1996 = t1986 + t1995;
+
+  // fin_section_1: joint force
+  const Real t1997 = t87 * t1797;
+  const Real t1998 = t1741 * t94;
+  const Real t1999 = t1997 - t1998;
+  const Real t2000 = t1936 + t1999;
+  const Real t2001 = t2000 + t1996;
+
+  // fin_tip: joint force
+  const Real t2002 = t1801 * t1745;
+  const Real t2003 = t1766 * r_p[0];
+  const Real t2004 = t2002 - t2003;
+  const Real t2005 = t2004 + t2001;
+
+  // fin: joint force
+  const Real t2006 = t1802 * par.l3;
+  const Real t2007 = t2006 + t2005;
+
+  // applied wrenches
+  const Real t2008 = par.k28 * t1808;
+
+  // peduncle: wrench of the fluid
+  const Real t2009 = t1605 * t1773;
+  const Real t2010 = par.k29 * t1811;
+  const Real t2011 = t2009 - t2010;
+
+  // peduncle: wrench
+  const Real t2012 = t1809 * par.k37;
+
+  // peduncle: wrench of the fluid
+  const Real t2013 = t2011 - t2012;
+
+  // applied wrenches
+  const Real t2014 = t2013 - t2008;
+  const Real t2015 = par.k26 * t1821;
+  const Real t2016 = t2014 - t2015;
+
+  // fin: joint force
+  const Real t2017 = t2007 + t2016;
+
+  // peduncle: joint force
+  const Real t2018 = par.l2 * t1844;
+  const Real t2019 = t2017 - t2018;
+
+  // applied wrenches
+  const Real t2020 = t1850 * par.k35;
+
+  // rear: wrench of the fluid
+  const Real t2021 = t1592 * t1831;
+  const Real t2022 = t1852 * par.k43;
+  const Real t2023 = t2021 - t2022;
+
+  // rear: wrench
+  const Real t2024 = par.k30 * t1648;
+
+  // rear: wrench of the fluid
+  const Real t2025 = t2023 - t2024;
+
+  // applied wrenches
+  const Real t2026 = t2025 - t2020;
+  const Real t2027 = t1862 * par.k33;
+  const Real t2028 = t2026 - t2027;
+
+  // peduncle: joint force
+  const Real t2029 = t2019 + t2028;
+
+  // rear: joint force
+  const Real t2030 = t1885 * par.l1;
+  const Real t2031 = t2029 - t2030;
+
+  // applied wrenches
+  const Real t2032 = t1891 * par.k38;
+
+  // trunk: wrench of the fluid
+  const Real t2033 = t1876 * t1583;
+  const Real t2034 = t1893 * par.k49;
+  const Real t2035 = t2033 - t2034;
+
+  // trunk: wrench
+  const Real t2036 = par.k2 * t1639;
+
+  // trunk: wrench of the fluid
+  const Real t2037 = t2035 - t2036;
+
+  // applied wrenches
+  const Real t2038 = t2037 - t2032;
+  const Real t2039 = t1903 * par.k39;
+  const Real t2040 = t2038 - t2039;
+
+  // rear: joint force
+  const Real t2041 = t2040 + t2031;
+
+  // trunk: joint force
+  const Real t2042 = t2041 - t1982;
+
+  // applied wrenches
+  const Real t2043 = t1960 * par.k20;
+
+  // head: wrench of the fluid
+  const Real t2044 = t1913 * w[0];
+  const Real t2045 = t1962 * w[1];
+  const Real t2046 = t2044 - t2045;
+
+  // applied wrenches
+  const Real t2047 = t2046 - t2043;
+  const Real t2048 = t1970 * par.k20;
+  const Real t2049 = t2047 + t2048;
+
+  // trunk: joint force
+  const Real t2050 = t2049 + t2042;
+
+  // accelerations
+  const Real t2051 = t1948 * t159;
+  const Real t2052 = t1948 * t161;
+  const Real t2053 = t2051 + t2052;
+  const Real t2054 = t2053 - t2050;
+  const Real t2055 = t2054 - t1981;
+  const Real t2056 = t2055 - t1978;
+  const Real t2057 = t709 * t2056;
+  const Real t2058 = t711 * t2056;
+  const Real t2059 = t2057 + t2058;
+  const Real t2060 = t1975 * t1016;
+  const Real t2061 = t1950 * t1008;
+
+  // reduced forces
+  const Real t2062 = tau_a[0] - t2041;
+
+  // accelerations
+  const Real t2063 = t1948 * t805;
+  const Real t2064 = t2062 + t2063;
+  const Real t2065 = t2064 - t2061;
+  const Real t2066 = t2065 - t2060;
+  const Real t2067 = -t2061;
+  const Real t2068 = sum_error(t2064, t2067);
+
+  // springs, dampers and generalised forces
+  const Real t2069 = -t2041;
+
+  // accelerations
+  const Real t2070 = sum_error(tau_a[0], t2069);
+  const Real t2071 = t1948 * t803;
+  const Real t2072 = product_error(t1948, t805);
+  const Real t2073 = t2071 + t2072;
+  const Real t2074 = t2070 + t2073;
+  const Real t2075 = sum_error(t2062, t2063);
+  const Real t2076 = t2075 + t2074;
+  const Real t2077 = t2076 + t2068;
+  const Real t2078 = t2066 + t2077;
+  const Real t2079 = t2078 - t2059;
+  const Real t2080 = t2079 * t1077;
+  const Real t2081 = t1079 * t2079;
+  const Real t2082 = t2081 + t2080;
+  const Real t2083 = t2056 * t1088;
+  const Real t2084 = t1975 * t1091;
+  const Real t2085 = t1950 * t1276;
+
+  // reduced forces
+  const Real t2086 = tau_a[1] - t2029;
+
+  // accelerations
+  const Real t2087 = t1948 * t1159;
+  const Real t2088 = t1161 * t1948;
+  const Real t2089 = t2087 + t2088;
+  const Real t2090 = t2086 + t2089;
+  const Real t2091 = t2090 - t2085;
+  const Real t2092 = t2091 - t2084;
+  const Real t2093 = t2092 - t2083;
+  const Real t2094 = t2093 - t2082;
+  const Real t2095 = t2094 * t1403;
+  const Real t2096 = t2079 * t1407;
+  const Real t2097 = t2056 * t1415;
+  const Real t2098 = t1417 * t2056;
+  const Real t2099 = t2098 + t2097;
+  const Real t2100 = t1422 * t1975;
+  const Real t2101 = t1424 * t1950;
+
+  // reduced forces
+  const Real t2102 = tau_a[2] - t2017;
+
+  // accelerations
+  const Real t2103 = t1475 * t1948;
+  const Real t2104 = t1948 * t1477;
+  const Real t2105 = t2103 + t2104;
+  const Real t2106 = t2102 + t2105;
+  const Real t2107 = t2106 - t2101;
+  const Real t2108 = t2107 - t2100;
+  const Real t2109 = t2108 - t2099;
+  const Real t2110 = t2109 - t2096;
+  const Real t2111 = t2110 - t2095;
+  const Real t2112 = t2111 * t1571;
+  const Real t2113 = t2112 * t1403;
+  const Real t2114 = t2094 * t1327;
+  const Real t2115 = t2114 - t2113;
+  const Real t2116 = t2115 * t1079;
+  const Real t2117 = -t2116;
+  const Real t2118 = t1029 * t2079;
+  const Real t2119 = sum_error(t2118, t2117);
+  const Real t2120 = product_error(t1079, t2115);
+  const Real t2121 = t2115 * t1077;
+  const Real t2122 = t2120 + t2121;
+  const Real t2123 = t2119 - t2122;
+  const Real t2124 = t2118 - t2116;
+  const Real t2125 = t2112 * t1407;
+  const Real t2126 = t2124 - t2125;
+  const Real t2127 = t2123 + t2126;
+  const Real t2128 = t709 * t2127;
+  const Real t2129 = t711 * t2127;
+  const Real t2130 = t2128 + t2129;
+  const Real t2131 = t684 * t2056;
+  const Real t2132 = t680 * t2056;
+  const Real t2133 = t2131 + t2132;
+  const Real t2134 = t2133 - t2130;
+  const Real t2135 = t2115 * t1088;
+  const Real t2136 = t2134 - t2135;
+  const Real t2137 = product_error(t1088, t2115);
+  const Real t2138 = t2136 - t2137;
+  const Real t2139 = t2112 * t1415;
+  const Real t2140 = t2112 * t1417;
+  const Real t2141 = t2139 + t2140;
+  const Real t2142 = t2138 - t2141;
+  const Real t2143 = t2142 * t668;
+  const Real t2144 = t2142 * t670;
+  const Real t2145 = t2143 + t2144;
+  const Real t2146 = t1975 * t632;
+  const Real t2147 = t2146 - t2145;
+  const Real t2148 = t1016 * t2127;
+  const Real t2149 = t2147 - t2148;
+  const Real t2150 = t2115 * t1091;
+  const Real t2151 = t2149 - t2150;
+  const Real t2152 = t1422 * t2112;
+  const Real t2153 = t2151 - t2152;
+  const Real t2154 = t547 * t2153;
+  const Real t2155 = t1950 * t538;
+  const Real t2156 = t2155 - t2154;
+  const Real t2157 = t2142 * t539;
+  const Real t2158 = t2142 * t541;
+  const Real t2159 = t2157 + t2158;
+  const Real t2160 = t2156 - t2159;
+  const Real t2161 = t2127 * t1008;
+  const Real t2162 = t2160 - t2161;
+  const Real t2163 = t2115 * t1276;
+  const Real t2164 = t2162 - t2163;
+  const Real t2165 = t1424 * t2112;
+  const Real t2166 = t2164 - t2165;
+  const Real t2167 = t2166 * t436;
+  const Real t2168 = t155 * t1948;
+  const Real t2169 = t1948 * t144;
+  const Real t2170 = t2168 + t2169;
+  const Real t2171 = t2170 + t2167;
+  const Real t2172 = t574 * t2153;
+  const Real t2173 = t2172 + t2171;
+  const Real t2174 = t2142 * t159;
+  const Real t2175 = t2142 * t161;
+  const Real t2176 = t2174 + t2175;
+  const Real t2177 = t2173 + t2176;
+  const Real t2178 = t805 * t2127;
+  const Real t2179 = t2127 * t803;
+  const Real t2180 = t2178 + t2179;
+  const Real t2181 = t2180 + t2177;
+  const Real t2182 = t2115 * t1159;
+  const Real t2183 = t2115 * t1161;
+  const Real t2184 = t2182 + t2183;
+  const Real t2185 = t2181 + t2184;
+  const Real t2186 = t2112 * t1477;
+  const Real t2187 = t1475 * t2112;
+  const Real t2188 = t2186 + t2187;
+  const Real t2189 = t2185 + t2188;
+  const Real t2190 = -t2189;
+
+  w_dot[0] = t2166;
+  w_dot[1] = t2153;
+  w_dot[2] = t2142;
+  w_dot[3] = t2190;
+  w_dot[4] = t2127;
+  w_dot[5] = t2115;
+  w_dot[6] = t2112;
+  eta_dot[0] = t2166;
+  eta_dot[1] = t2153;
+  eta_dot[2] = t2142;
+  r_p_ddot[0] = t2190;
+  r_a_ddot_out[0] = t2127;
+  r_a_ddot_out[1] = t2115;
+  r_a_ddot_out[2] = t2112;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;

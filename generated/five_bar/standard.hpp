@@ -13,8 +13,8 @@
 //   constraints                       20 add, 43 mul, 6 neg, 4 sin, 4 cos
 //   free_dynamics                     26 add, 50 mul, 4 neg, 4 sin, 4 cos
 //   forward_dynamics                  39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
-//   inverse_torques                   69 add, 121 mul, 2 div, 6 sin, 4 cos
-//   multipliers                       126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
+//   inverse_torques                   70 add, 125 mul, 2 div, 4 sin, 4 cos
+//   multipliers                       127 add, 150 mul, 6 div, 1 neg, 4 sin, 4 cos
 //   torque_driven_kinematics          15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
 //   torque_driven_velocities          none
 //   torque_driven_dynamics            104 add, 163 mul, 4 div, 1 neg, 4 sin, 4 cos
@@ -25,7 +25,7 @@
 //   chart2_torque_driven_multipliers  67 add, 108 mul, 2 div, 4 sin, 4 cos
 //   chart3_torque_driven_kinematics   15 add, 30 mul, 2 div, 3 neg, 4 sin, 4 cos
 //   chart3_torque_driven_velocities   none
-//   chart3_torque_driven_dynamics     104 add, 164 mul, 4 div, 1 neg, 4 sin, 4 cos
+//   chart3_torque_driven_dynamics     115 add, 176 mul, 5 div, 4 sin, 4 cos
 //   chart3_torque_driven_multipliers  71 add, 111 mul, 2 div, 4 sin, 4 cos
 //   torque_driven_chart_quality       38 add, 61 mul, 9 div, 3 sqrt, 4 sin, 4 cos
 //   position_conditions               15 add, 16 mul, 4 neg, 4 sin, 4 cos
@@ -772,8 +772,8 @@ inline void forward_dynamics(const Prepared<Real>& par,
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
-/// route: projected recursion, stable forms
-/// operations: 69 add, 121 mul, 2 div, 6 sin, 4 cos
+/// route: projected recursion
+/// operations: 70 add, 125 mul, 2 div, 4 sin, 4 cos
 /// @param[in]  par        made by prepare()
 /// @param[in]  r_p        (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a        (2) rad or m: left, right
@@ -798,242 +798,253 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
-  const Real t1 = r_a[0] - r_a[1];
-  const Real t2 = sin(t1);
-  const Real t3 = r_a[1] - r_a[0];
-  const Real t4 = sin(t3);
 
   // kernel
-  const Real t5 = s_r_a_0_ * s_r_a_1_;
-  const Real t6 = c_r_a_1_ * c_r_a_0_;
-  const Real t7 = t5 + t6;
-  const Real t8 = c_r_p_1_ * t7;
-  const Real t9 = s_r_p_1_ * t7;
-  const Real t10 = s_r_p_0_ * t7;
-  const Real t11 = s_r_p_1_ * par.l_1;
-  const Real t12 = s_r_p_0_ * par.l_1;
+  const Real t1 = s_r_p_1_ * par.l_1;
+  const Real t2 = s_r_a_0_ * s_r_a_1_;
+  const Real t3 = c_r_a_1_ * c_r_a_0_;
+  const Real t4 = t2 + t3;
+  const Real t5 = s_r_p_1_ * t4;
+  const Real t6 = s_r_a_1_ * c_r_a_0_;
+  const Real t7 = c_r_a_1_ * s_r_a_0_;
+  const Real t8 = t6 - t7;
+  const Real t9 = c_r_p_1_ * t8;
+  const Real t10 = t5 + t9;
+  const Real t11 = c_r_p_0_ * t10;
+  const Real t12 = c_r_p_1_ * t4;
+  const Real t13 = s_r_p_1_ * t8;
+  const Real t14 = t12 - t13;
+  const Real t15 = s_r_p_0_ * t14;
+  const Real t16 = t11 - t15;
+  const Real t17 = t16 * par.l_2;
+  const Real t18 = constant<Real>(1.0L) / t17;
+  const Real t19 = t1 * t18;
+  const Real t20 = r_a_dot[1] * t19;
+  const Real t21 = par.l_1 * t10;
+  const Real t22 = t21 + t17;
+  const Real t23 = t22 * t18;
+  const Real t24 = r_a_dot[0] * t23;
+  const Real t25 = t20 - t24;
+  const Real t26 = c_r_p_0_ * t8;
+  const Real t27 = s_r_p_0_ * t4;
+  const Real t28 = t26 - t27;
+  const Real t29 = par.l_1 * t28;
+  const Real t30 = t29 + t17;
+  const Real t31 = t30 * t18;
+  const Real t32 = t31 * r_a_dot[1];
+  const Real t33 = s_r_p_0_ * par.l_1;
+  const Real t34 = t18 * t33;
+  const Real t35 = r_a_dot[0] * t34;
+  const Real t36 = t32 + t35;
 
   // joint angles
-  const Real t13 = r_a_dot[1] * r_a_dot[1];
-  const Real t14 = r_a_dot[0] * c_r_a_0_;
-  const Real t15 = r_a_dot[0] * r_a_dot[0];
-  const Real t16 = c_r_a_1_ * r_a_dot[1];
-  const Real t17 = s_r_a_1_ * r_a_dot[1];
-  const Real t18 = r_a_dot[0] * s_r_a_0_;
+  const Real t37 = r_a_dot[1] * r_a_dot[1];
+  const Real t38 = r_a_dot[0] * c_r_a_0_;
+  const Real t39 = r_a_dot[0] * r_a_dot[0];
+  const Real t40 = c_r_a_1_ * r_a_dot[1];
+  const Real t41 = s_r_a_1_ * r_a_dot[1];
+  const Real t42 = r_a_dot[0] * s_r_a_0_;
 
   // left_crank: acceleration
-  const Real t19 = par.g * c_r_a_0_;
-  const Real t20 = par.g * s_r_a_0_;
+  const Real t43 = par.g * c_r_a_0_;
+  const Real t44 = par.g * s_r_a_0_;
 
   // left_rod: acceleration
-  const Real t21 = par.l_1 * t15;
-  const Real t22 = t20 - t21;
-  const Real t23 = c_r_p_0_ * t22;
-  const Real t24 = s_r_p_0_ * t22;
+  const Real t45 = par.l_1 * t39;
+  const Real t46 = t44 - t45;
+  const Real t47 = c_r_p_0_ * t46;
+  const Real t48 = s_r_p_0_ * t46;
 
   // right_crank: acceleration
-  const Real t25 = par.g * s_r_a_1_;
-  const Real t26 = c_r_a_1_ * par.g;
+  const Real t49 = par.g * s_r_a_1_;
+  const Real t50 = c_r_a_1_ * par.g;
 
   // right_rod: acceleration
-  const Real t27 = t13 * par.l_1;
-  const Real t28 = t25 - t27;
-  const Real t29 = c_r_p_1_ * t28;
-  const Real t30 = s_r_p_1_ * t28;
+  const Real t51 = t37 * par.l_1;
+  const Real t52 = t49 - t51;
+  const Real t53 = c_r_p_1_ * t52;
+  const Real t54 = s_r_p_1_ * t52;
 
   // left_crank: wrench
-  const Real t31 = t19 * par.k5;
+  const Real t55 = t43 * par.k5;
 
   // right_crank: wrench
-  const Real t32 = t26 * par.k5;
+  const Real t56 = t50 * par.k5;
+
+  // joint angles
+  const Real t57 = s_r_p_0_ * t25;
+  const Real t58 = t25 * c_r_p_0_;
+  const Real t59 = t36 * c_r_p_1_;
+  const Real t60 = s_r_p_1_ * t36;
 
   // drift of the kernel
-  const Real t33 = c_r_a_0_ * t16;
-  const Real t34 = s_r_a_1_ * t18;
-  const Real t35 = t33 - t34;
-  const Real t36 = c_r_a_1_ * t14;
-  const Real t37 = s_r_a_0_ * t17;
-  const Real t38 = t36 - t37;
-  const Real t39 = t35 - t38;
-  const Real t40 = s_r_p_1_ * t39;
-  const Real t41 = c_r_p_1_ * t39;
-  const Real t42 = c_r_p_0_ * t39;
+  const Real t61 = t58 * par.l_1;
+  const Real t62 = t18 * t61;
+  const Real t63 = t8 * t60;
+  const Real t64 = c_r_a_0_ * t40;
+  const Real t65 = s_r_a_1_ * t42;
+  const Real t66 = t64 - t65;
+  const Real t67 = c_r_a_1_ * t38;
+  const Real t68 = s_r_a_0_ * t41;
+  const Real t69 = t67 - t68;
+  const Real t70 = t66 - t69;
+  const Real t71 = c_r_p_1_ * t70;
+  const Real t72 = t63 + t71;
+  const Real t73 = s_r_a_0_ * t40;
+  const Real t74 = s_r_a_1_ * t38;
+  const Real t75 = t73 + t74;
+  const Real t76 = c_r_a_1_ * t42;
+  const Real t77 = c_r_a_0_ * t41;
+  const Real t78 = t76 + t77;
+  const Real t79 = t75 - t78;
+  const Real t80 = s_r_p_1_ * t79;
+  const Real t81 = t59 * t4;
+  const Real t82 = t80 - t81;
+  const Real t83 = t72 + t82;
+  const Real t84 = c_r_p_0_ * t83;
+  const Real t85 = t57 * t10;
+  const Real t86 = t84 - t85;
+  const Real t87 = t58 * t14;
+  const Real t88 = t60 * t4;
+  const Real t89 = t79 * c_r_p_1_;
+  const Real t90 = t88 + t89;
+  const Real t91 = s_r_p_1_ * t70;
+  const Real t92 = t59 * t8;
+  const Real t93 = t91 - t92;
+  const Real t94 = t90 - t93;
+  const Real t95 = s_r_p_0_ * t94;
+  const Real t96 = t87 + t95;
+  const Real t97 = t86 - t96;
+  const Real t98 = par.l_2 * t97;
+  const Real t99 = t98 * t18;
+  const Real t100 = t99 / t17;
+  const Real t101 = t100 * t33;
+  const Real t102 = t62 - t101;
+  const Real t103 = r_a_dot[0] * t102;
+  const Real t104 = c_r_p_0_ * t70;
+  const Real t105 = t57 * t8;
+  const Real t106 = t104 - t105;
+  const Real t107 = t58 * t4;
+  const Real t108 = s_r_p_0_ * t79;
+  const Real t109 = t107 + t108;
+  const Real t110 = t106 - t109;
+  const Real t111 = t110 * par.l_1;
+  const Real t112 = t98 + t111;
+  const Real t113 = t112 * t18;
+  const Real t114 = t30 * t100;
+  const Real t115 = t113 - t114;
+  const Real t116 = t115 * r_a_dot[1];
+  const Real t117 = t103 + t116;
+  const Real t118 = t31 * r_a_ddot[1];
+  const Real t119 = r_a_ddot[0] * t34;
+  const Real t120 = t118 + t119;
+  const Real t121 = t117 + t120;
+  const Real t122 = r_a_ddot[1] * t19;
+  const Real t123 = r_a_ddot[0] * t23;
+  const Real t124 = t122 - t123;
+  const Real t125 = t100 * t1;
+  const Real t126 = t59 * par.l_1;
+  const Real t127 = t18 * t126;
+  const Real t128 = t125 + t127;
+  const Real t129 = r_a_dot[1] * t128;
+  const Real t130 = t83 * par.l_1;
+  const Real t131 = t98 + t130;
+  const Real t132 = t131 * t18;
+  const Real t133 = t100 * t22;
+  const Real t134 = t132 - t133;
+  const Real t135 = r_a_dot[0] * t134;
+  const Real t136 = t129 + t135;
+  const Real t137 = t124 - t136;
+
+  // left_rod: twist
+  const Real t138 = r_a_dot[0] + t25;
+
+  // right_rod: twist
+  const Real t139 = r_a_dot[1] - t36;
 
   // left_rod: acceleration
-  const Real t43 = r_a_ddot[0] * par.l_1;
-  const Real t44 = t19 + t43;
-  const Real t45 = c_r_p_0_ * t44;
-  const Real t46 = t45 - t24;
-  const Real t47 = s_r_p_0_ * t44;
-  const Real t48 = t47 + t23;
+  const Real t140 = r_a_ddot[0] * par.l_1;
+  const Real t141 = t43 + t140;
+  const Real t142 = c_r_p_0_ * t141;
+  const Real t143 = t142 - t48;
+  const Real t144 = s_r_p_0_ * t141;
+  const Real t145 = t144 + t47;
+  const Real t146 = r_a_ddot[0] + t137;
+  const Real t147 = t138 * t138;
 
   // right_rod: acceleration
-  const Real t49 = r_a_ddot[1] * par.l_1;
-  const Real t50 = t26 + t49;
-  const Real t51 = t50 * s_r_p_1_;
-  const Real t52 = t29 + t51;
-  const Real t53 = t50 * c_r_p_1_;
-  const Real t54 = t53 - t30;
+  const Real t148 = r_a_ddot[1] * par.l_1;
+  const Real t149 = t50 + t148;
+  const Real t150 = t149 * s_r_p_1_;
+  const Real t151 = t53 + t150;
+  const Real t152 = r_a_ddot[1] - t121;
+  const Real t153 = t149 * c_r_p_1_;
+  const Real t154 = t153 - t54;
+  const Real t155 = t139 * t139;
 
   // left_crank: wrench
-  const Real t55 = r_a_ddot[0] * par.k1;
-  const Real t56 = t31 + t55;
+  const Real t156 = r_a_ddot[0] * par.k1;
+  const Real t157 = t55 + t156;
 
   // left_rod: wrench
-  const Real t57 = t48 * par.m_2;
-  const Real t58 = t46 * par.k3;
-  const Real t59 = t46 * par.m_2;
+  const Real t158 = t143 * par.k3;
+  const Real t159 = t146 * par.k4;
+  const Real t160 = t158 + t159;
+  const Real t161 = t146 * par.k3;
+  const Real t162 = t143 * par.m_2;
+  const Real t163 = t161 + t162;
+  const Real t164 = t145 * par.m_2;
+  const Real t165 = par.k3 * t147;
+  const Real t166 = t164 - t165;
 
   // right_crank: wrench
-  const Real t60 = par.k1 * r_a_ddot[1];
-  const Real t61 = t32 + t60;
+  const Real t167 = par.k1 * r_a_ddot[1];
+  const Real t168 = t56 + t167;
 
   // right_rod: wrench
-  const Real t62 = par.m_2 * t54;
-  const Real t63 = par.k3 * t54;
-  const Real t64 = t52 * par.m_2;
+  const Real t169 = t151 * par.m_2;
+  const Real t170 = par.k3 * t155;
+  const Real t171 = t169 - t170;
+  const Real t172 = par.m_2 * t154;
+  const Real t173 = par.k3 * t152;
+  const Real t174 = t172 + t173;
+  const Real t175 = par.k3 * t154;
+  const Real t176 = t152 * par.k4;
+  const Real t177 = t175 + t176;
 
-  // passive accelerations
-  const Real t65 = c_r_p_1_ * t4;
-  const Real t66 = t9 + t65;
-  const Real t67 = t66 * c_r_p_0_;
-  const Real t68 = s_r_p_1_ * t4;
-  const Real t69 = t8 - t68;
-  const Real t70 = s_r_p_0_ * t69;
-  const Real t71 = t67 - t70;
-  const Real t72 = t71 * par.l_2;
-  const Real t73 = constant<Real>(1.0L) / t72;
-  const Real t74 = t73 * t11;
-  const Real t75 = r_a_dot[1] * t74;
-  const Real t76 = t66 * par.l_1;
-  const Real t77 = t76 + t72;
-  const Real t78 = t73 * t77;
-  const Real t79 = r_a_dot[0] * t78;
-  const Real t80 = t75 - t79;
-  const Real t81 = c_r_p_0_ * t80;
-  const Real t82 = par.l_1 * t81;
-  const Real t83 = t73 * t82;
-  const Real t84 = t73 * t12;
-  const Real t85 = t84 * r_a_dot[0];
-  const Real t86 = c_r_p_0_ * t4;
-  const Real t87 = t86 - t10;
-  const Real t88 = t87 * par.l_1;
-  const Real t89 = t88 + t72;
-  const Real t90 = t73 * t89;
-  const Real t91 = r_a_dot[1] * t90;
-  const Real t92 = t85 + t91;
-  const Real t93 = s_r_p_1_ * t92;
-  const Real t94 = t93 * t4;
-  const Real t95 = t41 + t94;
-  const Real t96 = r_a_dot[1] * t2;
-  const Real t97 = r_a_dot[0] * t4;
-  const Real t98 = t96 + t97;
-  const Real t99 = s_r_p_1_ * t98;
-  const Real t100 = c_r_p_1_ * t92;
-  const Real t101 = t100 * t7;
-  const Real t102 = t99 - t101;
-  const Real t103 = t95 + t102;
-  const Real t104 = c_r_p_0_ * t103;
-  const Real t105 = s_r_p_0_ * t80;
-  const Real t106 = t66 * t105;
-  const Real t107 = t104 - t106;
-  const Real t108 = c_r_p_1_ * t98;
-  const Real t109 = t93 * t7;
-  const Real t110 = t108 + t109;
-  const Real t111 = t100 * t4;
-  const Real t112 = t40 - t111;
-  const Real t113 = t110 - t112;
-  const Real t114 = t113 * s_r_p_0_;
-  const Real t115 = t69 * t81;
-  const Real t116 = t114 + t115;
-  const Real t117 = t107 - t116;
-  const Real t118 = t117 * par.l_2;
-  const Real t119 = t118 * t73;
-  const Real t120 = t119 / t72;
-  const Real t121 = t120 * t12;
-  const Real t122 = t83 - t121;
-  const Real t123 = t122 * r_a_dot[0];
-  const Real t124 = t105 * t4;
-  const Real t125 = t42 - t124;
-  const Real t126 = t81 * t7;
-  const Real t127 = s_r_p_0_ * t98;
-  const Real t128 = t126 + t127;
-  const Real t129 = t125 - t128;
-  const Real t130 = par.l_1 * t129;
-  const Real t131 = t118 + t130;
-  const Real t132 = t73 * t131;
-  const Real t133 = t120 * t89;
-  const Real t134 = t132 - t133;
-  const Real t135 = r_a_dot[1] * t134;
-  const Real t136 = t123 + t135;
-  const Real t137 = t84 * r_a_ddot[0];
-  const Real t138 = r_a_ddot[1] * t90;
-  const Real t139 = t137 + t138;
-  const Real t140 = t136 + t139;
-  const Real t141 = r_a_ddot[1] * t74;
-  const Real t142 = r_a_ddot[0] * t78;
-  const Real t143 = t141 - t142;
-  const Real t144 = t103 * par.l_1;
-  const Real t145 = t118 + t144;
-  const Real t146 = t73 * t145;
-  const Real t147 = t120 * t77;
-  const Real t148 = t146 - t147;
-  const Real t149 = t148 * r_a_dot[0];
-  const Real t150 = par.l_1 * t100;
-  const Real t151 = t150 * t73;
-  const Real t152 = t120 * t11;
-  const Real t153 = t151 + t152;
-  const Real t154 = t153 * r_a_dot[1];
-  const Real t155 = t149 + t154;
-  const Real t156 = t143 - t155;
+  // right_rod: joint force
+  const Real t178 = s_r_p_1_ * t171;
+  const Real t179 = t174 * c_r_p_1_;
+  const Real t180 = t178 + t179;
+  const Real t181 = par.l_1 * t180;
+  const Real t182 = t181 + t177;
+  const Real t183 = t182 + t168;
+
+  // left_rod: joint force
+  const Real t184 = s_r_p_0_ * t166;
+  const Real t185 = c_r_p_0_ * t163;
+  const Real t186 = t184 + t185;
+  const Real t187 = par.l_1 * t186;
+  const Real t188 = t160 + t187;
+  const Real t189 = t188 + t157;
 
   // torques
-  const Real t157 = t156 + r_a_ddot[0];
-  const Real t158 = par.k4 * t157;
-  const Real t159 = t58 + t158;
-  const Real t160 = par.k3 * t157;
-  const Real t161 = t160 + t59;
-  const Real t162 = c_r_p_0_ * t161;
-  const Real t163 = r_a_dot[0] + t80;
-  const Real t164 = t163 * t163;
-  const Real t165 = t164 * par.k3;
-  const Real t166 = t57 - t165;
-  const Real t167 = s_r_p_0_ * t166;
-  const Real t168 = t162 + t167;
-  const Real t169 = t168 * par.l_1;
-  const Real t170 = t159 + t169;
-  const Real t171 = t170 + t56;
-  const Real t172 = t159 * t78;
-  const Real t173 = r_a_ddot[1] - t140;
-  const Real t174 = t173 * par.k4;
-  const Real t175 = t174 + t63;
-  const Real t176 = t84 * t175;
-  const Real t177 = t172 + t176;
-  const Real t178 = t171 - t177;
-  const Real t179 = r_a_dot[1] - t92;
-  const Real t180 = t179 * t179;
-  const Real t181 = par.k3 * t180;
-  const Real t182 = t64 - t181;
-  const Real t183 = s_r_p_1_ * t182;
-  const Real t184 = t173 * par.k3;
-  const Real t185 = t62 + t184;
-  const Real t186 = c_r_p_1_ * t185;
-  const Real t187 = t183 + t186;
-  const Real t188 = t187 * par.l_1;
-  const Real t189 = t188 + t175;
-  const Real t190 = t61 + t189;
-  const Real t191 = t159 * t74;
-  const Real t192 = t90 * t175;
-  const Real t193 = t191 - t192;
-  const Real t194 = t190 + t193;
+  const Real t190 = t160 * t19;
+  const Real t191 = t31 * t177;
+  const Real t192 = t190 - t191;
+  const Real t193 = t192 + t183;
+  const Real t194 = t177 * t34;
+  const Real t195 = t160 * t23;
+  const Real t196 = t194 + t195;
+  const Real t197 = t189 - t196;
 
-  tau_a_out[0] = t178;
-  tau_a_out[1] = t194;
+  tau_a_out[0] = t197;
+  tau_a_out[1] = t193;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, stable forms, compensated beyond 2 ulps
-/// operations: 126 add, 146 mul, 6 div, 1 neg, 6 sin, 4 cos
+/// route: projected recursion, compensated beyond 16 ulps
+/// operations: 127 add, 150 mul, 6 div, 1 neg, 4 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a       (2) rad or m: left, right
@@ -1061,233 +1072,234 @@ inline void multipliers(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
-  const Real t1 = r_a[0] - r_a[1];
-  const Real t2 = sin(t1);
-  const Real t3 = r_a[1] - r_a[0];
-  const Real t4 = sin(t3);
 
   // joint angles
-  const Real t5 = s_r_p_0_ * c_r_a_0_;
-  const Real t6 = c_r_p_0_ * s_r_a_0_;
-  const Real t7 = t5 + t6;
-  const Real t8 = t7 * par.l_2;
-  const Real t9 = c_r_p_0_ * c_r_a_0_;
-  const Real t10 = s_r_p_0_ * s_r_a_0_;
-  const Real t11 = t9 - t10;
+  const Real t1 = s_r_p_0_ * c_r_a_0_;
+  const Real t2 = c_r_p_0_ * s_r_a_0_;
+  const Real t3 = t1 + t2;
+  const Real t4 = t3 * par.l_2;
+  const Real t5 = c_r_p_0_ * c_r_a_0_;
+  const Real t6 = s_r_p_0_ * s_r_a_0_;
+  const Real t7 = t5 - t6;
+  const Real t8 = par.l_2 * t7;
+  const Real t9 = s_r_a_1_ * c_r_p_1_;
+  const Real t10 = c_r_a_1_ * s_r_p_1_;
+  const Real t11 = t9 + t10;
   const Real t12 = par.l_2 * t11;
-  const Real t13 = s_r_a_1_ * c_r_p_1_;
-  const Real t14 = c_r_a_1_ * s_r_p_1_;
-  const Real t15 = t13 + t14;
-  const Real t16 = par.l_2 * t15;
-  const Real t17 = c_r_a_1_ * c_r_p_1_;
-  const Real t18 = s_r_p_1_ * s_r_a_1_;
-  const Real t19 = t17 - t18;
-  const Real t20 = t19 * par.l_2;
-  const Real t21 = -t20;
+  const Real t13 = c_r_a_1_ * c_r_p_1_;
+  const Real t14 = s_r_p_1_ * s_r_a_1_;
+  const Real t15 = t13 - t14;
+  const Real t16 = t15 * par.l_2;
+  const Real t17 = -t16;
 
   // kernel
-  const Real t22 = s_r_a_0_ * s_r_a_1_;
-  const Real t23 = c_r_a_1_ * c_r_a_0_;
-  const Real t24 = t22 + t23;
-  const Real t25 = c_r_p_1_ * t24;
-  const Real t26 = constant<Real>(1.0L) / t8;
-  const Real t27 = t12 * t26;
-  const Real t28 = t16 * t27;
-  const Real t29 = t28 - t20;
-  const Real t30 = constant<Real>(1.0L) / t29;
-  const Real t31 = s_r_p_1_ * t24;
-  const Real t32 = s_r_p_0_ * t24;
-  const Real t33 = s_r_p_1_ * par.l_1;
-  const Real t34 = s_r_p_0_ * par.l_1;
+  const Real t18 = constant<Real>(1.0L) / t4;
+  const Real t19 = t8 * t18;
+  const Real t20 = t12 * t19;
+  const Real t21 = t20 - t16;
+  const Real t22 = constant<Real>(1.0L) / t21;
+  const Real t23 = s_r_p_1_ * par.l_1;
+  const Real t24 = s_r_a_0_ * s_r_a_1_;
+  const Real t25 = c_r_a_1_ * c_r_a_0_;
+  const Real t26 = t24 + t25;
+  const Real t27 = s_r_p_1_ * t26;
+  const Real t28 = s_r_a_1_ * c_r_a_0_;
+  const Real t29 = c_r_a_1_ * s_r_a_0_;
+  const Real t30 = t28 - t29;
+  const Real t31 = c_r_p_1_ * t30;
+  const Real t32 = t27 + t31;
+  const Real t33 = c_r_p_0_ * t32;
+  const Real t34 = c_r_p_1_ * t26;
+  const Real t35 = s_r_p_1_ * t30;
+  const Real t36 = t34 - t35;
+  const Real t37 = s_r_p_0_ * t36;
+  const Real t38 = t33 - t37;
+  const Real t39 = t38 * par.l_2;
+  const Real t40 = constant<Real>(1.0L) / t39;
+  const Real t41 = t23 * t40;
+  const Real t42 = r_a_dot[1] * t41;
+  const Real t43 = par.l_1 * t32;
+  const Real t44 = t43 + t39;
+  const Real t45 = t44 * t40;
+  const Real t46 = r_a_dot[0] * t45;
+  const Real t47 = t42 - t46;
+  const Real t48 = c_r_p_0_ * t30;
+  const Real t49 = s_r_p_0_ * t26;
+  const Real t50 = t48 - t49;
+  const Real t51 = par.l_1 * t50;
+  const Real t52 = t51 + t39;
+  const Real t53 = t52 * t40;
+  const Real t54 = t53 * r_a_dot[1];
+  const Real t55 = s_r_p_0_ * par.l_1;
+  const Real t56 = t40 * t55;
+  const Real t57 = r_a_dot[0] * t56;
+  const Real t58 = t54 + t57;
 
   // joint angles
-  const Real t35 = r_a_dot[1] * r_a_dot[1];
-  const Real t36 = r_a_dot[0] * c_r_a_0_;
-  const Real t37 = r_a_dot[0] * r_a_dot[0];
-  const Real t38 = c_r_a_1_ * r_a_dot[1];
-  const Real t39 = s_r_a_1_ * r_a_dot[1];
-  const Real t40 = r_a_dot[0] * s_r_a_0_;
+  const Real t59 = r_a_dot[1] * r_a_dot[1];
+  const Real t60 = r_a_dot[0] * c_r_a_0_;
+  const Real t61 = r_a_dot[0] * r_a_dot[0];
+  const Real t62 = c_r_a_1_ * r_a_dot[1];
+  const Real t63 = s_r_a_1_ * r_a_dot[1];
+  const Real t64 = r_a_dot[0] * s_r_a_0_;
 
   // left_crank: acceleration
-  const Real t41 = par.g * c_r_a_0_;
-  const Real t42 = par.g * s_r_a_0_;
+  const Real t65 = par.g * c_r_a_0_;
+  const Real t66 = par.g * s_r_a_0_;
 
   // left_rod: acceleration
-  const Real t43 = par.l_1 * t37;
-  const Real t44 = t42 - t43;
-  const Real t45 = s_r_p_0_ * t44;
+  const Real t67 = par.l_1 * t61;
+  const Real t68 = t66 - t67;
+  const Real t69 = s_r_p_0_ * t68;
 
   // right_crank: acceleration
-  const Real t46 = par.g * s_r_a_1_;
-  const Real t47 = c_r_a_1_ * par.g;
+  const Real t70 = par.g * s_r_a_1_;
+  const Real t71 = c_r_a_1_ * par.g;
 
   // right_rod: acceleration
-  const Real t48 = t35 * par.l_1;
-  const Real t49 = t46 - t48;
-  const Real t50 = s_r_p_1_ * t49;
+  const Real t72 = t59 * par.l_1;
+  const Real t73 = t70 - t72;
+  const Real t74 = s_r_p_1_ * t73;
+
+  // joint angles
+  const Real t75 = s_r_p_0_ * t47;
+  const Real t76 = t47 * c_r_p_0_;
+  const Real t77 = t58 * c_r_p_1_;
+  const Real t78 = s_r_p_1_ * t58;
 
   // drift of the kernel
-  const Real t51 = c_r_a_0_ * t38;
-  const Real t52 = s_r_a_1_ * t40;
-  const Real t53 = t51 - t52;
-  const Real t54 = c_r_a_1_ * t36;
-  const Real t55 = s_r_a_0_ * t39;
-  const Real t56 = t54 - t55;
-  const Real t57 = t53 - t56;
-  const Real t58 = s_r_p_1_ * t57;
-  const Real t59 = c_r_p_1_ * t57;
-  const Real t60 = c_r_p_0_ * t57;
+  const Real t79 = t76 * par.l_1;
+  const Real t80 = t40 * t79;
+  const Real t81 = t30 * t78;
+  const Real t82 = c_r_a_0_ * t62;
+  const Real t83 = s_r_a_1_ * t64;
+  const Real t84 = t82 - t83;
+  const Real t85 = c_r_a_1_ * t60;
+  const Real t86 = s_r_a_0_ * t63;
+  const Real t87 = t85 - t86;
+  const Real t88 = t84 - t87;
+  const Real t89 = c_r_p_1_ * t88;
+  const Real t90 = t81 + t89;
+  const Real t91 = s_r_a_0_ * t62;
+  const Real t92 = s_r_a_1_ * t60;
+  const Real t93 = t91 + t92;
+  const Real t94 = c_r_a_1_ * t64;
+  const Real t95 = c_r_a_0_ * t63;
+  const Real t96 = t94 + t95;
+  const Real t97 = t93 - t96;
+  const Real t98 = s_r_p_1_ * t97;
+  const Real t99 = t77 * t26;
+  const Real t100 = t98 - t99;
+  const Real t101 = t90 + t100;
+  const Real t102 = c_r_p_0_ * t101;
+  const Real t103 = t75 * t32;
+  const Real t104 = t102 - t103;
+  const Real t105 = t76 * t36;
+  const Real t106 = t78 * t26;
+  const Real t107 = t97 * c_r_p_1_;
+  const Real t108 = t106 + t107;
+  const Real t109 = s_r_p_1_ * t88;
+  const Real t110 = t77 * t30;
+  const Real t111 = t109 - t110;
+  const Real t112 = t108 - t111;
+  const Real t113 = s_r_p_0_ * t112;
+  const Real t114 = t105 + t113;
+  const Real t115 = t104 - t114;
+  const Real t116 = par.l_2 * t115;
+  const Real t117 = t116 * t40;
+  const Real t118 = t117 / t39;
+  const Real t119 = t118 * t55;
+  const Real t120 = t80 - t119;
+  const Real t121 = r_a_dot[0] * t120;
+  const Real t122 = c_r_p_0_ * t88;
+  const Real t123 = t75 * t30;
+  const Real t124 = t122 - t123;
+  const Real t125 = t76 * t26;
+  const Real t126 = s_r_p_0_ * t97;
+  const Real t127 = t125 + t126;
+  const Real t128 = t124 - t127;
+  const Real t129 = t128 * par.l_1;
+  const Real t130 = t116 + t129;
+  const Real t131 = t130 * t40;
+  const Real t132 = t52 * t118;
+  const Real t133 = t131 - t132;
+  const Real t134 = t133 * r_a_dot[1];
+  const Real t135 = t121 + t134;
+  const Real t136 = t53 * r_a_ddot[1];
+  const Real t137 = r_a_ddot[0] * t56;
+  const Real t138 = t136 + t137;
+  const Real t139 = t135 + t138;
+  const Real t140 = r_a_ddot[1] * t41;
+  const Real t141 = r_a_ddot[0] * t45;
+  const Real t142 = t140 - t141;
+  const Real t143 = t118 * t23;
+  const Real t144 = t77 * par.l_1;
+  const Real t145 = t40 * t144;
+  const Real t146 = t143 + t145;
+  const Real t147 = r_a_dot[1] * t146;
+  const Real t148 = t101 * par.l_1;
+  const Real t149 = t116 + t148;
+  const Real t150 = t149 * t40;
+  const Real t151 = t118 * t44;
+  const Real t152 = t150 - t151;
+  const Real t153 = r_a_dot[0] * t152;
+  const Real t154 = t147 + t153;
+  const Real t155 = t142 - t154;
 
   // left_rod: acceleration
-  const Real t61 = r_a_ddot[0] * par.l_1;
-  const Real t62 = t41 + t61;
-  const Real t63 = c_r_p_0_ * t62;
-  const Real t64 = t63 - t45;
+  const Real t156 = r_a_ddot[0] * par.l_1;
+  const Real t157 = t65 + t156;
+  const Real t158 = c_r_p_0_ * t157;
+  const Real t159 = t158 - t69;
+  const Real t160 = r_a_ddot[0] + t155;
 
   // right_rod: acceleration
-  const Real t65 = r_a_ddot[1] * par.l_1;
-  const Real t66 = t47 + t65;
-  const Real t67 = t66 * c_r_p_1_;
-  const Real t68 = t67 - t50;
+  const Real t161 = r_a_ddot[1] - t139;
+  const Real t162 = r_a_ddot[1] * par.l_1;
+  const Real t163 = t71 + t162;
+  const Real t164 = t163 * c_r_p_1_;
+  const Real t165 = t164 - t74;
 
   // left_rod: wrench
-  const Real t69 = t64 * par.k3;
+  const Real t166 = t159 * par.k3;
+  const Real t167 = t160 * par.k4;
+  const Real t168 = t166 + t167;
 
   // right_rod: wrench
-  const Real t70 = par.k3 * t68;
-
-  // passive accelerations
-  const Real t71 = c_r_p_1_ * t4;
-  const Real t72 = t31 + t71;
-  const Real t73 = t72 * c_r_p_0_;
-  const Real t74 = s_r_p_1_ * t4;
-  const Real t75 = t25 - t74;
-  const Real t76 = s_r_p_0_ * t75;
-  const Real t77 = t73 - t76;
-  const Real t78 = t77 * par.l_2;
-  const Real t79 = constant<Real>(1.0L) / t78;
-  const Real t80 = t79 * t33;
-  const Real t81 = r_a_dot[1] * t80;
-  const Real t82 = t72 * par.l_1;
-  const Real t83 = t82 + t78;
-  const Real t84 = t79 * t83;
-  const Real t85 = r_a_dot[0] * t84;
-  const Real t86 = t81 - t85;
-  const Real t87 = c_r_p_0_ * t86;
-  const Real t88 = par.l_1 * t87;
-  const Real t89 = t79 * t88;
-  const Real t90 = t79 * t34;
-  const Real t91 = t90 * r_a_dot[0];
-  const Real t92 = c_r_p_0_ * t4;
-  const Real t93 = t92 - t32;
-  const Real t94 = t93 * par.l_1;
-  const Real t95 = t94 + t78;
-  const Real t96 = t79 * t95;
-  const Real t97 = r_a_dot[1] * t96;
-  const Real t98 = t91 + t97;
-  const Real t99 = s_r_p_1_ * t98;
-  const Real t100 = t99 * t4;
-  const Real t101 = t59 + t100;
-  const Real t102 = r_a_dot[1] * t2;
-  const Real t103 = r_a_dot[0] * t4;
-  const Real t104 = t102 + t103;
-  const Real t105 = s_r_p_1_ * t104;
-  const Real t106 = c_r_p_1_ * t98;
-  const Real t107 = t106 * t24;
-  const Real t108 = t105 - t107;
-  const Real t109 = t101 + t108;
-  const Real t110 = c_r_p_0_ * t109;
-  const Real t111 = s_r_p_0_ * t86;
-  const Real t112 = t72 * t111;
-  const Real t113 = t110 - t112;
-  const Real t114 = c_r_p_1_ * t104;
-  const Real t115 = t99 * t24;
-  const Real t116 = t114 + t115;
-  const Real t117 = t106 * t4;
-  const Real t118 = t58 - t117;
-  const Real t119 = t116 - t118;
-  const Real t120 = t119 * s_r_p_0_;
-  const Real t121 = t75 * t87;
-  const Real t122 = t120 + t121;
-  const Real t123 = t113 - t122;
-  const Real t124 = t123 * par.l_2;
-  const Real t125 = t124 * t79;
-  const Real t126 = t125 / t78;
-  const Real t127 = t126 * t34;
-  const Real t128 = t89 - t127;
-  const Real t129 = t128 * r_a_dot[0];
-  const Real t130 = t111 * t4;
-  const Real t131 = t60 - t130;
-  const Real t132 = t87 * t24;
-  const Real t133 = s_r_p_0_ * t104;
-  const Real t134 = t132 + t133;
-  const Real t135 = t131 - t134;
-  const Real t136 = par.l_1 * t135;
-  const Real t137 = t124 + t136;
-  const Real t138 = t79 * t137;
-  const Real t139 = t126 * t95;
-  const Real t140 = t138 - t139;
-  const Real t141 = r_a_dot[1] * t140;
-  const Real t142 = t129 + t141;
-  const Real t143 = t90 * r_a_ddot[0];
-  const Real t144 = r_a_ddot[1] * t96;
-  const Real t145 = t143 + t144;
-  const Real t146 = t142 + t145;
-  const Real t147 = r_a_ddot[1] * t80;
-  const Real t148 = r_a_ddot[0] * t84;
-  const Real t149 = t147 - t148;
-  const Real t150 = t109 * par.l_1;
-  const Real t151 = t124 + t150;
-  const Real t152 = t79 * t151;
-  const Real t153 = t126 * t83;
-  const Real t154 = t152 - t153;
-  const Real t155 = t154 * r_a_dot[0];
-  const Real t156 = par.l_1 * t106;
-  const Real t157 = t156 * t79;
-  const Real t158 = t126 * t33;
-  const Real t159 = t157 + t158;
-  const Real t160 = t159 * r_a_dot[1];
-  const Real t161 = t155 + t160;
-  const Real t162 = t149 - t161;
-
-  // torques
-  const Real t163 = t162 + r_a_ddot[0];
-  const Real t164 = par.k4 * t163;
-  const Real t165 = t69 + t164;
-  const Real t166 = r_a_ddot[1] - t146;
-  const Real t167 = t166 * par.k4;
-  const Real t168 = t167 + t70;
+  const Real t169 = par.k3 * t165;
+  const Real t170 = t161 * par.k4;
+  const Real t171 = t169 + t170;
 
   // multipliers
-  const Real t169 = t165 * t26;
-  const Real t170 = t169 * t16;
-  const Real t171 = t170 + t168;
-  const Real t172 = t30 * t171;
-  const Real t173 = product_error(t169, t16);
-  const Real t174 = sum_error(t170, t168);
-  const Real t175 = t173 + t174;
-  const Real t176 = t30 * t175;
-  const Real t177 = quotient_error(constant<Real>(1.0L), t29);
-  const Real t178 = product_error(t16, t27);
-  const Real t179 = sum_error(t28, t21);
+  const Real t172 = t168 * t18;
+  const Real t173 = t12 * t172;
+  const Real t174 = t171 + t173;
+  const Real t175 = t22 * t174;
+  const Real t176 = product_error(t22, t174);
+  const Real t177 = quotient_error(constant<Real>(1.0L), t21);
+  const Real t178 = product_error(t12, t19);
+  const Real t179 = sum_error(t20, t17);
   const Real t180 = t178 + t179;
-  const Real t181 = t30 * t180;
-  const Real t182 = t181 / t29;
+  const Real t181 = t22 * t180;
+  const Real t182 = t181 / t21;
   const Real t183 = t177 - t182;
-  const Real t184 = t183 * t171;
-  const Real t185 = t176 + t184;
-  const Real t186 = product_error(t30, t171);
+  const Real t184 = t183 * t174;
+  const Real t185 = product_error(t12, t172);
+  const Real t186 = sum_error(t171, t173);
   const Real t187 = t185 + t186;
-  const Real t188 = t172 + t187;
-  const Real t189 = t187 * t27;
-  const Real t190 = product_error(t172, t27);
-  const Real t191 = t189 + t190;
-  const Real t192 = t172 * t27;
-  const Real t193 = t192 - t169;
-  const Real t194 = t191 + t193;
+  const Real t188 = t22 * t187;
+  const Real t189 = t184 + t188;
+  const Real t190 = t176 + t189;
+  const Real t191 = t175 + t190;
+  const Real t192 = product_error(t175, t19);
+  const Real t193 = t19 * t190;
+  const Real t194 = t192 + t193;
+  const Real t195 = t175 * t19;
+  const Real t196 = t195 - t172;
+  const Real t197 = t194 + t196;
 
-  lambda[0] = t194;
-  lambda[1] = t188;
+  lambda[0] = t197;
+  lambda[1] = t191;
 }
 
 /// All velocities from the reduced ones, active joints free.
@@ -2989,8 +3001,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 namespace chart3 {
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: all blocks, (66)-(68)
-/// operations: 104 add, 164 mul, 4 div, 1 neg, 4 sin, 4 cos
+/// route: orthogonal basis, all blocks
+/// operations: 115 add, 176 mul, 5 div, 4 sin, 4 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a           (2) rad or m: left, right
@@ -3122,259 +3134,294 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t69 = t68 * t4;
   const Real t70 = t16 + t69;
   const Real t71 = t61 * t70;
-  const Real t72 = t62 * t18;
-  const Real t73 = t24 - t72;
-  const Real t74 = t67 * t73;
-  const Real t75 = t74 * t4;
-  const Real t76 = t18 + t75;
-  const Real t77 = t61 * t76;
+  const Real t72 = t71 * t71;
+  const Real t73 = t68 * t68;
+  const Real t74 = constant<Real>(1.0L) + t73;
+  const Real t75 = t72 + t74;
+  const Real t76 = t62 * t18;
+  const Real t77 = t24 - t76;
+  const Real t78 = t67 * t77;
+  const Real t79 = t78 * t4;
+  const Real t80 = t18 + t79;
+  const Real t81 = t61 * t80;
 
   // joint angles
-  const Real t78 = c_r_p_0_ * w[0];
-  const Real t79 = t78 * w[0];
-  const Real t80 = c_r_a_0_ * t79;
-  const Real t81 = s_r_p_0_ * w[0];
-  const Real t82 = t81 * w[0];
-  const Real t83 = s_r_a_0_ * t82;
-  const Real t84 = s_r_a_0_ * t79;
-  const Real t85 = c_r_a_0_ * t82;
+  const Real t82 = c_r_p_0_ * w[0];
+  const Real t83 = t82 * w[0];
+  const Real t84 = c_r_a_0_ * t83;
+  const Real t85 = s_r_p_0_ * w[0];
+  const Real t86 = t85 * w[0];
+  const Real t87 = s_r_a_0_ * t86;
+  const Real t88 = s_r_a_0_ * t83;
+  const Real t89 = c_r_a_0_ * t86;
 
   // right_crank: acceleration
-  const Real t86 = w[1] * w[1];
+  const Real t90 = w[1] * w[1];
 
   // right_rod: acceleration
-  const Real t87 = par.l_1 * t86;
+  const Real t91 = par.l_1 * t90;
 
   // multipliers
-  const Real t88 = t71 * w[0];
-  const Real t89 = w[1] * t77;
-  const Real t90 = t88 + t89;
-  const Real t91 = t68 * w[0];
-  const Real t92 = t74 * w[1];
-  const Real t93 = t91 + t92;
+  const Real t92 = t71 * w[0];
+  const Real t93 = w[1] * t81;
+  const Real t94 = t92 + t93;
+  const Real t95 = t68 * w[0];
+  const Real t96 = t78 * w[1];
+  const Real t97 = t95 + t96;
 
   // joint angles
-  const Real t94 = c_r_a_1_ * t90;
-  const Real t95 = t90 * t94;
-  const Real t96 = s_r_p_1_ * t95;
-  const Real t97 = s_r_a_1_ * t90;
-  const Real t98 = c_r_p_1_ * t93;
-  const Real t99 = t97 * t98;
-  const Real t100 = t96 - t99;
-  const Real t101 = s_r_p_1_ * t93;
-  const Real t102 = t101 * t93;
-  const Real t103 = c_r_a_1_ * t102;
-  const Real t104 = t103 - t99;
-  const Real t105 = t100 + t104;
-  const Real t106 = t98 * t93;
-  const Real t107 = t106 * s_r_a_1_;
-  const Real t108 = t94 * t101;
-  const Real t109 = t107 - t108;
-  const Real t110 = t90 * t97;
-  const Real t111 = c_r_p_1_ * t110;
-  const Real t112 = t111 - t108;
-  const Real t113 = t109 + t112;
-  const Real t114 = t105 + t113;
-  const Real t115 = t114 * par.l_2;
-  const Real t116 = par.l_1 * t110;
-  const Real t117 = s_r_a_0_ * w[1];
-  const Real t118 = t117 * w[1];
-  const Real t119 = t118 * par.l_1;
-  const Real t120 = c_r_a_0_ * w[1];
-  const Real t121 = t120 * w[1];
-  const Real t122 = s_r_p_0_ * t121;
-  const Real t123 = t117 * t78;
-  const Real t124 = t122 + t123;
-  const Real t125 = t123 + t85;
-  const Real t126 = t124 + t125;
-  const Real t127 = t81 * t120;
-  const Real t128 = t118 * c_r_p_0_;
-  const Real t129 = t127 + t128;
-  const Real t130 = t127 + t84;
-  const Real t131 = t129 + t130;
-  const Real t132 = t126 + t131;
-  const Real t133 = t132 * par.l_2;
-  const Real t134 = t119 + t133;
-  const Real t135 = t116 - t134;
-  const Real t136 = t115 + t135;
-  const Real t137 = t106 * c_r_a_1_;
-  const Real t138 = t97 * t101;
-  const Real t139 = t137 + t138;
-  const Real t140 = c_r_p_1_ * t95;
-  const Real t141 = t140 + t138;
-  const Real t142 = t139 + t141;
-  const Real t143 = t102 * s_r_a_1_;
-  const Real t144 = t94 * t98;
-  const Real t145 = t143 + t144;
-  const Real t146 = s_r_p_1_ * t110;
-  const Real t147 = t146 + t144;
-  const Real t148 = t145 + t147;
-  const Real t149 = t142 - t148;
-  const Real t150 = t149 * par.l_2;
-  const Real t151 = par.l_1 * t95;
-  const Real t152 = par.l_1 * t121;
-  const Real t153 = c_r_p_0_ * t121;
-  const Real t154 = t117 * t81;
-  const Real t155 = t153 - t154;
-  const Real t156 = t80 - t154;
-  const Real t157 = t155 + t156;
-  const Real t158 = t78 * t120;
-  const Real t159 = t118 * s_r_p_0_;
-  const Real t160 = t158 - t159;
-  const Real t161 = t158 - t83;
-  const Real t162 = t160 + t161;
-  const Real t163 = t157 + t162;
-  const Real t164 = t163 * par.l_2;
-  const Real t165 = t152 + t164;
-  const Real t166 = t151 - t165;
-  const Real t167 = t150 + t166;
+  const Real t98 = c_r_a_1_ * t94;
+  const Real t99 = t94 * t98;
+  const Real t100 = s_r_p_1_ * t99;
+  const Real t101 = s_r_a_1_ * t94;
+  const Real t102 = c_r_p_1_ * t97;
+  const Real t103 = t101 * t102;
+  const Real t104 = t100 - t103;
+  const Real t105 = s_r_p_1_ * t97;
+  const Real t106 = t105 * t97;
+  const Real t107 = c_r_a_1_ * t106;
+  const Real t108 = t107 - t103;
+  const Real t109 = t104 + t108;
+  const Real t110 = t102 * t97;
+  const Real t111 = t110 * s_r_a_1_;
+  const Real t112 = t98 * t105;
+  const Real t113 = t111 - t112;
+  const Real t114 = t94 * t101;
+  const Real t115 = c_r_p_1_ * t114;
+  const Real t116 = t115 - t112;
+  const Real t117 = t113 + t116;
+  const Real t118 = t109 + t117;
+  const Real t119 = t118 * par.l_2;
+  const Real t120 = par.l_1 * t114;
+  const Real t121 = s_r_a_0_ * w[1];
+  const Real t122 = t121 * w[1];
+  const Real t123 = t122 * par.l_1;
+  const Real t124 = c_r_a_0_ * w[1];
+  const Real t125 = t124 * w[1];
+  const Real t126 = s_r_p_0_ * t125;
+  const Real t127 = t121 * t82;
+  const Real t128 = t126 + t127;
+  const Real t129 = t127 + t89;
+  const Real t130 = t128 + t129;
+  const Real t131 = t85 * t124;
+  const Real t132 = t122 * c_r_p_0_;
+  const Real t133 = t131 + t132;
+  const Real t134 = t131 + t88;
+  const Real t135 = t133 + t134;
+  const Real t136 = t130 + t135;
+  const Real t137 = t136 * par.l_2;
+  const Real t138 = t123 + t137;
+  const Real t139 = t120 - t138;
+  const Real t140 = t119 + t139;
+  const Real t141 = t110 * c_r_a_1_;
+  const Real t142 = t101 * t105;
+  const Real t143 = t141 + t142;
+  const Real t144 = c_r_p_1_ * t99;
+  const Real t145 = t144 + t142;
+  const Real t146 = t143 + t145;
+  const Real t147 = t106 * s_r_a_1_;
+  const Real t148 = t98 * t102;
+  const Real t149 = t147 + t148;
+  const Real t150 = s_r_p_1_ * t114;
+  const Real t151 = t150 + t148;
+  const Real t152 = t149 + t151;
+  const Real t153 = t146 - t152;
+  const Real t154 = t153 * par.l_2;
+  const Real t155 = par.l_1 * t99;
+  const Real t156 = par.l_1 * t125;
+  const Real t157 = c_r_p_0_ * t125;
+  const Real t158 = t121 * t85;
+  const Real t159 = t157 - t158;
+  const Real t160 = t84 - t158;
+  const Real t161 = t159 + t160;
+  const Real t162 = t82 * t124;
+  const Real t163 = t122 * s_r_p_0_;
+  const Real t164 = t162 - t163;
+  const Real t165 = t162 - t87;
+  const Real t166 = t164 + t165;
+  const Real t167 = t161 + t166;
+  const Real t168 = t167 * par.l_2;
+  const Real t169 = t156 + t168;
+  const Real t170 = t155 - t169;
+  const Real t171 = t154 + t170;
 
   // drift of the kernel
-  const Real t168 = t62 * t167;
-  const Real t169 = t136 + t168;
-  const Real t170 = t169 * t67;
-  const Real t171 = t170 * t4;
-  const Real t172 = t171 - t167;
-  const Real t173 = t61 * t172;
+  const Real t172 = t62 * t171;
+  const Real t173 = t140 + t172;
+  const Real t174 = t173 * t67;
+  const Real t175 = t174 * t4;
+  const Real t176 = t175 - t171;
+  const Real t177 = t61 * t176;
 
   // left_rod: twist
-  const Real t174 = w[1] + w[0];
+  const Real t178 = w[1] + w[0];
 
   // right_rod: twist
-  const Real t175 = t90 - t93;
+  const Real t179 = t94 - t97;
 
   // left_rod: acceleration
-  const Real t176 = t52 - t87;
-  const Real t177 = t176 * c_r_p_0_;
-  const Real t178 = t177 + t54;
-  const Real t179 = t176 * s_r_p_0_;
-  const Real t180 = t53 - t179;
-  const Real t181 = t174 * t174;
+  const Real t180 = t52 - t91;
+  const Real t181 = t180 * c_r_p_0_;
+  const Real t182 = t181 + t54;
+  const Real t183 = t180 * s_r_p_0_;
+  const Real t184 = t53 - t183;
+  const Real t185 = t178 * t178;
 
   // right_crank: acceleration
-  const Real t182 = t90 * t90;
+  const Real t186 = t94 * t94;
 
   // right_rod: acceleration
-  const Real t183 = t182 * par.l_1;
-  const Real t184 = t55 - t183;
-  const Real t185 = t184 * c_r_p_1_;
-  const Real t186 = t175 * t175;
-  const Real t187 = s_r_p_1_ * t184;
+  const Real t187 = t186 * par.l_1;
+  const Real t188 = t55 - t187;
+  const Real t189 = t188 * c_r_p_1_;
+  const Real t190 = t179 * t179;
+  const Real t191 = s_r_p_1_ * t188;
 
   // left_rod: wrench
-  const Real t188 = t180 * par.k3;
-  const Real t189 = t178 * par.m_2;
-  const Real t190 = par.k3 * t181;
-  const Real t191 = t189 - t190;
-  const Real t192 = t180 * par.m_2;
+  const Real t192 = t184 * par.k3;
+  const Real t193 = t182 * par.m_2;
+  const Real t194 = par.k3 * t185;
+  const Real t195 = t193 - t194;
+  const Real t196 = t184 * par.m_2;
 
   // right_rod: wrench
-  const Real t193 = par.k3 * t186;
+  const Real t197 = par.k3 * t190;
 
   // left_rod: joint force
-  const Real t194 = s_r_p_0_ * t191;
-  const Real t195 = c_r_p_0_ * t192;
-  const Real t196 = t194 + t195;
-  const Real t197 = t196 * par.l_1;
-  const Real t198 = t188 + t197;
-  const Real t199 = t59 + t198;
+  const Real t198 = s_r_p_0_ * t195;
+  const Real t199 = c_r_p_0_ * t196;
+  const Real t200 = t198 + t199;
+  const Real t201 = t200 * par.l_1;
+  const Real t202 = t192 + t201;
+  const Real t203 = t59 + t202;
 
   // reduced forces
-  const Real t200 = tau_a[0] - t199;
+  const Real t204 = tau_a[0] - t203;
 
   // right_rod: acceleration
-  const Real t201 = t185 + t58;
-  const Real t202 = t57 - t187;
+  const Real t205 = t189 + t58;
+  const Real t206 = t57 - t191;
 
   // right_rod: wrench
-  const Real t203 = par.k3 * t202;
-  const Real t204 = par.m_2 * t202;
-  const Real t205 = par.m_2 * t201;
-  const Real t206 = t205 - t193;
+  const Real t207 = par.k3 * t206;
+  const Real t208 = par.m_2 * t206;
+  const Real t209 = par.m_2 * t205;
+  const Real t210 = t209 - t197;
 
   // right_rod: joint force
-  const Real t207 = c_r_p_1_ * t204;
-  const Real t208 = s_r_p_1_ * t206;
-  const Real t209 = t207 + t208;
-  const Real t210 = t209 * par.l_1;
-  const Real t211 = t210 + t203;
-  const Real t212 = t211 + t60;
+  const Real t211 = c_r_p_1_ * t208;
+  const Real t212 = s_r_p_1_ * t210;
+  const Real t213 = t211 + t212;
+  const Real t214 = t213 * par.l_1;
+  const Real t215 = t214 + t207;
+  const Real t216 = t215 + t60;
 
   // reduced mass matrix
-  const Real t213 = t50 * t77;
-  const Real t214 = t74 * t41;
-  const Real t215 = t213 - t214;
-  const Real t216 = t215 * t77;
-  const Real t217 = t41 * t77;
-  const Real t218 = t74 * par.k4;
+  const Real t217 = t41 * t71;
+  const Real t218 = t68 * par.k4;
   const Real t219 = t217 - t218;
-  const Real t220 = t74 * t219;
-  const Real t221 = t38 - t220;
-  const Real t222 = t216 + t221;
-  const Real t223 = t41 * t71;
-  const Real t224 = t68 * par.k4;
-  const Real t225 = t223 - t224;
-  const Real t226 = t68 * t225;
-  const Real t227 = par.k4 - t226;
-  const Real t228 = t50 * t71;
-  const Real t229 = t68 * t41;
-  const Real t230 = t228 - t229;
-  const Real t231 = t71 * t230;
-  const Real t232 = t227 + t231;
-  const Real t233 = t74 * t225;
-  const Real t234 = t30 - t233;
-  const Real t235 = t230 * t77;
-  const Real t236 = t234 + t235;
+  const Real t220 = t68 * t219;
+  const Real t221 = par.k4 - t220;
+  const Real t222 = t50 * t71;
+  const Real t223 = t68 * t41;
+  const Real t224 = t222 - t223;
+  const Real t225 = t71 * t224;
+  const Real t226 = t221 + t225;
 
   // reduced forces
-  const Real t237 = t41 * t173;
-  const Real t238 = t170 * par.k4;
-  const Real t239 = t237 - t238;
-  const Real t240 = t203 + t239;
-  const Real t241 = t68 * t240;
-  const Real t242 = t241 - t188;
-  const Real t243 = t50 * t173;
-  const Real t244 = t170 * t41;
-  const Real t245 = t243 - t244;
-  const Real t246 = t212 + t245;
-  const Real t247 = tau_a[1] - t246;
-  const Real t248 = t247 * t71;
-  const Real t249 = t242 + t248;
-  const Real t250 = t74 * t240;
-  const Real t251 = t200 + t250;
-  const Real t252 = t247 * t77;
-  const Real t253 = t251 + t252;
+  const Real t227 = t41 * t177;
+  const Real t228 = t174 * par.k4;
+  const Real t229 = t227 - t228;
+  const Real t230 = t207 + t229;
+  const Real t231 = t68 * t230;
+  const Real t232 = t231 - t192;
+  const Real t233 = t50 * t177;
+  const Real t234 = t174 * t41;
+  const Real t235 = t233 - t234;
+  const Real t236 = t216 + t235;
+  const Real t237 = tau_a[1] - t236;
+  const Real t238 = t237 * t71;
+  const Real t239 = t232 + t238;
 
   // reduced accelerations
-  const Real t254 = constant<Real>(1.0L) / t232;
-  const Real t255 = t249 * t254;
-  const Real t256 = t254 * t236;
-  const Real t257 = t256 * t249;
-  const Real t258 = t253 - t257;
-  const Real t259 = t256 * t236;
-  const Real t260 = t222 - t259;
-  const Real t261 = constant<Real>(1.0L) / t260;
-  const Real t262 = t258 * t261;
-  const Real t263 = t256 * t262;
-  const Real t264 = t255 - t263;
+  const Real t240 = constant<Real>(1.0L) / t226;
+  const Real t241 = t239 * t240;
+
+  // orthogonal basis
+  const Real t242 = constant<Real>(1.0L) / t75;
+  const Real t243 = t71 * t81;
+  const Real t244 = t78 * t68;
+  const Real t245 = t243 + t244;
+  const Real t246 = t242 * t245;
+  const Real t247 = t246 * t71;
+  const Real t248 = t81 - t247;
+  const Real t249 = t246 * t68;
+  const Real t250 = t249 - t78;
+
+  // reduced forces
+  const Real t251 = t246 * t192;
+
+  // reduced mass matrix
+  const Real t252 = t246 * par.k4;
+
+  // reduced mass matrix
+  const Real t253 = t246 * t30;
+  const Real t254 = t38 - t253;
+  const Real t255 = par.k4 * t250;
+  const Real t256 = t41 * t248;
+  const Real t257 = t255 + t256;
+  const Real t258 = t257 * t250;
+  const Real t259 = t30 - t252;
+  const Real t260 = t246 * t259;
+  const Real t261 = t258 - t260;
+  const Real t262 = t254 + t261;
+  const Real t263 = t50 * t248;
+  const Real t264 = t41 * t250;
+  const Real t265 = t263 + t264;
+  const Real t266 = t248 * t265;
+  const Real t267 = t262 + t266;
+  const Real t268 = t248 * t224;
+  const Real t269 = t219 * t250;
+  const Real t270 = t269 - t252;
+  const Real t271 = t270 + t30;
+  const Real t272 = t268 + t271;
+
+  // reduced forces
+  const Real t273 = t248 * t237;
+  const Real t274 = t230 * t250;
+  const Real t275 = t251 - t274;
+  const Real t276 = t275 + t204;
+  const Real t277 = t273 + t276;
+
+  // reduced accelerations
+  const Real t278 = t272 * t240;
+  const Real t279 = t278 * t239;
+  const Real t280 = t277 - t279;
+  const Real t281 = t278 * t272;
+  const Real t282 = t267 - t281;
+  const Real t283 = constant<Real>(1.0L) / t282;
+  const Real t284 = t280 * t283;
+  const Real t285 = t284 * t278;
+  const Real t286 = t241 - t285;
+  const Real t287 = t246 * t284;
+  const Real t288 = t286 - t287;
 
   // accelerations
-  const Real t265 = t71 * t264;
-  const Real t266 = t262 * t77;
-  const Real t267 = t265 + t266;
-  const Real t268 = t267 + t173;
-  const Real t269 = t74 * t262;
-  const Real t270 = t68 * t264;
-  const Real t271 = t269 + t270;
-  const Real t272 = t170 + t271;
-  const Real t273 = -t272;
+  const Real t289 = t284 * t250;
+  const Real t290 = t68 * t286;
+  const Real t291 = t289 - t290;
+  const Real t292 = t291 - t174;
+  const Real t293 = t284 * t248;
+  const Real t294 = t286 * t71;
+  const Real t295 = t293 + t294;
+  const Real t296 = t295 + t177;
 
-  w_dot_out[0] = t264;
-  w_dot_out[1] = t262;
-  r_p_ddot[0] = t264;
-  r_p_ddot[1] = t273;
-  r_a_ddot_out[0] = t262;
-  r_a_ddot_out[1] = t268;
+  w_dot_out[0] = t288;
+  w_dot_out[1] = t284;
+  r_p_ddot[0] = t288;
+  r_p_ddot[1] = t292;
+  r_a_ddot_out[0] = t284;
+  r_a_ddot_out[1] = t296;
 }
 
 }  // namespace chart3

@@ -11,7 +11,7 @@
 // Operations per call, each shared value once (a - b is one addition):
 //   kinematics                 4 add, 24 mul, 2 div, 7 neg, 1 sqrt
 //   reduced_velocities         none
-//   constraints                13 add, 34 mul, 2 div, 4 neg, 1 sqrt
+//   constraints                9 add, 28 mul, 3 div, 4 neg, 1 sqrt
 //   free_dynamics              22 add, 37 mul, 4 neg
 //   reduced_dynamics           17 add, 54 mul, 2 div, 1 neg, 1 sqrt
 //   forward_dynamics           90 add, 141 mul, 4 div, 1 neg, 1 sqrt, 2 sin, 2 cos
@@ -401,8 +401,8 @@ inline void reduced_velocities(const Prepared<Real>&, const Real (&eta)[6], Real
 
 /// Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot +
 /// B_a_dot r_a_dot).
-/// route: closed form
-/// operations: 13 add, 34 mul, 2 div, 4 neg, 1 sqrt
+/// route: recursion
+/// operations: 9 add, 28 mul, 3 div, 4 neg, 1 sqrt
 /// @param[in]  par                made by prepare()
 /// @param[in]  R                  (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_a_dot            (2) rad/s or m/s: rates of r_a
@@ -428,115 +428,104 @@ inline void constraints(const Prepared<Real>& par,
   const Real t2 = R[6] * R[6];
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
-
-  // kernel
-  const Real t5 = par.R / t4;
+  const Real t5 = constant<Real>(1.0L) / t4;
   const Real t6 = R[8] * t5;
-  const Real t7 = t5 * R[6];
+  const Real t7 = t6 * par.R;
   const Real t8 = -t7;
+  const Real t9 = t4 * constant<Real>(2.0L);
+  const Real t10 = t5 * R[6];
+  const Real t11 = t10 * par.R;
+  const Real t12 = -t11;
 
   // joint angles
-  const Real t9 = -t6;
-  const Real t10 = t4 * t3;
-  const Real t11 = par.R / t10;
-  const Real t12 = eta[4] + r_a_dot[1];
-  const Real t13 = eta[3] * t3;
-  const Real t14 = eta[5] * R[6];
-  const Real t15 = eta[3] * R[8];
-  const Real t16 = t14 - t15;
-  const Real t17 = R[8] * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = R[7] * t18;
-  const Real t20 = eta[4] * t3;
-  const Real t21 = t20 * R[6];
-  const Real t22 = t19 - t21;
-  const Real t23 = t12 * t22;
-  const Real t24 = t11 * t23;
-  const Real t25 = eta[4] + r_a_dot[0];
-  const Real t26 = t22 * t25;
-  const Real t27 = t26 * t11;
-  const Real t28 = R[8] * t20;
-  const Real t29 = t16 * R[6];
-  const Real t30 = eta[5] * t3;
-  const Real t31 = t29 - t30;
-  const Real t32 = t31 * R[7];
-  const Real t33 = t28 + t32;
-  const Real t34 = t33 * t25;
-  const Real t35 = t34 * t11;
-  const Real t36 = -t35;
-  const Real t37 = eta[3] * R[6];
-  const Real t38 = R[8] * eta[5];
-  const Real t39 = t37 + t38;
-  const Real t40 = t39 * t20;
-  const Real t41 = t14 * constant<Real>(2.0L);
-  const Real t42 = t41 - t15;
-  const Real t43 = t42 * R[8];
-  const Real t44 = t13 + t43;
-  const Real t45 = eta[3] * t44;
-  const Real t46 = eta[5] * eta[5];
-  const Real t47 = t46 * t1;
-  const Real t48 = t45 + t47;
-  const Real t49 = t48 * R[7];
-  const Real t50 = t40 - t49;
-  const Real t51 = t50 * t11;
-  const Real t52 = t12 * t33;
-  const Real t53 = t52 * t11;
-  const Real t54 = -t53;
+  const Real t13 = eta[4] * R[6];
+  const Real t14 = eta[3] * R[7];
+  const Real t15 = t13 - t14;
+  const Real t16 = t5 * t15;
+  const Real t17 = eta[5] * R[7];
+  const Real t18 = eta[4] * R[8];
+  const Real t19 = t17 - t18;
+  const Real t20 = t19 * R[6];
+  const Real t21 = t20 * constant<Real>(2.0L);
+  const Real t22 = R[8] * t15;
+  const Real t23 = constant<Real>(2.0L) * t22;
+  const Real t24 = t21 + t23;
+  const Real t25 = t24 / t9;
+  const Real t26 = t25 * t5;
+  const Real t27 = t26 / t4;
+  const Real t28 = R[8] * t27;
+  const Real t29 = t16 - t28;
+  const Real t30 = par.R * t29;
+  const Real t31 = eta[4] + r_a_dot[0];
+  const Real t32 = t30 * t31;
+  const Real t33 = -t32;
+  const Real t34 = eta[4] + r_a_dot[1];
+  const Real t35 = t19 * t5;
+  const Real t36 = t27 * R[6];
+  const Real t37 = t35 - t36;
+  const Real t38 = par.R * t37;
+  const Real t39 = t34 * t38;
+  const Real t40 = eta[3] * t30;
+  const Real t41 = eta[5] * t38;
+  const Real t42 = t40 - t41;
+  const Real t43 = t34 * t30;
+  const Real t44 = -t43;
+  const Real t45 = t38 * t31;
 
   A[0] = constant<Real>(1.0L);
   A[1] = constant<Real>(0.0L);
   A[2] = constant<Real>(0.0L);
   A[3] = constant<Real>(0.0L);
-  A[4] = t9;
+  A[4] = t8;
   A[5] = par.k3;
   A[6] = constant<Real>(0.0L);
   A[7] = constant<Real>(1.0L);
   A[8] = constant<Real>(0.0L);
-  A[9] = t6;
+  A[9] = t7;
   A[10] = constant<Real>(0.0L);
-  A[11] = t8;
+  A[11] = t12;
   A[12] = constant<Real>(0.0L);
   A[13] = constant<Real>(0.0L);
   A[14] = constant<Real>(1.0L);
   A[15] = par.w;
-  A[16] = t7;
+  A[16] = t11;
   A[17] = constant<Real>(0.0L);
   A[18] = constant<Real>(1.0L);
   A[19] = constant<Real>(0.0L);
   A[20] = constant<Real>(0.0L);
   A[21] = constant<Real>(0.0L);
-  A[22] = t9;
+  A[22] = t8;
   A[23] = par.w;
   A[24] = constant<Real>(0.0L);
   A[25] = constant<Real>(1.0L);
   A[26] = constant<Real>(0.0L);
-  A[27] = t6;
+  A[27] = t7;
   A[28] = constant<Real>(0.0L);
-  A[29] = t8;
+  A[29] = t12;
   A[30] = constant<Real>(0.0L);
   A[31] = constant<Real>(0.0L);
   A[32] = constant<Real>(1.0L);
   A[33] = par.k3;
-  A[34] = t7;
+  A[34] = t11;
   A[35] = constant<Real>(0.0L);
-  B_a[0] = t9;
+  B_a[0] = t8;
   B_a[1] = constant<Real>(0.0L);
   B_a[2] = constant<Real>(0.0L);
   B_a[3] = constant<Real>(0.0L);
-  B_a[4] = t7;
+  B_a[4] = t11;
   B_a[5] = constant<Real>(0.0L);
   B_a[6] = constant<Real>(0.0L);
-  B_a[7] = t9;
+  B_a[7] = t8;
   B_a[8] = constant<Real>(0.0L);
   B_a[9] = constant<Real>(0.0L);
   B_a[10] = constant<Real>(0.0L);
-  B_a[11] = t7;
-  bias[0] = t27;
-  bias[1] = t51;
-  bias[2] = t36;
-  bias[3] = t24;
-  bias[4] = t51;
-  bias[5] = t54;
+  B_a[11] = t11;
+  bias[0] = t33;
+  bias[1] = t42;
+  bias[2] = t45;
+  bias[3] = t44;
+  bias[4] = t42;
+  bias[5] = t39;
   lambda_stat_basis[0] = constant<Real>(0.0L);
   lambda_stat_basis[1] = constant<Real>(-1.0L);
   lambda_stat_basis[2] = constant<Real>(0.0L);

@@ -9,17 +9,17 @@
 //   kernel: pivoted basis, nu = (Omega_X, steer, rear_spin)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           598 add, 393 mul, 9 div, 25 neg, 2 sqrt, 2 sin, 1 cos
+//   kinematics           370 add, 274 mul, 7 div, 21 neg, 2 sqrt, 1 sin, 1 cos
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
-//   reduced_dynamics     1537 add, 1335 mul, 15 div, 23 neg, 2 sqrt, 4 sin, 3 cos
-//   forward_dynamics     3522 add, 2143 mul, 25 div, 88 neg, 2 sqrt, 6 sin, 3 cos
-//   multipliers          1524 add, 1033 mul, 15 div, 29 neg, 2 sqrt, 4 sin, 3 cos
+//   reduced_dynamics     886 add, 1032 mul, 11 div, 5 neg, 2 sqrt, 3 sin, 3 cos
+//   forward_dynamics     1099 add, 1199 mul, 16 div, 8 neg, 2 sqrt, 3 sin, 3 cos
+//   multipliers          543 add, 585 mul, 9 div, 4 neg, 2 sqrt, 3 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
-//   prepare              192 add, 138 mul, 3 neg, 1 sin, 1 cos, once per set of parameters
+//   prepare              35 add, 61 mul, 1 sin, 1 cos, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -182,7 +182,6 @@ template <class Real>
 struct Prepared {
   Real g;
   Real c;
-  Real tilt;
   Real r_R;
   Real m_R;
   Real I_Rxx;
@@ -198,84 +197,60 @@ struct Prepared {
   Real k3;  // I_Bxz - z_B * x_B * m_B
   Real k4;  // (z_B * z_B + x_B * x_B) * m_B + I_Byy
   Real k5;
-  Real k6;  // -r_R
-  Real k7;
-  Real k8;  // m_H * ((x_H - w - c) * (x_H - w - c) + z_H * z_H) + I_Hyy
-  Real k9;  // m_H * z_H * k2 + k1 * (x_H - w - c) * m_H
-  Real k10;  // z_B * z_B * m_B + I_Bxx
-  Real k11;  // k2 * (x_H - w - c) * m_H - k1 * m_H * z_H
-  Real k12;  // k1 * c + r_F * k2
-  Real k13;  // k1 * r_F - k2 * c
-  Real k14;  // w + c
-  Real k15;  // I_Bzz + x_B * x_B * m_B
-  Real k16;  // z_B * m_B
-  Real k17;  // x_B * m_B
-  Real k18;
-  Real k19;  // k2 * k2
-  Real k20;  // k1 * k1
-  Real k21;  // k2 * k14
-  Real k22;  // k2 * k21
-  Real k23;  // k1 * k2
-  Real k24;  // k1 * k14
-  Real k25;  // k1 * k21
-  Real k26;  // product_error(k2, k2)
-  Real k27;  // k23 * k14
-  Real k28;  // sum_error(w, c)
-  Real k29;  // product_error(k1, k14) + k1 * k28
-  Real k30;  // k28 * k2 + product_error(k2, k14)
-  Real k31;  // product_error(k2, k21) + k30 * k2
-  Real k32;  // k4 - k10
-  Real k33;  // k15 - k4
-  Real k34;  // k10 - k15
-  Real k35;  // I_Ryy - I_Rxx
-  Real k36;  // I_Rxx - I_Ryy
-  Real k37;  // k7 - k8
-  Real k38;  // k18 - k7
-  Real k39;  // k8 - k18
-  Real k40;  // k1 * k11
-  Real k41;  // k1 * m_H
-  Real k42;  // I_Fxx - I_Fyy
-  Real k43;  // I_Fyy - I_Fxx
-  Real k44;  // -k16
-  Real k45;  // m_R * r_R
-  Real k46;  // m_H * k2
-  Real k47;  // k2 * k11
-  Real k48;  // k1 * k13
-  Real k49;  // z_B * x_B * m_B - I_Bxz
-  Real k50;  // k1 * k7
-  Real k51;  // k5 * k1
-  Real k52;  // k45 * r_R
-  Real k53;  // m_H * k21
-  Real k54;  // k11 * k21
-  Real k55;  // k2 * k13
-  Real k56;  // k5 * k2
-  Real k57;  // k7 * k2
-  Real k58;  // m_F * k13 * k13
-  Real k59;  // (z_B * z_B + x_B * x_B + product_error(z_B, z_B)) * m_B + I_Byy
-  Real k60;
-  Real k61;  // k59 - k10 - k60
-  Real k62;  // product_error(z_B, m_B)
-  Real k63;  // k60 + k34
-  Real k64;  // k15 - k59
-  Real k65;  // product_error(x_B, m_B)
-  Real k66;  // k27 + k28 * k23
-  Real k67;
-  Real k68;  // k67 - k60 + k32
-  Real k69;  // k53 + k30 * m_H
-  Real k70;  // k33 - k67
-  Real k71;  // k30 * k11 + k54
-  Real k72;
+  Real k6;
+  Real k7;  // m_H * ((x_H - w - c) * (x_H - w - c) + z_H * z_H) + I_Hyy
+  Real k8;  // m_H * z_H * k2 + k1 * (x_H - w - c) * m_H
+  Real k9;  // z_B * z_B * m_B + I_Bxx
+  Real k10;  // k2 * (x_H - w - c) * m_H - k1 * m_H * z_H
+  Real k11;  // k1 * c + r_F * k2
+  Real k12;  // k1 * r_F - k2 * c
+  Real k13;  // w + c
+  Real k14;  // I_Bzz + x_B * x_B * m_B
+  Real k15;  // z_B * m_B
+  Real k16;  // x_B * m_B
+  Real k17;
+  Real k18;  // k2 * k2
+  Real k19;  // k1 * k1
+  Real k20;  // k2 * k13
+  Real k21;  // k2 * k20
+  Real k22;  // k1 * k2
+  Real k23;  // k1 * k13
+  Real k24;  // k1 * k20
+  Real k25;  // k4 - k9
+  Real k26;  // k14 - k4
+  Real k27;  // k9 - k14
+  Real k28;  // I_Ryy - I_Rxx
+  Real k29;  // I_Rxx - I_Ryy
+  Real k30;  // k6 - k7
+  Real k31;  // k17 - k6
+  Real k32;  // k7 - k17
+  Real k33;  // k1 * k10
+  Real k34;  // k1 * m_H
+  Real k35;  // I_Fxx - I_Fyy
+  Real k36;  // I_Fyy - I_Fxx
+  Real k37;  // m_R * r_R
+  Real k38;  // m_H * k2
+  Real k39;  // k2 * k10
+  Real k40;  // k1 * k12
+  Real k41;  // z_B * x_B * m_B - I_Bxz
+  Real k42;  // k1 * k6
+  Real k43;  // k5 * k1
+  Real k44;  // k37 * r_R
+  Real k45;  // m_H * k20
+  Real k46;  // k10 * k20
+  Real k47;  // k2 * k12
+  Real k48;  // k5 * k2
+  Real k49;  // k6 * k2
+  Real k50;  // m_F * k12 * k12
 };
 
 /// To be called once per set of parameter values.
-/// operations: 192 add, 138 mul, 3 neg, 1 sin, 1 cos
+/// operations: 35 add, 61 mul, 1 sin, 1 cos
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using std::cos;
   using std::sin;
-  using detail::product_error;
-  using detail::sum_error;
   const Real s_tilt = sin(par.tilt);
   const Real c_tilt = cos(par.tilt);
   const Real t1 = par.z_B * par.x_B;
@@ -306,170 +281,109 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t26 = t24 - t25;
   const Real t27 = s_tilt * t26;
   const Real t28 = t20 + t27;
-  const Real t29 = -par.r_R;
-  const Real t30 = t23 * s_tilt;
-  const Real t31 = t30 + t14;
-  const Real t32 = t31 * s_tilt;
-  const Real t33 = t17 * c_tilt;
-  const Real t34 = t25 + t33;
-  const Real t35 = c_tilt * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = t15 + t21;
-  const Real t38 = par.m_H * t37;
-  const Real t39 = t38 + par.I_Hyy;
-  const Real t40 = par.m_H * par.z_H;
-  const Real t41 = t40 * c_tilt;
-  const Real t42 = t10 * par.m_H;
-  const Real t43 = s_tilt * t42;
-  const Real t44 = t41 + t43;
-  const Real t45 = t4 * par.m_B;
-  const Real t46 = t45 + par.I_Bxx;
-  const Real t47 = c_tilt * t42;
-  const Real t48 = s_tilt * t40;
-  const Real t49 = t47 - t48;
-  const Real t50 = s_tilt * par.c;
-  const Real t51 = par.r_F * c_tilt;
-  const Real t52 = t50 + t51;
-  const Real t53 = s_tilt * par.r_F;
-  const Real t54 = c_tilt * par.c;
-  const Real t55 = t53 - t54;
-  const Real t56 = par.w + par.c;
-  const Real t57 = t5 * par.m_B;
-  const Real t58 = par.I_Bzz + t57;
-  const Real t59 = par.z_B * par.m_B;
-  const Real t60 = par.x_B * par.m_B;
-  const Real t61 = c_tilt * t26;
-  const Real t62 = s_tilt * t19;
-  const Real t63 = t61 - t62;
+  const Real t29 = t23 * s_tilt;
+  const Real t30 = t29 + t14;
+  const Real t31 = t30 * s_tilt;
+  const Real t32 = t17 * c_tilt;
+  const Real t33 = t25 + t32;
+  const Real t34 = c_tilt * t33;
+  const Real t35 = t31 + t34;
+  const Real t36 = t15 + t21;
+  const Real t37 = par.m_H * t36;
+  const Real t38 = t37 + par.I_Hyy;
+  const Real t39 = par.m_H * par.z_H;
+  const Real t40 = t39 * c_tilt;
+  const Real t41 = t10 * par.m_H;
+  const Real t42 = s_tilt * t41;
+  const Real t43 = t40 + t42;
+  const Real t44 = t4 * par.m_B;
+  const Real t45 = t44 + par.I_Bxx;
+  const Real t46 = c_tilt * t41;
+  const Real t47 = s_tilt * t39;
+  const Real t48 = t46 - t47;
+  const Real t49 = s_tilt * par.c;
+  const Real t50 = par.r_F * c_tilt;
+  const Real t51 = t49 + t50;
+  const Real t52 = s_tilt * par.r_F;
+  const Real t53 = c_tilt * par.c;
+  const Real t54 = t52 - t53;
+  const Real t55 = par.w + par.c;
+  const Real t56 = t5 * par.m_B;
+  const Real t57 = par.I_Bzz + t56;
+  const Real t58 = par.z_B * par.m_B;
+  const Real t59 = par.x_B * par.m_B;
+  const Real t60 = c_tilt * t26;
+  const Real t61 = s_tilt * t19;
+  const Real t62 = t60 - t61;
 
   // joint angles
-  const Real t64 = c_tilt * c_tilt;
-  const Real t65 = s_tilt * s_tilt;
-  const Real t66 = c_tilt * t56;
-  const Real t67 = c_tilt * t66;
-  const Real t68 = s_tilt * c_tilt;
-  const Real t69 = s_tilt * t56;
-  const Real t70 = s_tilt * t66;
-
-  // kernel
-  const Real t71 = product_error(c_tilt, c_tilt);
-  const Real t72 = t68 * t56;
-  const Real t73 = sum_error(par.w, par.c);
-  const Real t74 = t73 * t68;
-  const Real t75 = product_error(s_tilt, t56);
-  const Real t76 = s_tilt * t73;
-  const Real t77 = t75 + t76;
-  const Real t78 = product_error(c_tilt, t66);
-  const Real t79 = t73 * c_tilt;
-  const Real t80 = product_error(c_tilt, t56);
-  const Real t81 = t79 + t80;
-  const Real t82 = t81 * c_tilt;
-  const Real t83 = t78 + t82;
+  const Real t63 = c_tilt * c_tilt;
+  const Real t64 = s_tilt * s_tilt;
+  const Real t65 = c_tilt * t55;
+  const Real t66 = c_tilt * t65;
+  const Real t67 = s_tilt * c_tilt;
+  const Real t68 = s_tilt * t55;
+  const Real t69 = s_tilt * t65;
 
   // frame: wrench
-  const Real t84 = t8 - t46;
-  const Real t85 = t58 - t8;
-  const Real t86 = t46 - t58;
+  const Real t70 = t8 - t45;
+  const Real t71 = t57 - t8;
+  const Real t72 = t45 - t57;
 
   // rear_wheel: wrench
-  const Real t87 = par.I_Ryy - par.I_Rxx;
-  const Real t88 = par.I_Rxx - par.I_Ryy;
+  const Real t73 = par.I_Ryy - par.I_Rxx;
+  const Real t74 = par.I_Rxx - par.I_Ryy;
 
   // fork: wrench
-  const Real t89 = t36 - t39;
-  const Real t90 = t63 - t36;
-  const Real t91 = t39 - t63;
-  const Real t92 = s_tilt * t49;
-  const Real t93 = s_tilt * par.m_H;
+  const Real t75 = t35 - t38;
+  const Real t76 = t62 - t35;
+  const Real t77 = t38 - t62;
+  const Real t78 = s_tilt * t48;
+  const Real t79 = s_tilt * par.m_H;
 
   // front_wheel: wrench
-  const Real t94 = par.I_Fxx - par.I_Fyy;
-  const Real t95 = par.I_Fyy - par.I_Fxx;
-
-  // frame: wrench
-  const Real t96 = -t59;
+  const Real t80 = par.I_Fxx - par.I_Fyy;
+  const Real t81 = par.I_Fyy - par.I_Fxx;
 
   // rear_wheel: joint force
-  const Real t97 = par.m_R * par.r_R;
+  const Real t82 = par.m_R * par.r_R;
 
   // fork: wrench
-  const Real t98 = par.m_H * c_tilt;
-  const Real t99 = c_tilt * t49;
+  const Real t83 = par.m_H * c_tilt;
+  const Real t84 = c_tilt * t48;
 
   // front_wheel: acceleration
-  const Real t100 = s_tilt * t55;
+  const Real t85 = s_tilt * t54;
 
   // frame: wrench
-  const Real t101 = t2 - par.I_Bxz;
+  const Real t86 = t2 - par.I_Bxz;
 
   // fork: wrench
-  const Real t102 = s_tilt * t36;
-  const Real t103 = t28 * s_tilt;
+  const Real t87 = s_tilt * t35;
+  const Real t88 = t28 * s_tilt;
 
   // rear_wheel: joint force
-  const Real t104 = t97 * par.r_R;
+  const Real t89 = t82 * par.r_R;
 
   // fork: wrench
-  const Real t105 = par.m_H * t66;
-  const Real t106 = t49 * t66;
+  const Real t90 = par.m_H * t65;
+  const Real t91 = t48 * t65;
 
   // front_wheel: acceleration
-  const Real t107 = c_tilt * t55;
+  const Real t92 = c_tilt * t54;
 
   // fork: wrench
-  const Real t108 = t28 * c_tilt;
-  const Real t109 = t36 * c_tilt;
+  const Real t93 = t28 * c_tilt;
+  const Real t94 = t35 * c_tilt;
 
   // front_wheel: wrench
-  const Real t110 = par.m_F * t55;
+  const Real t95 = par.m_F * t54;
 
   // front_wheel: joint force
-  const Real t111 = t110 * t55;
-
-  // passive accelerations
-  const Real t112 = product_error(par.z_B, par.z_B);
-  const Real t113 = t6 + t112;
-  const Real t114 = t113 * par.m_B;
-  const Real t115 = t114 + par.I_Byy;
-  const Real t116 = t115 - t46;
-  const Real t117 = sum_error(t45, par.I_Bxx);
-  const Real t118 = product_error(t4, par.m_B);
-  const Real t119 = t112 * par.m_B;
-  const Real t120 = t118 + t119;
-  const Real t121 = t117 + t120;
-  const Real t122 = t116 - t121;
-  const Real t123 = product_error(par.z_B, par.m_B);
-  const Real t124 = t121 + t86;
-  const Real t125 = t58 - t115;
-
-  // accelerations
-  const Real t126 = product_error(par.x_B, par.m_B);
-  const Real t127 = t72 + t74;
-  const Real t128 = sum_error(t7, par.I_Byy);
-  const Real t129 = sum_error(t4, t5);
-  const Real t130 = t112 + t129;
-  const Real t131 = par.m_B * t130;
-  const Real t132 = product_error(t6, par.m_B);
-  const Real t133 = t131 + t132;
-  const Real t134 = t128 + t133;
-  const Real t135 = t134 - t121;
-  const Real t136 = t135 + t84;
-  const Real t137 = t81 * par.m_H;
-  const Real t138 = t105 + t137;
-  const Real t139 = t85 - t134;
-  const Real t140 = t81 * t49;
-  const Real t141 = t140 + t106;
-  const Real t142 = -t2;
-  const Real t143 = sum_error(par.I_Bxz, t142);
-  const Real t144 = product_error(par.z_B, par.x_B);
-  const Real t145 = t144 * par.m_B;
-  const Real t146 = product_error(t1, par.m_B);
-  const Real t147 = t145 + t146;
-  const Real t148 = t143 - t147;
+  const Real t96 = t95 * t54;
 
   result.g = par.g;
   result.c = par.c;
-  result.tilt = par.tilt;
   result.r_R = par.r_R;
   result.m_R = par.m_R;
   result.I_Rxx = par.I_Rxx;
@@ -485,18 +399,18 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k3 = t3;
   result.k4 = t8;
   result.k5 = t28;
-  result.k6 = t29;
-  result.k7 = t36;
-  result.k8 = t39;
-  result.k9 = t44;
-  result.k10 = t46;
-  result.k11 = t49;
-  result.k12 = t52;
+  result.k6 = t35;
+  result.k7 = t38;
+  result.k8 = t43;
+  result.k9 = t45;
+  result.k10 = t48;
+  result.k11 = t51;
+  result.k12 = t54;
   result.k13 = t55;
-  result.k14 = t56;
+  result.k14 = t57;
   result.k15 = t58;
   result.k16 = t59;
-  result.k17 = t60;
+  result.k17 = t62;
   result.k18 = t63;
   result.k19 = t64;
   result.k20 = t65;
@@ -508,56 +422,34 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k26 = t71;
   result.k27 = t72;
   result.k28 = t73;
-  result.k29 = t77;
-  result.k30 = t81;
-  result.k31 = t83;
-  result.k32 = t84;
-  result.k33 = t85;
-  result.k34 = t86;
-  result.k35 = t87;
-  result.k36 = t88;
-  result.k37 = t89;
-  result.k38 = t90;
-  result.k39 = t91;
-  result.k40 = t92;
-  result.k41 = t93;
-  result.k42 = t94;
-  result.k43 = t95;
-  result.k44 = t96;
-  result.k45 = t97;
-  result.k46 = t98;
-  result.k47 = t99;
-  result.k48 = t100;
-  result.k49 = t101;
-  result.k50 = t102;
-  result.k51 = t103;
-  result.k52 = t104;
-  result.k53 = t105;
-  result.k54 = t106;
-  result.k55 = t107;
-  result.k56 = t108;
-  result.k57 = t109;
-  result.k58 = t111;
-  result.k59 = t115;
-  result.k60 = t121;
-  result.k61 = t122;
-  result.k62 = t123;
-  result.k63 = t124;
-  result.k64 = t125;
-  result.k65 = t126;
-  result.k66 = t127;
-  result.k67 = t134;
-  result.k68 = t136;
-  result.k69 = t138;
-  result.k70 = t139;
-  result.k71 = t141;
-  result.k72 = t148;
+  result.k29 = t74;
+  result.k30 = t75;
+  result.k31 = t76;
+  result.k32 = t77;
+  result.k33 = t78;
+  result.k34 = t79;
+  result.k35 = t80;
+  result.k36 = t81;
+  result.k37 = t82;
+  result.k38 = t83;
+  result.k39 = t84;
+  result.k40 = t85;
+  result.k41 = t86;
+  result.k42 = t87;
+  result.k43 = t88;
+  result.k44 = t89;
+  result.k45 = t90;
+  result.k46 = t91;
+  result.k47 = t92;
+  result.k48 = t93;
+  result.k49 = t94;
+  result.k50 = t96;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
-/// route: kernel, stable forms, compensated beyond 2 ulps
-/// operations: 598 add, 393 mul, 9 div, 25 neg, 2 sqrt, 2 sin, 1 cos
+/// route: kernel, compensated beyond 16 ulps
+/// operations: 370 add, 274 mul, 7 div, 21 neg, 2 sqrt, 1 sin, 1 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p          (3) rad or m: rear_spin, steer, front_spin
@@ -582,485 +474,396 @@ inline void kinematics(const Prepared<Real>& par,
   using detail::sum_error;
   const Real s_r_p_1_ = sin(r_p[1]);
   const Real c_r_p_1_ = cos(r_p[1]);
-  const Real t1 = constant<Real>(0.5L) * r_p[1];
-  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t3 = s_r_p_1_ * par.k2;
-  const Real t4 = t3 * par.r_F;
-  const Real t5 = s_r_p_1_ * par.k1;
-  const Real t6 = par.c * t5;
-  const Real t7 = t4 + t6;
-  const Real t8 = s_r_p_1_ * par.k14;
-  const Real t9 = par.k1 * t8;
-  const Real t10 = t6 - t9;
-  const Real t11 = R[6] * R[6];
-  const Real t12 = R[8] * R[8];
-  const Real t13 = t11 + t12;
-  const Real t14 = sqrt(t13);
-  const Real t15 = constant<Real>(1.0L) / t14;
-  const Real t16 = R[8] * t15;
-  const Real t17 = t16 * par.r_R;
-  const Real t18 = t17 - par.r_R;
-  const Real t19 = par.k2 * R[6];
-  const Real t20 = R[8] * par.k1;
-  const Real t21 = t19 - t20;
-  const Real t22 = c_r_p_1_ * t21;
-  const Real t23 = s_r_p_1_ * R[7];
-  const Real t24 = t22 + t23;
-  const Real t25 = par.k2 * t24;
-  const Real t26 = par.k1 * t24;
-  const Real t27 = par.k1 * R[6];
-  const Real t28 = R[8] * par.k2;
-  const Real t29 = t27 + t28;
-  const Real t30 = t29 * par.k2;
-  const Real t31 = t26 - t30;
-  const Real t32 = par.r_R - t17;
-  const Real t33 = c_r_p_1_ * par.k14;
-  const Real t34 = c_r_p_1_ * par.k2;
-  const Real t35 = par.k2 * t34;
-  const Real t36 = par.k20 + t35;
-  const Real t37 = par.r_F * t36;
-  const Real t38 = t3 * par.c;
-  const Real t39 = par.k1 * c_r_p_1_;
-  const Real t40 = par.k1 * t39;
-  const Real t41 = par.k19 + t40;
-  const Real t42 = t41 * par.c;
-  const Real t43 = c_r_p_1_ * par.c;
-  const Real t44 = c_r_p_1_ * par.k24;
-  const Real t45 = t44 * par.k1;
-  const Real t46 = t45 + par.k22;
-  const Real t47 = t43 - t46;
-  const Real t48 = par.k1 * t29;
-  const Real t49 = c_r_p_1_ * par.r_F;
-  const Real t50 = s_r_p_1_ * par.k24;
-  const Real t51 = t15 * R[6];
-  const Real t52 = t51 * par.r_R;
-  const Real t53 = par.k2 * t8;
-  const Real t54 = par.r_F * t5;
-  const Real t55 = t53 - t54;
+  const Real t1 = par.k2 * R[6];
+  const Real t2 = R[8] * par.k1;
+  const Real t3 = t1 - t2;
+  const Real t4 = c_r_p_1_ * t3;
+  const Real t5 = s_r_p_1_ * R[7];
+  const Real t6 = t4 + t5;
+  const Real t7 = par.k1 * t6;
+  const Real t8 = par.k1 * R[6];
+  const Real t9 = R[8] * par.k2;
+  const Real t10 = t8 + t9;
+  const Real t11 = t10 * par.k2;
+  const Real t12 = t7 - t11;
+  const Real t13 = t12 * t12;
+  const Real t14 = par.k2 * t6;
+  const Real t15 = par.k1 * t10;
+  const Real t16 = t14 + t15;
+  const Real t17 = t16 * t16;
+  const Real t18 = t13 + t17;
+  const Real t19 = sqrt(t18);
+  const Real t20 = constant<Real>(1.0L) / t19;
+  const Real t21 = t12 * t20;
+  const Real t22 = par.r_F * t21;
+  const Real t23 = par.k1 * t22;
+  const Real t24 = t20 * t16;
+  const Real t25 = t24 * par.r_F;
+  const Real t26 = t25 * par.k2;
+  const Real t27 = t23 + t26;
+  const Real t28 = t27 + par.k12;
+  const Real t29 = par.k1 * c_r_p_1_;
+  const Real t30 = par.k1 * t29;
+  const Real t31 = par.k18 + t30;
+  const Real t32 = t31 * t25;
+  const Real t33 = t29 * par.k2;
+  const Real t34 = par.k22 - t33;
+  const Real t35 = t22 * t34;
+  const Real t36 = t32 + t35;
+  const Real t37 = c_r_p_1_ * par.k13;
+  const Real t38 = t34 * par.r_F;
+  const Real t39 = t31 * par.c;
+  const Real t40 = t38 - t39;
+  const Real t41 = t37 + t40;
+  const Real t42 = t36 + t41;
+  const Real t43 = s_r_p_1_ * par.k13;
+  const Real t44 = par.k2 * t43;
+  const Real t45 = s_r_p_1_ * par.k1;
+  const Real t46 = par.r_F * t45;
+  const Real t47 = t44 - t46;
+  const Real t48 = t22 * t45;
+  const Real t49 = t47 - t48;
+  const Real t50 = R[6] * R[6];
+  const Real t51 = R[8] * R[8];
+  const Real t52 = t50 + t51;
+  const Real t53 = sqrt(t52);
+  const Real t54 = constant<Real>(1.0L) / t53;
+  const Real t55 = R[8] * t54;
+  const Real t56 = t55 * par.r_R;
+  const Real t57 = t56 - par.r_R;
+  const Real t58 = s_r_p_1_ * par.k2;
+  const Real t59 = t25 * t58;
+  const Real t60 = t58 * par.c;
+  const Real t61 = t59 - t60;
+  const Real t62 = par.r_R - t56;
+  const Real t63 = c_r_p_1_ * par.c;
+  const Real t64 = c_r_p_1_ * par.k23;
+  const Real t65 = t64 * par.k1;
+  const Real t66 = t65 + par.k21;
+  const Real t67 = t63 - t66;
+  const Real t68 = t25 * c_r_p_1_;
+  const Real t69 = t67 - t68;
+  const Real t70 = t58 * par.r_F;
+  const Real t71 = t22 * t58;
+  const Real t72 = t70 + t71;
+  const Real t73 = t64 * par.k2;
+  const Real t74 = t73 - par.k24;
+  const Real t75 = c_r_p_1_ * par.r_F;
+  const Real t76 = t74 - t75;
+  const Real t77 = t22 * c_r_p_1_;
+  const Real t78 = t76 - t77;
+  const Real t79 = t25 * t45;
+  const Real t80 = t71 - t79;
+  const Real t81 = par.c * t45;
+  const Real t82 = t70 + t81;
+  const Real t83 = s_r_p_1_ * par.k23;
+  const Real t84 = t82 - t83;
+  const Real t85 = t80 + t84;
+  const Real t86 = c_r_p_1_ * par.k2;
+  const Real t87 = par.k2 * t86;
+  const Real t88 = par.k19 + t87;
+  const Real t89 = par.r_F * t88;
+  const Real t90 = par.k1 * t86;
+  const Real t91 = par.k22 - t90;
+  const Real t92 = t91 * par.c;
+  const Real t93 = t89 - t92;
+  const Real t94 = t25 * t91;
+  const Real t95 = t22 * t88;
+  const Real t96 = t94 + t95;
+  const Real t97 = t93 + t96;
+  const Real t98 = t54 * R[6];
+  const Real t99 = t98 * par.r_R;
+  const Real t100 = par.k1 * t43;
+  const Real t101 = t81 - t100;
+  const Real t102 = t101 - t79;
 
   // kernel
-  const Real t56 = product_error(par.k1, R[6]);
-  const Real t57 = sum_error(t27, t28);
-  const Real t58 = t56 + t57;
-  const Real t59 = par.k1 * t58;
-  const Real t60 = t59 + t48;
-  const Real t61 = sum_error(t22, t23);
-  const Real t62 = product_error(c_r_p_1_, t21);
-  const Real t63 = -t20;
-  const Real t64 = sum_error(t19, t63);
-  const Real t65 = product_error(par.k2, R[6]);
-  const Real t66 = t64 + t65;
-  const Real t67 = t66 * c_r_p_1_;
-  const Real t68 = t62 + t67;
-  const Real t69 = t61 + t68;
-  const Real t70 = par.k2 * t69;
-  const Real t71 = t25 + t70;
-  const Real t72 = t60 + t71;
-  const Real t73 = product_error(par.k1, t24);
-  const Real t74 = par.k1 * t69;
-  const Real t75 = t73 + t74;
-  const Real t76 = product_error(t29, par.k2);
-  const Real t77 = par.k2 * t58;
-  const Real t78 = t76 + t77;
-  const Real t79 = t75 - t78;
-  const Real t80 = t31 + t79;
-  const Real t81 = t80 * t80;
-  const Real t82 = t72 * t72;
-  const Real t83 = t81 + t82;
-  const Real t84 = sqrt(t83);
-  const Real t85 = constant<Real>(1.0L) / t84;
-  const Real t86 = t72 * t85;
-  const Real t87 = par.r_F * t86;
-  const Real t88 = t87 * c_r_p_1_;
-  const Real t89 = t47 - t88;
-  const Real t90 = t2 * t2;
-  const Real t91 = constant<Real>(2.0L) * t90;
-  const Real t92 = t91 * par.k23;
-  const Real t93 = t18 * t92;
-  const Real t94 = t89 - t93;
-  const Real t95 = t41 * t52;
-  const Real t96 = t94 + t95;
-  const Real t97 = par.r_F * t92;
-  const Real t98 = t97 - t42;
-  const Real t99 = t98 + t33;
-  const Real t100 = t80 * t85;
-  const Real t101 = t100 * par.r_F;
-  const Real t102 = t101 * t92;
-  const Real t103 = t41 * t87;
-  const Real t104 = t102 + t103;
-  const Real t105 = t99 + t104;
-  const Real t106 = c_r_p_1_ * t52;
-  const Real t107 = t105 - t106;
-  const Real t108 = constant<Real>(1.0L) / t107;
-  const Real t109 = t5 * t52;
-  const Real t110 = t87 * t5;
-  const Real t111 = t10 - t110;
-  const Real t112 = t109 + t111;
-  const Real t113 = t108 * t112;
-  const Real t114 = t3 * t101;
-  const Real t115 = t114 - t110;
-  const Real t116 = product_error(t3, par.r_F);
-  const Real t117 = t7 + t116;
-  const Real t118 = t117 - t50;
-  const Real t119 = t115 + t118;
-  const Real t120 = t18 * t3;
-  const Real t121 = t119 + t120;
-  const Real t122 = t109 + t121;
-  const Real t123 = t113 * t122;
-  const Real t124 = t96 - t123;
-  const Real t125 = constant<Real>(1.0L) / t124;
-  const Real t126 = par.k1 * t15;
-  const Real t127 = par.k2 * t126;
-  const Real t128 = t127 * t2;
-  const Real t129 = t128 * t2;
-  const Real t130 = t129 * R[6];
-  const Real t131 = t130 * par.r_R;
-  const Real t132 = t131 * constant<Real>(2.0L);
-  const Real t133 = par.k27 * t91;
-  const Real t134 = t133 + t49;
-  const Real t135 = t80 * c_r_p_1_;
-  const Real t136 = t135 * par.r_F;
-  const Real t137 = t136 * t85;
-  const Real t138 = t134 + t137;
-  const Real t139 = t18 * t36;
-  const Real t140 = sum_error(par.k20, t35);
-  const Real t141 = product_error(c_r_p_1_, par.k2);
-  const Real t142 = t141 * par.k2;
-  const Real t143 = product_error(par.k2, t34);
-  const Real t144 = t142 + t143;
-  const Real t145 = t140 + t144;
-  const Real t146 = t18 * t145;
-  const Real t147 = t139 + t146;
-  const Real t148 = t138 + t147;
-  const Real t149 = t132 - t148;
-  const Real t150 = t101 * t5;
-  const Real t151 = t55 - t150;
-  const Real t152 = t3 * t52;
-  const Real t153 = t151 - t152;
-  const Real t154 = t108 * t153;
-  const Real t155 = t154 * t122;
-  const Real t156 = t149 - t155;
-  const Real t157 = t125 * t156;
-  const Real t158 = t87 * t157;
-  const Real t159 = t158 - t101;
-  const Real t160 = constant<Real>(1.0L) / t159;
-  const Real t161 = t87 * par.k2;
-  const Real t162 = par.k1 * t101;
-  const Real t163 = t161 + t162;
-  const Real t164 = t163 + par.k13;
-  const Real t165 = t164 * t113;
-  const Real t166 = t165 * t157;
-  const Real t167 = t154 * t164;
-  const Real t168 = t166 - t167;
-  const Real t169 = product_error(t160, t168);
-  const Real t170 = product_error(t156, t125);
-  const Real t171 = -t155;
-  const Real t172 = sum_error(t149, t171);
-  const Real t173 = product_error(t154, t122);
-  const Real t174 = t172 - t173;
-  const Real t175 = t174 * t125;
-  const Real t176 = quotient_error(constant<Real>(1.0L), t124);
-  const Real t177 = -t123;
-  const Real t178 = sum_error(t96, t177);
-  const Real t179 = product_error(t113, t122);
-  const Real t180 = t178 - t179;
-  const Real t181 = t125 * t180;
-  const Real t182 = t181 / t124;
-  const Real t183 = t176 - t182;
-  const Real t184 = t183 * t156;
-  const Real t185 = t175 + t184;
-  const Real t186 = t170 + t185;
-  const Real t187 = t165 * t186;
-  const Real t188 = product_error(t113, t164);
-  const Real t189 = t188 * t157;
-  const Real t190 = t187 + t189;
-  const Real t191 = product_error(t165, t157);
-  const Real t192 = t190 + t191;
-  const Real t193 = product_error(t164, t154);
-  const Real t194 = t192 - t193;
-  const Real t195 = -t167;
-  const Real t196 = sum_error(t166, t195);
-  const Real t197 = t194 + t196;
-  const Real t198 = t160 * t197;
-  const Real t199 = quotient_error(constant<Real>(1.0L), t159);
-  const Real t200 = product_error(t87, t157);
-  const Real t201 = t87 * t186;
-  const Real t202 = t200 + t201;
-  const Real t203 = -t101;
-  const Real t204 = sum_error(t158, t203);
-  const Real t205 = t202 + t204;
-  const Real t206 = t160 * t205;
-  const Real t207 = t206 / t159;
-  const Real t208 = t199 - t207;
-  const Real t209 = t208 * t168;
-  const Real t210 = t198 + t209;
-  const Real t211 = t169 + t210;
-  const Real t212 = t160 * t168;
-  const Real t213 = t211 + t212;
-  const Real t214 = -t213;
-  const Real t215 = t92 * par.c;
-  const Real t216 = t37 - t215;
-  const Real t217 = t87 * t92;
-  const Real t218 = t101 * t145;
-  const Real t219 = t101 * t36;
-  const Real t220 = t218 + t219;
-  const Real t221 = t217 + t220;
-  const Real t222 = t216 + t221;
-  const Real t223 = c_r_p_1_ * t32;
-  const Real t224 = t222 - t223;
-  const Real t225 = -t215;
-  const Real t226 = sum_error(t37, t225);
-  const Real t227 = product_error(par.r_F, t36);
-  const Real t228 = par.r_F * t145;
-  const Real t229 = t227 + t228;
-  const Real t230 = t226 + t229;
-  const Real t231 = sum_error(t216, t221);
-  const Real t232 = t230 + t231;
-  const Real t233 = product_error(c_r_p_1_, t32);
-  const Real t234 = t232 - t233;
-  const Real t235 = t224 + t234;
-  const Real t236 = t3 * t87;
-  const Real t237 = t236 - t38;
-  const Real t238 = t32 * t5;
-  const Real t239 = t237 + t238;
-  const Real t240 = t235 * t113;
-  const Real t241 = t239 - t240;
-  const Real t242 = sum_error(t4, t114);
-  const Real t243 = t116 + t242;
-  const Real t244 = product_error(t3, t32);
-  const Real t245 = t243 - t244;
-  const Real t246 = t4 + t114;
-  const Real t247 = t3 * t32;
+  const Real t103 = t45 * t99;
+  const Real t104 = t58 * t56;
+  const Real t105 = t103 + t104;
+  const Real t106 = t57 * t58;
+  const Real t107 = t106 + t85;
+  const Real t108 = t107 + t103;
+  const Real t109 = t31 * t99;
+  const Real t110 = t91 * t56;
+  const Real t111 = t109 - t110;
+  const Real t112 = t103 + t102;
+  const Real t113 = c_r_p_1_ * t99;
+  const Real t114 = t42 - t113;
+  const Real t115 = constant<Real>(1.0L) / t114;
+  const Real t116 = t112 * t115;
+  const Real t117 = t116 * t105;
+  const Real t118 = t111 - t117;
+  const Real t119 = t57 * t88;
+  const Real t120 = t78 - t119;
+  const Real t121 = t34 * t99;
+  const Real t122 = t120 + t121;
+  const Real t123 = t58 * t99;
+  const Real t124 = t49 - t123;
+  const Real t125 = t115 * t124;
+  const Real t126 = t108 * t125;
+  const Real t127 = t122 - t126;
+  const Real t128 = t57 * t91;
+  const Real t129 = t69 - t128;
+  const Real t130 = t109 + t129;
+  const Real t131 = t116 * t108;
+  const Real t132 = t130 - t131;
+  const Real t133 = constant<Real>(1.0L) / t132;
+  const Real t134 = t127 * t133;
+  const Real t135 = t25 * t134;
+  const Real t136 = product_error(t127, t133);
+  const Real t137 = quotient_error(constant<Real>(1.0L), t132);
+  const Real t138 = -t131;
+  const Real t139 = sum_error(t130, t138);
+  const Real t140 = product_error(t116, t108);
+  const Real t141 = t139 - t140;
+  const Real t142 = t141 * t133;
+  const Real t143 = t142 / t132;
+  const Real t144 = t137 - t143;
+  const Real t145 = t144 * t127;
+  const Real t146 = -t126;
+  const Real t147 = sum_error(t122, t146);
+  const Real t148 = product_error(t108, t125);
+  const Real t149 = t147 - t148;
+  const Real t150 = t149 * t133;
+  const Real t151 = t145 + t150;
+  const Real t152 = t136 + t151;
+  const Real t153 = t152 * t25;
+  const Real t154 = t135 + t153;
+  const Real t155 = t154 - t22;
+  const Real t156 = constant<Real>(1.0L) / t155;
+  const Real t157 = t56 * t88;
+  const Real t158 = t121 - t157;
+  const Real t159 = t105 * t125;
+  const Real t160 = -t159;
+  const Real t161 = sum_error(t158, t160);
+  const Real t162 = product_error(t105, t125);
+  const Real t163 = t161 - t162;
+  const Real t164 = product_error(t118, t134);
+  const Real t165 = t152 * t118;
+  const Real t166 = -t117;
+  const Real t167 = sum_error(t111, t166);
+  const Real t168 = product_error(t116, t105);
+  const Real t169 = t167 - t168;
+  const Real t170 = t169 * t134;
+  const Real t171 = t165 + t170;
+  const Real t172 = t164 + t171;
+  const Real t173 = t163 - t172;
+  const Real t174 = t158 - t159;
+  const Real t175 = t118 * t134;
+  const Real t176 = t174 - t175;
+  const Real t177 = t173 + t176;
+  const Real t178 = t156 * t177;
+  const Real t179 = t25 * t178;
+  const Real t180 = t118 + t179;
+  const Real t181 = t180 * t133;
+  const Real t182 = t108 * t181;
+  const Real t183 = t105 - t182;
+  const Real t184 = product_error(t180, t133);
+  const Real t185 = sum_error(t118, t179);
+  const Real t186 = t169 + t185;
+  const Real t187 = t186 * t133;
+  const Real t188 = t180 * t144;
+  const Real t189 = t187 + t188;
+  const Real t190 = t184 + t189;
+  const Real t191 = t108 * t190;
+  const Real t192 = product_error(t181, t108);
+  const Real t193 = t191 + t192;
+  const Real t194 = t183 - t193;
+  const Real t195 = t194 * t115;
+  const Real t196 = -t195;
+  const Real t197 = t62 * t45;
+  const Real t198 = t61 + t197;
+  const Real t199 = c_r_p_1_ * t62;
+  const Real t200 = t97 - t199;
+  const Real t201 = t116 * t200;
+  const Real t202 = t198 - t201;
+  const Real t203 = t58 * t62;
+  const Real t204 = t72 - t203;
+  const Real t205 = t200 * t125;
+  const Real t206 = -t205;
+  const Real t207 = sum_error(t204, t206);
+  const Real t208 = product_error(t200, t125);
+  const Real t209 = t207 - t208;
+  const Real t210 = t152 * t202;
+  const Real t211 = -t201;
+  const Real t212 = sum_error(t198, t211);
+  const Real t213 = product_error(t116, t200);
+  const Real t214 = t212 - t213;
+  const Real t215 = t214 * t134;
+  const Real t216 = t210 + t215;
+  const Real t217 = product_error(t202, t134);
+  const Real t218 = t216 + t217;
+  const Real t219 = t209 - t218;
+  const Real t220 = t204 - t205;
+  const Real t221 = t202 * t134;
+  const Real t222 = t220 - t221;
+  const Real t223 = t219 + t222;
+  const Real t224 = t156 * t223;
+  const Real t225 = t25 * t224;
+  const Real t226 = t202 + t225;
+  const Real t227 = t144 * t226;
+  const Real t228 = sum_error(t202, t225);
+  const Real t229 = t214 + t228;
+  const Real t230 = t229 * t133;
+  const Real t231 = t227 + t230;
+  const Real t232 = product_error(t133, t226);
+  const Real t233 = t231 + t232;
+  const Real t234 = t226 * t133;
+  const Real t235 = t233 + t234;
+  const Real t236 = -t235;
+  const Real t237 = t116 * t28;
+  const Real t238 = t237 * t134;
+  const Real t239 = t28 * t125;
+  const Real t240 = t238 - t239;
+  const Real t241 = product_error(t116, t28);
+  const Real t242 = t241 * t134;
+  const Real t243 = t152 * t237;
+  const Real t244 = t242 + t243;
+  const Real t245 = product_error(t237, t134);
+  const Real t246 = t244 + t245;
+  const Real t247 = product_error(t28, t125);
   const Real t248 = t246 - t247;
-  const Real t249 = t245 + t248;
-  const Real t250 = t154 * t235;
+  const Real t249 = t240 + t248;
+  const Real t250 = t156 * t249;
   const Real t251 = -t250;
-  const Real t252 = sum_error(t249, t251);
-  const Real t253 = product_error(t235, t154);
-  const Real t254 = t252 - t253;
-  const Real t255 = product_error(t157, t241);
-  const Real t256 = -t240;
-  const Real t257 = sum_error(t239, t256);
-  const Real t258 = product_error(t113, t235);
-  const Real t259 = t257 - t258;
-  const Real t260 = t259 * t157;
-  const Real t261 = t241 * t186;
-  const Real t262 = t260 + t261;
-  const Real t263 = t255 + t262;
-  const Real t264 = t254 - t263;
-  const Real t265 = t249 - t250;
-  const Real t266 = t241 * t157;
-  const Real t267 = t265 - t266;
-  const Real t268 = t264 + t267;
-  const Real t269 = t268 * t208;
-  const Real t270 = t160 * t268;
-  const Real t271 = t269 + t270;
-  const Real t272 = t87 * t271;
-  const Real t273 = t241 + t272;
-  const Real t274 = t273 * t125;
-  const Real t275 = t274 * t122;
-  const Real t276 = t235 - t275;
-  const Real t277 = product_error(t274, t122);
-  const Real t278 = product_error(t125, t273);
-  const Real t279 = sum_error(t272, t241);
-  const Real t280 = t279 + t259;
-  const Real t281 = t125 * t280;
-  const Real t282 = t183 * t273;
-  const Real t283 = t281 + t282;
-  const Real t284 = t278 + t283;
-  const Real t285 = t284 * t122;
-  const Real t286 = t277 + t285;
-  const Real t287 = t276 - t286;
-  const Real t288 = t108 * t287;
-  const Real t289 = -t288;
-  const Real t290 = t87 * t212;
-  const Real t291 = t290 - t165;
-  const Real t292 = product_error(t125, t291);
-  const Real t293 = -t165;
-  const Real t294 = sum_error(t290, t293);
-  const Real t295 = t211 * t87;
-  const Real t296 = product_error(t87, t212);
+  const Real t252 = -t224;
+  const Real t253 = t181 + t190;
+  const Real t254 = -t253;
+  const Real t255 = t25 * t250;
+  const Real t256 = t255 - t237;
+  const Real t257 = t256 * t133;
+  const Real t258 = -t237;
+  const Real t259 = sum_error(t255, t258);
+  const Real t260 = t259 - t241;
+  const Real t261 = t260 * t133;
+  const Real t262 = t144 * t256;
+  const Real t263 = t261 + t262;
+  const Real t264 = product_error(t256, t133);
+  const Real t265 = t263 + t264;
+  const Real t266 = t257 + t265;
+  const Real t267 = -t266;
+  const Real t268 = t108 * t234;
+  const Real t269 = t200 - t268;
+  const Real t270 = t233 * t108;
+  const Real t271 = product_error(t108, t234);
+  const Real t272 = t270 + t271;
+  const Real t273 = t269 - t272;
+  const Real t274 = t115 * t273;
+  const Real t275 = t274 * t99;
+  const Real t276 = t275 - t62;
+  const Real t277 = t276 * nu[0];
+  const Real t278 = t257 * t108;
+  const Real t279 = t28 - t278;
+  const Real t280 = product_error(t257, t108);
+  const Real t281 = t108 * t265;
+  const Real t282 = t280 + t281;
+  const Real t283 = t279 - t282;
+  const Real t284 = t283 * t115;
+  const Real t285 = t284 * t99;
+  const Real t286 = t285 * nu[1];
+  const Real t287 = t277 + t286;
+  const Real t288 = t195 * t99;
+  const Real t289 = t288 * nu[2];
+  const Real t290 = t287 + t289;
+  const Real t291 = t234 * t99;
+  const Real t292 = t233 * t99;
+  const Real t293 = t291 + t292;
+  const Real t294 = -t293;
+  const Real t295 = t57 * t190;
+  const Real t296 = t57 * t181;
   const Real t297 = t295 + t296;
-  const Real t298 = t297 - t188;
-  const Real t299 = t294 + t298;
-  const Real t300 = t125 * t299;
-  const Real t301 = t183 * t291;
+  const Real t298 = t297 - t56;
+  const Real t299 = t298 * nu[2];
+  const Real t300 = t57 * t234;
+  const Real t301 = t233 * t57;
   const Real t302 = t300 + t301;
-  const Real t303 = t292 + t302;
-  const Real t304 = t303 * nu[1];
-  const Real t305 = t125 * t291;
-  const Real t306 = t305 * nu[1];
-  const Real t307 = t304 + t306;
-  const Real t308 = t284 * nu[0];
-  const Real t309 = t274 * nu[0];
-  const Real t310 = t308 + t309;
-  const Real t311 = t307 + t310;
-  const Real t312 = t17 * t92;
-  const Real t313 = t95 - t312;
-  const Real t314 = t3 * t17;
-  const Real t315 = t109 + t314;
-  const Real t316 = t315 * t113;
-  const Real t317 = t313 - t316;
-  const Real t318 = t92 * t52;
-  const Real t319 = t17 * t145;
-  const Real t320 = t17 * t36;
-  const Real t321 = t319 + t320;
-  const Real t322 = t318 - t321;
-  const Real t323 = t154 * t315;
-  const Real t324 = t322 - t323;
-  const Real t325 = t317 * t157;
-  const Real t326 = t324 - t325;
-  const Real t327 = -t323;
-  const Real t328 = sum_error(t322, t327);
-  const Real t329 = product_error(t154, t315);
-  const Real t330 = t328 - t329;
-  const Real t331 = product_error(t317, t157);
-  const Real t332 = t317 * t186;
-  const Real t333 = -t316;
-  const Real t334 = sum_error(t313, t333);
-  const Real t335 = product_error(t113, t315);
-  const Real t336 = t334 - t335;
-  const Real t337 = t336 * t157;
-  const Real t338 = t332 + t337;
-  const Real t339 = t331 + t338;
-  const Real t340 = t330 - t339;
-  const Real t341 = t326 + t340;
-  const Real t342 = t341 * t208;
-  const Real t343 = t341 * t160;
-  const Real t344 = t342 + t343;
-  const Real t345 = t344 * t87;
-  const Real t346 = t317 + t345;
-  const Real t347 = t346 * t125;
-  const Real t348 = t347 * nu[2];
-  const Real t349 = t346 * t183;
-  const Real t350 = sum_error(t317, t345);
-  const Real t351 = t336 + t350;
-  const Real t352 = t351 * t125;
-  const Real t353 = t349 + t352;
-  const Real t354 = product_error(t125, t346);
-  const Real t355 = t353 + t354;
-  const Real t356 = nu[2] * t355;
-  const Real t357 = t348 + t356;
-  const Real t358 = t311 + t357;
-  const Real t359 = -t358;
-  const Real t360 = t344 * nu[2];
-  const Real t361 = t211 * nu[1];
-  const Real t362 = t212 * nu[1];
-  const Real t363 = t361 + t362;
-  const Real t364 = t271 * nu[0];
-  const Real t365 = t363 + t364;
-  const Real t366 = t360 + t365;
-  const Real t367 = -t366;
-  const Real t368 = t305 + t303;
-  const Real t369 = -t368;
-  const Real t370 = t347 + t355;
-  const Real t371 = -t370;
-  const Real t372 = t274 * t52;
-  const Real t373 = t284 * t52;
-  const Real t374 = t372 + t373;
-  const Real t375 = -t374;
-  const Real t376 = t288 * t52;
-  const Real t377 = t376 - t32;
-  const Real t378 = t377 * nu[0];
-  const Real t379 = t305 * t122;
-  const Real t380 = t164 - t379;
-  const Real t381 = product_error(t305, t122);
-  const Real t382 = t303 * t122;
-  const Real t383 = t381 + t382;
-  const Real t384 = t380 - t383;
-  const Real t385 = t108 * t384;
-  const Real t386 = t52 * t385;
-  const Real t387 = nu[1] * t386;
-  const Real t388 = t378 + t387;
-  const Real t389 = t347 * t122;
-  const Real t390 = t315 - t389;
-  const Real t391 = t355 * t122;
-  const Real t392 = product_error(t122, t347);
-  const Real t393 = t391 + t392;
-  const Real t394 = t390 - t393;
-  const Real t395 = t108 * t394;
-  const Real t396 = t395 * t52;
-  const Real t397 = t396 * nu[2];
-  const Real t398 = t388 + t397;
-  const Real t399 = t395 * nu[2];
-  const Real t400 = nu[1] * t385;
-  const Real t401 = t288 * nu[0];
-  const Real t402 = t400 + t401;
-  const Real t403 = t399 + t402;
-  const Real t404 = -t403;
-  const Real t405 = t52 * t303;
-  const Real t406 = t52 * t305;
-  const Real t407 = t405 + t406;
-  const Real t408 = -t407;
-  const Real t409 = -t395;
-  const Real t410 = t18 * t355;
-  const Real t411 = t18 * t347;
-  const Real t412 = t410 + t411;
-  const Real t413 = t412 - t17;
-  const Real t414 = t413 * nu[2];
-  const Real t415 = t18 * t284;
-  const Real t416 = t274 * t18;
-  const Real t417 = t415 + t416;
-  const Real t418 = t417 * nu[0];
-  const Real t419 = t18 * t305;
-  const Real t420 = t18 * t303;
-  const Real t421 = t419 + t420;
-  const Real t422 = t421 * nu[1];
-  const Real t423 = t418 + t422;
-  const Real t424 = t414 + t423;
-  const Real t425 = t347 * t52;
-  const Real t426 = t52 * t355;
-  const Real t427 = t425 + t426;
-  const Real t428 = t52 - t427;
-  const Real t429 = t428 * nu[2];
-  const Real t430 = t374 * nu[0];
-  const Real t431 = t407 * nu[1];
-  const Real t432 = t430 + t431;
-  const Real t433 = t429 - t432;
-  const Real t434 = t274 + t284;
-  const Real t435 = -t434;
-  const Real t436 = -t271;
-  const Real t437 = -t344;
-  const Real t438 = -t385;
+  const Real t303 = t302 * nu[0];
+  const Real t304 = t57 * t265;
+  const Real t305 = t257 * t57;
+  const Real t306 = t304 + t305;
+  const Real t307 = t306 * nu[1];
+  const Real t308 = t303 + t307;
+  const Real t309 = t299 + t308;
+  const Real t310 = -t274;
+  const Real t311 = -t178;
+  const Real t312 = t99 * t190;
+  const Real t313 = t181 * t99;
+  const Real t314 = t312 + t313;
+  const Real t315 = t99 - t314;
+  const Real t316 = t315 * nu[2];
+  const Real t317 = t257 * t99;
+  const Real t318 = t99 * t265;
+  const Real t319 = t317 + t318;
+  const Real t320 = t319 * nu[1];
+  const Real t321 = t293 * nu[0];
+  const Real t322 = t320 + t321;
+  const Real t323 = t316 - t322;
+  const Real t324 = t257 * nu[1];
+  const Real t325 = nu[1] * t265;
+  const Real t326 = t324 + t325;
+  const Real t327 = t233 * nu[0];
+  const Real t328 = t234 * nu[0];
+  const Real t329 = t327 + t328;
+  const Real t330 = t326 + t329;
+  const Real t331 = t181 * nu[2];
+  const Real t332 = nu[2] * t190;
+  const Real t333 = t331 + t332;
+  const Real t334 = t330 + t333;
+  const Real t335 = -t334;
+  const Real t336 = -t319;
+  const Real t337 = -t284;
+  const Real t338 = t274 * nu[0];
+  const Real t339 = t284 * nu[1];
+  const Real t340 = t338 + t339;
+  const Real t341 = t195 * nu[2];
+  const Real t342 = t340 + t341;
+  const Real t343 = -t342;
+  const Real t344 = nu[0] * t224;
+  const Real t345 = t250 * nu[1];
+  const Real t346 = t344 + t345;
+  const Real t347 = t178 * nu[2];
+  const Real t348 = t346 + t347;
+  const Real t349 = -t348;
 
-  eta_out[0] = t424;
-  eta_out[1] = t398;
-  eta_out[2] = t433;
+  eta_out[0] = t309;
+  eta_out[1] = t290;
+  eta_out[2] = t323;
   eta_out[3] = nu[0];
-  eta_out[4] = t359;
-  eta_out[5] = t404;
+  eta_out[4] = t335;
+  eta_out[5] = t343;
   r_p_dot_out[0] = nu[2];
   r_p_dot_out[1] = nu[1];
-  r_p_dot_out[2] = t367;
-  H[0] = t417;
-  H[1] = t421;
-  H[2] = t413;
-  H[3] = t377;
-  H[4] = t386;
-  H[5] = t396;
-  H[6] = t375;
-  H[7] = t408;
-  H[8] = t428;
+  r_p_dot_out[2] = t349;
+  H[0] = t302;
+  H[1] = t306;
+  H[2] = t298;
+  H[3] = t276;
+  H[4] = t285;
+  H[5] = t288;
+  H[6] = t294;
+  H[7] = t336;
+  H[8] = t315;
   H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
-  H[12] = t435;
-  H[13] = t369;
-  H[14] = t371;
-  H[15] = t289;
-  H[16] = t438;
-  H[17] = t409;
+  H[12] = t236;
+  H[13] = t267;
+  H[14] = t254;
+  H[15] = t310;
+  H[16] = t337;
+  H[17] = t196;
   H[18] = constant<Real>(0.0L);
   H[19] = constant<Real>(0.0L);
   H[20] = constant<Real>(1.0L);
   H[21] = constant<Real>(0.0L);
   H[22] = constant<Real>(1.0L);
   H[23] = constant<Real>(0.0L);
-  H[24] = t436;
-  H[25] = t214;
-  H[26] = t437;
+  H[24] = t252;
+  H[25] = t251;
+  H[26] = t311;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
@@ -1145,22 +948,22 @@ inline void constraints(const Prepared<Real>& par,
   const Real t34 = par.k1 * t33;
   const Real t35 = t22 * par.k2;
   const Real t36 = t34 + t35;
-  const Real t37 = t36 + par.k13;
+  const Real t37 = t36 + par.k12;
   const Real t38 = par.k1 * c_r_p_1_;
   const Real t39 = par.k1 * t38;
-  const Real t40 = par.k19 + t39;
+  const Real t40 = par.k18 + t39;
   const Real t41 = t40 * t22;
   const Real t42 = t38 * par.k2;
-  const Real t43 = par.k23 - t42;
+  const Real t43 = par.k22 - t42;
   const Real t44 = t33 * t43;
   const Real t45 = t41 + t44;
-  const Real t46 = c_r_p_1_ * par.k14;
+  const Real t46 = c_r_p_1_ * par.k13;
   const Real t47 = t43 * par.r_F;
   const Real t48 = t40 * par.c;
   const Real t49 = t47 - t48;
   const Real t50 = t46 + t49;
   const Real t51 = t45 + t50;
-  const Real t52 = s_r_p_1_ * par.k14;
+  const Real t52 = s_r_p_1_ * par.k13;
   const Real t53 = par.k2 * t52;
   const Real t54 = s_r_p_1_ * par.k1;
   const Real t55 = par.r_F * t54;
@@ -1178,9 +981,9 @@ inline void constraints(const Prepared<Real>& par,
   const Real t67 = par.r_R - t61;
   const Real t68 = -t63;
   const Real t69 = c_r_p_1_ * par.c;
-  const Real t70 = c_r_p_1_ * par.k24;
+  const Real t70 = c_r_p_1_ * par.k23;
   const Real t71 = t70 * par.k1;
-  const Real t72 = t71 + par.k22;
+  const Real t72 = t71 + par.k21;
   const Real t73 = t69 - t72;
   const Real t74 = t22 * c_r_p_1_;
   const Real t75 = t73 - t74;
@@ -1189,7 +992,7 @@ inline void constraints(const Prepared<Real>& par,
   const Real t78 = t33 * t63;
   const Real t79 = t77 + t78;
   const Real t80 = t70 * par.k2;
-  const Real t81 = t80 - par.k25;
+  const Real t81 = t80 - par.k24;
   const Real t82 = c_r_p_1_ * par.r_F;
   const Real t83 = t81 - t82;
   const Real t84 = t33 * c_r_p_1_;
@@ -1198,15 +1001,15 @@ inline void constraints(const Prepared<Real>& par,
   const Real t87 = t78 - t86;
   const Real t88 = par.c * t54;
   const Real t89 = t77 + t88;
-  const Real t90 = s_r_p_1_ * par.k24;
+  const Real t90 = s_r_p_1_ * par.k23;
   const Real t91 = t89 - t90;
   const Real t92 = t87 + t91;
   const Real t93 = c_r_p_1_ * par.k2;
   const Real t94 = par.k2 * t93;
-  const Real t95 = par.k20 + t94;
+  const Real t95 = par.k19 + t94;
   const Real t96 = par.r_F * t95;
   const Real t97 = par.k1 * t93;
-  const Real t98 = par.k23 - t97;
+  const Real t98 = par.k22 - t97;
   const Real t99 = t98 * par.c;
   const Real t100 = t96 - t99;
   const Real t101 = t22 * t98;
@@ -1248,13 +1051,13 @@ inline void constraints(const Prepared<Real>& par,
   const Real t135 = r_p_dot[0] + eta[4];
   const Real t136 = t127 * t135;
   const Real t137 = -t136;
-  const Real t138 = eta[5] * par.k14;
+  const Real t138 = eta[5] * par.k13;
   const Real t139 = eta[1] + t138;
   const Real t140 = c_r_p_1_ * r_p_dot[1];
   const Real t141 = t139 * t140;
   const Real t142 = s_r_p_1_ * r_p_dot[1];
   const Real t143 = par.k2 * eta[0];
-  const Real t144 = par.k14 * eta[4];
+  const Real t144 = par.k13 * eta[4];
   const Real t145 = eta[2] - t144;
   const Real t146 = par.k1 * t145;
   const Real t147 = t143 - t146;
@@ -1457,20 +1260,20 @@ inline void free_dynamics(const Prepared<Real>& par,
   // joint angles
   const Real t1 = par.k1 * c_r_p_1_;
   const Real t2 = par.k1 * t1;
-  const Real t3 = par.k19 + t2;
-  const Real t4 = c_r_p_1_ * par.k24;
+  const Real t3 = par.k18 + t2;
+  const Real t4 = c_r_p_1_ * par.k23;
   const Real t5 = t1 * par.k2;
-  const Real t6 = par.k23 - t5;
+  const Real t6 = par.k22 - t5;
   const Real t7 = s_r_p_1_ * par.k2;
   const Real t8 = c_r_p_1_ * par.k2;
   const Real t9 = par.k1 * t8;
-  const Real t10 = par.k23 - t9;
-  const Real t11 = c_r_p_1_ * par.k14;
-  const Real t12 = s_r_p_1_ * par.k14;
-  const Real t13 = s_r_p_1_ * par.k24;
+  const Real t10 = par.k22 - t9;
+  const Real t11 = c_r_p_1_ * par.k13;
+  const Real t12 = s_r_p_1_ * par.k13;
+  const Real t13 = s_r_p_1_ * par.k23;
   const Real t14 = s_r_p_1_ * par.k1;
   const Real t15 = par.k2 * t8;
-  const Real t16 = par.k20 + t15;
+  const Real t16 = par.k19 + t15;
 
   // joint angles
   const Real t17 = c_r_p_1_ * eta[4];
@@ -1509,10 +1312,10 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t46 = t7 * par.m_H;
-  const Real t47 = t7 * par.k11;
-  const Real t48 = par.k9 * t7;
-  const Real t49 = par.k9 * t8;
-  const Real t50 = t49 - par.k40;
+  const Real t47 = t7 * par.k10;
+  const Real t48 = par.k8 * t7;
+  const Real t49 = par.k8 * t8;
+  const Real t50 = t49 - par.k33;
   const Real t51 = par.m_H * t8;
 
   // front_wheel: wrench
@@ -1521,9 +1324,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t54 = t40 * par.m_F;
 
   // front_wheel: joint force
-  const Real t55 = t53 * par.k12;
+  const Real t55 = t53 * par.k11;
   const Real t56 = t48 - t55;
-  const Real t57 = t53 * par.k13;
+  const Real t57 = t53 * par.k12;
   const Real t58 = t47 + t57;
   const Real t59 = -t58;
   const Real t60 = t52 * c_r_p_2_;
@@ -1535,14 +1338,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t66 = t64 - t65;
   const Real t67 = par.k1 * t66;
   const Real t68 = t63 - t67;
-  const Real t69 = t68 * par.k12;
+  const Real t69 = t68 * par.k11;
   const Real t70 = t66 * par.k2;
   const Real t71 = par.k1 * t62;
   const Real t72 = t70 + t71;
-  const Real t73 = par.k13 * t72;
+  const Real t73 = par.k12 * t72;
   const Real t74 = t69 + t73;
   const Real t75 = t50 - t74;
-  const Real t76 = t72 + par.k41;
+  const Real t76 = t72 + par.k34;
   const Real t77 = t46 + t53;
   const Real t78 = t68 + t51;
 
@@ -1557,7 +1360,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t86 = s_r_p_1_ * t78;
   const Real t87 = c_r_p_1_ * t77;
   const Real t88 = t86 - t87;
-  const Real t89 = par.k14 * t88;
+  const Real t89 = par.k13 * t88;
   const Real t90 = par.k2 * t58;
   const Real t91 = t56 * c_r_p_1_;
   const Real t92 = s_r_p_1_ * t75;
@@ -1571,9 +1374,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t100 = par.k2 * t76;
   const Real t101 = par.k1 * t81;
   const Real t102 = t100 - t101;
-  const Real t103 = t102 * par.k14;
+  const Real t103 = t102 * par.k13;
   const Real t104 = t99 - t103;
-  const Real t105 = t104 + par.k16;
+  const Real t105 = t104 + par.k15;
   const Real t106 = par.k2 * t93;
   const Real t107 = par.k1 * t58;
   const Real t108 = t106 - t107;
@@ -1599,11 +1402,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t124 = t122 + t123;
 
   // fork: wrench
-  const Real t125 = s_r_p_1_ * par.k9;
+  const Real t125 = s_r_p_1_ * par.k8;
   const Real t126 = par.m_H * c_r_p_1_;
-  const Real t127 = par.k9 * c_r_p_1_;
+  const Real t127 = par.k8 * c_r_p_1_;
   const Real t128 = s_r_p_1_ * par.m_H;
-  const Real t129 = c_r_p_1_ * par.k11;
+  const Real t129 = c_r_p_1_ * par.k10;
 
   // front_wheel: wrench
   const Real t130 = t121 * par.m_F;
@@ -1612,7 +1415,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // front_wheel: joint force
   const Real t133 = t126 + t132;
-  const Real t134 = par.k12 * t132;
+  const Real t134 = par.k11 * t132;
   const Real t135 = t134 - t127;
   const Real t136 = t130 * c_r_p_2_;
   const Real t137 = t131 * s_r_p_2_;
@@ -1623,14 +1426,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t142 = t140 + t141;
   const Real t143 = par.k1 * t142;
   const Real t144 = t139 + t143;
-  const Real t145 = t144 * par.k13;
+  const Real t145 = t144 * par.k12;
   const Real t146 = par.k2 * t142;
   const Real t147 = par.k1 * t138;
   const Real t148 = t146 - t147;
-  const Real t149 = t148 * par.k12;
+  const Real t149 = t148 * par.k11;
   const Real t150 = t145 + t149;
   const Real t151 = t125 - t150;
-  const Real t152 = par.k13 * t132;
+  const Real t152 = par.k12 * t132;
   const Real t153 = t129 + t152;
   const Real t154 = t128 + t148;
 
@@ -1645,13 +1448,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t162 = t161 * par.k2;
   const Real t163 = par.k1 * t153;
   const Real t164 = t162 + t163;
-  const Real t165 = t164 - par.k16;
+  const Real t165 = t164 - par.k15;
   const Real t166 = par.k2 * t153;
   const Real t167 = par.k1 * t161;
   const Real t168 = t166 - t167;
-  const Real t169 = t157 * par.k14;
+  const Real t169 = t157 * par.k13;
   const Real t170 = t168 + t169;
-  const Real t171 = t170 + par.k17;
+  const Real t171 = t170 + par.k16;
   const Real t172 = s_r_p_1_ * t135;
   const Real t173 = c_r_p_1_ * t151;
   const Real t174 = t172 + t173;
@@ -1661,11 +1464,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t178 = t176 - t177;
   const Real t179 = par.k1 * t178;
   const Real t180 = t175 - t179;
-  const Real t181 = t180 * par.k14;
+  const Real t181 = t180 * par.k13;
   const Real t182 = t174 - t181;
 
   // rear_wheel: joint force
-  const Real t183 = par.k45 + t165;
+  const Real t183 = par.k37 + t165;
   const Real t184 = t158 + par.m_R;
 
   // front_wheel: acceleration
@@ -1677,10 +1480,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t190 = t188 - t189;
 
   // fork: wrench
-  const Real t191 = par.k9 * t14;
-  const Real t192 = par.k11 * t14;
-  const Real t193 = par.k9 * t1;
-  const Real t194 = par.k47 + t193;
+  const Real t191 = par.k8 * t14;
+  const Real t192 = par.k10 * t14;
+  const Real t193 = par.k8 * t1;
+  const Real t194 = par.k39 + t193;
   const Real t195 = par.m_H * t1;
   const Real t196 = par.m_H * t14;
 
@@ -1699,19 +1502,19 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t206 = t204 - t205;
   const Real t207 = t206 * par.k2;
   const Real t208 = t203 + t207;
-  const Real t209 = par.k46 + t208;
+  const Real t209 = par.k38 + t208;
   const Real t210 = t202 * par.k2;
   const Real t211 = par.k1 * t206;
   const Real t212 = t210 - t211;
   const Real t213 = t212 - t195;
-  const Real t214 = par.k12 * t212;
-  const Real t215 = par.k13 * t208;
+  const Real t214 = par.k11 * t212;
+  const Real t215 = par.k12 * t208;
   const Real t216 = t214 + t215;
   const Real t217 = t216 + t194;
-  const Real t218 = par.k13 * t199;
+  const Real t218 = par.k12 * t199;
   const Real t219 = t192 + t218;
   const Real t220 = t196 + t199;
-  const Real t221 = par.k12 * t199;
+  const Real t221 = par.k11 * t199;
   const Real t222 = t221 - t191;
 
   // fork: joint force
@@ -1724,9 +1527,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t229 = t227 - t228;
   const Real t230 = par.k1 * t229;
   const Real t231 = t226 - t230;
-  const Real t232 = t231 * par.k14;
+  const Real t232 = t231 * par.k13;
   const Real t233 = t225 - t232;
-  const Real t234 = t233 - par.k17;
+  const Real t234 = t233 - par.k16;
   const Real t235 = t231 + par.m_B;
   const Real t236 = par.k1 * t219;
   const Real t237 = s_r_p_1_ * t217;
@@ -1740,7 +1543,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t245 = s_r_p_1_ * t213;
   const Real t246 = c_r_p_1_ * t220;
   const Real t247 = t245 + t246;
-  const Real t248 = t247 * par.k14;
+  const Real t248 = t247 * par.k13;
   const Real t249 = t244 + t248;
 
   // rear_wheel: joint force
@@ -1750,9 +1553,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t253 = t234 - t252;
 
   // front_wheel: acceleration
-  const Real t254 = t7 * par.k13;
+  const Real t254 = t7 * par.k12;
   const Real t255 = t254 * par.k2;
-  const Real t256 = t7 * par.k12;
+  const Real t256 = t7 * par.k11;
   const Real t257 = par.k1 * t256;
   const Real t258 = t255 - t257;
   const Real t259 = c_r_p_2_ * t258;
@@ -1761,8 +1564,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t262 = t260 + t261;
   const Real t263 = t262 * s_r_p_2_;
   const Real t264 = t259 + t263;
-  const Real t265 = par.k12 * t8;
-  const Real t266 = par.k48 + t265;
+  const Real t265 = par.k11 * t8;
+  const Real t266 = par.k40 + t265;
   const Real t267 = c_r_p_2_ * t262;
   const Real t268 = s_r_p_2_ * t258;
   const Real t269 = t267 - t268;
@@ -1772,12 +1575,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t271 = par.I_Rxx * c_r_p_0_;
 
   // fork: wrench
-  const Real t272 = par.k40 - t49;
-  const Real t273 = t8 * par.k18;
-  const Real t274 = t273 + par.k51;
+  const Real t272 = par.k33 - t49;
+  const Real t273 = t8 * par.k17;
+  const Real t274 = t273 + par.k43;
   const Real t275 = par.k5 * t8;
-  const Real t276 = par.k50 + t275;
-  const Real t277 = par.k8 * t7;
+  const Real t276 = par.k42 + t275;
+  const Real t277 = par.k7 * t7;
 
   // front_wheel: wrench
   const Real t278 = t269 * par.m_F;
@@ -1799,11 +1602,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t292 = par.k1 * t291;
   const Real t293 = t288 - t292;
   const Real t294 = t293 - t48;
-  const Real t295 = par.k12 * t293;
+  const Real t295 = par.k11 * t293;
   const Real t296 = par.k2 * t291;
   const Real t297 = t287 * par.k1;
   const Real t298 = t296 + t297;
-  const Real t299 = t298 * par.k13;
+  const Real t299 = t298 * par.k12;
   const Real t300 = t295 + t299;
   const Real t301 = t283 + t300;
   const Real t302 = t277 + t301;
@@ -1817,14 +1620,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t310 = t308 - t309;
   const Real t311 = t310 * par.k1;
   const Real t312 = t307 - t311;
-  const Real t313 = par.k12 * t282;
+  const Real t313 = par.k11 * t282;
   const Real t314 = t312 + t313;
   const Real t315 = t314 + t274;
   const Real t316 = t298 + t47;
   const Real t317 = t310 * par.k2;
   const Real t318 = t306 * par.k1;
   const Real t319 = t317 + t318;
-  const Real t320 = par.k13 * t282;
+  const Real t320 = par.k12 * t282;
   const Real t321 = t319 + t320;
   const Real t322 = t276 + t321;
 
@@ -1835,14 +1638,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t326 = t325 * par.k2;
   const Real t327 = par.k1 * t322;
   const Real t328 = t326 + t327;
-  const Real t329 = par.k10 + t328;
+  const Real t329 = par.k9 + t328;
   const Real t330 = par.k2 * t322;
   const Real t331 = par.k1 * t325;
   const Real t332 = t330 - t331;
   const Real t333 = t294 * s_r_p_1_;
   const Real t334 = t303 * c_r_p_1_;
   const Real t335 = t333 + t334;
-  const Real t336 = t335 * par.k14;
+  const Real t336 = t335 * par.k13;
   const Real t337 = t332 + t336;
   const Real t338 = par.k3 + t337;
   const Real t339 = s_r_p_1_ * t315;
@@ -1854,14 +1657,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t345 = t343 - t344;
   const Real t346 = t345 * par.k1;
   const Real t347 = t342 - t346;
-  const Real t348 = t347 * par.k14;
+  const Real t348 = t347 * par.k13;
   const Real t349 = t341 - t348;
 
   // rear_wheel: joint force
   const Real t350 = t270 * s_r_p_0_;
   const Real t351 = t271 * c_r_p_0_;
   const Real t352 = t350 + t351;
-  const Real t353 = par.k52 + t352;
+  const Real t353 = par.k44 + t352;
   const Real t354 = t329 + t353;
   const Real t355 = t270 * c_r_p_0_;
   const Real t356 = t271 * s_r_p_0_;
@@ -1873,11 +1676,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t360 = par.r_R * s_r_p_0_;
 
   // front_wheel: acceleration
-  const Real t361 = c_r_p_1_ * par.k12;
+  const Real t361 = c_r_p_1_ * par.k11;
   const Real t362 = t4 - t361;
   const Real t363 = par.k2 * t362;
-  const Real t364 = c_r_p_1_ * par.k13;
-  const Real t365 = t364 + par.k21;
+  const Real t364 = c_r_p_1_ * par.k12;
+  const Real t365 = t364 + par.k20;
   const Real t366 = par.k1 * t365;
   const Real t367 = t363 - t366;
   const Real t368 = t367 * c_r_p_2_;
@@ -1889,7 +1692,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t374 = t367 * s_r_p_2_;
   const Real t375 = t371 * c_r_p_2_;
   const Real t376 = t374 - t375;
-  const Real t377 = s_r_p_1_ * par.k12;
+  const Real t377 = s_r_p_1_ * par.k11;
   const Real t378 = t377 - t13;
 
   // rear_wheel: wrench
@@ -1898,20 +1701,20 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t381 = s_r_p_1_ * par.k5;
-  const Real t382 = par.k11 * t13;
+  const Real t382 = par.k10 * t13;
   const Real t383 = t381 - t382;
   const Real t384 = par.m_H * t13;
   const Real t385 = t125 + t384;
   const Real t386 = t4 * par.m_H;
   const Real t387 = t127 + t386;
-  const Real t388 = par.k8 * c_r_p_1_;
-  const Real t389 = t4 * par.k9;
-  const Real t390 = t389 + par.k54;
+  const Real t388 = par.k7 * c_r_p_1_;
+  const Real t389 = t4 * par.k8;
+  const Real t390 = t389 + par.k46;
   const Real t391 = t388 + t390;
-  const Real t392 = par.k9 * t13;
-  const Real t393 = s_r_p_1_ * par.k18;
+  const Real t392 = par.k8 * t13;
+  const Real t393 = s_r_p_1_ * par.k17;
   const Real t394 = t392 + t393;
-  const Real t395 = par.k53 + t129;
+  const Real t395 = par.k45 + t129;
 
   // front_wheel: wrench
   const Real t396 = c_r_p_1_ * par.I_Fyy;
@@ -1942,21 +1745,21 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t419 = t417 - t418;
   const Real t420 = par.k1 * t419;
   const Real t421 = t416 - t420;
-  const Real t422 = t400 * par.k12;
+  const Real t422 = t400 * par.k11;
   const Real t423 = t421 + t422;
   const Real t424 = t423 + t394;
   const Real t425 = par.k2 * t419;
   const Real t426 = par.k1 * t415;
   const Real t427 = t425 + t426;
-  const Real t428 = t400 * par.k13;
+  const Real t428 = t400 * par.k12;
   const Real t429 = t427 + t428;
   const Real t430 = t383 + t429;
   const Real t431 = par.k2 * t404;
   const Real t432 = t408 * par.k1;
   const Real t433 = t431 - t432;
   const Real t434 = t433 + t387;
-  const Real t435 = t433 * par.k12;
-  const Real t436 = t410 * par.k13;
+  const Real t435 = t433 * par.k11;
+  const Real t436 = t410 * par.k12;
   const Real t437 = t435 + t436;
   const Real t438 = t396 - t437;
   const Real t439 = t391 + t438;
@@ -1971,7 +1774,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t446 = t444 - t445;
   const Real t447 = t446 * par.k1;
   const Real t448 = t443 - t447;
-  const Real t449 = par.k14 * t448;
+  const Real t449 = par.k13 * t448;
   const Real t450 = t442 - t449;
   const Real t451 = par.k4 + t450;
   const Real t452 = t430 * par.k2;
@@ -1983,7 +1786,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t458 = t412 * c_r_p_1_;
   const Real t459 = s_r_p_1_ * t434;
   const Real t460 = t458 + t459;
-  const Real t461 = t460 * par.k14;
+  const Real t461 = t460 * par.k13;
   const Real t462 = t457 + t461;
 
   // rear_wheel: joint force
@@ -1995,13 +1798,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t468 = t451 + t467;
 
   // front_wheel: acceleration
-  const Real t469 = t1 * par.k12;
-  const Real t470 = par.k55 - t469;
+  const Real t469 = t1 * par.k11;
+  const Real t470 = par.k47 - t469;
   const Real t471 = t11 + t470;
-  const Real t472 = par.k12 * t14;
+  const Real t472 = par.k11 * t14;
   const Real t473 = t12 - t472;
   const Real t474 = par.k1 * t473;
-  const Real t475 = par.k13 * t14;
+  const Real t475 = par.k12 * t14;
   const Real t476 = t475 * par.k2;
   const Real t477 = t474 + t476;
   const Real t478 = t477 * s_r_p_2_;
@@ -2015,18 +1818,18 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t486 = t484 - t485;
 
   // fork: wrench
-  const Real t487 = t1 * par.k18;
-  const Real t488 = par.k56 - t487;
-  const Real t489 = par.k9 * t11;
+  const Real t487 = t1 * par.k17;
+  const Real t488 = par.k48 - t487;
+  const Real t489 = par.k8 * t11;
   const Real t490 = t488 - t489;
   const Real t491 = par.m_H * t12;
   const Real t492 = t191 + t491;
-  const Real t493 = t11 * par.k11;
+  const Real t493 = t11 * par.k10;
   const Real t494 = par.k5 * t1;
-  const Real t495 = par.k57 - t494;
+  const Real t495 = par.k49 - t494;
   const Real t496 = t493 + t495;
-  const Real t497 = par.k8 * t14;
-  const Real t498 = par.k9 * t12;
+  const Real t497 = par.k7 * t14;
+  const Real t498 = par.k8 * t12;
   const Real t499 = t497 + t498;
   const Real t500 = par.m_H * t11;
   const Real t501 = t500 + t194;
@@ -2049,17 +1852,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t514 = t512 + t513;
   const Real t515 = par.k1 * t514;
   const Real t516 = t511 + t515;
-  const Real t517 = t516 * par.k13;
+  const Real t517 = t516 * par.k12;
   const Real t518 = par.k2 * t514;
   const Real t519 = par.k1 * t510;
   const Real t520 = t518 - t519;
-  const Real t521 = t520 * par.k12;
+  const Real t521 = t520 * par.k11;
   const Real t522 = t517 + t521;
   const Real t523 = t503 - t522;
   const Real t524 = t499 + t523;
   const Real t525 = t492 + t520;
   const Real t526 = t504 + t501;
-  const Real t527 = t504 * par.k13;
+  const Real t527 = t504 * par.k12;
   const Real t528 = c_r_p_2_ * t505;
   const Real t529 = t506 * s_r_p_2_;
   const Real t530 = t528 - t529;
@@ -2071,7 +1874,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t536 = t531 + t535;
   const Real t537 = t527 + t536;
   const Real t538 = t496 + t537;
-  const Real t539 = t504 * par.k12;
+  const Real t539 = t504 * par.k11;
   const Real t540 = t534 * par.k2;
   const Real t541 = par.k1 * t530;
   const Real t542 = t540 - t541;
@@ -2088,9 +1891,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t551 = c_r_p_1_ * t526;
   const Real t552 = s_r_p_1_ * t525;
   const Real t553 = t551 + t552;
-  const Real t554 = t553 * par.k14;
+  const Real t554 = t553 * par.k13;
   const Real t555 = t550 + t554;
-  const Real t556 = t555 + par.k15;
+  const Real t556 = t555 + par.k14;
 
   // rear_wheel: joint force
   const Real t557 = t352 + t556;
@@ -2117,8 +1920,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t572 = t570 - t571;
   const Real t573 = par.k2 * t572;
   const Real t574 = t569 + t573;
-  const Real t575 = par.k58 + t574;
-  const Real t576 = par.k7 + t575;
+  const Real t575 = par.k50 + t574;
+  const Real t576 = par.k6 + t575;
 
   // rear_wheel: twist
   const Real t577 = eta[3] * s_r_p_0_;
@@ -2186,13 +1989,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t631 = t27 * t31;
   const Real t632 = t31 * r_p_dot[1];
   const Real t633 = t631 - t632;
-  const Real t634 = par.k14 * t608;
+  const Real t634 = par.k13 * t608;
   const Real t635 = t604 + t634;
   const Real t636 = s_r_p_1_ * t635;
-  const Real t637 = t607 * par.k14;
+  const Real t637 = t607 * par.k13;
   const Real t638 = t594 - t637;
   const Real t639 = t638 * par.k2;
-  const Real t640 = t589 * par.k14;
+  const Real t640 = t589 * par.k13;
   const Real t641 = t599 + t640;
   const Real t642 = par.k1 * t641;
   const Real t643 = t639 - t642;
@@ -2222,17 +2025,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t665 = t588 * r_p_dot[2];
   const Real t666 = t664 - t665;
   const Real t667 = t23 * t585;
-  const Real t668 = t646 * par.k13;
-  const Real t669 = t630 * par.k12;
+  const Real t668 = t646 * par.k12;
+  const Real t669 = t630 * par.k11;
   const Real t670 = t668 - t669;
   const Real t671 = t670 + t656;
-  const Real t672 = par.k13 * t658;
-  const Real t673 = t633 * par.k12;
+  const Real t672 = par.k12 * t658;
+  const Real t673 = t633 * par.k11;
   const Real t674 = t672 + t673;
   const Real t675 = t645 - t674;
   const Real t676 = t675 * par.k2;
-  const Real t677 = t649 * par.k12;
-  const Real t678 = par.k13 * t653;
+  const Real t677 = t649 * par.k11;
+  const Real t678 = par.k12 * t653;
   const Real t679 = t677 + t678;
   const Real t680 = t652 + t679;
   const Real t681 = par.k1 * t680;
@@ -2254,85 +2057,85 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // frame: wrench
   const Real t697 = t599 * par.m_B;
-  const Real t698 = t589 * par.k17;
-  const Real t699 = par.k16 * t611;
+  const Real t698 = t589 * par.k16;
+  const Real t699 = par.k15 * t611;
   const Real t700 = t698 - t699;
   const Real t701 = t697 + t700;
-  const Real t702 = par.k32 * t608;
+  const Real t702 = par.k25 * t608;
   const Real t703 = par.k3 * t609;
   const Real t704 = t702 - t703;
-  const Real t705 = t604 * par.k17;
+  const Real t705 = t604 * par.k16;
   const Real t706 = t704 + t705;
   const Real t707 = t594 * par.m_B;
-  const Real t708 = t589 * par.k16;
-  const Real t709 = t607 * par.k17;
+  const Real t708 = t589 * par.k15;
+  const Real t709 = t607 * par.k16;
   const Real t710 = t708 - t709;
   const Real t711 = t707 + t710;
-  const Real t712 = t594 * par.k16;
-  const Real t713 = t599 * par.k17;
+  const Real t712 = t594 * par.k15;
+  const Real t713 = t599 * par.k16;
   const Real t714 = t712 - t713;
   const Real t715 = t605 - t610;
   const Real t716 = par.k3 * t715;
-  const Real t717 = t589 * par.k34;
+  const Real t717 = t589 * par.k27;
   const Real t718 = t716 + t717;
   const Real t719 = t714 + t718;
   const Real t720 = t604 * par.m_B;
-  const Real t721 = t608 * par.k17;
-  const Real t722 = par.k16 * t609;
+  const Real t721 = t608 * par.k16;
+  const Real t722 = par.k15 * t609;
   const Real t723 = t721 + t722;
   const Real t724 = t720 + t723;
-  const Real t725 = par.k33 * t609;
+  const Real t725 = par.k26 * t609;
   const Real t726 = par.k3 * t608;
   const Real t727 = t725 + t726;
-  const Real t728 = t604 * par.k16;
+  const Real t728 = t604 * par.k15;
   const Real t729 = t727 - t728;
 
   // rear_wheel: wrench
   const Real t730 = t613 * par.I_Rxx;
-  const Real t731 = t612 * par.k35;
+  const Real t731 = t612 * par.k28;
   const Real t732 = t730 + t731;
   const Real t733 = t622 * par.m_R;
   const Real t734 = t615 * par.m_R;
   const Real t735 = t625 * par.m_R;
-  const Real t736 = par.k36 * t627;
+  const Real t736 = par.k29 * t627;
   const Real t737 = par.I_Rxx * t626;
   const Real t738 = t736 - t737;
 
   // fork: wrench
-  const Real t739 = t629 * par.k18;
-  const Real t740 = t628 * par.k37;
+  const Real t739 = t629 * par.k17;
+  const Real t740 = t628 * par.k30;
   const Real t741 = t739 + t740;
   const Real t742 = par.k5 * t646;
   const Real t743 = t741 + t742;
-  const Real t744 = par.k9 * t656;
+  const Real t744 = par.k8 * t656;
   const Real t745 = t743 - t744;
   const Real t746 = par.m_H * t656;
-  const Real t747 = t646 * par.k11;
-  const Real t748 = t630 * par.k9;
+  const Real t747 = t646 * par.k10;
+  const Real t748 = t630 * par.k8;
   const Real t749 = t747 + t748;
   const Real t750 = t746 + t749;
   const Real t751 = par.m_H * t652;
-  const Real t752 = par.k11 * t653;
-  const Real t753 = par.k9 * t649;
+  const Real t752 = par.k10 * t653;
+  const Real t753 = par.k8 * t649;
   const Real t754 = t752 - t753;
   const Real t755 = t751 + t754;
-  const Real t756 = t633 * par.k9;
-  const Real t757 = par.k11 * t658;
+  const Real t756 = t633 * par.k8;
+  const Real t757 = par.k10 * t658;
   const Real t758 = t756 - t757;
   const Real t759 = t645 * par.m_H;
   const Real t760 = t758 + t759;
-  const Real t761 = t645 * par.k9;
-  const Real t762 = par.k11 * t652;
+  const Real t761 = t645 * par.k8;
+  const Real t762 = par.k10 * t652;
   const Real t763 = t761 - t762;
   const Real t764 = t657 - t648;
   const Real t765 = par.k5 * t764;
-  const Real t766 = t631 * par.k38;
-  const Real t767 = par.k8 * t632;
+  const Real t766 = t631 * par.k31;
+  const Real t767 = par.k7 * t632;
   const Real t768 = t766 - t767;
   const Real t769 = t765 + t768;
   const Real t770 = t763 + t769;
-  const Real t771 = par.k11 * t656;
-  const Real t772 = t646 * par.k39;
+  const Real t771 = par.k10 * t656;
+  const Real t772 = t646 * par.k32;
   const Real t773 = t630 * par.k5;
   const Real t774 = t772 - t773;
   const Real t775 = t771 + t774;
@@ -2340,17 +2143,17 @@ inline void free_dynamics(const Prepared<Real>& par,
   // front_wheel: wrench
   const Real t776 = par.I_Fyy * t632;
   const Real t777 = t666 * par.I_Fxx;
-  const Real t778 = t659 * par.k42;
+  const Real t778 = t659 * par.k35;
   const Real t779 = t777 + t778;
   const Real t780 = t671 * par.m_F;
   const Real t781 = par.m_F * t691;
   const Real t782 = par.I_Fxx * t696;
-  const Real t783 = par.k43 * t667;
+  const Real t783 = par.k36 * t667;
   const Real t784 = t782 + t783;
   const Real t785 = par.m_F * t688;
 
   // front_wheel: joint force
-  const Real t786 = t780 * par.k13;
+  const Real t786 = t780 * par.k12;
   const Real t787 = t784 * s_r_p_2_;
   const Real t788 = t779 * c_r_p_2_;
   const Real t789 = t787 + t788;
@@ -2375,14 +2178,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t808 = par.k2 * t789;
   const Real t809 = par.k1 * t793;
   const Real t810 = t808 - t809;
-  const Real t811 = t780 * par.k12;
+  const Real t811 = t780 * par.k11;
   const Real t812 = t810 + t811;
   const Real t813 = t745 + t812;
-  const Real t814 = t806 * par.k13;
+  const Real t814 = t806 * par.k12;
   const Real t815 = par.k2 * t800;
   const Real t816 = t804 * par.k1;
   const Real t817 = t815 - t816;
-  const Real t818 = t817 * par.k12;
+  const Real t818 = t817 * par.k11;
   const Real t819 = t814 + t818;
   const Real t820 = t776 + t819;
   const Real t821 = t770 - t820;
@@ -2411,7 +2214,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t842 = t840 - t841;
   const Real t843 = par.k1 * t842;
   const Real t844 = t839 - t843;
-  const Real t845 = t837 * par.k14;
+  const Real t845 = t837 * par.k13;
   const Real t846 = t844 + t845;
   const Real t847 = t706 + t846;
   const Real t848 = t797 * par.k1;
@@ -2421,7 +2224,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t852 = c_r_p_1_ * t821;
   const Real t853 = t813 * s_r_p_1_;
   const Real t854 = t852 + t853;
-  const Real t855 = t833 * par.k14;
+  const Real t855 = t833 * par.k13;
   const Real t856 = t854 - t855;
   const Real t857 = t856 + t719;
 
@@ -2529,8 +2332,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
-/// route: projected recursion, stable forms, compensated beyond 0.71 ulps
-/// operations: 1537 add, 1335 mul, 15 div, 23 neg, 2 sqrt, 4 sin, 3 cos
+/// route: projected recursion, compensated beyond 16 ulps
+/// operations: 886 add, 1032 mul, 11 div, 5 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p  (3) rad or m: rear_spin, steer, front_spin
@@ -2557,2317 +2360,1811 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
-  const Real t1 = constant<Real>(0.5L) * r_p[1];
-  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t3 = R[8] * par.k1;
-
-  // kernel
-  const Real t4 = -t3;
-
-  // joint angles
-  const Real t5 = par.k2 * R[6];
-
-  // kernel
-  const Real t6 = sum_error(t5, t4);
-  const Real t7 = product_error(par.k2, R[6]);
-  const Real t8 = t6 + t7;
-  const Real t9 = t8 * c_r_p_1_;
-
-  // joint angles
-  const Real t10 = t5 - t3;
-
-  // kernel
-  const Real t11 = product_error(c_r_p_1_, t10);
-  const Real t12 = t11 + t9;
-
-  // joint angles
-  const Real t13 = c_r_p_1_ * t10;
-  const Real t14 = s_r_p_1_ * R[7];
-
-  // kernel
-  const Real t15 = sum_error(t13, t14);
-  const Real t16 = t15 + t12;
-  const Real t17 = par.k1 * t16;
-
-  // joint angles
-  const Real t18 = t13 + t14;
-
-  // kernel
-  const Real t19 = product_error(par.k1, t18);
-  const Real t20 = t19 + t17;
-
-  // joint angles
-  const Real t21 = par.k1 * R[6];
-  const Real t22 = R[8] * par.k2;
-
-  // kernel
-  const Real t23 = sum_error(t21, t22);
-  const Real t24 = product_error(par.k1, R[6]);
-  const Real t25 = t24 + t23;
-  const Real t26 = par.k2 * t25;
-
-  // joint angles
-  const Real t27 = t21 + t22;
-
-  // kernel
-  const Real t28 = product_error(t27, par.k2);
-  const Real t29 = t28 + t26;
-  const Real t30 = t20 - t29;
-
-  // joint angles
-  const Real t31 = par.k1 * t18;
-  const Real t32 = t27 * par.k2;
-  const Real t33 = t31 - t32;
-
-  // kernel
-  const Real t34 = t33 + t30;
-  const Real t35 = t34 * t34;
-  const Real t36 = par.k2 * t16;
-
-  // joint angles
-  const Real t37 = par.k2 * t18;
-
-  // kernel
-  const Real t38 = t37 + t36;
-  const Real t39 = par.k1 * t25;
-
-  // joint angles
-  const Real t40 = par.k1 * t27;
-
-  // kernel
+  const Real t1 = par.k2 * R[6];
+  const Real t2 = R[8] * par.k1;
+  const Real t3 = t1 - t2;
+  const Real t4 = c_r_p_1_ * t3;
+  const Real t5 = s_r_p_1_ * R[7];
+  const Real t6 = t4 + t5;
+  const Real t7 = par.k1 * t6;
+  const Real t8 = par.k1 * R[6];
+  const Real t9 = R[8] * par.k2;
+  const Real t10 = t8 + t9;
+  const Real t11 = t10 * par.k2;
+  const Real t12 = t7 - t11;
+  const Real t13 = t12 * t12;
+  const Real t14 = par.k2 * t6;
+  const Real t15 = par.k1 * t10;
+  const Real t16 = t14 + t15;
+  const Real t17 = t16 * t16;
+  const Real t18 = t13 + t17;
+  const Real t19 = sqrt(t18);
+  const Real t20 = constant<Real>(1.0L) / t19;
+  const Real t21 = t20 * t16;
+  const Real t22 = t21 * par.r_F;
+  const Real t23 = par.k1 * c_r_p_1_;
+  const Real t24 = par.k1 * t23;
+  const Real t25 = par.k18 + t24;
+  const Real t26 = t25 * t22;
+  const Real t27 = t12 * t20;
+  const Real t28 = par.r_F * t27;
+  const Real t29 = t23 * par.k2;
+  const Real t30 = par.k22 - t29;
+  const Real t31 = t28 * t30;
+  const Real t32 = t26 + t31;
+  const Real t33 = t30 * par.r_F;
+  const Real t34 = t25 * par.c;
+  const Real t35 = t33 - t34;
+  const Real t36 = c_r_p_1_ * par.k13;
+  const Real t37 = t36 + t35;
+  const Real t38 = t32 + t37;
+  const Real t39 = R[6] * R[6];
+  const Real t40 = R[8] * R[8];
   const Real t41 = t39 + t40;
-  const Real t42 = t41 + t38;
-  const Real t43 = t42 * t42;
-  const Real t44 = t35 + t43;
-  const Real t45 = sqrt(t44);
-  const Real t46 = constant<Real>(1.0L) / t45;
-  const Real t47 = t42 * t46;
+  const Real t42 = sqrt(t41);
+  const Real t43 = constant<Real>(1.0L) / t42;
+  const Real t44 = t43 * R[6];
+  const Real t45 = t44 * par.r_R;
 
-  // passive accelerations
-  const Real t48 = product_error(t47, par.r_F);
-  const Real t49 = product_error(t46, t42);
-  const Real t50 = par.r_F * t49;
-  const Real t51 = t48 + t50;
+  // kernel
+  const Real t46 = c_r_p_1_ * t45;
+  const Real t47 = t38 - t46;
+  const Real t48 = constant<Real>(1.0L) / t47;
 
   // joint angles
-  const Real t52 = par.k1 * c_r_p_1_;
+  const Real t49 = s_r_p_1_ * par.k1;
+  const Real t50 = t22 * t49;
+  const Real t51 = par.c * t49;
+  const Real t52 = s_r_p_1_ * par.k13;
   const Real t53 = par.k1 * t52;
-  const Real t54 = par.k19 + t53;
-
-  // passive accelerations
-  const Real t55 = t54 * t51;
+  const Real t54 = t51 - t53;
+  const Real t55 = t54 - t50;
 
   // kernel
-  const Real t56 = par.r_F * t47;
-  const Real t57 = t54 * t56;
-
-  // passive accelerations
-  const Real t58 = t55 + t57;
-
-  // kernel
-  const Real t59 = t34 * t46;
-  const Real t60 = t59 * par.r_F;
-  const Real t61 = t2 * t2;
-  const Real t62 = constant<Real>(2.0L) * t61;
-  const Real t63 = t62 * par.k23;
-  const Real t64 = t60 * t63;
-
-  // passive accelerations
-  const Real t65 = t58 + t64;
-
-  // kernel
-  const Real t66 = par.r_F * t63;
+  const Real t56 = t49 * t45;
+  const Real t57 = t56 + t55;
+  const Real t58 = t57 * t48;
 
   // joint angles
-  const Real t67 = t54 * par.c;
+  const Real t59 = s_r_p_1_ * par.k2;
+  const Real t60 = t28 * t59;
+  const Real t61 = t60 - t50;
+  const Real t62 = t59 * par.r_F;
+  const Real t63 = t62 + t51;
+  const Real t64 = s_r_p_1_ * par.k23;
+  const Real t65 = t63 - t64;
+  const Real t66 = t61 + t65;
+  const Real t67 = R[8] * t43;
+  const Real t68 = t67 * par.r_R;
+  const Real t69 = t68 - par.r_R;
 
   // kernel
-  const Real t68 = t66 - t67;
+  const Real t70 = t69 * t59;
+  const Real t71 = t70 + t66;
+  const Real t72 = t71 + t56;
+  const Real t73 = t58 * t72;
+  const Real t74 = -t73;
 
   // joint angles
-  const Real t69 = c_r_p_1_ * par.k14;
+  const Real t75 = t22 * c_r_p_1_;
+  const Real t76 = c_r_p_1_ * par.k23;
+  const Real t77 = t76 * par.k1;
+  const Real t78 = t77 + par.k21;
+  const Real t79 = c_r_p_1_ * par.c;
+  const Real t80 = t79 - t78;
+  const Real t81 = t80 - t75;
+  const Real t82 = c_r_p_1_ * par.k2;
+  const Real t83 = par.k1 * t82;
+  const Real t84 = par.k22 - t83;
 
   // kernel
-  const Real t70 = t68 + t69;
-  const Real t71 = product_error(c_r_p_1_, par.k14);
-
-  // passive accelerations
-  const Real t72 = t70 + t71;
-  const Real t73 = t72 + t65;
+  const Real t85 = t69 * t84;
+  const Real t86 = t81 - t85;
+  const Real t87 = t25 * t45;
+  const Real t88 = t87 + t86;
+  const Real t89 = sum_error(t88, t74);
+  const Real t90 = product_error(t58, t72);
+  const Real t91 = t89 - t90;
+  const Real t92 = t88 - t73;
+  const Real t93 = constant<Real>(1.0L) / t92;
+  const Real t94 = t91 * t93;
+  const Real t95 = t94 / t92;
+  const Real t96 = quotient_error(constant<Real>(1.0L), t92);
+  const Real t97 = t96 - t95;
 
   // joint angles
-  const Real t74 = R[6] * R[6];
-  const Real t75 = R[8] * R[8];
-  const Real t76 = t74 + t75;
-  const Real t77 = sqrt(t76);
-  const Real t78 = constant<Real>(1.0L) / t77;
-  const Real t79 = t78 * R[6];
-  const Real t80 = t79 * par.r_R;
+  const Real t98 = t28 * t49;
+  const Real t99 = par.k2 * t52;
+  const Real t100 = par.r_F * t49;
+  const Real t101 = t99 - t100;
+  const Real t102 = t101 - t98;
 
   // kernel
-  const Real t81 = c_r_p_1_ * t80;
-
-  // passive accelerations
-  const Real t82 = t73 - t81;
-  const Real t83 = constant<Real>(1.0L) / t82;
-
-  // kernel
-  const Real t84 = -t81;
-
-  // passive accelerations
-  const Real t85 = sum_error(t73, t84);
-  const Real t86 = sum_error(t72, t65);
-  const Real t87 = t86 + t85;
-  const Real t88 = t83 * t87;
-  const Real t89 = t88 / t82;
-  const Real t90 = quotient_error(constant<Real>(1.0L), t82);
-  const Real t91 = t90 - t89;
+  const Real t103 = t59 * t45;
+  const Real t104 = t102 - t103;
+  const Real t105 = t48 * t104;
+  const Real t106 = t72 * t105;
 
   // joint angles
-  const Real t92 = s_r_p_1_ * par.k1;
-
-  // passive accelerations
-  const Real t93 = t51 * t92;
-
-  // kernel
-  const Real t94 = t56 * t92;
-
-  // passive accelerations
-  const Real t95 = t93 + t94;
+  const Real t107 = t28 * c_r_p_1_;
+  const Real t108 = t76 * par.k2;
+  const Real t109 = t108 - par.k24;
+  const Real t110 = c_r_p_1_ * par.r_F;
+  const Real t111 = t109 - t110;
+  const Real t112 = t111 - t107;
+  const Real t113 = par.k2 * t82;
+  const Real t114 = par.k19 + t113;
 
   // kernel
-  const Real t96 = product_error(s_r_p_1_, par.k14);
-  const Real t97 = par.k1 * t96;
+  const Real t115 = t69 * t114;
+  const Real t116 = t112 - t115;
+  const Real t117 = t30 * t45;
+  const Real t118 = t116 + t117;
+  const Real t119 = t118 - t106;
+  const Real t120 = t97 * t119;
+  const Real t121 = -t106;
+  const Real t122 = sum_error(t118, t121);
+  const Real t123 = product_error(t72, t105);
+  const Real t124 = t122 - t123;
+  const Real t125 = t124 * t93;
+  const Real t126 = t120 + t125;
+  const Real t127 = product_error(t119, t93);
+  const Real t128 = t127 + t126;
 
   // joint angles
-  const Real t98 = s_r_p_1_ * par.k14;
-  const Real t99 = par.k1 * t98;
+  const Real t129 = par.k1 * t28;
+  const Real t130 = t22 * par.k2;
+  const Real t131 = t129 + t130;
+  const Real t132 = t131 + par.k12;
 
   // kernel
-  const Real t100 = t97 + t99;
+  const Real t133 = t58 * t132;
+  const Real t134 = t128 * t133;
+  const Real t135 = t119 * t93;
+  const Real t136 = product_error(t58, t132);
+  const Real t137 = t136 * t135;
+  const Real t138 = t137 + t134;
+  const Real t139 = product_error(t133, t135);
+  const Real t140 = t138 + t139;
+  const Real t141 = product_error(t132, t105);
+  const Real t142 = t140 - t141;
+  const Real t143 = t133 * t135;
+  const Real t144 = t132 * t105;
+  const Real t145 = t143 - t144;
+  const Real t146 = t145 + t142;
+  const Real t147 = t128 * t22;
+  const Real t148 = t22 * t135;
+  const Real t149 = t148 + t147;
+  const Real t150 = t149 - t28;
+  const Real t151 = constant<Real>(1.0L) / t150;
+  const Real t152 = t151 * t146;
+  const Real t153 = t22 * t152;
+  const Real t154 = -t133;
+  const Real t155 = sum_error(t153, t154);
+  const Real t156 = t155 - t136;
+  const Real t157 = t156 * t93;
+  const Real t158 = t153 - t133;
+  const Real t159 = t97 * t158;
+  const Real t160 = t157 + t159;
+  const Real t161 = product_error(t158, t93);
+  const Real t162 = t160 + t161;
+  const Real t163 = t72 * t162;
+  const Real t164 = t158 * t93;
+  const Real t165 = product_error(t164, t72);
+  const Real t166 = t165 + t163;
+  const Real t167 = t164 * t72;
+  const Real t168 = t132 - t167;
+  const Real t169 = t168 - t166;
+  const Real t170 = t169 * t48;
+  const Real t171 = t170 * nu[1];
 
   // joint angles
-  const Real t101 = par.c * t92;
+  const Real t172 = t22 * t84;
+  const Real t173 = t28 * t114;
+  const Real t174 = t172 + t173;
+  const Real t175 = par.r_F * t114;
+  const Real t176 = t84 * par.c;
+  const Real t177 = t175 - t176;
+  const Real t178 = t177 + t174;
+  const Real t179 = par.r_R - t68;
 
   // kernel
-  const Real t102 = t101 - t100;
-
-  // passive accelerations
-  const Real t103 = t102 - t95;
-
-  // kernel
-  const Real t104 = t92 * t80;
-
-  // passive accelerations
-  const Real t105 = t103 + t104;
-  const Real t106 = t91 * t105;
-  const Real t107 = t83 * t105;
-  const Real t108 = t107 + t106;
+  const Real t180 = c_r_p_1_ * t179;
+  const Real t181 = t178 - t180;
+  const Real t182 = t58 * t181;
 
   // joint angles
-  const Real t109 = s_r_p_1_ * par.k2;
+  const Real t183 = t22 * t59;
+  const Real t184 = t59 * par.c;
+  const Real t185 = t183 - t184;
 
   // kernel
-  const Real t110 = t109 * t60;
+  const Real t186 = t179 * t49;
+  const Real t187 = t185 + t186;
+  const Real t188 = t187 - t182;
+  const Real t189 = t128 * t188;
+  const Real t190 = product_error(t188, t135);
 
   // passive accelerations
-  const Real t111 = t110 - t95;
+  const Real t191 = t190 + t189;
+
+  // kernel
+  const Real t192 = t181 * t105;
+  const Real t193 = -t192;
 
   // joint angles
-  const Real t112 = t109 * par.r_F;
-  const Real t113 = t112 + t101;
+  const Real t194 = t62 + t60;
 
   // kernel
-  const Real t114 = product_error(t109, par.r_F);
-  const Real t115 = t113 + t114;
-
-  // joint angles
-  const Real t116 = s_r_p_1_ * par.k24;
-
-  // kernel
-  const Real t117 = t115 - t116;
+  const Real t195 = t59 * t179;
+  const Real t196 = t194 - t195;
+  const Real t197 = sum_error(t196, t193);
+  const Real t198 = product_error(t181, t105);
+  const Real t199 = t197 - t198;
 
   // passive accelerations
-  const Real t118 = t111 + t117;
-
-  // joint angles
-  const Real t119 = R[8] * t78;
-  const Real t120 = t119 * par.r_R;
+  const Real t200 = t199 - t191;
 
   // kernel
-  const Real t121 = sum_error(t120, par.k6);
-  const Real t122 = t109 * t121;
-
-  // joint angles
-  const Real t123 = t120 - par.r_R;
-
-  // kernel
-  const Real t124 = t123 * t109;
-  const Real t125 = t122 + t124;
+  const Real t201 = t188 * t135;
+  const Real t202 = t196 - t192;
+  const Real t203 = t202 - t201;
 
   // passive accelerations
-  const Real t126 = t118 + t125;
-  const Real t127 = t104 + t126;
-  const Real t128 = t108 * t127;
-  const Real t129 = -t128;
-  const Real t130 = c_r_p_1_ * t51;
+  const Real t204 = t200 + t203;
+  const Real t205 = t151 * t204;
+  const Real t206 = t22 * t205;
+  const Real t207 = t188 + t206;
+  const Real t208 = t97 * t207;
+  const Real t209 = sum_error(t188, t206);
+  const Real t210 = t209 * t93;
+  const Real t211 = t208 + t210;
+  const Real t212 = product_error(t93, t207);
+  const Real t213 = t211 + t212;
+  const Real t214 = t213 * t72;
+  const Real t215 = t207 * t93;
+  const Real t216 = product_error(t72, t215);
+  const Real t217 = t216 + t214;
+  const Real t218 = t72 * t215;
+  const Real t219 = t181 - t218;
+  const Real t220 = t219 - t217;
+  const Real t221 = t220 * t48;
+  const Real t222 = t221 * nu[0];
+  const Real t223 = t222 + t171;
 
   // kernel
-  const Real t131 = t56 * c_r_p_1_;
+  const Real t224 = t59 * t68;
+  const Real t225 = t56 + t224;
+  const Real t226 = t58 * t225;
+  const Real t227 = t84 * t68;
+  const Real t228 = t87 - t227;
+  const Real t229 = t228 - t226;
+  const Real t230 = t128 * t229;
+  const Real t231 = product_error(t229, t135);
 
   // passive accelerations
-  const Real t132 = t130 + t131;
-  const Real t133 = -t132;
+  const Real t232 = t231 + t230;
 
-  // joint angles
-  const Real t134 = c_r_p_1_ * par.k24;
-  const Real t135 = t134 * par.k1;
-  const Real t136 = t135 + par.k22;
-  const Real t137 = c_r_p_1_ * par.c;
-  const Real t138 = t137 - t136;
+  // kernel
+  const Real t233 = t225 * t105;
+  const Real t234 = -t233;
+  const Real t235 = t68 * t114;
+  const Real t236 = t117 - t235;
+  const Real t237 = sum_error(t236, t234);
+  const Real t238 = product_error(t225, t105);
+  const Real t239 = t237 - t238;
 
   // passive accelerations
-  const Real t139 = sum_error(t138, t133);
+  const Real t240 = t239 - t232;
 
   // kernel
-  const Real t140 = -t136;
-  const Real t141 = sum_error(t137, t140);
-  const Real t142 = sum_error(t135, par.k22);
+  const Real t241 = t229 * t135;
+  const Real t242 = t236 - t233;
+  const Real t243 = t242 - t241;
 
   // passive accelerations
-  const Real t143 = t141 - t142;
-  const Real t144 = t139 + t143;
-  const Real t145 = t138 - t132;
-
-  // kernel
-  const Real t146 = t123 * t63;
-  const Real t147 = t63 * t121;
-  const Real t148 = t146 + t147;
-
-  // passive accelerations
-  const Real t149 = -t148;
-  const Real t150 = sum_error(t145, t149);
-  const Real t151 = t150 + t144;
-  const Real t152 = t145 - t148;
-
-  // kernel
-  const Real t153 = t54 * t80;
-
-  // passive accelerations
-  const Real t154 = t153 + t152;
-  const Real t155 = t151 + t154;
-  const Real t156 = sum_error(t155, t129);
-  const Real t157 = product_error(t108, t127);
-  const Real t158 = sum_error(t126, t104);
-  const Real t159 = sum_error(t125, t118);
-  const Real t160 = t159 + t158;
-  const Real t161 = t108 * t160;
-  const Real t162 = t157 + t161;
-  const Real t163 = t156 - t162;
-  const Real t164 = t155 - t128;
-  const Real t165 = constant<Real>(1.0L) / t164;
-  const Real t166 = t165 * t163;
-  const Real t167 = t166 / t164;
-  const Real t168 = quotient_error(constant<Real>(1.0L), t164);
-  const Real t169 = t168 - t167;
-
-  // kernel
-  const Real t170 = t60 * t92;
-
-  // joint angles
-  const Real t171 = par.k2 * t98;
-  const Real t172 = par.r_F * t92;
-  const Real t173 = t171 - t172;
-
-  // kernel
-  const Real t174 = t173 - t170;
-  const Real t175 = t109 * t80;
-  const Real t176 = t174 - t175;
-
-  // passive accelerations
-  const Real t177 = t83 * t176;
-  const Real t178 = t127 * t177;
-
-  // kernel
-  const Real t179 = t34 * c_r_p_1_;
-  const Real t180 = t179 * par.r_F;
-  const Real t181 = t180 * t46;
-  const Real t182 = par.k27 * t62;
-
-  // joint angles
-  const Real t183 = c_r_p_1_ * par.r_F;
-
-  // kernel
-  const Real t184 = t182 + t183;
-  const Real t185 = sum_error(t184, t181);
-  const Real t186 = sum_error(t182, t183);
-  const Real t187 = product_error(c_r_p_1_, par.r_F);
-  const Real t188 = t187 + t186;
-  const Real t189 = t188 + t185;
-
-  // joint angles
-  const Real t190 = c_r_p_1_ * par.k2;
-  const Real t191 = par.k2 * t190;
-  const Real t192 = par.k20 + t191;
-
-  // kernel
-  const Real t193 = t121 * t192;
-  const Real t194 = sum_error(par.k20, t191);
-  const Real t195 = product_error(c_r_p_1_, par.k2);
-  const Real t196 = t195 * par.k2;
-  const Real t197 = product_error(par.k2, t190);
-  const Real t198 = t196 + t197;
-  const Real t199 = t194 + t198;
-  const Real t200 = t123 * t199;
-  const Real t201 = t193 + t200;
-  const Real t202 = product_error(t123, t192);
-  const Real t203 = t202 + t201;
-
-  // passive accelerations
-  const Real t204 = t189 + t203;
-
-  // kernel
-  const Real t205 = t184 + t181;
-  const Real t206 = t123 * t192;
-
-  // passive accelerations
-  const Real t207 = t206 + t205;
-  const Real t208 = t204 + t207;
-
-  // kernel
-  const Real t209 = par.k1 * t78;
-  const Real t210 = par.k2 * t209;
-  const Real t211 = t210 * t2;
-  const Real t212 = t211 * t2;
-  const Real t213 = t212 * R[6];
-  const Real t214 = t213 * par.r_R;
-  const Real t215 = t214 * constant<Real>(2.0L);
-
-  // passive accelerations
-  const Real t216 = t215 - t208;
-  const Real t217 = t216 - t178;
-  const Real t218 = t169 * t217;
-  const Real t219 = t91 * t176;
-
-  // kernel
-  const Real t220 = -t170;
-  const Real t221 = sum_error(t173, t220);
-  const Real t222 = -t172;
-  const Real t223 = sum_error(t171, t222);
-  const Real t224 = product_error(par.k2, t98);
-  const Real t225 = par.k2 * t96;
-  const Real t226 = t224 + t225;
-  const Real t227 = t223 + t226;
-  const Real t228 = t227 + t221;
-  const Real t229 = -t175;
-  const Real t230 = sum_error(t174, t229);
-  const Real t231 = t228 + t230;
-
-  // passive accelerations
-  const Real t232 = t83 * t231;
-  const Real t233 = t232 + t219;
-  const Real t234 = product_error(t83, t176);
-  const Real t235 = t234 + t233;
-  const Real t236 = t127 * t235;
-  const Real t237 = t177 * t160;
-  const Real t238 = t236 + t237;
-  const Real t239 = product_error(t177, t127);
-  const Real t240 = t238 + t239;
-  const Real t241 = -t178;
-  const Real t242 = sum_error(t216, t241);
-  const Real t243 = t242 - t240;
-  const Real t244 = t243 * t165;
-  const Real t245 = t218 + t244;
-  const Real t246 = product_error(t217, t165);
-  const Real t247 = t245 + t246;
-  const Real t248 = t247 * t56;
-  const Real t249 = t217 * t165;
-  const Real t250 = t249 * t51;
+  const Real t244 = t240 + t243;
+  const Real t245 = t244 * t151;
+  const Real t246 = t245 * t22;
+  const Real t247 = sum_error(t229, t246);
+  const Real t248 = t247 * t93;
+  const Real t249 = t229 + t246;
+  const Real t250 = t249 * t97;
   const Real t251 = t248 + t250;
-  const Real t252 = product_error(t56, t249);
-  const Real t253 = t251 + t252;
-  const Real t254 = t249 * t56;
+  const Real t252 = product_error(t249, t93);
+  const Real t253 = t252 + t251;
+  const Real t254 = t72 * t253;
+  const Real t255 = t249 * t93;
+  const Real t256 = product_error(t255, t72);
+  const Real t257 = t256 + t254;
+  const Real t258 = t255 * t72;
+  const Real t259 = t225 - t258;
+  const Real t260 = t259 - t257;
+  const Real t261 = t260 * t48;
+  const Real t262 = t261 * nu[2];
+  const Real t263 = t223 + t262;
+  const Real t264 = t263 * R[7];
 
   // kernel
-  const Real t255 = -t60;
+  const Real t265 = nu[1] * t162;
+  const Real t266 = t164 * nu[1];
+  const Real t267 = t266 + t265;
 
   // passive accelerations
-  const Real t256 = sum_error(t254, t255);
-  const Real t257 = t253 + t256;
-  const Real t258 = t254 - t60;
-  const Real t259 = constant<Real>(1.0L) / t258;
-  const Real t260 = t259 * t257;
-  const Real t261 = t260 / t258;
-  const Real t262 = quotient_error(constant<Real>(1.0L), t258);
-  const Real t263 = t262 - t261;
-  const Real t264 = par.k2 * t51;
-
-  // kernel
-  const Real t265 = t56 * par.k2;
-
-  // passive accelerations
-  const Real t266 = t264 + t265;
-
-  // kernel
-  const Real t267 = par.k1 * t60;
-
-  // passive accelerations
-  const Real t268 = t266 + t267;
-  const Real t269 = t268 + par.k13;
-  const Real t270 = t108 * t269;
-  const Real t271 = t249 * t270;
-  const Real t272 = t269 * t177;
-  const Real t273 = t271 - t272;
-  const Real t274 = t273 * t263;
-  const Real t275 = t247 * t270;
-  const Real t276 = product_error(t108, t269);
-  const Real t277 = t249 * t276;
-  const Real t278 = t275 + t277;
-  const Real t279 = product_error(t270, t249);
-  const Real t280 = t279 + t278;
-  const Real t281 = t269 * t235;
-  const Real t282 = product_error(t269, t177);
-  const Real t283 = t282 + t281;
-  const Real t284 = t280 - t283;
-  const Real t285 = -t272;
-  const Real t286 = sum_error(t271, t285);
-  const Real t287 = t286 + t284;
-  const Real t288 = t259 * t287;
-  const Real t289 = t288 + t274;
-  const Real t290 = product_error(t259, t273);
-  const Real t291 = t289 + t290;
-  const Real t292 = t56 * t291;
-  const Real t293 = t273 * t259;
-  const Real t294 = t293 * t51;
-  const Real t295 = t294 + t292;
-  const Real t296 = product_error(t56, t293);
-  const Real t297 = t296 + t295;
-  const Real t298 = t297 - t276;
-  const Real t299 = t293 * t56;
-  const Real t300 = -t270;
-  const Real t301 = sum_error(t299, t300);
-  const Real t302 = t298 + t301;
-  const Real t303 = t302 * t165;
-  const Real t304 = t299 - t270;
-  const Real t305 = t304 * t169;
-  const Real t306 = t303 + t305;
-  const Real t307 = product_error(t165, t304);
-  const Real t308 = t307 + t306;
-  const Real t309 = t127 * t308;
-  const Real t310 = t304 * t165;
-  const Real t311 = t310 * t160;
-  const Real t312 = t309 + t311;
-  const Real t313 = product_error(t310, t127);
-  const Real t314 = t313 + t312;
-  const Real t315 = t310 * t127;
-  const Real t316 = t269 - t315;
-  const Real t317 = t316 - t314;
-  const Real t318 = t317 * t91;
-  const Real t319 = t317 * t83;
-  const Real t320 = t318 + t319;
-  const Real t321 = t320 * nu[1];
-  const Real t322 = t63 * t51;
-
-  // kernel
-  const Real t323 = t56 * t63;
-
-  // passive accelerations
-  const Real t324 = t323 + t322;
-
-  // kernel
-  const Real t325 = t60 * t199;
-  const Real t326 = t60 * t192;
-  const Real t327 = t325 + t326;
-
-  // passive accelerations
-  const Real t328 = t324 + t327;
+  const Real t268 = t213 * nu[0];
+  const Real t269 = t215 * nu[0];
+  const Real t270 = t269 + t268;
+  const Real t271 = t267 + t270;
+  const Real t272 = nu[2] * t253;
+  const Real t273 = t255 * nu[2];
+  const Real t274 = t273 + t272;
+  const Real t275 = t274 + t271;
+  const Real t276 = R[8] * t275;
+  const Real t277 = t276 - t264;
+  const Real t278 = t277 * par.k2;
+  const Real t279 = t275 * R[6];
 
   // joint angles
-  const Real t329 = par.r_F * t192;
-
-  // kernel
-  const Real t330 = t63 * par.c;
-  const Real t331 = t329 - t330;
+  const Real t280 = nu[0] * R[7];
 
   // passive accelerations
-  const Real t332 = sum_error(t331, t328);
-
-  // kernel
-  const Real t333 = -t330;
-  const Real t334 = sum_error(t329, t333);
-  const Real t335 = par.r_F * t199;
-  const Real t336 = product_error(par.r_F, t192);
-  const Real t337 = t336 + t335;
-  const Real t338 = t334 + t337;
-
-  // passive accelerations
-  const Real t339 = t338 + t332;
+  const Real t281 = t280 + t279;
+  const Real t282 = par.k1 * t281;
+  const Real t283 = t278 + t282;
+  const Real t284 = t283 * c_r_p_1_;
 
   // joint angles
-  const Real t340 = par.r_R - t120;
-
-  // kernel
-  const Real t341 = product_error(c_r_p_1_, t340);
+  const Real t285 = s_r_p_1_ * nu[1];
+  const Real t286 = t285 * t3;
 
   // passive accelerations
-  const Real t342 = t339 - t341;
-  const Real t343 = t331 + t328;
-
-  // kernel
-  const Real t344 = c_r_p_1_ * t340;
-
-  // passive accelerations
-  const Real t345 = t343 - t344;
-  const Real t346 = t345 + t342;
-  const Real t347 = t108 * t346;
-  const Real t348 = t109 * t51;
-
-  // kernel
-  const Real t349 = t109 * t56;
-
-  // passive accelerations
-  const Real t350 = t348 + t349;
+  const Real t287 = t284 - t286;
+  const Real t288 = t263 * R[6];
 
   // joint angles
-  const Real t351 = t109 * par.c;
+  const Real t289 = R[8] * nu[0];
 
   // passive accelerations
-  const Real t352 = t350 - t351;
+  const Real t290 = t288 + t289;
+  const Real t291 = s_r_p_1_ * t290;
+
+  // joint angles
+  const Real t292 = c_r_p_1_ * nu[1];
+  const Real t293 = t292 * R[7];
+
+  // passive accelerations
+  const Real t294 = t293 + t291;
+  const Real t295 = t294 + t287;
+  const Real t296 = par.k2 * t295;
+  const Real t297 = t277 * par.k1;
+  const Real t298 = par.k2 * t281;
+  const Real t299 = t297 - t298;
+  const Real t300 = par.k1 * t299;
+  const Real t301 = t296 + t300;
+  const Real t302 = t301 * t16;
+  const Real t303 = t302 * constant<Real>(2.0L);
+  const Real t304 = par.k1 * t295;
+  const Real t305 = par.k2 * t299;
+  const Real t306 = t304 - t305;
+  const Real t307 = t12 * t306;
+  const Real t308 = constant<Real>(2.0L) * t307;
+  const Real t309 = t303 + t308;
+
+  // joint angles
+  const Real t310 = constant<Real>(2.0L) * t19;
+
+  // passive accelerations
+  const Real t311 = t309 / t310;
+  const Real t312 = t311 * t20;
+  const Real t313 = t312 / t19;
+  const Real t314 = t12 * t313;
+  const Real t315 = t306 * t20;
+  const Real t316 = t315 - t314;
+  const Real t317 = t316 * par.r_F;
+  const Real t318 = par.k1 * t263;
+
+  // joint angles
+  const Real t319 = par.k2 * nu[0];
+
+  // passive accelerations
+  const Real t320 = t319 + t318;
+  const Real t321 = t320 * c_r_p_1_;
+  const Real t322 = s_r_p_1_ * t275;
+  const Real t323 = t321 - t322;
+  const Real t324 = t323 * par.k2;
+  const Real t325 = t263 * par.k2;
+
+  // joint angles
+  const Real t326 = par.k1 * nu[0];
+
+  // passive accelerations
+  const Real t327 = t326 - t325;
+  const Real t328 = t327 + nu[1];
+  const Real t329 = par.k1 * t328;
+  const Real t330 = t329 + t324;
+  const Real t331 = t330 * t317;
+  const Real t332 = t320 * t285;
+  const Real t333 = t292 * t275;
+  const Real t334 = t333 + t332;
+  const Real t335 = par.k2 * t334;
+  const Real t336 = t28 * t335;
+  const Real t337 = t331 - t336;
+  const Real t338 = t16 * t313;
+  const Real t339 = t301 * t20;
+  const Real t340 = t339 - t338;
+  const Real t341 = t340 * par.r_F;
+  const Real t342 = par.k1 * t323;
+  const Real t343 = t328 * par.k2;
+  const Real t344 = t343 - t342;
+  const Real t345 = t341 * t344;
+  const Real t346 = par.k1 * t334;
+  const Real t347 = t346 * t22;
+  const Real t348 = t347 + t345;
+  const Real t349 = t337 + t348;
+  const Real t350 = par.r_F * t335;
+  const Real t351 = t346 * par.c;
+  const Real t352 = t350 + t351;
 
   // kernel
-  const Real t353 = t340 * t92;
+  const Real t353 = t170 * t45;
+  const Real t354 = t353 * nu[1];
 
   // passive accelerations
-  const Real t354 = t352 + t353;
-  const Real t355 = t354 - t347;
-  const Real t356 = t247 * t355;
-  const Real t357 = -t347;
-  const Real t358 = sum_error(t354, t357);
-  const Real t359 = product_error(t108, t346);
-  const Real t360 = t358 - t359;
-  const Real t361 = t249 * t360;
-  const Real t362 = t361 + t356;
-  const Real t363 = product_error(t249, t355);
-  const Real t364 = t363 + t362;
-  const Real t365 = t346 * t235;
-  const Real t366 = product_error(t346, t177);
+  const Real t355 = t221 * t45;
+  const Real t356 = t355 - t179;
+  const Real t357 = t356 * nu[0];
+  const Real t358 = t357 + t354;
+  const Real t359 = t261 * t45;
+  const Real t360 = t359 * nu[2];
+  const Real t361 = t358 + t360;
+  const Real t362 = t263 * par.k13;
+  const Real t363 = t361 - t362;
+  const Real t364 = t285 * t363;
+
+  // kernel
+  const Real t365 = t45 * t162;
+  const Real t366 = t164 * t45;
   const Real t367 = t366 + t365;
-  const Real t368 = t346 * t177;
-  const Real t369 = -t368;
-
-  // kernel
-  const Real t370 = t112 + t110;
+  const Real t368 = t367 * nu[1];
 
   // passive accelerations
-  const Real t371 = t370 + t114;
+  const Real t369 = t213 * t45;
+  const Real t370 = t215 * t45;
+  const Real t371 = t369 + t370;
+  const Real t372 = t371 * nu[0];
+  const Real t373 = t368 + t372;
+  const Real t374 = t45 * t253;
+  const Real t375 = t255 * t45;
+  const Real t376 = t375 + t374;
+  const Real t377 = t45 - t376;
+  const Real t378 = nu[2] * t377;
+  const Real t379 = t378 - t373;
+  const Real t380 = par.k13 * t275;
+  const Real t381 = t379 + t380;
+  const Real t382 = t381 * par.k1;
 
   // kernel
-  const Real t372 = t109 * t340;
+  const Real t383 = t69 * t162;
+  const Real t384 = t164 * t69;
+  const Real t385 = t383 + t384;
+  const Real t386 = t385 * nu[1];
 
   // passive accelerations
-  const Real t373 = t371 - t372;
-  const Real t374 = sum_error(t373, t369);
-  const Real t375 = t374 - t367;
-  const Real t376 = t375 - t364;
-  const Real t377 = t249 * t355;
-  const Real t378 = t373 - t368;
-  const Real t379 = t378 - t377;
-  const Real t380 = t379 + t376;
-  const Real t381 = t380 * t263;
-  const Real t382 = t259 * t380;
-  const Real t383 = t381 + t382;
-  const Real t384 = t383 * t51;
-  const Real t385 = t56 * t383;
-  const Real t386 = t384 + t385;
-  const Real t387 = sum_error(t386, t355);
-  const Real t388 = t387 + t360;
-  const Real t389 = t388 * t165;
-  const Real t390 = t386 + t355;
-  const Real t391 = t169 * t390;
-  const Real t392 = t391 + t389;
-  const Real t393 = product_error(t165, t390);
-  const Real t394 = t392 + t393;
-  const Real t395 = t127 * t394;
-  const Real t396 = t390 * t165;
-  const Real t397 = t160 * t396;
-  const Real t398 = t397 + t395;
-  const Real t399 = product_error(t396, t127);
-  const Real t400 = t399 + t398;
-  const Real t401 = t127 * t396;
-  const Real t402 = t346 - t401;
-  const Real t403 = t402 - t400;
-  const Real t404 = t403 * t83;
-  const Real t405 = t403 * t91;
-  const Real t406 = t404 + t405;
-  const Real t407 = nu[0] * t406;
-  const Real t408 = t321 + t407;
+  const Real t387 = t69 * t213;
+  const Real t388 = t69 * t215;
+  const Real t389 = t387 + t388;
+  const Real t390 = t389 * nu[0];
+  const Real t391 = t390 + t386;
+  const Real t392 = t69 * t253;
+  const Real t393 = t255 * t69;
+  const Real t394 = t393 + t392;
+  const Real t395 = t394 - t68;
+  const Real t396 = nu[2] * t395;
+  const Real t397 = t396 + t391;
+  const Real t398 = par.k2 * t397;
+  const Real t399 = t398 - t382;
+  const Real t400 = t399 * t292;
+  const Real t401 = t364 + t400;
+  const Real t402 = t401 + t352;
+  const Real t403 = t402 - t349;
+  const Real t404 = t277 * R[6];
+  const Real t405 = t404 * constant<Real>(2.0L);
+  const Real t406 = R[8] * t281;
+  const Real t407 = t406 * constant<Real>(2.0L);
+  const Real t408 = t405 - t407;
+
+  // joint angles
+  const Real t409 = constant<Real>(2.0L) * t42;
+
+  // passive accelerations
+  const Real t410 = t408 / t409;
+  const Real t411 = t43 * t410;
+  const Real t412 = t411 / t42;
+  const Real t413 = R[8] * t412;
+  const Real t414 = t43 * t281;
+  const Real t415 = t413 + t414;
+  const Real t416 = t415 * par.r_R;
+  const Real t417 = nu[2] - t275;
+  const Real t418 = t416 * t417;
+  const Real t419 = t59 * t418;
+  const Real t420 = t403 + t419;
+  const Real t421 = t412 * R[6];
+  const Real t422 = t277 * t43;
+  const Real t423 = t422 - t421;
+  const Real t424 = par.r_R * t423;
+  const Real t425 = t263 * t424;
+  const Real t426 = t416 * nu[0];
+  const Real t427 = t425 - t426;
+  const Real t428 = t427 * c_r_p_1_;
+  const Real t429 = t420 - t428;
+  const Real t430 = t424 * t417;
+  const Real t431 = t430 * t49;
+  const Real t432 = t429 - t431;
+  const Real t433 = t58 * t432;
+  const Real t434 = t320 * s_r_p_1_;
+  const Real t435 = c_r_p_1_ * t275;
+  const Real t436 = t434 + t435;
 
   // kernel
-  const Real t409 = t109 * t120;
-  const Real t410 = t104 + t409;
+  const Real t437 = t152 * nu[1];
 
   // passive accelerations
-  const Real t411 = t108 * t410;
-
-  // kernel
-  const Real t412 = t120 * t63;
-  const Real t413 = t153 - t412;
-
-  // passive accelerations
-  const Real t414 = t413 - t411;
-  const Real t415 = t247 * t414;
-  const Real t416 = -t411;
-  const Real t417 = sum_error(t413, t416);
-  const Real t418 = product_error(t108, t410);
-  const Real t419 = t417 - t418;
-  const Real t420 = t249 * t419;
-  const Real t421 = t415 + t420;
-  const Real t422 = product_error(t414, t249);
-  const Real t423 = t422 + t421;
-  const Real t424 = t410 * t235;
-  const Real t425 = product_error(t177, t410);
-  const Real t426 = t425 + t424;
-  const Real t427 = t177 * t410;
-  const Real t428 = -t427;
-
-  // kernel
-  const Real t429 = t120 * t199;
-  const Real t430 = t120 * t192;
-  const Real t431 = t429 + t430;
-  const Real t432 = t63 * t80;
-  const Real t433 = t432 - t431;
-
-  // passive accelerations
-  const Real t434 = sum_error(t433, t428);
-  const Real t435 = t434 - t426;
-  const Real t436 = t435 - t423;
-  const Real t437 = t249 * t414;
-  const Real t438 = t433 - t427;
-  const Real t439 = t438 - t437;
-  const Real t440 = t436 + t439;
-  const Real t441 = t440 * t263;
-  const Real t442 = t259 * t440;
-  const Real t443 = t441 + t442;
-  const Real t444 = t443 * t51;
-  const Real t445 = t443 * t56;
-  const Real t446 = t444 + t445;
-  const Real t447 = sum_error(t414, t446);
-  const Real t448 = t419 + t447;
-  const Real t449 = t448 * t165;
-  const Real t450 = t446 + t414;
-  const Real t451 = t450 * t169;
-  const Real t452 = t451 + t449;
-  const Real t453 = product_error(t165, t450);
-  const Real t454 = t453 + t452;
-  const Real t455 = t127 * t454;
-  const Real t456 = t450 * t165;
-  const Real t457 = t456 * t160;
-  const Real t458 = t457 + t455;
-  const Real t459 = product_error(t127, t456);
-  const Real t460 = t458 + t459;
-  const Real t461 = t127 * t456;
-  const Real t462 = t410 - t461;
-  const Real t463 = t462 - t460;
-  const Real t464 = t83 * t463;
-  const Real t465 = t91 * t463;
-  const Real t466 = t464 + t465;
-  const Real t467 = t466 * nu[2];
-  const Real t468 = t408 + t467;
-  const Real t469 = t468 * R[7];
-  const Real t470 = nu[1] * t308;
-  const Real t471 = t310 * nu[1];
-  const Real t472 = t471 + t470;
-  const Real t473 = t394 * nu[0];
-  const Real t474 = t396 * nu[0];
-  const Real t475 = t473 + t474;
-  const Real t476 = t472 + t475;
-  const Real t477 = nu[2] * t454;
-  const Real t478 = t456 * nu[2];
+  const Real t438 = t205 * nu[0];
+  const Real t439 = t437 + t438;
+  const Real t440 = t245 * nu[2];
+  const Real t441 = t439 + t440;
+  const Real t442 = t441 + t436;
+  const Real t443 = t341 * t442;
+  const Real t444 = t320 * t292;
+  const Real t445 = t285 * t275;
+  const Real t446 = t444 - t445;
+  const Real t447 = t446 * t22;
+  const Real t448 = t443 + t447;
+  const Real t449 = t363 * t292;
+  const Real t450 = t399 * t285;
+  const Real t451 = t449 - t450;
+  const Real t452 = par.k1 * t451;
+  const Real t453 = t446 * par.c;
+  const Real t454 = t452 + t453;
+  const Real t455 = t454 - t448;
+  const Real t456 = t84 * t418;
+  const Real t457 = t455 - t456;
+  const Real t458 = t427 * t49;
+  const Real t459 = t458 + t457;
+  const Real t460 = t25 * t430;
+  const Real t461 = t459 - t460;
+  const Real t462 = t461 - t433;
+  const Real t463 = t128 * t462;
+  const Real t464 = t462 * t135;
+  const Real t465 = t463 + t464;
+  const Real t466 = t432 * t105;
+  const Real t467 = t442 * t317;
+  const Real t468 = t446 * t28;
+  const Real t469 = t468 + t467;
+  const Real t470 = t451 * par.k2;
+  const Real t471 = t446 * par.r_F;
+  const Real t472 = t470 + t471;
+  const Real t473 = t469 + t472;
+  const Real t474 = t114 * t418;
+  const Real t475 = t474 + t473;
+  const Real t476 = t59 * t427;
+  const Real t477 = t475 + t476;
+  const Real t478 = t430 * t30;
   const Real t479 = t477 + t478;
-  const Real t480 = t479 + t476;
-  const Real t481 = R[8] * t480;
-  const Real t482 = t481 - t469;
-  const Real t483 = par.k2 * t482;
-  const Real t484 = R[6] * t480;
+  const Real t480 = t479 + t466;
+  const Real t481 = t465 + t480;
+  const Real t482 = t151 * t481;
+  const Real t483 = t22 * t482;
+  const Real t484 = t462 - t483;
+  const Real t485 = t484 * t93;
+  const Real t486 = t97 * t484;
+  const Real t487 = t485 + t486;
+  const Real t488 = t487 * t72;
+  const Real t489 = t432 - t488;
+  const Real t490 = t48 * t489;
+  const Real t491 = par.k1 * t490;
+  const Real t492 = s_r_p_1_ * t491;
+  const Real t493 = t487 * c_r_p_1_;
+  const Real t494 = t493 + t492;
+  const Real t495 = t323 * nu[1];
+  const Real t496 = t494 - t495;
+  const Real t497 = t323 * t328;
+  const Real t498 = t497 - t496;
+  const Real t499 = par.k12 * t498;
+  const Real t500 = t323 * t323;
+  const Real t501 = t436 * t436;
+  const Real t502 = t500 + t501;
+  const Real t503 = t502 * par.k11;
+  const Real t504 = t503 + t499;
+  const Real t505 = t487 * t45;
+  const Real t506 = t430 + t505;
+  const Real t507 = t361 * nu[0];
+  const Real t508 = t275 * t397;
+  const Real t509 = t507 + t508;
+  const Real t510 = t509 + t506;
 
-  // joint angles
-  const Real t485 = nu[0] * R[7];
-
-  // passive accelerations
-  const Real t486 = t484 + t485;
-  const Real t487 = t486 * par.k1;
-  const Real t488 = t487 + t483;
-  const Real t489 = c_r_p_1_ * t488;
-
-  // joint angles
-  const Real t490 = s_r_p_1_ * nu[1];
-
-  // passive accelerations
-  const Real t491 = t490 * t8;
-
-  // joint angles
-  const Real t492 = t490 * t10;
-
-  // passive accelerations
-  const Real t493 = t492 + t491;
-  const Real t494 = t489 - t493;
-  const Real t495 = R[6] * t468;
-
-  // joint angles
-  const Real t496 = R[8] * nu[0];
-
-  // passive accelerations
-  const Real t497 = t496 + t495;
-  const Real t498 = s_r_p_1_ * t497;
-
-  // joint angles
-  const Real t499 = c_r_p_1_ * nu[1];
-  const Real t500 = t499 * R[7];
+  // frame: acceleration
+  const Real t511 = par.g * R[8];
 
   // passive accelerations
-  const Real t501 = t500 + t498;
-  const Real t502 = t501 + t494;
-  const Real t503 = par.k1 * t502;
-  const Real t504 = par.k1 * t482;
-  const Real t505 = t486 * par.k2;
-  const Real t506 = t504 - t505;
-  const Real t507 = t506 * par.k2;
-  const Real t508 = t503 - t507;
-  const Real t509 = t34 * t508;
-  const Real t510 = t509 * constant<Real>(2.0L);
-  const Real t511 = par.k2 * t502;
-  const Real t512 = t506 * par.k1;
-  const Real t513 = t512 + t511;
-  const Real t514 = t42 * t513;
-  const Real t515 = t514 * constant<Real>(2.0L);
-  const Real t516 = t510 + t515;
+  const Real t512 = t510 - t511;
+  const Real t513 = t263 * nu[0];
+  const Real t514 = t513 + t487;
+  const Real t515 = t514 * par.k13;
+  const Real t516 = t512 - t515;
+  const Real t517 = t516 * par.k2;
+  const Real t518 = t69 * t487;
+  const Real t519 = t418 - t518;
+  const Real t520 = t361 * t263;
+  const Real t521 = t275 * t379;
+  const Real t522 = t520 - t521;
+  const Real t523 = t519 + t522;
 
-  // kernel
-  const Real t517 = t45 * constant<Real>(2.0L);
+  // frame: acceleration
+  const Real t524 = par.g * R[6];
 
   // passive accelerations
-  const Real t518 = t516 / t517;
-  const Real t519 = t46 * t518;
-  const Real t520 = t519 / t45;
-  const Real t521 = t42 * t520;
-  const Real t522 = t46 * t513;
-  const Real t523 = t522 - t521;
-  const Real t524 = t523 * par.r_F;
-  const Real t525 = par.k1 * t468;
+  const Real t525 = t523 - t524;
+  const Real t526 = t263 * t263;
+  const Real t527 = t275 * t275;
+  const Real t528 = t526 + t527;
+  const Real t529 = t528 * par.k13;
+  const Real t530 = t525 - t529;
+  const Real t531 = par.k1 * t530;
+  const Real t532 = t517 + t531;
+  const Real t533 = t532 + t504;
+  const Real t534 = t533 * par.k2;
+  const Real t535 = t45 * t490;
+  const Real t536 = t427 - t535;
+  const Real t537 = t263 * t397;
+  const Real t538 = t379 * nu[0];
+  const Real t539 = t537 + t538;
+  const Real t540 = t536 - t539;
 
-  // joint angles
-  const Real t526 = par.k2 * nu[0];
-
-  // passive accelerations
-  const Real t527 = t526 + t525;
-  const Real t528 = t527 * c_r_p_1_;
-  const Real t529 = s_r_p_1_ * t480;
-  const Real t530 = t528 - t529;
-  const Real t531 = t530 * par.k1;
-  const Real t532 = par.k2 * t468;
-
-  // joint angles
-  const Real t533 = par.k1 * nu[0];
+  // frame: acceleration
+  const Real t541 = par.g * R[7];
 
   // passive accelerations
-  const Real t534 = t533 - t532;
-  const Real t535 = t534 + nu[1];
-  const Real t536 = t535 * par.k2;
-  const Real t537 = t536 - t531;
-  const Real t538 = t524 * t537;
-  const Real t539 = t490 * t527;
-  const Real t540 = t499 * t480;
-  const Real t541 = t539 + t540;
-  const Real t542 = par.k1 * t541;
-  const Real t543 = t542 * t51;
-  const Real t544 = t56 * t542;
-  const Real t545 = t543 + t544;
-  const Real t546 = t545 + t538;
-  const Real t547 = t34 * t520;
-  const Real t548 = t46 * t508;
-  const Real t549 = t548 - t547;
-  const Real t550 = t549 * par.r_F;
-  const Real t551 = t530 * par.k2;
-  const Real t552 = t535 * par.k1;
-  const Real t553 = t552 + t551;
-  const Real t554 = t550 * t553;
-  const Real t555 = par.k2 * t541;
-  const Real t556 = t555 * t60;
-  const Real t557 = t554 - t556;
-  const Real t558 = t546 + t557;
-  const Real t559 = t542 * par.c;
-  const Real t560 = t555 * par.r_F;
-  const Real t561 = t559 + t560;
-  const Real t562 = t320 * t80;
-  const Real t563 = t562 * nu[1];
-  const Real t564 = t80 * t406;
-  const Real t565 = t564 - t340;
-  const Real t566 = t565 * nu[0];
-  const Real t567 = t566 + t563;
-  const Real t568 = t466 * t80;
-  const Real t569 = t568 * nu[2];
-  const Real t570 = t567 + t569;
-  const Real t571 = par.k14 * t468;
+  const Real t542 = t540 - t541;
+  const Real t543 = t275 * nu[0];
+  const Real t544 = t490 - t543;
+  const Real t545 = t544 * par.k13;
+  const Real t546 = t542 + t545;
+  const Real t547 = s_r_p_1_ * t546;
+  const Real t548 = t530 * par.k2;
+  const Real t549 = t516 * par.k1;
+  const Real t550 = t548 - t549;
+  const Real t551 = c_r_p_1_ * t550;
+  const Real t552 = t547 + t551;
+  const Real t553 = t496 + t497;
+  const Real t554 = t553 * par.k11;
+  const Real t555 = t328 * t328;
+  const Real t556 = t555 + t501;
+  const Real t557 = t556 * par.k12;
+  const Real t558 = t554 + t557;
+  const Real t559 = t552 - t558;
+  const Real t560 = par.k1 * t559;
+  const Real t561 = t534 - t560;
+  const Real t562 = c_r_p_2_ * t561;
+  const Real t563 = t533 * par.k1;
+  const Real t564 = t559 * par.k2;
+  const Real t565 = t563 + t564;
+  const Real t566 = t565 * s_r_p_2_;
+  const Real t567 = t562 + t566;
+  const Real t568 = t567 * par.m_F;
+  const Real t569 = t568 * s_r_p_2_;
+  const Real t570 = c_r_p_2_ * t565;
+  const Real t571 = t561 * s_r_p_2_;
   const Real t572 = t570 - t571;
-  const Real t573 = t572 * t490;
-  const Real t574 = t123 * t308;
-  const Real t575 = t310 * t121;
-  const Real t576 = t574 + t575;
-  const Real t577 = t310 * t123;
-  const Real t578 = t577 + t576;
-  const Real t579 = t578 * nu[1];
-  const Real t580 = t394 * t123;
-  const Real t581 = t121 * t396;
-  const Real t582 = t581 + t580;
-  const Real t583 = t123 * t396;
-  const Real t584 = t582 + t583;
-  const Real t585 = t584 * nu[0];
-  const Real t586 = t579 + t585;
-  const Real t587 = t123 * t454;
-  const Real t588 = t456 * t121;
-  const Real t589 = t588 + t587;
-  const Real t590 = t123 * t456;
-  const Real t591 = t589 + t590;
-  const Real t592 = t591 - t120;
-  const Real t593 = t592 * nu[2];
-  const Real t594 = t586 + t593;
-  const Real t595 = par.k2 * t594;
-  const Real t596 = par.k14 * t480;
-  const Real t597 = t80 * t308;
-  const Real t598 = t310 * t80;
-  const Real t599 = t597 + t598;
-  const Real t600 = nu[1] * t599;
-  const Real t601 = t394 * t80;
-  const Real t602 = t80 * t396;
-  const Real t603 = t601 + t602;
-  const Real t604 = t603 * nu[0];
-  const Real t605 = t604 + t600;
-  const Real t606 = t80 * t454;
-  const Real t607 = t456 * t80;
-  const Real t608 = t607 + t606;
-  const Real t609 = t80 - t608;
-  const Real t610 = t609 * nu[2];
-  const Real t611 = t610 - t605;
-  const Real t612 = t596 + t611;
-  const Real t613 = t612 * par.k1;
-  const Real t614 = t595 - t613;
-  const Real t615 = t614 * t499;
-  const Real t616 = t615 + t573;
-  const Real t617 = t561 + t616;
-  const Real t618 = t617 - t558;
-  const Real t619 = R[6] * t482;
-  const Real t620 = t619 * constant<Real>(2.0L);
-  const Real t621 = t486 * R[8];
-  const Real t622 = t621 * constant<Real>(2.0L);
-  const Real t623 = t620 - t622;
-
-  // joint angles
-  const Real t624 = constant<Real>(2.0L) * t77;
-
-  // passive accelerations
-  const Real t625 = t623 / t624;
-  const Real t626 = t78 * t625;
-  const Real t627 = t626 / t77;
-  const Real t628 = R[8] * t627;
-  const Real t629 = t486 * t78;
-  const Real t630 = t629 + t628;
-  const Real t631 = t630 * par.r_R;
-  const Real t632 = nu[2] - t480;
-  const Real t633 = t631 * t632;
-  const Real t634 = t109 * t633;
-  const Real t635 = t634 + t618;
-  const Real t636 = t627 * R[6];
-  const Real t637 = t78 * t482;
-  const Real t638 = t637 - t636;
-  const Real t639 = t638 * par.r_R;
-  const Real t640 = t639 * t468;
-  const Real t641 = t631 * nu[0];
-  const Real t642 = t640 - t641;
-  const Real t643 = c_r_p_1_ * t642;
-  const Real t644 = t635 - t643;
-  const Real t645 = t639 * t632;
-  const Real t646 = t645 * t92;
-  const Real t647 = t644 - t646;
-  const Real t648 = t108 * t647;
-  const Real t649 = -t648;
-  const Real t650 = s_r_p_1_ * t527;
-  const Real t651 = c_r_p_1_ * t480;
-  const Real t652 = t651 + t650;
-  const Real t653 = t291 * nu[1];
-  const Real t654 = t293 * nu[1];
-  const Real t655 = t654 + t653;
-  const Real t656 = t383 * nu[0];
-  const Real t657 = t656 + t655;
-  const Real t658 = t443 * nu[2];
-  const Real t659 = t658 + t657;
-  const Real t660 = t659 + t652;
-  const Real t661 = t524 * t660;
-  const Real t662 = t527 * t499;
-  const Real t663 = t490 * t480;
-  const Real t664 = t662 - t663;
-  const Real t665 = t56 * t664;
-  const Real t666 = t51 * t664;
-  const Real t667 = t665 + t666;
-  const Real t668 = t667 + t661;
-  const Real t669 = t572 * t499;
-  const Real t670 = t614 * t490;
-  const Real t671 = t669 - t670;
+  const Real t573 = t572 * par.m_F;
+  const Real t574 = t573 * c_r_p_2_;
+  const Real t575 = t569 + t574;
+  const Real t576 = par.k2 * t575;
+  const Real t577 = c_r_p_2_ * t568;
+  const Real t578 = t573 * s_r_p_2_;
+  const Real t579 = t577 - t578;
+  const Real t580 = par.k1 * t579;
+  const Real t581 = t576 - t580;
+  const Real t582 = t581 * par.k11;
+  const Real t583 = par.k1 * t575;
+  const Real t584 = par.k2 * t579;
+  const Real t585 = t583 + t584;
+  const Real t586 = par.k12 * t585;
+  const Real t587 = t582 + t586;
+  const Real t588 = t496 - t482;
+  const Real t589 = t588 * par.I_Fyy;
+  const Real t590 = t589 - t587;
+  const Real t591 = t552 * par.k8;
+  const Real t592 = par.k10 * t532;
+  const Real t593 = t591 - t592;
+  const Real t594 = t496 * par.k7;
+  const Real t595 = t497 * par.k31;
+  const Real t596 = t595 + t594;
+  const Real t597 = t555 - t500;
+  const Real t598 = t597 * par.k5;
+  const Real t599 = t598 + t596;
+  const Real t600 = t593 + t599;
+  const Real t601 = t600 + t590;
+  const Real t602 = t601 * s_r_p_1_;
+  const Real t603 = t491 * c_r_p_1_;
+  const Real t604 = s_r_p_1_ * t487;
+  const Real t605 = t604 - t603;
+  const Real t606 = t436 * nu[1];
+  const Real t607 = t605 - t606;
+  const Real t608 = t607 * par.k2;
+  const Real t609 = par.k2 * t490;
+  const Real t610 = par.k1 * t609;
+  const Real t611 = t608 + t610;
+  const Real t612 = c_r_p_2_ * t611;
+  const Real t613 = t607 * par.k1;
+  const Real t614 = par.k2 * t609;
+  const Real t615 = t614 - t613;
+  const Real t616 = t615 * s_r_p_2_;
+  const Real t617 = t612 - t616;
+  const Real t618 = c_r_p_2_ * t344;
+  const Real t619 = t330 * s_r_p_2_;
+  const Real t620 = t618 + t619;
+  const Real t621 = t620 * t441;
+  const Real t622 = t617 + t621;
+  const Real t623 = par.I_Fxx * t622;
+  const Real t624 = t620 * t442;
+  const Real t625 = par.k35 * t624;
+  const Real t626 = t623 - t625;
+  const Real t627 = t626 * c_r_p_2_;
+  const Real t628 = t611 * s_r_p_2_;
+  const Real t629 = t615 * c_r_p_2_;
+  const Real t630 = t628 + t629;
+  const Real t631 = t330 * c_r_p_2_;
+  const Real t632 = t344 * s_r_p_2_;
+  const Real t633 = t631 - t632;
+  const Real t634 = t633 * t441;
+  const Real t635 = t630 - t634;
+  const Real t636 = par.I_Fxx * t635;
+  const Real t637 = t442 * t633;
+  const Real t638 = t637 * par.k36;
+  const Real t639 = t636 - t638;
+  const Real t640 = t639 * s_r_p_2_;
+  const Real t641 = t627 + t640;
+  const Real t642 = par.k2 * t641;
+  const Real t643 = c_r_p_2_ * t639;
+  const Real t644 = t626 * s_r_p_2_;
+  const Real t645 = t643 - t644;
+  const Real t646 = par.k1 * t645;
+  const Real t647 = t642 - t646;
+  const Real t648 = t328 * t436;
+  const Real t649 = t607 + t648;
+  const Real t650 = t649 * par.k11;
+  const Real t651 = t323 * t436;
+  const Real t652 = t609 - t651;
+  const Real t653 = par.k12 * t652;
+  const Real t654 = t650 + t653;
+  const Real t655 = t546 * c_r_p_1_;
+  const Real t656 = s_r_p_1_ * t550;
+  const Real t657 = t655 - t656;
+  const Real t658 = t654 + t657;
+  const Real t659 = t658 * par.m_F;
+  const Real t660 = t659 * par.k11;
+  const Real t661 = t660 + t647;
+  const Real t662 = t657 * par.k8;
+  const Real t663 = t607 * par.k17;
+  const Real t664 = par.k30 * t648;
+  const Real t665 = t663 - t664;
+  const Real t666 = par.k5 * t652;
+  const Real t667 = t666 + t665;
+  const Real t668 = t667 - t662;
+  const Real t669 = t661 + t668;
+  const Real t670 = t669 * c_r_p_1_;
+  const Real t671 = t670 - t602;
   const Real t672 = par.k1 * t671;
-  const Real t673 = par.c * t664;
-  const Real t674 = t672 + t673;
-  const Real t675 = t674 - t668;
-  const Real t676 = t63 * t633;
-  const Real t677 = t675 - t676;
-  const Real t678 = t642 * t92;
-  const Real t679 = t678 + t677;
-  const Real t680 = t54 * t645;
-  const Real t681 = t679 - t680;
-  const Real t682 = sum_error(t681, t649);
-  const Real t683 = product_error(t108, t647);
-  const Real t684 = t682 - t683;
-  const Real t685 = t249 * t684;
-  const Real t686 = t681 - t648;
-  const Real t687 = t247 * t686;
-  const Real t688 = t687 + t685;
-  const Real t689 = product_error(t249, t686);
-  const Real t690 = t688 + t689;
-  const Real t691 = product_error(t177, t647);
-  const Real t692 = t235 * t647;
-  const Real t693 = t691 + t692;
-  const Real t694 = t177 * t647;
-  const Real t695 = t660 * t550;
-  const Real t696 = t60 * t664;
-  const Real t697 = t696 + t695;
-  const Real t698 = par.r_F * t664;
-  const Real t699 = par.k2 * t671;
-  const Real t700 = t698 + t699;
-  const Real t701 = t700 + t697;
-  const Real t702 = t633 * t192;
-  const Real t703 = t633 * t199;
-  const Real t704 = t702 + t703;
-  const Real t705 = t704 + t701;
-  const Real t706 = t109 * t642;
-  const Real t707 = t705 + t706;
-  const Real t708 = t645 * t63;
-  const Real t709 = t708 + t707;
-  const Real t710 = sum_error(t709, t694);
-  const Real t711 = t693 + t710;
-  const Real t712 = t711 + t690;
-  const Real t713 = t249 * t686;
-  const Real t714 = t694 + t709;
-  const Real t715 = sum_error(t714, t713);
-  const Real t716 = t712 + t715;
-  const Real t717 = t259 * t716;
-  const Real t718 = t714 + t713;
-  const Real t719 = t718 * t263;
-  const Real t720 = t717 + t719;
-  const Real t721 = product_error(t259, t718);
-  const Real t722 = t721 + t720;
-  const Real t723 = t56 * t722;
-  const Real t724 = t718 * t259;
-  const Real t725 = t724 * t51;
-  const Real t726 = t725 + t723;
-  const Real t727 = product_error(t56, t724);
-  const Real t728 = t727 + t726;
-  const Real t729 = t684 - t728;
-  const Real t730 = t56 * t724;
-  const Real t731 = -t730;
-  const Real t732 = sum_error(t686, t731);
-  const Real t733 = t729 + t732;
-  const Real t734 = t733 * t165;
-  const Real t735 = t686 - t730;
-  const Real t736 = t169 * t735;
-  const Real t737 = t734 + t736;
-  const Real t738 = product_error(t165, t735);
-  const Real t739 = t738 + t737;
-  const Real t740 = t127 * t739;
-  const Real t741 = t165 * t735;
-  const Real t742 = t741 * t160;
-  const Real t743 = t740 + t742;
-  const Real t744 = product_error(t127, t741);
-  const Real t745 = t743 + t744;
-  const Real t746 = t127 * t741;
-  const Real t747 = t647 - t746;
-  const Real t748 = t747 - t745;
-  const Real t749 = t83 * t748;
-  const Real t750 = t91 * t748;
-  const Real t751 = t749 + t750;
-  const Real t752 = par.k1 * t751;
-  const Real t753 = t752 * s_r_p_1_;
-  const Real t754 = c_r_p_1_ * t739;
-  const Real t755 = c_r_p_1_ * t741;
-  const Real t756 = t754 + t755;
-  const Real t757 = t753 + t756;
-  const Real t758 = t530 * nu[1];
-  const Real t759 = t757 - t758;
-  const Real t760 = t535 * t530;
-  const Real t761 = t760 - t759;
-  const Real t762 = t761 * par.k13;
-  const Real t763 = t652 * t652;
-  const Real t764 = t530 * t530;
-  const Real t765 = t763 + t764;
-  const Real t766 = t765 * par.k12;
-  const Real t767 = t766 + t762;
-  const Real t768 = t123 * t739;
-  const Real t769 = t121 * t741;
-  const Real t770 = t769 + t768;
-  const Real t771 = t123 * t741;
-  const Real t772 = t770 + t771;
-  const Real t773 = t633 - t772;
-  const Real t774 = t570 * t468;
-  const Real t775 = t611 * t480;
-  const Real t776 = t774 - t775;
-  const Real t777 = t773 + t776;
+  const Real t673 = par.k1 * t641;
+  const Real t674 = par.k2 * t645;
+  const Real t675 = t673 + t674;
+  const Real t676 = t659 * par.k12;
+  const Real t677 = t676 + t675;
+  const Real t678 = t657 * par.k10;
+  const Real t679 = par.k5 * t649;
+  const Real t680 = par.k6 * t609;
+  const Real t681 = t651 * par.k32;
+  const Real t682 = t680 - t681;
+  const Real t683 = t679 + t682;
+  const Real t684 = t683 + t678;
+  const Real t685 = t677 + t684;
+  const Real t686 = par.k2 * t685;
+  const Real t687 = t686 - t672;
+  const Real t688 = t552 * par.m_H;
+  const Real t689 = par.k8 * t553;
+  const Real t690 = t556 * par.k10;
+  const Real t691 = t689 - t690;
+  const Real t692 = t688 + t691;
+  const Real t693 = t581 + t692;
+  const Real t694 = s_r_p_1_ * t693;
+  const Real t695 = t657 * par.m_H;
+  const Real t696 = par.k8 * t649;
+  const Real t697 = par.k10 * t652;
+  const Real t698 = t697 - t696;
+  const Real t699 = t698 + t695;
+  const Real t700 = t659 + t699;
+  const Real t701 = t700 * c_r_p_1_;
+  const Real t702 = t701 + t694;
+  const Real t703 = t702 * par.k13;
+  const Real t704 = t703 + t687;
+  const Real t705 = t542 * par.k16;
+  const Real t706 = par.k14 * t490;
+  const Real t707 = t543 * par.k25;
+  const Real t708 = t706 - t707;
+  const Real t709 = t263 * t275;
+  const Real t710 = par.k3 * t709;
+  const Real t711 = t708 - t710;
+  const Real t712 = t705 + t711;
+  const Real t713 = t712 + t704;
+  const Real t714 = c_r_p_0_ * t490;
+  const Real t715 = t263 * s_r_p_0_;
 
-  // frame: acceleration
-  const Real t778 = par.g * R[6];
+  // rear_wheel: twist
+  const Real t716 = nu[0] * c_r_p_0_;
 
   // passive accelerations
-  const Real t779 = t777 - t778;
-  const Real t780 = t468 * t468;
-  const Real t781 = t480 * t480;
-  const Real t782 = t781 + t780;
-  const Real t783 = t782 * par.k14;
-  const Real t784 = t779 - t783;
-  const Real t785 = par.k1 * t784;
-  const Real t786 = t80 * t739;
-  const Real t787 = t80 * t741;
-  const Real t788 = t786 + t787;
-  const Real t789 = t788 + t645;
-  const Real t790 = t570 * nu[0];
-  const Real t791 = t480 * t594;
-  const Real t792 = t790 + t791;
-  const Real t793 = t789 + t792;
+  const Real t717 = t716 + t715;
+  const Real t718 = t717 * nu[2];
+  const Real t719 = t714 + t718;
+  const Real t720 = par.I_Rxx * t719;
+  const Real t721 = t717 * t417;
+  const Real t722 = par.k28 * t721;
+  const Real t723 = t720 + t722;
+  const Real t724 = t723 * c_r_p_0_;
+  const Real t725 = s_r_p_0_ * t490;
+  const Real t726 = t263 * c_r_p_0_;
 
-  // frame: acceleration
-  const Real t794 = par.g * R[8];
+  // rear_wheel: twist
+  const Real t727 = nu[0] * s_r_p_0_;
 
   // passive accelerations
-  const Real t795 = t793 - t794;
-  const Real t796 = t468 * nu[0];
-  const Real t797 = t796 + t741;
-  const Real t798 = t797 + t739;
-  const Real t799 = par.k14 * t798;
-  const Real t800 = t795 - t799;
-  const Real t801 = t800 * par.k2;
-  const Real t802 = t801 + t785;
-  const Real t803 = t802 + t767;
-  const Real t804 = t803 * par.k2;
-  const Real t805 = t751 * t80;
-  const Real t806 = t642 - t805;
-  const Real t807 = t594 * t468;
-  const Real t808 = t611 * nu[0];
-  const Real t809 = t807 + t808;
-  const Real t810 = t806 - t809;
+  const Real t728 = t727 - t726;
+  const Real t729 = nu[2] * t728;
+  const Real t730 = t729 + t725;
+  const Real t731 = par.I_Rxx * t730;
+  const Real t732 = t728 * t417;
+  const Real t733 = t732 * par.k29;
+  const Real t734 = t733 - t731;
+  const Real t735 = t734 * s_r_p_0_;
+  const Real t736 = t724 - t735;
+  const Real t737 = t713 + t736;
+  const Real t738 = t737 * t261;
+  const Real t739 = t601 * c_r_p_1_;
+  const Real t740 = s_r_p_1_ * t669;
+  const Real t741 = t739 + t740;
+  const Real t742 = c_r_p_1_ * t693;
+  const Real t743 = s_r_p_1_ * t700;
+  const Real t744 = t742 - t743;
+  const Real t745 = par.k1 * t744;
+  const Real t746 = par.k10 * t498;
+  const Real t747 = t502 * par.k8;
+  const Real t748 = t746 - t747;
+  const Real t749 = par.m_H * t532;
+  const Real t750 = t749 + t748;
+  const Real t751 = t750 + t585;
+  const Real t752 = par.k2 * t751;
+  const Real t753 = t752 - t745;
+  const Real t754 = t753 * par.k13;
+  const Real t755 = t741 - t754;
+  const Real t756 = t525 * par.k15;
+  const Real t757 = t512 * par.k16;
+  const Real t758 = t756 - t757;
+  const Real t759 = par.k4 * t487;
+  const Real t760 = t513 * par.k27;
+  const Real t761 = t759 - t760;
 
   // frame: acceleration
-  const Real t811 = par.g * R[7];
+  const Real t762 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t812 = t810 - t811;
-  const Real t813 = t480 * nu[0];
-  const Real t814 = t751 - t813;
-  const Real t815 = par.k14 * t814;
-  const Real t816 = t815 + t812;
-  const Real t817 = s_r_p_1_ * t816;
-  const Real t818 = par.k2 * t784;
-  const Real t819 = par.k1 * t800;
-  const Real t820 = t818 - t819;
-  const Real t821 = t820 * c_r_p_1_;
-  const Real t822 = t817 + t821;
-  const Real t823 = t759 + t760;
-  const Real t824 = par.k12 * t823;
-  const Real t825 = t535 * t535;
-  const Real t826 = t825 + t763;
-  const Real t827 = t826 * par.k13;
-  const Real t828 = t827 + t824;
-  const Real t829 = t822 - t828;
-  const Real t830 = par.k1 * t829;
-  const Real t831 = t804 - t830;
-  const Real t832 = c_r_p_2_ * t831;
-  const Real t833 = par.k2 * t829;
-  const Real t834 = par.k1 * t803;
-  const Real t835 = t833 + t834;
-  const Real t836 = t835 * s_r_p_2_;
-  const Real t837 = t832 + t836;
-  const Real t838 = par.m_F * t837;
-  const Real t839 = t838 * s_r_p_2_;
-  const Real t840 = c_r_p_2_ * t835;
-  const Real t841 = s_r_p_2_ * t831;
-  const Real t842 = t840 - t841;
-  const Real t843 = par.m_F * t842;
-  const Real t844 = t843 * c_r_p_2_;
-  const Real t845 = t839 + t844;
-  const Real t846 = t845 * par.k2;
-  const Real t847 = c_r_p_2_ * t838;
-  const Real t848 = t843 * s_r_p_2_;
-  const Real t849 = t847 - t848;
-  const Real t850 = par.k1 * t849;
-  const Real t851 = t846 - t850;
-  const Real t852 = t851 * par.k12;
-  const Real t853 = par.k1 * t845;
-  const Real t854 = par.k2 * t849;
-  const Real t855 = t853 + t854;
-  const Real t856 = par.k13 * t855;
-  const Real t857 = t852 + t856;
-  const Real t858 = t759 - t724;
-  const Real t859 = t858 - t722;
-  const Real t860 = par.I_Fyy * t859;
-  const Real t861 = t860 - t857;
-  const Real t862 = par.k9 * t822;
-  const Real t863 = t802 * par.k11;
-  const Real t864 = t862 - t863;
-  const Real t865 = par.k8 * t759;
-  const Real t866 = par.k38 * t760;
-  const Real t867 = t866 + t865;
-  const Real t868 = t535 + t530;
-  const Real t869 = t535 - t530;
-  const Real t870 = t868 * t869;
-  const Real t871 = par.k5 * t870;
-  const Real t872 = t867 + t871;
-  const Real t873 = t872 + t864;
-  const Real t874 = t861 + t873;
-  const Real t875 = t874 * c_r_p_1_;
-  const Real t876 = t752 * c_r_p_1_;
-  const Real t877 = s_r_p_1_ * t739;
-  const Real t878 = s_r_p_1_ * t741;
+  const Real t763 = t526 - t762;
+  const Real t764 = par.k3 * t763;
+  const Real t765 = t764 + t761;
+  const Real t766 = t765 + t758;
+  const Real t767 = t755 + t766;
+  const Real t768 = t487 - t513;
+  const Real t769 = t768 * par.r_R;
+  const Real t770 = t525 - t769;
+  const Real t771 = c_r_p_0_ * t770;
+  const Real t772 = t762 + t527;
+  const Real t773 = t772 * par.r_R;
+  const Real t774 = t512 + t773;
+  const Real t775 = t774 * s_r_p_0_;
+  const Real t776 = t771 - t775;
+  const Real t777 = t776 * par.m_R;
+  const Real t778 = t777 * c_r_p_0_;
+  const Real t779 = t774 * c_r_p_0_;
+  const Real t780 = s_r_p_0_ * t770;
+  const Real t781 = t779 + t780;
+  const Real t782 = t781 * par.m_R;
+  const Real t783 = t782 * s_r_p_0_;
+  const Real t784 = t778 + t783;
+  const Real t785 = t784 * par.r_R;
+  const Real t786 = par.I_Ryy * t487;
+  const Real t787 = t786 - t785;
+  const Real t788 = t787 + t767;
+  const Real t789 = t255 * t788;
+  const Real t790 = t788 * t253;
+  const Real t791 = t789 + t790;
+  const Real t792 = par.k2 * t744;
+  const Real t793 = par.k1 * t751;
+  const Real t794 = t793 + t792;
+  const Real t795 = t525 * par.m_B;
+  const Real t796 = t768 * par.k15;
+  const Real t797 = t528 * par.k16;
+  const Real t798 = t796 - t797;
+  const Real t799 = t795 + t798;
+  const Real t800 = t794 + t799;
+  const Real t801 = t784 + t800;
+  const Real t802 = t801 * t395;
+  const Real t803 = t542 * par.m_B;
+  const Real t804 = t544 * par.k16;
+  const Real t805 = par.k15 * t709;
+  const Real t806 = t805 + t804;
+  const Real t807 = t806 + t803;
+  const Real t808 = t702 + t807;
+  const Real t809 = par.r_R * t709;
+  const Real t810 = t542 - t809;
+  const Real t811 = t810 * par.m_R;
+  const Real t812 = t808 + t811;
+  const Real t813 = t359 * t812;
+  const Real t814 = t813 + t802;
+  const Real t815 = t512 * par.m_B;
+  const Real t816 = t514 * par.k16;
+  const Real t817 = t772 * par.k15;
+  const Real t818 = t816 + t817;
+  const Real t819 = t815 - t818;
+  const Real t820 = t753 + t819;
+  const Real t821 = t782 * c_r_p_0_;
+  const Real t822 = t777 * s_r_p_0_;
+  const Real t823 = t821 - t822;
+  const Real t824 = t823 + t820;
+  const Real t825 = t824 * t377;
+  const Real t826 = t814 + t825;
+  const Real t827 = t791 - t826;
+  const Real t828 = t738 + t827;
+  const Real t829 = t828 - t786;
+  const Real t830 = t245 * t589;
+  const Real t831 = t829 + t830;
+  const Real t832 = t164 * t788;
+  const Real t833 = t788 * t162;
+  const Real t834 = t832 + t833;
+  const Real t835 = t801 * t385;
+  const Real t836 = t353 * t812;
+  const Real t837 = t835 + t836;
+  const Real t838 = t367 * t824;
+  const Real t839 = t838 - t837;
+  const Real t840 = t834 + t839;
+  const Real t841 = t737 * t170;
+  const Real t842 = t840 + t841;
+  const Real t843 = t842 - t685;
+  const Real t844 = t152 * t589;
+  const Real t845 = t844 + t843;
+  const Real t846 = t737 * t221;
+  const Real t847 = t801 * t389;
+  const Real t848 = t356 * t812;
+  const Real t849 = t848 + t847;
+  const Real t850 = t824 * t371;
+  const Real t851 = t850 - t849;
+  const Real t852 = par.k2 * t671;
+  const Real t853 = par.k1 * t685;
+  const Real t854 = t852 + t853;
+  const Real t855 = t542 * par.k15;
+  const Real t856 = par.k3 * t544;
+  const Real t857 = par.k26 * t709;
+  const Real t858 = t857 + t856;
+  const Real t859 = t858 - t855;
+  const Real t860 = t859 + t854;
+  const Real t861 = par.r_R * t811;
+  const Real t862 = t734 * c_r_p_0_;
+  const Real t863 = t723 * s_r_p_0_;
+  const Real t864 = t862 + t863;
+  const Real t865 = t861 + t864;
+  const Real t866 = t865 + t860;
+  const Real t867 = t851 - t866;
+  const Real t868 = t788 * t213;
+  const Real t869 = t788 * t215;
+  const Real t870 = t868 + t869;
+  const Real t871 = t867 + t870;
+  const Real t872 = t846 + t871;
+  const Real t873 = t589 * t205;
+  const Real t874 = t873 + t872;
+  const Real t875 = par.k1 * t261;
+  const Real t876 = s_r_p_1_ * t875;
+  const Real t877 = c_r_p_1_ * t253;
+  const Real t878 = t255 * c_r_p_1_;
   const Real t879 = t877 + t878;
-  const Real t880 = t879 - t876;
-  const Real t881 = t652 * nu[1];
-  const Real t882 = t880 - t881;
-  const Real t883 = par.k1 * t882;
-  const Real t884 = t751 * par.k2;
-  const Real t885 = par.k2 * t884;
-  const Real t886 = t885 - t883;
-  const Real t887 = t886 * c_r_p_2_;
-  const Real t888 = t882 * par.k2;
-  const Real t889 = par.k1 * t884;
-  const Real t890 = t889 + t888;
-  const Real t891 = t890 * s_r_p_2_;
-  const Real t892 = t887 + t891;
-  const Real t893 = c_r_p_2_ * t553;
-  const Real t894 = t537 * s_r_p_2_;
-  const Real t895 = t893 - t894;
-  const Real t896 = t659 * t895;
-  const Real t897 = t892 - t896;
-  const Real t898 = par.I_Fxx * t897;
-  const Real t899 = t660 * t895;
-  const Real t900 = t899 * par.k43;
-  const Real t901 = t898 - t900;
-  const Real t902 = t901 * s_r_p_2_;
-  const Real t903 = c_r_p_2_ * t890;
-  const Real t904 = t886 * s_r_p_2_;
-  const Real t905 = t903 - t904;
-  const Real t906 = s_r_p_2_ * t553;
-  const Real t907 = c_r_p_2_ * t537;
-  const Real t908 = t906 + t907;
-  const Real t909 = t659 * t908;
-  const Real t910 = t909 + t905;
-  const Real t911 = t910 * par.I_Fxx;
-  const Real t912 = t660 * t908;
-  const Real t913 = par.k42 * t912;
-  const Real t914 = t911 - t913;
-  const Real t915 = c_r_p_2_ * t914;
-  const Real t916 = t902 + t915;
-  const Real t917 = par.k2 * t916;
-  const Real t918 = t901 * c_r_p_2_;
-  const Real t919 = s_r_p_2_ * t914;
+  const Real t880 = t876 + t879;
+  const Real t881 = par.k12 * t880;
+  const Real t882 = par.k13 * t253;
+  const Real t883 = t255 * par.k13;
+  const Real t884 = t882 + t883;
+  const Real t885 = t884 + t377;
+  const Real t886 = par.k2 * t885;
+  const Real t887 = par.k1 * t395;
+  const Real t888 = t887 + t886;
+  const Real t889 = t888 + t881;
+  const Real t890 = t889 * par.k2;
+  const Real t891 = t261 * par.k13;
+  const Real t892 = t359 - t891;
+  const Real t893 = s_r_p_1_ * t892;
+  const Real t894 = par.k1 * t885;
+  const Real t895 = par.k2 * t395;
+  const Real t896 = t895 - t894;
+  const Real t897 = t896 * c_r_p_1_;
+  const Real t898 = t893 + t897;
+  const Real t899 = par.k11 * t880;
+  const Real t900 = t898 + t899;
+  const Real t901 = t900 * par.k1;
+  const Real t902 = t890 - t901;
+  const Real t903 = t902 * c_r_p_2_;
+  const Real t904 = par.k1 * t889;
+  const Real t905 = t900 * par.k2;
+  const Real t906 = t904 + t905;
+  const Real t907 = t906 * s_r_p_2_;
+  const Real t908 = t903 + t907;
+  const Real t909 = t908 * par.m_F;
+  const Real t910 = t909 * s_r_p_2_;
+  const Real t911 = c_r_p_2_ * t906;
+  const Real t912 = t902 * s_r_p_2_;
+  const Real t913 = t911 - t912;
+  const Real t914 = t913 * par.m_F;
+  const Real t915 = t914 * c_r_p_2_;
+  const Real t916 = t910 + t915;
+  const Real t917 = t916 * par.k1;
+  const Real t918 = c_r_p_2_ * t909;
+  const Real t919 = t914 * s_r_p_2_;
   const Real t920 = t918 - t919;
-  const Real t921 = t920 * par.k1;
-  const Real t922 = t917 - t921;
-  const Real t923 = c_r_p_1_ * t816;
-  const Real t924 = t820 * s_r_p_1_;
-  const Real t925 = t923 - t924;
-  const Real t926 = t535 * t652;
-  const Real t927 = t882 + t926;
-  const Real t928 = par.k12 * t927;
-  const Real t929 = t530 * t652;
-  const Real t930 = t884 - t929;
-  const Real t931 = t930 * par.k13;
-  const Real t932 = t931 + t928;
-  const Real t933 = t925 + t932;
-  const Real t934 = par.m_F * t933;
-  const Real t935 = par.k12 * t934;
-  const Real t936 = t935 + t922;
-  const Real t937 = t925 * par.k9;
-  const Real t938 = t882 * par.k18;
-  const Real t939 = par.k37 * t926;
-  const Real t940 = t938 - t939;
-  const Real t941 = par.k5 * t930;
+  const Real t921 = t920 * par.k2;
+  const Real t922 = t917 + t921;
+  const Real t923 = t922 * par.k12;
+  const Real t924 = t916 * par.k2;
+  const Real t925 = t920 * par.k1;
+  const Real t926 = t924 - t925;
+  const Real t927 = t926 * par.k11;
+  const Real t928 = t923 + t927;
+  const Real t929 = t245 + t880;
+  const Real t930 = par.I_Fyy * t929;
+  const Real t931 = t928 + t930;
+  const Real t932 = t898 * par.k8;
+  const Real t933 = t888 * par.k10;
+  const Real t934 = t932 - t933;
+  const Real t935 = par.k7 * t880;
+  const Real t936 = t934 - t935;
+  const Real t937 = t936 - t931;
+  const Real t938 = c_r_p_1_ * t937;
+  const Real t939 = c_r_p_1_ * t875;
+  const Real t940 = s_r_p_1_ * t253;
+  const Real t941 = t255 * s_r_p_1_;
   const Real t942 = t940 + t941;
-  const Real t943 = t942 - t937;
-  const Real t944 = t943 + t936;
-  const Real t945 = s_r_p_1_ * t944;
-  const Real t946 = t875 + t945;
-  const Real t947 = par.m_H * t822;
-  const Real t948 = par.k9 * t823;
-  const Real t949 = t826 * par.k11;
-  const Real t950 = t948 - t949;
-  const Real t951 = t950 + t947;
-  const Real t952 = t951 + t851;
-  const Real t953 = c_r_p_1_ * t952;
-  const Real t954 = t925 * par.m_H;
-  const Real t955 = par.k9 * t927;
-  const Real t956 = par.k11 * t930;
-  const Real t957 = t956 - t955;
-  const Real t958 = t954 + t957;
-  const Real t959 = t958 + t934;
-  const Real t960 = s_r_p_1_ * t959;
-  const Real t961 = t953 - t960;
-  const Real t962 = par.k1 * t961;
-  const Real t963 = t761 * par.k11;
-  const Real t964 = par.k9 * t765;
+  const Real t943 = t939 - t942;
+  const Real t944 = t943 * par.k1;
+  const Real t945 = par.k2 * t261;
+  const Real t946 = t945 * par.k2;
+  const Real t947 = t944 + t946;
+  const Real t948 = t947 * s_r_p_2_;
+  const Real t949 = t943 * par.k2;
+  const Real t950 = par.k1 * t945;
+  const Real t951 = t949 - t950;
+  const Real t952 = t951 * c_r_p_2_;
+  const Real t953 = t948 + t952;
+  const Real t954 = par.I_Fxx * t953;
+  const Real t955 = t954 * c_r_p_2_;
+  const Real t956 = t951 * s_r_p_2_;
+  const Real t957 = c_r_p_2_ * t947;
+  const Real t958 = t956 - t957;
+  const Real t959 = par.I_Fxx * t958;
+  const Real t960 = s_r_p_2_ * t959;
+  const Real t961 = t955 + t960;
+  const Real t962 = par.k2 * t961;
+  const Real t963 = c_r_p_2_ * t959;
+  const Real t964 = t954 * s_r_p_2_;
   const Real t965 = t963 - t964;
-  const Real t966 = t802 * par.m_H;
-  const Real t967 = t965 + t966;
-  const Real t968 = t967 + t855;
-  const Real t969 = t968 * par.k2;
-  const Real t970 = t969 - t962;
-  const Real t971 = par.k14 * t970;
-  const Real t972 = t946 - t971;
-  const Real t973 = par.k62 * t779;
-  const Real t974 = t779 * par.k16;
-  const Real t975 = t973 + t974;
-  const Real t976 = t795 * par.k17;
-  const Real t977 = t975 - t976;
-  const Real t978 = par.k59 * t739;
-  const Real t979 = par.k59 * t741;
-  const Real t980 = t979 + t978;
-  const Real t981 = t796 * par.k63;
-  const Real t982 = t980 - t981;
-  const Real t983 = t468 - nu[0];
-  const Real t984 = t468 + nu[0];
-  const Real t985 = t983 * t984;
-  const Real t986 = par.k3 * t985;
-  const Real t987 = t986 + t982;
-  const Real t988 = t987 + t977;
-  const Real t989 = t988 + t972;
-  const Real t990 = t741 - t796;
-  const Real t991 = t990 + t739;
-  const Real t992 = t991 * par.r_R;
-  const Real t993 = t779 - t992;
-  const Real t994 = t993 * s_r_p_0_;
-
-  // frame: acceleration
-  const Real t995 = nu[0] * nu[0];
-
-  // passive accelerations
-  const Real t996 = t995 + t781;
-  const Real t997 = par.r_R * t996;
-  const Real t998 = t795 + t997;
-  const Real t999 = t998 * c_r_p_0_;
-  const Real t1000 = t994 + t999;
-  const Real t1001 = t1000 * par.m_R;
-  const Real t1002 = t1001 * s_r_p_0_;
-  const Real t1003 = t993 * c_r_p_0_;
-  const Real t1004 = t998 * s_r_p_0_;
-  const Real t1005 = t1003 - t1004;
-  const Real t1006 = par.m_R * t1005;
-  const Real t1007 = t1006 * c_r_p_0_;
-  const Real t1008 = t1002 + t1007;
-  const Real t1009 = t1008 * par.r_R;
-  const Real t1010 = par.I_Ryy * t739;
-  const Real t1011 = par.I_Ryy * t741;
-  const Real t1012 = t1011 + t1010;
-  const Real t1013 = t1012 - t1009;
-  const Real t1014 = t1013 + t989;
-  const Real t1015 = t1014 * t454;
-  const Real t1016 = t1014 * t456;
-  const Real t1017 = t1015 + t1016;
-  const Real t1018 = par.k2 * t961;
-  const Real t1019 = par.k1 * t968;
-  const Real t1020 = t1018 + t1019;
-  const Real t1021 = t779 * par.m_B;
-  const Real t1022 = t991 * par.k62;
-  const Real t1023 = t991 * par.k16;
-  const Real t1024 = t1022 + t1023;
-  const Real t1025 = t782 * par.k17;
-  const Real t1026 = t1024 - t1025;
-  const Real t1027 = t1026 + t1021;
-  const Real t1028 = t1020 + t1027;
-  const Real t1029 = t1028 + t1008;
-  const Real t1030 = t1029 * t592;
-  const Real t1031 = s_r_p_1_ * t952;
-  const Real t1032 = c_r_p_1_ * t959;
-  const Real t1033 = t1032 + t1031;
-  const Real t1034 = t812 * par.m_B;
-  const Real t1035 = t814 * par.k17;
-  const Real t1036 = t480 * t468;
-  const Real t1037 = par.k16 * t1036;
-  const Real t1038 = par.k62 * t1036;
-  const Real t1039 = t1037 + t1038;
-  const Real t1040 = t1039 + t1035;
-  const Real t1041 = t1040 + t1034;
-  const Real t1042 = t1033 + t1041;
-  const Real t1043 = par.r_R * t1036;
-  const Real t1044 = t812 - t1043;
-  const Real t1045 = par.m_R * t1044;
-  const Real t1046 = t1045 + t1042;
-  const Real t1047 = t568 * t1046;
-  const Real t1048 = t1047 + t1030;
-  const Real t1049 = t795 * par.m_B;
-  const Real t1050 = t798 * par.k17;
-  const Real t1051 = par.k62 * t996;
-  const Real t1052 = par.k16 * t996;
-  const Real t1053 = t1051 + t1052;
-  const Real t1054 = t1050 + t1053;
-  const Real t1055 = t1049 - t1054;
-  const Real t1056 = t1055 + t970;
-  const Real t1057 = t1001 * c_r_p_0_;
-  const Real t1058 = t1006 * s_r_p_0_;
-  const Real t1059 = t1057 - t1058;
-  const Real t1060 = t1056 + t1059;
-  const Real t1061 = t1060 * t609;
-  const Real t1062 = t1048 + t1061;
-  const Real t1063 = t1017 - t1062;
-  const Real t1064 = t874 * s_r_p_1_;
-  const Real t1065 = t944 * c_r_p_1_;
-  const Real t1066 = t1065 - t1064;
-  const Real t1067 = t1066 * par.k1;
-  const Real t1068 = t920 * par.k2;
-  const Real t1069 = par.k1 * t916;
-  const Real t1070 = t1068 + t1069;
-  const Real t1071 = par.k13 * t934;
-  const Real t1072 = t1071 + t1070;
-  const Real t1073 = t925 * par.k11;
-  const Real t1074 = par.k5 * t927;
-  const Real t1075 = par.k7 * t884;
-  const Real t1076 = t929 * par.k39;
-  const Real t1077 = t1075 - t1076;
-  const Real t1078 = t1077 + t1074;
-  const Real t1079 = t1073 + t1078;
-  const Real t1080 = t1072 + t1079;
-  const Real t1081 = t1080 * par.k2;
-  const Real t1082 = t1081 - t1067;
-  const Real t1083 = t1033 * par.k14;
+  const Real t966 = par.k1 * t965;
+  const Real t967 = t962 - t966;
+  const Real t968 = t942 - t939;
+  const Real t969 = t968 * par.k11;
+  const Real t970 = t945 * par.k12;
+  const Real t971 = t969 + t970;
+  const Real t972 = c_r_p_1_ * t892;
+  const Real t973 = s_r_p_1_ * t896;
+  const Real t974 = t972 - t973;
+  const Real t975 = t974 - t971;
+  const Real t976 = t975 * par.m_F;
+  const Real t977 = par.k11 * t976;
+  const Real t978 = t967 + t977;
+  const Real t979 = t943 * par.k17;
+  const Real t980 = par.k5 * t945;
+  const Real t981 = t979 - t980;
+  const Real t982 = par.k8 * t974;
+  const Real t983 = t981 - t982;
+  const Real t984 = t978 + t983;
+  const Real t985 = s_r_p_1_ * t984;
+  const Real t986 = t985 + t938;
+  const Real t987 = t898 * par.m_H;
+  const Real t988 = par.k8 * t880;
+  const Real t989 = t987 - t988;
+  const Real t990 = t989 + t926;
+  const Real t991 = c_r_p_1_ * t990;
+  const Real t992 = par.k8 * t968;
+  const Real t993 = t945 * par.k10;
+  const Real t994 = t992 - t993;
+  const Real t995 = par.m_H * t974;
+  const Real t996 = t994 + t995;
+  const Real t997 = t996 + t976;
+  const Real t998 = s_r_p_1_ * t997;
+  const Real t999 = t991 - t998;
+  const Real t1000 = par.k1 * t999;
+  const Real t1001 = par.k10 * t880;
+  const Real t1002 = t888 * par.m_H;
+  const Real t1003 = t1001 + t1002;
+  const Real t1004 = t1003 + t922;
+  const Real t1005 = par.k2 * t1004;
+  const Real t1006 = t1005 - t1000;
+  const Real t1007 = par.k13 * t1006;
+  const Real t1008 = t986 - t1007;
+  const Real t1009 = par.k15 * t395;
+  const Real t1010 = par.k16 * t377;
+  const Real t1011 = t1009 - t1010;
+  const Real t1012 = par.k4 * t253;
+  const Real t1013 = par.k4 * t255;
+  const Real t1014 = t1012 + t1013;
+  const Real t1015 = t1011 - t1014;
+  const Real t1016 = t1015 + t1008;
+  const Real t1017 = par.r_R * t253;
+  const Real t1018 = t255 * par.r_R;
+  const Real t1019 = t1018 + t1017;
+  const Real t1020 = t1019 + t395;
+  const Real t1021 = t1020 * s_r_p_0_;
+  const Real t1022 = t377 * c_r_p_0_;
+  const Real t1023 = t1021 + t1022;
+  const Real t1024 = par.m_R * t1023;
+  const Real t1025 = t1024 * s_r_p_0_;
+  const Real t1026 = t1020 * c_r_p_0_;
+  const Real t1027 = t377 * s_r_p_0_;
+  const Real t1028 = t1026 - t1027;
+  const Real t1029 = t1028 * par.m_R;
+  const Real t1030 = t1029 * c_r_p_0_;
+  const Real t1031 = t1025 + t1030;
+  const Real t1032 = t1031 * par.r_R;
+  const Real t1033 = constant<Real>(1.0L) - t255;
+  const Real t1034 = t1033 - t253;
+  const Real t1035 = t1034 * par.I_Ryy;
+  const Real t1036 = t1035 - t1032;
+  const Real t1037 = t1016 + t1036;
+  const Real t1038 = t1037 * t253;
+  const Real t1039 = t255 * t1037;
+  const Real t1040 = t1038 + t1039;
+  const Real t1041 = t999 * par.k2;
+  const Real t1042 = par.k1 * t1004;
+  const Real t1043 = t1041 + t1042;
+  const Real t1044 = t395 * par.m_B;
+  const Real t1045 = par.k15 * t253;
+  const Real t1046 = t255 * par.k15;
+  const Real t1047 = t1046 + t1045;
+  const Real t1048 = t1044 - t1047;
+  const Real t1049 = t1043 + t1048;
+  const Real t1050 = t1031 + t1049;
+  const Real t1051 = t1050 * t395;
+  const Real t1052 = s_r_p_1_ * t990;
+  const Real t1053 = t997 * c_r_p_1_;
+  const Real t1054 = t1052 + t1053;
+  const Real t1055 = t359 * par.m_B;
+  const Real t1056 = t261 * par.k16;
+  const Real t1057 = t1055 - t1056;
+  const Real t1058 = t1054 + t1057;
+  const Real t1059 = t359 * par.m_R;
+  const Real t1060 = t1059 + t1058;
+  const Real t1061 = t1060 * t359;
+  const Real t1062 = t1051 + t1061;
+  const Real t1063 = t377 * par.m_B;
+  const Real t1064 = par.k16 * t253;
+  const Real t1065 = t255 * par.k16;
+  const Real t1066 = t1065 + t1064;
+  const Real t1067 = t1066 + t1063;
+  const Real t1068 = t1067 + t1006;
+  const Real t1069 = t1024 * c_r_p_0_;
+  const Real t1070 = t1029 * s_r_p_0_;
+  const Real t1071 = t1069 - t1070;
+  const Real t1072 = t1068 + t1071;
+  const Real t1073 = t1072 * t377;
+  const Real t1074 = t1073 + t1062;
+  const Real t1075 = t1074 - t1040;
+  const Real t1076 = s_r_p_1_ * t937;
+  const Real t1077 = c_r_p_1_ * t984;
+  const Real t1078 = t1077 - t1076;
+  const Real t1079 = t1078 * par.k1;
+  const Real t1080 = par.k1 * t961;
+  const Real t1081 = par.k2 * t965;
+  const Real t1082 = t1080 + t1081;
+  const Real t1083 = par.k12 * t976;
   const Real t1084 = t1082 + t1083;
-  const Real t1085 = t812 * par.k17;
-  const Real t1086 = t751 * par.k15;
-  const Real t1087 = par.k61 * t813;
-  const Real t1088 = t1086 - t1087;
-  const Real t1089 = par.k3 * t1036;
-  const Real t1090 = t1088 - t1089;
-  const Real t1091 = t1085 + t1090;
-  const Real t1092 = t1084 + t1091;
-  const Real t1093 = t751 * c_r_p_0_;
-  const Real t1094 = t468 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t1095 = nu[0] * c_r_p_0_;
-
-  // passive accelerations
-  const Real t1096 = t1095 + t1094;
-  const Real t1097 = t1096 * nu[2];
-  const Real t1098 = t1097 + t1093;
-  const Real t1099 = t1098 * par.I_Rxx;
-  const Real t1100 = t1096 * t632;
-  const Real t1101 = par.k35 * t1100;
-  const Real t1102 = t1099 + t1101;
-  const Real t1103 = t1102 * c_r_p_0_;
-  const Real t1104 = t751 * s_r_p_0_;
-  const Real t1105 = t468 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t1106 = nu[0] * s_r_p_0_;
-
-  // passive accelerations
-  const Real t1107 = t1106 - t1105;
-  const Real t1108 = t1107 * nu[2];
-  const Real t1109 = t1108 + t1104;
-  const Real t1110 = t1109 * par.I_Rxx;
-  const Real t1111 = t1107 * t632;
-  const Real t1112 = t1111 * par.k36;
-  const Real t1113 = t1112 - t1110;
-  const Real t1114 = t1113 * s_r_p_0_;
-  const Real t1115 = t1103 - t1114;
-  const Real t1116 = t1092 + t1115;
-  const Real t1117 = t1116 * t466;
-  const Real t1118 = t1063 + t1117;
-  const Real t1119 = t1118 - t1012;
-  const Real t1120 = t443 * t860;
+  const Real t1085 = par.k10 * t974;
+  const Real t1086 = par.k5 * t968;
+  const Real t1087 = par.k6 * t945;
+  const Real t1088 = t1086 + t1087;
+  const Real t1089 = t1085 - t1088;
+  const Real t1090 = t1084 + t1089;
+  const Real t1091 = t1090 * par.k2;
+  const Real t1092 = t1091 - t1079;
+  const Real t1093 = t1054 * par.k13;
+  const Real t1094 = t1093 + t1092;
+  const Real t1095 = t359 * par.k16;
+  const Real t1096 = t261 * par.k14;
+  const Real t1097 = t1095 - t1096;
+  const Real t1098 = t1097 + t1094;
+  const Real t1099 = t261 * c_r_p_0_;
+  const Real t1100 = t1099 * par.I_Rxx;
+  const Real t1101 = t1100 * c_r_p_0_;
+  const Real t1102 = t261 * s_r_p_0_;
+  const Real t1103 = par.I_Rxx * t1102;
+  const Real t1104 = t1103 * s_r_p_0_;
+  const Real t1105 = t1101 + t1104;
+  const Real t1106 = t1098 - t1105;
+  const Real t1107 = t1106 * t261;
+  const Real t1108 = t1075 - t1107;
+  const Real t1109 = t1035 + t1108;
+  const Real t1110 = t245 * t930;
+  const Real t1111 = t1109 + t1110;
+  const Real t1112 = par.k1 * t170;
+  const Real t1113 = s_r_p_1_ * t1112;
+  const Real t1114 = c_r_p_1_ * t162;
+  const Real t1115 = t164 * c_r_p_1_;
+  const Real t1116 = t1115 + t1114;
+  const Real t1117 = t1113 + t1116;
+  const Real t1118 = par.k12 * t1117;
+  const Real t1119 = par.k13 * t162;
+  const Real t1120 = t164 * par.k13;
   const Real t1121 = t1120 + t1119;
-  const Real t1122 = t310 * t1014;
-  const Real t1123 = t1014 * t308;
-  const Real t1124 = t1122 + t1123;
-  const Real t1125 = t1029 * t578;
-  const Real t1126 = t562 * t1046;
-  const Real t1127 = t1125 + t1126;
-  const Real t1128 = t1060 * t599;
-  const Real t1129 = t1128 - t1127;
-  const Real t1130 = t1129 + t1124;
-  const Real t1131 = t320 * t1116;
-  const Real t1132 = t1130 + t1131;
-  const Real t1133 = t1132 - t1080;
-  const Real t1134 = t860 * t291;
-  const Real t1135 = t293 * t860;
-  const Real t1136 = t1134 + t1135;
-  const Real t1137 = t1133 + t1136;
-  const Real t1138 = t584 * t1029;
-  const Real t1139 = t565 * t1046;
-  const Real t1140 = t1138 + t1139;
-  const Real t1141 = t1060 * t603;
-  const Real t1142 = t1141 - t1140;
-  const Real t1143 = t1066 * par.k2;
-  const Real t1144 = t1080 * par.k1;
-  const Real t1145 = t1144 + t1143;
-  const Real t1146 = t812 * par.k16;
-  const Real t1147 = par.k3 * t814;
-  const Real t1148 = par.k64 * t1036;
-  const Real t1149 = t1148 + t1147;
-  const Real t1150 = t1149 - t1146;
-  const Real t1151 = t1150 + t1145;
-  const Real t1152 = t1045 * par.r_R;
-  const Real t1153 = t1102 * s_r_p_0_;
-  const Real t1154 = t1113 * c_r_p_0_;
-  const Real t1155 = t1153 + t1154;
-  const Real t1156 = t1155 + t1152;
-  const Real t1157 = t1151 + t1156;
-  const Real t1158 = t1142 - t1157;
-  const Real t1159 = sum_error(t1145, t1150);
-  const Real t1160 = -t1146;
-  const Real t1161 = sum_error(t1149, t1160);
-  const Real t1162 = product_error(t812, par.k16);
-  const Real t1163 = t812 * par.k62;
-  const Real t1164 = t1162 + t1163;
-  const Real t1165 = t1161 - t1164;
-  const Real t1166 = t1165 + t1159;
-  const Real t1167 = sum_error(t1156, t1151);
-  const Real t1168 = t1166 + t1167;
-  const Real t1169 = t1158 - t1168;
-  const Real t1170 = t1014 * t396;
-  const Real t1171 = t1014 * t394;
-  const Real t1172 = t1170 + t1171;
-  const Real t1173 = t1172 + t1169;
-  const Real t1174 = t1116 * t406;
-  const Real t1175 = t1174 + t1173;
-  const Real t1176 = t860 * t383;
-  const Real t1177 = t1175 + t1176;
-  const Real t1178 = t466 * par.k14;
-  const Real t1179 = t568 - t1178;
-  const Real t1180 = s_r_p_1_ * t1179;
-  const Real t1181 = par.k2 * t592;
-  const Real t1182 = par.k14 * t454;
-  const Real t1183 = t456 * par.k14;
-  const Real t1184 = t1183 + t1182;
-  const Real t1185 = t609 + t1184;
-  const Real t1186 = t1185 * par.k1;
-  const Real t1187 = t1181 - t1186;
-  const Real t1188 = t1187 * c_r_p_1_;
-  const Real t1189 = t1188 + t1180;
-  const Real t1190 = par.k1 * t466;
-  const Real t1191 = t1190 * s_r_p_1_;
-  const Real t1192 = c_r_p_1_ * t454;
-  const Real t1193 = t456 * c_r_p_1_;
-  const Real t1194 = t1192 + t1193;
-  const Real t1195 = t1194 + t1191;
-  const Real t1196 = t1195 * par.k12;
-  const Real t1197 = t1189 + t1196;
-  const Real t1198 = t1197 * par.k2;
-  const Real t1199 = t1195 * par.k13;
-  const Real t1200 = t1185 * par.k2;
-  const Real t1201 = par.k1 * t592;
-  const Real t1202 = t1200 + t1201;
-  const Real t1203 = t1202 + t1199;
-  const Real t1204 = par.k1 * t1203;
-  const Real t1205 = t1198 + t1204;
-  const Real t1206 = t1205 * s_r_p_2_;
-  const Real t1207 = par.k2 * t1203;
-  const Real t1208 = t1197 * par.k1;
-  const Real t1209 = t1207 - t1208;
-  const Real t1210 = t1209 * c_r_p_2_;
-  const Real t1211 = t1206 + t1210;
-  const Real t1212 = t1211 * par.m_F;
-  const Real t1213 = c_r_p_2_ * t1212;
-  const Real t1214 = t1205 * c_r_p_2_;
-  const Real t1215 = t1209 * s_r_p_2_;
-  const Real t1216 = t1214 - t1215;
-  const Real t1217 = t1216 * par.m_F;
-  const Real t1218 = t1217 * s_r_p_2_;
-  const Real t1219 = t1213 - t1218;
-  const Real t1220 = par.k2 * t1219;
-  const Real t1221 = t1212 * s_r_p_2_;
-  const Real t1222 = t1217 * c_r_p_2_;
-  const Real t1223 = t1221 + t1222;
-  const Real t1224 = par.k1 * t1223;
-  const Real t1225 = t1220 + t1224;
-  const Real t1226 = t1225 * par.k13;
-  const Real t1227 = t1223 * par.k2;
-  const Real t1228 = par.k1 * t1219;
-  const Real t1229 = t1227 - t1228;
-  const Real t1230 = t1229 * par.k12;
-  const Real t1231 = t1226 + t1230;
-  const Real t1232 = t1195 + t443;
-  const Real t1233 = par.I_Fyy * t1232;
-  const Real t1234 = t1233 + t1231;
-  const Real t1235 = t1189 * par.k9;
-  const Real t1236 = t1202 * par.k11;
-  const Real t1237 = t1235 - t1236;
-  const Real t1238 = t1195 * par.k8;
-  const Real t1239 = t1237 - t1238;
-  const Real t1240 = t1239 - t1234;
-  const Real t1241 = t1240 * c_r_p_1_;
-  const Real t1242 = t1190 * c_r_p_1_;
-  const Real t1243 = s_r_p_1_ * t454;
-  const Real t1244 = s_r_p_1_ * t456;
-  const Real t1245 = t1243 + t1244;
-  const Real t1246 = t1242 - t1245;
-  const Real t1247 = par.k2 * t1246;
-  const Real t1248 = t466 * par.k2;
-  const Real t1249 = par.k1 * t1248;
-  const Real t1250 = t1247 - t1249;
-  const Real t1251 = t1250 * s_r_p_2_;
-  const Real t1252 = par.k1 * t1246;
-  const Real t1253 = par.k2 * t1248;
-  const Real t1254 = t1252 + t1253;
-  const Real t1255 = t1254 * c_r_p_2_;
-  const Real t1256 = t1251 - t1255;
-  const Real t1257 = par.I_Fxx * t1256;
-  const Real t1258 = t1257 * s_r_p_2_;
-  const Real t1259 = t1254 * s_r_p_2_;
-  const Real t1260 = c_r_p_2_ * t1250;
-  const Real t1261 = t1259 + t1260;
-  const Real t1262 = par.I_Fxx * t1261;
-  const Real t1263 = c_r_p_2_ * t1262;
-  const Real t1264 = t1258 + t1263;
-  const Real t1265 = t1264 * par.k2;
-  const Real t1266 = t1257 * c_r_p_2_;
-  const Real t1267 = t1262 * s_r_p_2_;
-  const Real t1268 = t1266 - t1267;
-  const Real t1269 = t1268 * par.k1;
-  const Real t1270 = t1265 - t1269;
-  const Real t1271 = t1245 - t1242;
-  const Real t1272 = t1271 * par.k12;
-  const Real t1273 = par.k13 * t1248;
-  const Real t1274 = t1272 + t1273;
-  const Real t1275 = c_r_p_1_ * t1179;
-  const Real t1276 = s_r_p_1_ * t1187;
-  const Real t1277 = t1275 - t1276;
-  const Real t1278 = t1277 - t1274;
-  const Real t1279 = t1278 * par.m_F;
-  const Real t1280 = t1279 * par.k12;
-  const Real t1281 = t1280 + t1270;
-  const Real t1282 = t1246 * par.k18;
-  const Real t1283 = par.k5 * t1248;
-  const Real t1284 = t1282 - t1283;
-  const Real t1285 = par.k9 * t1277;
-  const Real t1286 = t1284 - t1285;
-  const Real t1287 = t1281 + t1286;
-  const Real t1288 = t1287 * s_r_p_1_;
-  const Real t1289 = t1241 + t1288;
-  const Real t1290 = t1189 * par.m_H;
-  const Real t1291 = t1195 * par.k9;
-  const Real t1292 = t1290 - t1291;
-  const Real t1293 = t1292 + t1229;
-  const Real t1294 = c_r_p_1_ * t1293;
-  const Real t1295 = t1271 * par.k9;
-  const Real t1296 = par.k11 * t1248;
-  const Real t1297 = t1295 - t1296;
-  const Real t1298 = par.m_H * t1277;
-  const Real t1299 = t1297 + t1298;
-  const Real t1300 = t1299 + t1279;
-  const Real t1301 = s_r_p_1_ * t1300;
-  const Real t1302 = t1294 - t1301;
-  const Real t1303 = par.k1 * t1302;
-  const Real t1304 = t1195 * par.k11;
-  const Real t1305 = t1202 * par.m_H;
-  const Real t1306 = t1305 + t1304;
-  const Real t1307 = t1225 + t1306;
-  const Real t1308 = t1307 * par.k2;
-  const Real t1309 = t1308 - t1303;
-  const Real t1310 = par.k14 * t1309;
-  const Real t1311 = t1289 - t1310;
-  const Real t1312 = par.k62 * t592;
-  const Real t1313 = t592 * par.k16;
-  const Real t1314 = t1312 + t1313;
-  const Real t1315 = t609 * par.k17;
-  const Real t1316 = t1314 - t1315;
-  const Real t1317 = par.k59 * t454;
-  const Real t1318 = par.k59 * t456;
-  const Real t1319 = t1317 + t1318;
-  const Real t1320 = t1316 - t1319;
-  const Real t1321 = t1311 + t1320;
-  const Real t1322 = par.r_R * t454;
-  const Real t1323 = t456 * par.r_R;
-  const Real t1324 = t1322 + t1323;
-  const Real t1325 = t1324 + t592;
-  const Real t1326 = t1325 * c_r_p_0_;
-  const Real t1327 = t609 * s_r_p_0_;
-  const Real t1328 = t1326 - t1327;
-  const Real t1329 = t1328 * par.m_R;
-  const Real t1330 = t1329 * c_r_p_0_;
-  const Real t1331 = t1325 * s_r_p_0_;
-  const Real t1332 = t609 * c_r_p_0_;
-  const Real t1333 = t1331 + t1332;
-  const Real t1334 = t1333 * par.m_R;
-  const Real t1335 = t1334 * s_r_p_0_;
-  const Real t1336 = t1330 + t1335;
-  const Real t1337 = par.r_R * t1336;
-  const Real t1338 = constant<Real>(1.0L) - t456;
-  const Real t1339 = t1338 - t454;
-  const Real t1340 = par.I_Ryy * t1339;
-  const Real t1341 = t1340 - t1337;
-  const Real t1342 = t1321 + t1341;
-  const Real t1343 = t1342 * t454;
-  const Real t1344 = t1342 * t456;
-  const Real t1345 = t1343 + t1344;
-  const Real t1346 = t1302 * par.k2;
-  const Real t1347 = t1307 * par.k1;
-  const Real t1348 = t1346 + t1347;
-  const Real t1349 = t592 * par.m_B;
-  const Real t1350 = par.k16 * t454;
-  const Real t1351 = par.k62 * t456;
-  const Real t1352 = t1351 + t1350;
-  const Real t1353 = t456 * par.k16;
-  const Real t1354 = t1353 + t1352;
-  const Real t1355 = t1349 - t1354;
-  const Real t1356 = t1355 + t1348;
-  const Real t1357 = t1356 + t1336;
-  const Real t1358 = t1357 * t592;
-  const Real t1359 = s_r_p_1_ * t1293;
-  const Real t1360 = c_r_p_1_ * t1300;
-  const Real t1361 = t1360 + t1359;
-  const Real t1362 = t568 * par.m_B;
-  const Real t1363 = t466 * par.k17;
-  const Real t1364 = t1362 - t1363;
-  const Real t1365 = t1364 + t1361;
-  const Real t1366 = par.m_R * t568;
-  const Real t1367 = t1366 + t1365;
-  const Real t1368 = t568 * t1367;
-  const Real t1369 = t1368 + t1358;
-  const Real t1370 = t609 * par.m_B;
-  const Real t1371 = par.k17 * t454;
-  const Real t1372 = t456 * par.k17;
-  const Real t1373 = t1372 + t1371;
-  const Real t1374 = t1373 + t1370;
-  const Real t1375 = t1374 + t1309;
-  const Real t1376 = t1334 * c_r_p_0_;
-  const Real t1377 = t1329 * s_r_p_0_;
-  const Real t1378 = t1376 - t1377;
-  const Real t1379 = t1378 + t1375;
-  const Real t1380 = t1379 * t609;
-  const Real t1381 = t1380 + t1369;
-  const Real t1382 = t1381 - t1345;
-  const Real t1383 = t1240 * s_r_p_1_;
-  const Real t1384 = t1287 * c_r_p_1_;
-  const Real t1385 = t1384 - t1383;
-  const Real t1386 = par.k1 * t1385;
-  const Real t1387 = t1264 * par.k1;
-  const Real t1388 = t1268 * par.k2;
-  const Real t1389 = t1387 + t1388;
-  const Real t1390 = t1279 * par.k13;
-  const Real t1391 = t1390 + t1389;
-  const Real t1392 = par.k11 * t1277;
-  const Real t1393 = t1271 * par.k5;
-  const Real t1394 = par.k7 * t1248;
-  const Real t1395 = t1394 + t1393;
-  const Real t1396 = t1392 - t1395;
-  const Real t1397 = t1396 + t1391;
-  const Real t1398 = par.k2 * t1397;
-  const Real t1399 = t1398 - t1386;
-  const Real t1400 = par.k14 * t1361;
-  const Real t1401 = t1400 + t1399;
-  const Real t1402 = t568 * par.k17;
-  const Real t1403 = t466 * par.k15;
-  const Real t1404 = t1402 - t1403;
-  const Real t1405 = t1404 + t1401;
-  const Real t1406 = t466 * s_r_p_0_;
-  const Real t1407 = par.I_Rxx * t1406;
-  const Real t1408 = t1407 * s_r_p_0_;
-  const Real t1409 = t466 * c_r_p_0_;
-  const Real t1410 = t1409 * par.I_Rxx;
-  const Real t1411 = t1410 * c_r_p_0_;
-  const Real t1412 = t1408 + t1411;
-  const Real t1413 = t1405 - t1412;
-  const Real t1414 = t1413 * t466;
-  const Real t1415 = t1382 - t1414;
-  const Real t1416 = t1415 + t1340;
-  const Real t1417 = t1233 * t443;
-  const Real t1418 = t1417 + t1416;
-  const Real t1419 = t320 * par.k14;
-  const Real t1420 = t562 - t1419;
-  const Real t1421 = t1420 * s_r_p_1_;
-  const Real t1422 = par.k2 * t578;
-  const Real t1423 = par.k14 * t308;
-  const Real t1424 = t310 * par.k14;
-  const Real t1425 = t1424 + t1423;
-  const Real t1426 = t1425 - t599;
-  const Real t1427 = par.k1 * t1426;
-  const Real t1428 = t1422 - t1427;
-  const Real t1429 = c_r_p_1_ * t1428;
-  const Real t1430 = t1421 + t1429;
-  const Real t1431 = t320 * par.k1;
-  const Real t1432 = s_r_p_1_ * t1431;
-  const Real t1433 = c_r_p_1_ * t308;
-  const Real t1434 = t310 * c_r_p_1_;
-  const Real t1435 = t1434 + t1433;
-  const Real t1436 = t1432 + t1435;
-  const Real t1437 = t1436 * par.k12;
-  const Real t1438 = t1430 + t1437;
+  const Real t1122 = t1121 - t367;
+  const Real t1123 = par.k2 * t1122;
+  const Real t1124 = par.k1 * t385;
+  const Real t1125 = t1123 + t1124;
+  const Real t1126 = t1118 + t1125;
+  const Real t1127 = t1126 * par.k2;
+  const Real t1128 = t170 * par.k13;
+  const Real t1129 = t353 - t1128;
+  const Real t1130 = s_r_p_1_ * t1129;
+  const Real t1131 = par.k1 * t1122;
+  const Real t1132 = par.k2 * t385;
+  const Real t1133 = t1132 - t1131;
+  const Real t1134 = c_r_p_1_ * t1133;
+  const Real t1135 = t1130 + t1134;
+  const Real t1136 = par.k11 * t1117;
+  const Real t1137 = t1135 + t1136;
+  const Real t1138 = par.k1 * t1137;
+  const Real t1139 = t1127 - t1138;
+  const Real t1140 = c_r_p_2_ * t1139;
+  const Real t1141 = par.k1 * t1126;
+  const Real t1142 = par.k2 * t1137;
+  const Real t1143 = t1141 + t1142;
+  const Real t1144 = t1143 * s_r_p_2_;
+  const Real t1145 = t1140 + t1144;
+  const Real t1146 = t1145 * par.m_F;
+  const Real t1147 = t1146 * s_r_p_2_;
+  const Real t1148 = c_r_p_2_ * t1143;
+  const Real t1149 = t1139 * s_r_p_2_;
+  const Real t1150 = t1148 - t1149;
+  const Real t1151 = par.m_F * t1150;
+  const Real t1152 = t1151 * c_r_p_2_;
+  const Real t1153 = t1147 + t1152;
+  const Real t1154 = par.k1 * t1153;
+  const Real t1155 = t1146 * c_r_p_2_;
+  const Real t1156 = t1151 * s_r_p_2_;
+  const Real t1157 = t1155 - t1156;
+  const Real t1158 = t1157 * par.k2;
+  const Real t1159 = t1154 + t1158;
+  const Real t1160 = par.k12 * t1159;
+  const Real t1161 = par.k2 * t1153;
+  const Real t1162 = par.k1 * t1157;
+  const Real t1163 = t1161 - t1162;
+  const Real t1164 = t1163 * par.k11;
+  const Real t1165 = t1160 + t1164;
+  const Real t1166 = t152 + t1117;
+  const Real t1167 = par.I_Fyy * t1166;
+  const Real t1168 = t1165 + t1167;
+  const Real t1169 = t1135 * par.k8;
+  const Real t1170 = t1125 * par.k10;
+  const Real t1171 = t1169 - t1170;
+  const Real t1172 = par.k7 * t1117;
+  const Real t1173 = t1171 - t1172;
+  const Real t1174 = t1173 - t1168;
+  const Real t1175 = c_r_p_1_ * t1174;
+  const Real t1176 = c_r_p_1_ * t1112;
+  const Real t1177 = s_r_p_1_ * t162;
+  const Real t1178 = t164 * s_r_p_1_;
+  const Real t1179 = t1177 + t1178;
+  const Real t1180 = t1176 - t1179;
+  const Real t1181 = t1180 * par.k2;
+  const Real t1182 = t170 * par.k2;
+  const Real t1183 = constant<Real>(1.0L) - t1182;
+  const Real t1184 = par.k1 * t1183;
+  const Real t1185 = t1184 + t1181;
+  const Real t1186 = t1185 * c_r_p_2_;
+  const Real t1187 = t1180 * par.k1;
+  const Real t1188 = par.k2 * t1183;
+  const Real t1189 = t1188 - t1187;
+  const Real t1190 = t1189 * s_r_p_2_;
+  const Real t1191 = t1186 - t1190;
+  const Real t1192 = par.I_Fxx * t1191;
+  const Real t1193 = c_r_p_2_ * t1192;
+  const Real t1194 = t1185 * s_r_p_2_;
+  const Real t1195 = t1189 * c_r_p_2_;
+  const Real t1196 = t1194 + t1195;
+  const Real t1197 = par.I_Fxx * t1196;
+  const Real t1198 = t1197 * s_r_p_2_;
+  const Real t1199 = t1193 + t1198;
+  const Real t1200 = t1199 * par.k2;
+  const Real t1201 = c_r_p_2_ * t1197;
+  const Real t1202 = t1192 * s_r_p_2_;
+  const Real t1203 = t1201 - t1202;
+  const Real t1204 = t1203 * par.k1;
+  const Real t1205 = t1200 - t1204;
+  const Real t1206 = t1179 - t1176;
+  const Real t1207 = t1206 * par.k11;
+  const Real t1208 = par.k12 * t1183;
+  const Real t1209 = t1208 - t1207;
+  const Real t1210 = c_r_p_1_ * t1129;
+  const Real t1211 = s_r_p_1_ * t1133;
+  const Real t1212 = t1210 - t1211;
+  const Real t1213 = t1212 + t1209;
+  const Real t1214 = t1213 * par.m_F;
+  const Real t1215 = t1214 * par.k11;
+  const Real t1216 = t1205 + t1215;
+  const Real t1217 = t1180 * par.k17;
+  const Real t1218 = par.k5 * t1183;
+  const Real t1219 = t1218 + t1217;
+  const Real t1220 = t1212 * par.k8;
+  const Real t1221 = t1219 - t1220;
+  const Real t1222 = t1221 + t1216;
+  const Real t1223 = t1222 * s_r_p_1_;
+  const Real t1224 = t1223 + t1175;
+  const Real t1225 = t1135 * par.m_H;
+  const Real t1226 = par.k8 * t1117;
+  const Real t1227 = t1225 - t1226;
+  const Real t1228 = t1163 + t1227;
+  const Real t1229 = c_r_p_1_ * t1228;
+  const Real t1230 = t1212 * par.m_H;
+  const Real t1231 = t1206 * par.k8;
+  const Real t1232 = par.k10 * t1183;
+  const Real t1233 = t1232 + t1231;
+  const Real t1234 = t1230 + t1233;
+  const Real t1235 = t1214 + t1234;
+  const Real t1236 = s_r_p_1_ * t1235;
+  const Real t1237 = t1229 - t1236;
+  const Real t1238 = par.k1 * t1237;
+  const Real t1239 = par.k10 * t1117;
+  const Real t1240 = par.m_H * t1125;
+  const Real t1241 = t1239 + t1240;
+  const Real t1242 = t1241 + t1159;
+  const Real t1243 = t1242 * par.k2;
+  const Real t1244 = t1243 - t1238;
+  const Real t1245 = t1244 * par.k13;
+  const Real t1246 = t1224 - t1245;
+  const Real t1247 = t367 * par.k16;
+  const Real t1248 = par.k15 * t385;
+  const Real t1249 = t1247 + t1248;
+  const Real t1250 = par.k4 * t162;
+  const Real t1251 = t164 * par.k4;
+  const Real t1252 = t1251 + t1250;
+  const Real t1253 = t1249 - t1252;
+  const Real t1254 = t1246 + t1253;
+  const Real t1255 = par.r_R * t162;
+  const Real t1256 = t164 * par.r_R;
+  const Real t1257 = t1255 + t1256;
+  const Real t1258 = t385 + t1257;
+  const Real t1259 = t1258 * s_r_p_0_;
+  const Real t1260 = t367 * c_r_p_0_;
+  const Real t1261 = t1259 - t1260;
+  const Real t1262 = par.m_R * t1261;
+  const Real t1263 = t1262 * s_r_p_0_;
+  const Real t1264 = t1258 * c_r_p_0_;
+  const Real t1265 = t367 * s_r_p_0_;
+  const Real t1266 = t1265 + t1264;
+  const Real t1267 = par.m_R * t1266;
+  const Real t1268 = t1267 * c_r_p_0_;
+  const Real t1269 = t1263 + t1268;
+  const Real t1270 = t1269 * par.r_R;
+  const Real t1271 = par.I_Ryy * t162;
+  const Real t1272 = t164 * par.I_Ryy;
+  const Real t1273 = t1272 + t1271;
+  const Real t1274 = t1270 + t1273;
+  const Real t1275 = t1254 - t1274;
+  const Real t1276 = t255 * t1275;
+  const Real t1277 = t1275 * t253;
+  const Real t1278 = t1276 + t1277;
+  const Real t1279 = par.k2 * t1237;
+  const Real t1280 = par.k1 * t1242;
+  const Real t1281 = t1280 + t1279;
+  const Real t1282 = t385 * par.m_B;
+  const Real t1283 = par.k15 * t162;
+  const Real t1284 = t164 * par.k15;
+  const Real t1285 = t1283 + t1284;
+  const Real t1286 = t1282 - t1285;
+  const Real t1287 = t1286 + t1281;
+  const Real t1288 = t1287 + t1269;
+  const Real t1289 = t395 * t1288;
+  const Real t1290 = s_r_p_1_ * t1228;
+  const Real t1291 = t1235 * c_r_p_1_;
+  const Real t1292 = t1290 + t1291;
+  const Real t1293 = t353 * par.m_B;
+  const Real t1294 = t170 * par.k16;
+  const Real t1295 = t1293 - t1294;
+  const Real t1296 = t1295 + t1292;
+  const Real t1297 = t353 * par.m_R;
+  const Real t1298 = t1297 + t1296;
+  const Real t1299 = t359 * t1298;
+  const Real t1300 = t1289 + t1299;
+  const Real t1301 = t367 * par.m_B;
+  const Real t1302 = par.k16 * t162;
+  const Real t1303 = t164 * par.k16;
+  const Real t1304 = t1303 + t1302;
+  const Real t1305 = t1304 - t1301;
+  const Real t1306 = t1244 + t1305;
+  const Real t1307 = t1262 * c_r_p_0_;
+  const Real t1308 = t1267 * s_r_p_0_;
+  const Real t1309 = t1307 - t1308;
+  const Real t1310 = t1309 + t1306;
+  const Real t1311 = t1310 * t377;
+  const Real t1312 = t1311 + t1300;
+  const Real t1313 = t1312 - t1278;
+  const Real t1314 = s_r_p_1_ * t1174;
+  const Real t1315 = t1222 * c_r_p_1_;
+  const Real t1316 = t1315 - t1314;
+  const Real t1317 = t1316 * par.k1;
+  const Real t1318 = t1203 * par.k2;
+  const Real t1319 = par.k1 * t1199;
+  const Real t1320 = t1318 + t1319;
+  const Real t1321 = t1214 * par.k12;
+  const Real t1322 = t1321 + t1320;
+  const Real t1323 = t1206 * par.k5;
+  const Real t1324 = par.k6 * t1183;
+  const Real t1325 = t1324 - t1323;
+  const Real t1326 = t1212 * par.k10;
+  const Real t1327 = t1325 + t1326;
+  const Real t1328 = t1322 + t1327;
+  const Real t1329 = t1328 * par.k2;
+  const Real t1330 = t1329 - t1317;
+  const Real t1331 = t1292 * par.k13;
+  const Real t1332 = t1330 + t1331;
+  const Real t1333 = t353 * par.k16;
+  const Real t1334 = t170 * par.k14;
+  const Real t1335 = t1333 - t1334;
+  const Real t1336 = t1332 + t1335;
+  const Real t1337 = t170 * s_r_p_0_;
+  const Real t1338 = par.I_Rxx * t1337;
+  const Real t1339 = t1338 * s_r_p_0_;
+  const Real t1340 = t170 * c_r_p_0_;
+  const Real t1341 = par.I_Rxx * t1340;
+  const Real t1342 = t1341 * c_r_p_0_;
+  const Real t1343 = t1339 + t1342;
+  const Real t1344 = t1336 - t1343;
+  const Real t1345 = t261 * t1344;
+  const Real t1346 = t1313 - t1345;
+  const Real t1347 = t1346 - t1273;
+  const Real t1348 = t245 * t1167;
+  const Real t1349 = t1347 + t1348;
+  const Real t1350 = par.k1 * t221;
+  const Real t1351 = t1350 + par.k2;
+  const Real t1352 = s_r_p_1_ * t1351;
+  const Real t1353 = t213 * c_r_p_1_;
+  const Real t1354 = c_r_p_1_ * t215;
+  const Real t1355 = t1354 + t1353;
+  const Real t1356 = t1352 + t1355;
+  const Real t1357 = par.k12 * t1356;
+  const Real t1358 = t213 * par.k13;
+  const Real t1359 = par.k13 * t215;
+  const Real t1360 = t1359 + t1358;
+  const Real t1361 = t1360 - t371;
+  const Real t1362 = t1361 * par.k2;
+  const Real t1363 = par.k1 * t389;
+  const Real t1364 = t1362 + t1363;
+  const Real t1365 = t1364 + t1357;
+  const Real t1366 = par.k2 * t1365;
+  const Real t1367 = par.k11 * t1356;
+  const Real t1368 = t221 * par.k13;
+  const Real t1369 = t356 - t1368;
+  const Real t1370 = s_r_p_1_ * t1369;
+  const Real t1371 = par.k1 * t1361;
+  const Real t1372 = par.k2 * t389;
+  const Real t1373 = t1372 - t1371;
+  const Real t1374 = c_r_p_1_ * t1373;
+  const Real t1375 = t1370 + t1374;
+  const Real t1376 = t1367 + t1375;
+  const Real t1377 = t1376 * par.k1;
+  const Real t1378 = t1366 - t1377;
+  const Real t1379 = c_r_p_2_ * t1378;
+  const Real t1380 = par.k1 * t1365;
+  const Real t1381 = t1376 * par.k2;
+  const Real t1382 = t1380 + t1381;
+  const Real t1383 = t1382 * s_r_p_2_;
+  const Real t1384 = t1379 + t1383;
+  const Real t1385 = par.m_F * t1384;
+  const Real t1386 = s_r_p_2_ * t1385;
+  const Real t1387 = c_r_p_2_ * t1382;
+  const Real t1388 = s_r_p_2_ * t1378;
+  const Real t1389 = t1387 - t1388;
+  const Real t1390 = par.m_F * t1389;
+  const Real t1391 = t1390 * c_r_p_2_;
+  const Real t1392 = t1386 + t1391;
+  const Real t1393 = t1392 * par.k1;
+  const Real t1394 = c_r_p_2_ * t1385;
+  const Real t1395 = t1390 * s_r_p_2_;
+  const Real t1396 = t1394 - t1395;
+  const Real t1397 = par.k2 * t1396;
+  const Real t1398 = t1393 + t1397;
+  const Real t1399 = t1398 * par.k12;
+  const Real t1400 = t1392 * par.k2;
+  const Real t1401 = par.k1 * t1396;
+  const Real t1402 = t1400 - t1401;
+  const Real t1403 = par.k11 * t1402;
+  const Real t1404 = t1399 + t1403;
+  const Real t1405 = t205 + t1356;
+  const Real t1406 = t1405 * par.I_Fyy;
+  const Real t1407 = t1404 + t1406;
+  const Real t1408 = par.k8 * t1375;
+  const Real t1409 = t1364 * par.k10;
+  const Real t1410 = t1408 - t1409;
+  const Real t1411 = par.k7 * t1356;
+  const Real t1412 = t1410 - t1411;
+  const Real t1413 = t1412 - t1407;
+  const Real t1414 = c_r_p_1_ * t1413;
+  const Real t1415 = t1351 * c_r_p_1_;
+  const Real t1416 = s_r_p_1_ * t213;
+  const Real t1417 = s_r_p_1_ * t215;
+  const Real t1418 = t1416 + t1417;
+  const Real t1419 = t1415 - t1418;
+  const Real t1420 = t1419 * par.k2;
+  const Real t1421 = t221 * par.k2;
+  const Real t1422 = par.k1 - t1421;
+  const Real t1423 = par.k1 * t1422;
+  const Real t1424 = t1423 + t1420;
+  const Real t1425 = c_r_p_2_ * t1424;
+  const Real t1426 = t1419 * par.k1;
+  const Real t1427 = par.k2 * t1422;
+  const Real t1428 = t1427 - t1426;
+  const Real t1429 = t1428 * s_r_p_2_;
+  const Real t1430 = t1425 - t1429;
+  const Real t1431 = par.I_Fxx * t1430;
+  const Real t1432 = t1431 * c_r_p_2_;
+  const Real t1433 = t1424 * s_r_p_2_;
+  const Real t1434 = c_r_p_2_ * t1428;
+  const Real t1435 = t1433 + t1434;
+  const Real t1436 = par.I_Fxx * t1435;
+  const Real t1437 = t1436 * s_r_p_2_;
+  const Real t1438 = t1432 + t1437;
   const Real t1439 = t1438 * par.k2;
-  const Real t1440 = t1436 * par.k13;
-  const Real t1441 = par.k1 * t578;
-  const Real t1442 = par.k2 * t1426;
-  const Real t1443 = t1441 + t1442;
-  const Real t1444 = t1440 + t1443;
-  const Real t1445 = par.k1 * t1444;
-  const Real t1446 = t1439 + t1445;
-  const Real t1447 = t1446 * c_r_p_2_;
-  const Real t1448 = t1444 * par.k2;
-  const Real t1449 = par.k1 * t1438;
-  const Real t1450 = t1448 - t1449;
-  const Real t1451 = t1450 * s_r_p_2_;
-  const Real t1452 = t1447 - t1451;
-  const Real t1453 = t1452 * par.m_F;
-  const Real t1454 = t1453 * c_r_p_2_;
-  const Real t1455 = t1446 * s_r_p_2_;
-  const Real t1456 = t1450 * c_r_p_2_;
-  const Real t1457 = t1455 + t1456;
-  const Real t1458 = par.m_F * t1457;
-  const Real t1459 = t1458 * s_r_p_2_;
-  const Real t1460 = t1454 + t1459;
-  const Real t1461 = par.k2 * t1460;
-  const Real t1462 = c_r_p_2_ * t1458;
-  const Real t1463 = t1453 * s_r_p_2_;
-  const Real t1464 = t1462 - t1463;
-  const Real t1465 = par.k1 * t1464;
-  const Real t1466 = t1461 - t1465;
-  const Real t1467 = t1466 * par.k12;
-  const Real t1468 = t1464 * par.k2;
-  const Real t1469 = par.k1 * t1460;
-  const Real t1470 = t1468 + t1469;
-  const Real t1471 = t1470 * par.k13;
-  const Real t1472 = t1467 + t1471;
-  const Real t1473 = t1436 + t293;
-  const Real t1474 = t1473 + t291;
-  const Real t1475 = t1474 * par.I_Fyy;
-  const Real t1476 = t1472 + t1475;
-  const Real t1477 = par.k9 * t1430;
-  const Real t1478 = par.k11 * t1443;
-  const Real t1479 = t1477 - t1478;
-  const Real t1480 = t1436 * par.k8;
-  const Real t1481 = t1479 - t1480;
-  const Real t1482 = t1481 - t1476;
-  const Real t1483 = c_r_p_1_ * t1482;
-  const Real t1484 = t1431 * c_r_p_1_;
-  const Real t1485 = s_r_p_1_ * t308;
-  const Real t1486 = t310 * s_r_p_1_;
-  const Real t1487 = t1486 + t1485;
-  const Real t1488 = t1484 - t1487;
-  const Real t1489 = par.k2 * t1488;
-  const Real t1490 = t320 * par.k2;
-  const Real t1491 = constant<Real>(1.0L) - t1490;
-  const Real t1492 = par.k1 * t1491;
-  const Real t1493 = t1492 + t1489;
-  const Real t1494 = c_r_p_2_ * t1493;
-  const Real t1495 = par.k1 * t1488;
-  const Real t1496 = par.k2 * t1491;
-  const Real t1497 = t1496 - t1495;
-  const Real t1498 = t1497 * s_r_p_2_;
-  const Real t1499 = t1494 - t1498;
-  const Real t1500 = par.I_Fxx * t1499;
-  const Real t1501 = c_r_p_2_ * t1500;
-  const Real t1502 = c_r_p_2_ * t1497;
-  const Real t1503 = t1493 * s_r_p_2_;
-  const Real t1504 = t1502 + t1503;
-  const Real t1505 = par.I_Fxx * t1504;
-  const Real t1506 = t1505 * s_r_p_2_;
-  const Real t1507 = t1501 + t1506;
-  const Real t1508 = par.k2 * t1507;
-  const Real t1509 = t1505 * c_r_p_2_;
-  const Real t1510 = t1500 * s_r_p_2_;
-  const Real t1511 = t1509 - t1510;
-  const Real t1512 = par.k1 * t1511;
-  const Real t1513 = t1508 - t1512;
-  const Real t1514 = t1487 - t1484;
-  const Real t1515 = t1514 * par.k12;
-  const Real t1516 = t1491 * par.k13;
-  const Real t1517 = t1516 - t1515;
-  const Real t1518 = t1420 * c_r_p_1_;
-  const Real t1519 = s_r_p_1_ * t1428;
-  const Real t1520 = t1518 - t1519;
-  const Real t1521 = t1517 + t1520;
-  const Real t1522 = par.m_F * t1521;
-  const Real t1523 = par.k12 * t1522;
-  const Real t1524 = t1523 + t1513;
-  const Real t1525 = par.k18 * t1488;
-  const Real t1526 = par.k5 * t1491;
-  const Real t1527 = t1525 + t1526;
-  const Real t1528 = par.k9 * t1520;
-  const Real t1529 = t1527 - t1528;
-  const Real t1530 = t1524 + t1529;
-  const Real t1531 = s_r_p_1_ * t1530;
-  const Real t1532 = t1483 + t1531;
-  const Real t1533 = par.m_H * t1430;
-  const Real t1534 = t1436 * par.k9;
-  const Real t1535 = t1533 - t1534;
-  const Real t1536 = t1535 + t1466;
-  const Real t1537 = t1536 * c_r_p_1_;
-  const Real t1538 = par.m_H * t1520;
-  const Real t1539 = t1514 * par.k9;
-  const Real t1540 = par.k11 * t1491;
-  const Real t1541 = t1539 + t1540;
-  const Real t1542 = t1538 + t1541;
-  const Real t1543 = t1542 + t1522;
-  const Real t1544 = t1543 * s_r_p_1_;
-  const Real t1545 = t1537 - t1544;
-  const Real t1546 = t1545 * par.k1;
-  const Real t1547 = t1436 * par.k11;
-  const Real t1548 = par.m_H * t1443;
-  const Real t1549 = t1548 + t1547;
-  const Real t1550 = t1470 + t1549;
-  const Real t1551 = par.k2 * t1550;
-  const Real t1552 = t1551 - t1546;
-  const Real t1553 = t1552 * par.k14;
-  const Real t1554 = t1532 - t1553;
-  const Real t1555 = par.k16 * t578;
-  const Real t1556 = par.k62 * t578;
-  const Real t1557 = t1555 + t1556;
-  const Real t1558 = par.k17 * t599;
-  const Real t1559 = t1558 + t1557;
-  const Real t1560 = par.k59 * t308;
-  const Real t1561 = t310 * par.k59;
-  const Real t1562 = t1561 + t1560;
-  const Real t1563 = t1559 - t1562;
-  const Real t1564 = t1563 + t1554;
-  const Real t1565 = par.r_R * t308;
-  const Real t1566 = t310 * par.r_R;
-  const Real t1567 = t1565 + t1566;
-  const Real t1568 = t1567 + t578;
-  const Real t1569 = t1568 * c_r_p_0_;
-  const Real t1570 = s_r_p_0_ * t599;
-  const Real t1571 = t1569 + t1570;
-  const Real t1572 = t1571 * par.m_R;
-  const Real t1573 = t1572 * c_r_p_0_;
-  const Real t1574 = t1568 * s_r_p_0_;
-  const Real t1575 = c_r_p_0_ * t599;
-  const Real t1576 = t1574 - t1575;
-  const Real t1577 = t1576 * par.m_R;
-  const Real t1578 = t1577 * s_r_p_0_;
-  const Real t1579 = t1573 + t1578;
-  const Real t1580 = par.r_R * t1579;
-  const Real t1581 = par.I_Ryy * t308;
-  const Real t1582 = t310 * par.I_Ryy;
-  const Real t1583 = t1582 + t1581;
-  const Real t1584 = t1583 + t1580;
-  const Real t1585 = t1564 - t1584;
-  const Real t1586 = t1585 * t454;
-  const Real t1587 = t456 * t1585;
-  const Real t1588 = t1586 + t1587;
-  const Real t1589 = t1545 * par.k2;
-  const Real t1590 = par.k1 * t1550;
-  const Real t1591 = t1589 + t1590;
-  const Real t1592 = t578 * par.m_B;
-  const Real t1593 = par.k16 * t308;
-  const Real t1594 = t310 * par.k62;
-  const Real t1595 = t1594 + t1593;
-  const Real t1596 = t310 * par.k16;
-  const Real t1597 = t1596 + t1595;
-  const Real t1598 = t1592 - t1597;
-  const Real t1599 = t1591 + t1598;
-  const Real t1600 = t1599 + t1579;
-  const Real t1601 = t592 * t1600;
-  const Real t1602 = t1536 * s_r_p_1_;
-  const Real t1603 = t1543 * c_r_p_1_;
-  const Real t1604 = t1603 + t1602;
-  const Real t1605 = t562 * par.m_B;
-  const Real t1606 = t320 * par.k17;
-  const Real t1607 = t1605 - t1606;
-  const Real t1608 = t1604 + t1607;
-  const Real t1609 = par.m_R * t562;
+  const Real t1440 = t1436 * c_r_p_2_;
+  const Real t1441 = t1431 * s_r_p_2_;
+  const Real t1442 = t1440 - t1441;
+  const Real t1443 = par.k1 * t1442;
+  const Real t1444 = t1439 - t1443;
+  const Real t1445 = t1418 - t1415;
+  const Real t1446 = t1445 * par.k11;
+  const Real t1447 = t1422 * par.k12;
+  const Real t1448 = t1447 - t1446;
+  const Real t1449 = c_r_p_1_ * t1369;
+  const Real t1450 = s_r_p_1_ * t1373;
+  const Real t1451 = t1449 - t1450;
+  const Real t1452 = t1451 + t1448;
+  const Real t1453 = par.m_F * t1452;
+  const Real t1454 = par.k11 * t1453;
+  const Real t1455 = t1454 + t1444;
+  const Real t1456 = t1419 * par.k17;
+  const Real t1457 = par.k5 * t1422;
+  const Real t1458 = t1456 + t1457;
+  const Real t1459 = t1451 * par.k8;
+  const Real t1460 = t1458 - t1459;
+  const Real t1461 = t1460 + t1455;
+  const Real t1462 = s_r_p_1_ * t1461;
+  const Real t1463 = t1414 + t1462;
+  const Real t1464 = par.m_H * t1375;
+  const Real t1465 = par.k8 * t1356;
+  const Real t1466 = t1464 - t1465;
+  const Real t1467 = t1402 + t1466;
+  const Real t1468 = c_r_p_1_ * t1467;
+  const Real t1469 = t1451 * par.m_H;
+  const Real t1470 = par.k8 * t1445;
+  const Real t1471 = par.k10 * t1422;
+  const Real t1472 = t1471 + t1470;
+  const Real t1473 = t1469 + t1472;
+  const Real t1474 = t1473 + t1453;
+  const Real t1475 = s_r_p_1_ * t1474;
+  const Real t1476 = t1468 - t1475;
+  const Real t1477 = par.k1 * t1476;
+  const Real t1478 = par.k10 * t1356;
+  const Real t1479 = t1364 * par.m_H;
+  const Real t1480 = t1479 + t1478;
+  const Real t1481 = t1398 + t1480;
+  const Real t1482 = par.k2 * t1481;
+  const Real t1483 = t1482 - t1477;
+  const Real t1484 = t1483 * par.k13;
+  const Real t1485 = t1463 - t1484;
+  const Real t1486 = t371 * par.k16;
+  const Real t1487 = par.k15 * t389;
+  const Real t1488 = t1486 + t1487;
+  const Real t1489 = par.k4 * t213;
+  const Real t1490 = par.k4 * t215;
+  const Real t1491 = t1489 + t1490;
+  const Real t1492 = t1488 - t1491;
+  const Real t1493 = t1485 + t1492;
+  const Real t1494 = t213 * par.r_R;
+  const Real t1495 = t215 * par.r_R;
+  const Real t1496 = t1494 + t1495;
+  const Real t1497 = t1496 + t389;
+  const Real t1498 = t1497 * c_r_p_0_;
+  const Real t1499 = t371 * s_r_p_0_;
+  const Real t1500 = t1499 + t1498;
+  const Real t1501 = t1500 * par.m_R;
+  const Real t1502 = t1501 * c_r_p_0_;
+  const Real t1503 = t1497 * s_r_p_0_;
+  const Real t1504 = t371 * c_r_p_0_;
+  const Real t1505 = t1503 - t1504;
+  const Real t1506 = t1505 * par.m_R;
+  const Real t1507 = t1506 * s_r_p_0_;
+  const Real t1508 = t1502 + t1507;
+  const Real t1509 = t1508 * par.r_R;
+  const Real t1510 = par.I_Ryy * t213;
+  const Real t1511 = par.I_Ryy * t215;
+  const Real t1512 = t1511 + t1510;
+  const Real t1513 = t1509 + t1512;
+  const Real t1514 = t1493 - t1513;
+  const Real t1515 = t255 * t1514;
+  const Real t1516 = t1514 * t253;
+  const Real t1517 = t1515 + t1516;
+  const Real t1518 = t1476 * par.k2;
+  const Real t1519 = par.k1 * t1481;
+  const Real t1520 = t1519 + t1518;
+  const Real t1521 = t389 * par.m_B;
+  const Real t1522 = t213 * par.k15;
+  const Real t1523 = t215 * par.k15;
+  const Real t1524 = t1523 + t1522;
+  const Real t1525 = t1521 - t1524;
+  const Real t1526 = t1525 + t1520;
+  const Real t1527 = t1526 + t1508;
+  const Real t1528 = t1527 * t395;
+  const Real t1529 = s_r_p_1_ * t1467;
+  const Real t1530 = t1474 * c_r_p_1_;
+  const Real t1531 = t1529 + t1530;
+  const Real t1532 = t356 * par.m_B;
+  const Real t1533 = t221 * par.k16;
+  const Real t1534 = t1533 + par.k15;
+  const Real t1535 = t1532 - t1534;
+  const Real t1536 = t1531 + t1535;
+  const Real t1537 = t356 + par.r_R;
+  const Real t1538 = t1537 * par.m_R;
+  const Real t1539 = t1536 + t1538;
+  const Real t1540 = t1539 * t359;
+  const Real t1541 = t1528 + t1540;
+  const Real t1542 = t371 * par.m_B;
+  const Real t1543 = t213 * par.k16;
+  const Real t1544 = t215 * par.k16;
+  const Real t1545 = t1543 + t1544;
+  const Real t1546 = t1545 - t1542;
+  const Real t1547 = t1546 + t1483;
+  const Real t1548 = t1506 * c_r_p_0_;
+  const Real t1549 = t1501 * s_r_p_0_;
+  const Real t1550 = t1548 - t1549;
+  const Real t1551 = t1550 + t1547;
+  const Real t1552 = t1551 * t377;
+  const Real t1553 = t1541 + t1552;
+  const Real t1554 = t1553 - t1517;
+  const Real t1555 = s_r_p_1_ * t1413;
+  const Real t1556 = c_r_p_1_ * t1461;
+  const Real t1557 = t1556 - t1555;
+  const Real t1558 = par.k1 * t1557;
+  const Real t1559 = t1438 * par.k1;
+  const Real t1560 = par.k2 * t1442;
+  const Real t1561 = t1559 + t1560;
+  const Real t1562 = par.k12 * t1453;
+  const Real t1563 = t1561 + t1562;
+  const Real t1564 = t1451 * par.k10;
+  const Real t1565 = par.k5 * t1445;
+  const Real t1566 = par.k6 * t1422;
+  const Real t1567 = t1566 - t1565;
+  const Real t1568 = t1564 + t1567;
+  const Real t1569 = t1568 + t1563;
+  const Real t1570 = t1569 * par.k2;
+  const Real t1571 = t1570 - t1558;
+  const Real t1572 = t1531 * par.k13;
+  const Real t1573 = t1572 + t1571;
+  const Real t1574 = t356 * par.k16;
+  const Real t1575 = t221 * par.k14;
+  const Real t1576 = t1575 + par.k41;
+  const Real t1577 = t1574 - t1576;
+  const Real t1578 = t1577 + t1573;
+  const Real t1579 = t221 * c_r_p_0_;
+  const Real t1580 = s_r_p_0_ - t1579;
+  const Real t1581 = par.I_Rxx * t1580;
+  const Real t1582 = t1581 * c_r_p_0_;
+  const Real t1583 = t221 * s_r_p_0_;
+  const Real t1584 = t1583 + c_r_p_0_;
+  const Real t1585 = par.I_Rxx * t1584;
+  const Real t1586 = t1585 * s_r_p_0_;
+  const Real t1587 = t1582 - t1586;
+  const Real t1588 = t1578 + t1587;
+  const Real t1589 = t1588 * t261;
+  const Real t1590 = t1554 - t1589;
+  const Real t1591 = t1590 - t1512;
+  const Real t1592 = t245 * t1406;
+  const Real t1593 = t1592 + t1591;
+  const Real t1594 = t164 * t1275;
+  const Real t1595 = t1275 * t162;
+  const Real t1596 = t1594 + t1595;
+  const Real t1597 = t385 * t1288;
+  const Real t1598 = t353 * t1298;
+  const Real t1599 = t1598 + t1597;
+  const Real t1600 = t367 * t1310;
+  const Real t1601 = t1599 - t1600;
+  const Real t1602 = t1601 - t1596;
+  const Real t1603 = t170 * t1344;
+  const Real t1604 = t1602 - t1603;
+  const Real t1605 = t1604 + t1328;
+  const Real t1606 = t152 * t1167;
+  const Real t1607 = t1605 + t1606;
+  const Real t1608 = t1514 * t162;
+  const Real t1609 = t164 * t1514;
   const Real t1610 = t1608 + t1609;
-  const Real t1611 = t1610 * t568;
-  const Real t1612 = t1611 + t1601;
-  const Real t1613 = par.m_B * t599;
-  const Real t1614 = par.k17 * t308;
-  const Real t1615 = t310 * par.k17;
-  const Real t1616 = t1614 + t1615;
-  const Real t1617 = t1616 - t1613;
-  const Real t1618 = t1617 + t1552;
-  const Real t1619 = t1577 * c_r_p_0_;
-  const Real t1620 = t1572 * s_r_p_0_;
-  const Real t1621 = t1619 - t1620;
-  const Real t1622 = t1618 + t1621;
-  const Real t1623 = t1622 * t609;
-  const Real t1624 = t1612 + t1623;
-  const Real t1625 = t1624 - t1588;
-  const Real t1626 = s_r_p_1_ * t1482;
-  const Real t1627 = c_r_p_1_ * t1530;
-  const Real t1628 = t1627 - t1626;
-  const Real t1629 = par.k1 * t1628;
-  const Real t1630 = par.k1 * t1507;
-  const Real t1631 = t1511 * par.k2;
-  const Real t1632 = t1630 + t1631;
-  const Real t1633 = par.k13 * t1522;
-  const Real t1634 = t1633 + t1632;
-  const Real t1635 = par.k5 * t1514;
-  const Real t1636 = par.k7 * t1491;
-  const Real t1637 = t1636 - t1635;
-  const Real t1638 = par.k11 * t1520;
+  const Real t1611 = t1527 * t385;
+  const Real t1612 = t353 * t1539;
+  const Real t1613 = t1612 + t1611;
+  const Real t1614 = t367 * t1551;
+  const Real t1615 = t1613 - t1614;
+  const Real t1616 = t1615 - t1610;
+  const Real t1617 = t1588 * t170;
+  const Real t1618 = t1616 - t1617;
+  const Real t1619 = t1618 + t1569;
+  const Real t1620 = t152 * t1406;
+  const Real t1621 = t1620 + t1619;
+  const Real t1622 = t1527 * t389;
+  const Real t1623 = t1539 * t356;
+  const Real t1624 = t1623 + t1622;
+  const Real t1625 = t1551 * t371;
+  const Real t1626 = t1624 - t1625;
+  const Real t1627 = par.k2 * t1557;
+  const Real t1628 = par.k1 * t1569;
+  const Real t1629 = t1628 + t1627;
+  const Real t1630 = t356 * par.k15;
+  const Real t1631 = par.k3 * t221;
+  const Real t1632 = par.k9 - t1631;
+  const Real t1633 = t1632 - t1630;
+  const Real t1634 = t1633 + t1629;
+  const Real t1635 = t1585 * c_r_p_0_;
+  const Real t1636 = t1581 * s_r_p_0_;
+  const Real t1637 = t1635 + t1636;
+  const Real t1638 = par.r_R * t1538;
   const Real t1639 = t1637 + t1638;
-  const Real t1640 = t1634 + t1639;
-  const Real t1641 = t1640 * par.k2;
-  const Real t1642 = t1641 - t1629;
-  const Real t1643 = t1604 * par.k14;
+  const Real t1640 = t1639 + t1634;
+  const Real t1641 = t1626 + t1640;
+  const Real t1642 = t1514 * t213;
+  const Real t1643 = t1514 * t215;
   const Real t1644 = t1642 + t1643;
-  const Real t1645 = t562 * par.k17;
-  const Real t1646 = t320 * par.k15;
+  const Real t1645 = t1641 - t1644;
+  const Real t1646 = t1588 * t221;
   const Real t1647 = t1645 - t1646;
-  const Real t1648 = t1647 + t1644;
-  const Real t1649 = t320 * s_r_p_0_;
-  const Real t1650 = par.I_Rxx * t1649;
-  const Real t1651 = t1650 * s_r_p_0_;
-  const Real t1652 = t320 * c_r_p_0_;
-  const Real t1653 = par.I_Rxx * t1652;
-  const Real t1654 = t1653 * c_r_p_0_;
-  const Real t1655 = t1651 + t1654;
-  const Real t1656 = t1648 - t1655;
-  const Real t1657 = t466 * t1656;
-  const Real t1658 = t1625 - t1657;
-  const Real t1659 = t1658 - t1583;
-  const Real t1660 = t443 * t1475;
-  const Real t1661 = t1659 + t1660;
-  const Real t1662 = par.k1 * t406;
-  const Real t1663 = t1662 + par.k2;
-  const Real t1664 = s_r_p_1_ * t1663;
-  const Real t1665 = t394 * c_r_p_1_;
-  const Real t1666 = c_r_p_1_ * t396;
-  const Real t1667 = t1665 + t1666;
-  const Real t1668 = t1664 + t1667;
-  const Real t1669 = par.k13 * t1668;
-  const Real t1670 = par.k1 * t584;
-  const Real t1671 = t394 * par.k14;
-  const Real t1672 = par.k14 * t396;
-  const Real t1673 = t1672 + t1671;
-  const Real t1674 = t1673 - t603;
-  const Real t1675 = t1674 * par.k2;
-  const Real t1676 = t1670 + t1675;
-  const Real t1677 = t1676 + t1669;
-  const Real t1678 = par.k1 * t1677;
-  const Real t1679 = par.k12 * t1668;
-  const Real t1680 = par.k14 * t406;
-  const Real t1681 = t565 - t1680;
-  const Real t1682 = s_r_p_1_ * t1681;
-  const Real t1683 = t584 * par.k2;
-  const Real t1684 = t1674 * par.k1;
-  const Real t1685 = t1683 - t1684;
-  const Real t1686 = c_r_p_1_ * t1685;
-  const Real t1687 = t1686 + t1682;
-  const Real t1688 = t1679 + t1687;
-  const Real t1689 = t1688 * par.k2;
-  const Real t1690 = t1678 + t1689;
-  const Real t1691 = t1690 * c_r_p_2_;
-  const Real t1692 = t1677 * par.k2;
-  const Real t1693 = t1688 * par.k1;
-  const Real t1694 = t1692 - t1693;
-  const Real t1695 = t1694 * s_r_p_2_;
-  const Real t1696 = t1691 - t1695;
-  const Real t1697 = par.m_F * t1696;
-  const Real t1698 = c_r_p_2_ * t1697;
-  const Real t1699 = t1694 * c_r_p_2_;
-  const Real t1700 = t1690 * s_r_p_2_;
-  const Real t1701 = t1699 + t1700;
-  const Real t1702 = t1701 * par.m_F;
-  const Real t1703 = t1702 * s_r_p_2_;
-  const Real t1704 = t1698 + t1703;
-  const Real t1705 = par.k2 * t1704;
-  const Real t1706 = c_r_p_2_ * t1702;
-  const Real t1707 = t1697 * s_r_p_2_;
-  const Real t1708 = t1706 - t1707;
-  const Real t1709 = t1708 * par.k1;
-  const Real t1710 = t1705 - t1709;
-  const Real t1711 = t1710 * par.k12;
-  const Real t1712 = t1708 * par.k2;
-  const Real t1713 = par.k1 * t1704;
-  const Real t1714 = t1712 + t1713;
-  const Real t1715 = t1714 * par.k13;
-  const Real t1716 = t1711 + t1715;
-  const Real t1717 = t383 + t1668;
-  const Real t1718 = par.I_Fyy * t1717;
-  const Real t1719 = t1716 + t1718;
-  const Real t1720 = par.k9 * t1687;
-  const Real t1721 = t1676 * par.k11;
-  const Real t1722 = t1720 - t1721;
-  const Real t1723 = par.k8 * t1668;
-  const Real t1724 = t1722 - t1723;
-  const Real t1725 = t1724 - t1719;
-  const Real t1726 = c_r_p_1_ * t1725;
-  const Real t1727 = c_r_p_1_ * t1663;
-  const Real t1728 = s_r_p_1_ * t394;
-  const Real t1729 = s_r_p_1_ * t396;
-  const Real t1730 = t1728 + t1729;
-  const Real t1731 = t1727 - t1730;
-  const Real t1732 = t1731 * par.k2;
-  const Real t1733 = par.k2 * t406;
-  const Real t1734 = par.k1 - t1733;
-  const Real t1735 = par.k1 * t1734;
-  const Real t1736 = t1732 + t1735;
-  const Real t1737 = t1736 * s_r_p_2_;
-  const Real t1738 = par.k1 * t1731;
-  const Real t1739 = t1734 * par.k2;
-  const Real t1740 = t1739 - t1738;
-  const Real t1741 = c_r_p_2_ * t1740;
-  const Real t1742 = t1737 + t1741;
-  const Real t1743 = t1742 * par.I_Fxx;
-  const Real t1744 = t1743 * s_r_p_2_;
-  const Real t1745 = c_r_p_2_ * t1736;
-  const Real t1746 = t1740 * s_r_p_2_;
-  const Real t1747 = t1745 - t1746;
-  const Real t1748 = par.I_Fxx * t1747;
-  const Real t1749 = t1748 * c_r_p_2_;
-  const Real t1750 = t1744 + t1749;
-  const Real t1751 = t1750 * par.k2;
-  const Real t1752 = c_r_p_2_ * t1743;
-  const Real t1753 = t1748 * s_r_p_2_;
-  const Real t1754 = t1752 - t1753;
-  const Real t1755 = par.k1 * t1754;
-  const Real t1756 = t1751 - t1755;
-  const Real t1757 = t1730 - t1727;
-  const Real t1758 = par.k12 * t1757;
-  const Real t1759 = t1734 * par.k13;
-  const Real t1760 = t1759 - t1758;
-  const Real t1761 = c_r_p_1_ * t1681;
-  const Real t1762 = s_r_p_1_ * t1685;
-  const Real t1763 = t1761 - t1762;
-  const Real t1764 = t1763 + t1760;
-  const Real t1765 = t1764 * par.m_F;
-  const Real t1766 = t1765 * par.k12;
-  const Real t1767 = t1756 + t1766;
-  const Real t1768 = t1731 * par.k18;
-  const Real t1769 = par.k5 * t1734;
-  const Real t1770 = t1768 + t1769;
-  const Real t1771 = par.k9 * t1763;
-  const Real t1772 = t1770 - t1771;
-  const Real t1773 = t1767 + t1772;
-  const Real t1774 = s_r_p_1_ * t1773;
-  const Real t1775 = t1726 + t1774;
-  const Real t1776 = par.m_H * t1687;
-  const Real t1777 = par.k9 * t1668;
-  const Real t1778 = t1776 - t1777;
-  const Real t1779 = t1710 + t1778;
-  const Real t1780 = c_r_p_1_ * t1779;
-  const Real t1781 = par.k9 * t1757;
-  const Real t1782 = t1734 * par.k11;
-  const Real t1783 = t1782 + t1781;
-  const Real t1784 = t1763 * par.m_H;
-  const Real t1785 = t1783 + t1784;
-  const Real t1786 = t1765 + t1785;
-  const Real t1787 = s_r_p_1_ * t1786;
-  const Real t1788 = t1780 - t1787;
-  const Real t1789 = t1788 * par.k1;
-  const Real t1790 = par.k11 * t1668;
-  const Real t1791 = t1676 * par.m_H;
-  const Real t1792 = t1790 + t1791;
-  const Real t1793 = t1714 + t1792;
-  const Real t1794 = t1793 * par.k2;
-  const Real t1795 = t1794 - t1789;
-  const Real t1796 = par.k14 * t1795;
-  const Real t1797 = t1775 - t1796;
-  const Real t1798 = par.k62 * t584;
-  const Real t1799 = t584 * par.k16;
-  const Real t1800 = t1798 + t1799;
-  const Real t1801 = t603 * par.k17;
-  const Real t1802 = t1801 + t1800;
-  const Real t1803 = par.k59 * t394;
-  const Real t1804 = par.k59 * t396;
-  const Real t1805 = t1803 + t1804;
-  const Real t1806 = t1802 - t1805;
-  const Real t1807 = t1806 + t1797;
-  const Real t1808 = t394 * par.r_R;
-  const Real t1809 = par.r_R * t396;
-  const Real t1810 = t1808 + t1809;
-  const Real t1811 = t584 + t1810;
-  const Real t1812 = t1811 * s_r_p_0_;
-  const Real t1813 = t603 * c_r_p_0_;
-  const Real t1814 = t1812 - t1813;
-  const Real t1815 = t1814 * par.m_R;
-  const Real t1816 = t1815 * s_r_p_0_;
-  const Real t1817 = t1811 * c_r_p_0_;
-  const Real t1818 = t603 * s_r_p_0_;
-  const Real t1819 = t1817 + t1818;
-  const Real t1820 = par.m_R * t1819;
-  const Real t1821 = t1820 * c_r_p_0_;
-  const Real t1822 = t1816 + t1821;
-  const Real t1823 = t1822 * par.r_R;
-  const Real t1824 = t394 * par.I_Ryy;
-  const Real t1825 = par.I_Ryy * t396;
-  const Real t1826 = t1824 + t1825;
-  const Real t1827 = t1823 + t1826;
-  const Real t1828 = t1807 - t1827;
-  const Real t1829 = t1828 * t454;
-  const Real t1830 = t1828 * t456;
-  const Real t1831 = t1829 + t1830;
-  const Real t1832 = t1788 * par.k2;
-  const Real t1833 = par.k1 * t1793;
-  const Real t1834 = t1832 + t1833;
-  const Real t1835 = t584 * par.m_B;
-  const Real t1836 = t394 * par.k16;
-  const Real t1837 = par.k62 * t396;
-  const Real t1838 = t1837 + t1836;
-  const Real t1839 = par.k16 * t396;
-  const Real t1840 = t1838 + t1839;
-  const Real t1841 = t1835 - t1840;
-  const Real t1842 = t1841 + t1834;
-  const Real t1843 = t1842 + t1822;
-  const Real t1844 = t1843 * t592;
-  const Real t1845 = s_r_p_1_ * t1779;
-  const Real t1846 = c_r_p_1_ * t1786;
-  const Real t1847 = t1846 + t1845;
-  const Real t1848 = t565 * par.m_B;
-  const Real t1849 = par.k17 * t406;
-  const Real t1850 = par.k16 + t1849;
-  const Real t1851 = par.k62 + t1850;
-  const Real t1852 = t1848 - t1851;
-  const Real t1853 = t1852 + t1847;
-  const Real t1854 = t565 + par.r_R;
-  const Real t1855 = par.m_R * t1854;
-  const Real t1856 = t1855 + t1853;
-  const Real t1857 = t1856 * t568;
-  const Real t1858 = t1844 + t1857;
-  const Real t1859 = t603 * par.m_B;
-  const Real t1860 = t394 * par.k17;
-  const Real t1861 = par.k17 * t396;
-  const Real t1862 = t1860 + t1861;
-  const Real t1863 = t1862 - t1859;
-  const Real t1864 = t1863 + t1795;
-  const Real t1865 = t1815 * c_r_p_0_;
-  const Real t1866 = t1820 * s_r_p_0_;
-  const Real t1867 = t1865 - t1866;
-  const Real t1868 = t1867 + t1864;
-  const Real t1869 = t609 * t1868;
-  const Real t1870 = t1858 + t1869;
-  const Real t1871 = t1870 - t1831;
-  const Real t1872 = s_r_p_1_ * t1725;
-  const Real t1873 = c_r_p_1_ * t1773;
-  const Real t1874 = t1873 - t1872;
-  const Real t1875 = par.k1 * t1874;
-  const Real t1876 = t1754 * par.k2;
-  const Real t1877 = t1750 * par.k1;
-  const Real t1878 = t1876 + t1877;
-  const Real t1879 = t1765 * par.k13;
-  const Real t1880 = t1878 + t1879;
-  const Real t1881 = t1763 * par.k11;
-  const Real t1882 = par.k5 * t1757;
-  const Real t1883 = par.k7 * t1734;
-  const Real t1884 = t1883 - t1882;
-  const Real t1885 = t1881 + t1884;
-  const Real t1886 = t1885 + t1880;
-  const Real t1887 = t1886 * par.k2;
-  const Real t1888 = t1887 - t1875;
-  const Real t1889 = t1847 * par.k14;
-  const Real t1890 = t1889 + t1888;
-  const Real t1891 = t565 * par.k17;
-  const Real t1892 = par.k15 * t406;
-  const Real t1893 = par.k49 + t1892;
-  const Real t1894 = t1891 - t1893;
-  const Real t1895 = t1894 + t1890;
-  const Real t1896 = t406 * c_r_p_0_;
-  const Real t1897 = s_r_p_0_ - t1896;
-  const Real t1898 = par.I_Rxx * t1897;
-  const Real t1899 = t1898 * c_r_p_0_;
-  const Real t1900 = t406 * s_r_p_0_;
-  const Real t1901 = t1900 + c_r_p_0_;
-  const Real t1902 = par.I_Rxx * t1901;
-  const Real t1903 = t1902 * s_r_p_0_;
-  const Real t1904 = t1899 - t1903;
-  const Real t1905 = t1895 + t1904;
-  const Real t1906 = t466 * t1905;
-  const Real t1907 = t1871 - t1906;
-  const Real t1908 = t1907 - t1826;
-  const Real t1909 = t443 * t1718;
-  const Real t1910 = t1909 + t1908;
-  const Real t1911 = t1585 * t308;
-  const Real t1912 = t310 * t1585;
-  const Real t1913 = t1911 + t1912;
-  const Real t1914 = t578 * t1600;
-  const Real t1915 = t1610 * t562;
-  const Real t1916 = t1914 + t1915;
-  const Real t1917 = t1622 * t599;
-  const Real t1918 = t1916 - t1917;
-  const Real t1919 = t1918 - t1913;
-  const Real t1920 = t320 * t1656;
-  const Real t1921 = t1919 - t1920;
-  const Real t1922 = t1640 + t1921;
-  const Real t1923 = t293 * t1475;
-  const Real t1924 = t291 * t1475;
-  const Real t1925 = t1923 + t1924;
-  const Real t1926 = t1925 + t1922;
-  const Real t1927 = t1828 * t308;
-  const Real t1928 = t310 * t1828;
-  const Real t1929 = t1927 + t1928;
-  const Real t1930 = t1843 * t578;
-  const Real t1931 = t1856 * t562;
-  const Real t1932 = t1931 + t1930;
-  const Real t1933 = t1868 * t599;
-  const Real t1934 = t1932 - t1933;
-  const Real t1935 = t1934 - t1929;
-  const Real t1936 = t320 * t1905;
-  const Real t1937 = t1935 - t1936;
-  const Real t1938 = t1937 + t1886;
-  const Real t1939 = t291 * t1718;
-  const Real t1940 = t293 * t1718;
-  const Real t1941 = t1939 + t1940;
-  const Real t1942 = t1938 + t1941;
-  const Real t1943 = t1843 * t584;
-  const Real t1944 = t1856 * t565;
-  const Real t1945 = t1943 + t1944;
-  const Real t1946 = t603 * t1868;
-  const Real t1947 = t1945 - t1946;
-  const Real t1948 = par.k2 * t1874;
-  const Real t1949 = par.k1 * t1886;
-  const Real t1950 = t1949 + t1948;
-  const Real t1951 = t565 * par.k16;
-  const Real t1952 = par.k62 * t565;
-  const Real t1953 = t1951 + t1952;
-  const Real t1954 = par.k3 * t406;
-  const Real t1955 = par.k10 - t1954;
-  const Real t1956 = t1955 - t1953;
-  const Real t1957 = t1950 + t1956;
-  const Real t1958 = t1902 * c_r_p_0_;
-  const Real t1959 = t1898 * s_r_p_0_;
-  const Real t1960 = t1958 + t1959;
-  const Real t1961 = t1855 * par.r_R;
-  const Real t1962 = t1960 + t1961;
-  const Real t1963 = t1957 + t1962;
-  const Real t1964 = t1947 + t1963;
-  const Real t1965 = sum_error(t1950, t1956);
-  const Real t1966 = -t1953;
-  const Real t1967 = sum_error(t1955, t1966);
-  const Real t1968 = -t1954;
-  const Real t1969 = sum_error(par.k10, t1968);
-  const Real t1970 = par.k60 + t1969;
-  const Real t1971 = t1967 + t1970;
-  const Real t1972 = t1965 + t1971;
-  const Real t1973 = sum_error(t1962, t1957);
-  const Real t1974 = t1972 + t1973;
-  const Real t1975 = t1964 + t1974;
-  const Real t1976 = t1828 * t394;
-  const Real t1977 = t1828 * t396;
-  const Real t1978 = t1976 + t1977;
-  const Real t1979 = t1975 - t1978;
-  const Real t1980 = t1905 * t406;
-  const Real t1981 = t1979 - t1980;
-  const Real t1982 = t383 * t1718;
-  const Real t1983 = t1982 + t1981;
+  const Real t1648 = t1406 * t205;
+  const Real t1649 = t1648 + t1647;
 
-  M_r[0] = t1983;
-  M_r[1] = t1942;
-  M_r[2] = t1910;
-  M_r[3] = t1942;
-  M_r[4] = t1926;
-  M_r[5] = t1661;
-  M_r[6] = t1910;
-  M_r[7] = t1661;
-  M_r[8] = t1418;
-  f_r[0] = t1177;
-  f_r[1] = t1137;
-  f_r[2] = t1121;
+  M_r[0] = t1649;
+  M_r[1] = t1621;
+  M_r[2] = t1593;
+  M_r[3] = t1621;
+  M_r[4] = t1607;
+  M_r[5] = t1349;
+  M_r[6] = t1593;
+  M_r[7] = t1349;
+  M_r[8] = t1111;
+  f_r[0] = t874;
+  f_r[1] = t845;
+  f_r[2] = t831;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: orthogonal basis, all blocks, stable forms, compensated beyond 0.5 ulps
-/// operations: 3522 add, 2143 mul, 25 div, 88 neg, 2 sqrt, 6 sin, 3 cos
+/// route: orthogonal basis, projected recursion, compensated beyond 16 ulps
+/// operations: 1099 add, 1199 mul, 16 div, 8 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -4896,4227 +4193,2093 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
-  const Real t1 = r_p[2] - par.tilt;
-  const Real t2 = sin(t1);
-  const Real t3 = par.tilt - r_p[2];
-  const Real t4 = sin(t3);
-  const Real t5 = constant<Real>(0.5L) * r_p[1];
-  const Real t6 = sin(t5);
 
   // joint angles
-  const Real t7 = R[8] * par.k1;
+  const Real t1 = par.k2 * R[6];
+  const Real t2 = R[8] * par.k1;
+  const Real t3 = t1 - t2;
+  const Real t4 = c_r_p_1_ * t3;
+  const Real t5 = s_r_p_1_ * R[7];
+  const Real t6 = t4 + t5;
+  const Real t7 = par.k1 * t6;
+  const Real t8 = par.k1 * R[6];
+  const Real t9 = R[8] * par.k2;
+  const Real t10 = t8 + t9;
+  const Real t11 = t10 * par.k2;
+  const Real t12 = t7 - t11;
+  const Real t13 = t12 * t12;
+  const Real t14 = par.k2 * t6;
+  const Real t15 = par.k1 * t10;
+  const Real t16 = t14 + t15;
+  const Real t17 = t16 * t16;
+  const Real t18 = t13 + t17;
+  const Real t19 = sqrt(t18);
+  const Real t20 = constant<Real>(1.0L) / t19;
+  const Real t21 = t20 * t16;
+  const Real t22 = t21 * par.r_F;
+  const Real t23 = par.k1 * c_r_p_1_;
+  const Real t24 = par.k1 * t23;
+  const Real t25 = par.k18 + t24;
+  const Real t26 = t25 * t22;
+  const Real t27 = t12 * t20;
+  const Real t28 = par.r_F * t27;
+  const Real t29 = t23 * par.k2;
+  const Real t30 = par.k22 - t29;
+  const Real t31 = t28 * t30;
+  const Real t32 = t26 + t31;
+  const Real t33 = t30 * par.r_F;
+  const Real t34 = t25 * par.c;
+  const Real t35 = t33 - t34;
+  const Real t36 = c_r_p_1_ * par.k13;
+  const Real t37 = t36 + t35;
+  const Real t38 = t32 + t37;
+  const Real t39 = R[6] * R[6];
+  const Real t40 = R[8] * R[8];
+  const Real t41 = t39 + t40;
+  const Real t42 = sqrt(t41);
+  const Real t43 = constant<Real>(1.0L) / t42;
+  const Real t44 = t43 * R[6];
+  const Real t45 = t44 * par.r_R;
 
   // kernel
-  const Real t8 = -t7;
+  const Real t46 = c_r_p_1_ * t45;
+  const Real t47 = t38 - t46;
+  const Real t48 = constant<Real>(1.0L) / t47;
 
   // joint angles
-  const Real t9 = par.k2 * R[6];
+  const Real t49 = s_r_p_1_ * par.k1;
+  const Real t50 = t22 * t49;
+  const Real t51 = par.c * t49;
+  const Real t52 = s_r_p_1_ * par.k13;
+  const Real t53 = par.k1 * t52;
+  const Real t54 = t51 - t53;
+  const Real t55 = t54 - t50;
 
   // kernel
-  const Real t10 = sum_error(t9, t8);
-  const Real t11 = product_error(par.k2, R[6]);
-  const Real t12 = t10 + t11;
-  const Real t13 = t12 * c_r_p_1_;
+  const Real t56 = t49 * t45;
+  const Real t57 = t56 + t55;
+  const Real t58 = t57 * t48;
 
   // joint angles
-  const Real t14 = t9 - t7;
+  const Real t59 = s_r_p_1_ * par.k2;
+  const Real t60 = t28 * t59;
+  const Real t61 = t60 - t50;
+  const Real t62 = t59 * par.r_F;
+  const Real t63 = t62 + t51;
+  const Real t64 = s_r_p_1_ * par.k23;
+  const Real t65 = t63 - t64;
+  const Real t66 = t61 + t65;
+  const Real t67 = R[8] * t43;
+  const Real t68 = t67 * par.r_R;
+  const Real t69 = t68 - par.r_R;
 
   // kernel
-  const Real t15 = product_error(c_r_p_1_, t14);
-  const Real t16 = t15 + t13;
+  const Real t70 = t69 * t59;
+  const Real t71 = t70 + t66;
+  const Real t72 = t71 + t56;
+  const Real t73 = t58 * t72;
+  const Real t74 = -t73;
 
   // joint angles
-  const Real t17 = c_r_p_1_ * t14;
-  const Real t18 = s_r_p_1_ * R[7];
+  const Real t75 = t22 * c_r_p_1_;
+  const Real t76 = c_r_p_1_ * par.k23;
+  const Real t77 = t76 * par.k1;
+  const Real t78 = t77 + par.k21;
+  const Real t79 = c_r_p_1_ * par.c;
+  const Real t80 = t79 - t78;
+  const Real t81 = t80 - t75;
+  const Real t82 = c_r_p_1_ * par.k2;
+  const Real t83 = par.k1 * t82;
+  const Real t84 = par.k22 - t83;
 
   // kernel
-  const Real t19 = sum_error(t17, t18);
-  const Real t20 = t19 + t16;
-  const Real t21 = par.k1 * t20;
+  const Real t85 = t69 * t84;
+  const Real t86 = t81 - t85;
+  const Real t87 = t25 * t45;
+  const Real t88 = t87 + t86;
+  const Real t89 = sum_error(t88, t74);
+  const Real t90 = product_error(t58, t72);
+  const Real t91 = t89 - t90;
+  const Real t92 = t88 - t73;
+  const Real t93 = constant<Real>(1.0L) / t92;
+  const Real t94 = t91 * t93;
+  const Real t95 = t94 / t92;
+  const Real t96 = quotient_error(constant<Real>(1.0L), t92);
+  const Real t97 = t96 - t95;
 
   // joint angles
-  const Real t22 = t17 + t18;
+  const Real t98 = t28 * t49;
+  const Real t99 = par.k2 * t52;
+  const Real t100 = par.r_F * t49;
+  const Real t101 = t99 - t100;
+  const Real t102 = t101 - t98;
 
   // kernel
-  const Real t23 = product_error(par.k1, t22);
-  const Real t24 = t23 + t21;
+  const Real t103 = t59 * t45;
+  const Real t104 = t102 - t103;
+  const Real t105 = t48 * t104;
+  const Real t106 = t72 * t105;
 
   // joint angles
-  const Real t25 = par.k1 * R[6];
-  const Real t26 = R[8] * par.k2;
+  const Real t107 = t28 * c_r_p_1_;
+  const Real t108 = t76 * par.k2;
+  const Real t109 = t108 - par.k24;
+  const Real t110 = c_r_p_1_ * par.r_F;
+  const Real t111 = t109 - t110;
+  const Real t112 = t111 - t107;
+  const Real t113 = par.k2 * t82;
+  const Real t114 = par.k19 + t113;
 
   // kernel
-  const Real t27 = sum_error(t25, t26);
-  const Real t28 = product_error(par.k1, R[6]);
-  const Real t29 = t28 + t27;
-  const Real t30 = par.k2 * t29;
+  const Real t115 = t69 * t114;
+  const Real t116 = t112 - t115;
+  const Real t117 = t30 * t45;
+  const Real t118 = t116 + t117;
+  const Real t119 = t118 - t106;
+  const Real t120 = t97 * t119;
+  const Real t121 = -t106;
+  const Real t122 = sum_error(t118, t121);
+  const Real t123 = product_error(t72, t105);
+  const Real t124 = t122 - t123;
+  const Real t125 = t124 * t93;
+  const Real t126 = t120 + t125;
+  const Real t127 = product_error(t119, t93);
+  const Real t128 = t127 + t126;
 
   // joint angles
-  const Real t31 = t25 + t26;
-
-  // kernel
-  const Real t32 = product_error(t31, par.k2);
-  const Real t33 = t32 + t30;
-  const Real t34 = t24 - t33;
-
-  // joint angles
-  const Real t35 = par.k1 * t22;
-  const Real t36 = t31 * par.k2;
-  const Real t37 = t35 - t36;
-
-  // kernel
-  const Real t38 = t37 + t34;
-  const Real t39 = t38 * t38;
-  const Real t40 = par.k2 * t20;
-
-  // joint angles
-  const Real t41 = par.k2 * t22;
-
-  // kernel
-  const Real t42 = t41 + t40;
-  const Real t43 = par.k1 * t29;
-
-  // joint angles
-  const Real t44 = par.k1 * t31;
-
-  // kernel
-  const Real t45 = t43 + t44;
-  const Real t46 = t45 + t42;
-  const Real t47 = t46 * t46;
-  const Real t48 = t39 + t47;
-  const Real t49 = sqrt(t48);
-  const Real t50 = constant<Real>(1.0L) / t49;
-  const Real t51 = t46 * t50;
-  const Real t52 = par.r_F * t51;
-
-  // joint angles
-  const Real t53 = par.k1 * c_r_p_1_;
-  const Real t54 = par.k1 * t53;
-
-  // kernel
-  const Real t55 = sum_error(par.k19, t54);
-  const Real t56 = par.k26 + t55;
-
-  // accelerations
-  const Real t57 = t52 * t56;
-
-  // joint angles
-  const Real t58 = par.k19 + t54;
-
-  // accelerations
-  const Real t59 = product_error(t58, t52);
-  const Real t60 = t57 + t59;
-
-  // kernel
-  const Real t61 = t38 * t50;
-  const Real t62 = t61 * par.r_F;
-  const Real t63 = t6 * t6;
-  const Real t64 = constant<Real>(2.0L) * t63;
-  const Real t65 = t64 * par.k23;
-  const Real t66 = t62 * t65;
-  const Real t67 = t58 * t52;
-  const Real t68 = t66 + t67;
-
-  // accelerations
-  const Real t69 = t60 + t68;
-
-  // kernel
-  const Real t70 = t56 * par.c;
-
-  // joint angles
-  const Real t71 = t58 * par.c;
-
-  // kernel
-  const Real t72 = t70 + t71;
-  const Real t73 = par.r_F * t65;
-
-  // accelerations
-  const Real t74 = t73 - t72;
-
-  // joint angles
-  const Real t75 = c_r_p_1_ * par.k14;
-
-  // accelerations
-  const Real t76 = t75 + t74;
-  const Real t77 = t69 + t76;
-
-  // joint angles
-  const Real t78 = R[6] * R[6];
-  const Real t79 = R[8] * R[8];
-  const Real t80 = t78 + t79;
-  const Real t81 = sqrt(t80);
-  const Real t82 = constant<Real>(1.0L) / t81;
-  const Real t83 = t82 * R[6];
-
-  // kernel
-  const Real t84 = quotient_error(constant<Real>(1.0L), t81);
-  const Real t85 = t84 * R[6];
-  const Real t86 = t83 + t85;
-  const Real t87 = t86 * par.r_R;
-  const Real t88 = t87 * c_r_p_1_;
-
-  // accelerations
-  const Real t89 = t77 - t88;
-  const Real t90 = constant<Real>(1.0L) / t89;
-  const Real t91 = sum_error(t76, t69);
-  const Real t92 = sum_error(t74, t75);
-
-  // kernel
-  const Real t93 = product_error(c_r_p_1_, par.k14);
-  const Real t94 = c_r_p_1_ * par.k28;
-  const Real t95 = t93 + t94;
-
-  // accelerations
-  const Real t96 = t92 + t95;
-  const Real t97 = t91 + t96;
-
-  // kernel
-  const Real t98 = -t88;
-
-  // accelerations
-  const Real t99 = sum_error(t77, t98);
-  const Real t100 = t97 + t99;
-  const Real t101 = t90 * t100;
-  const Real t102 = t101 / t89;
-  const Real t103 = quotient_error(constant<Real>(1.0L), t89);
-  const Real t104 = t103 - t102;
-
-  // joint angles
-  const Real t105 = s_r_p_1_ * par.k1;
-
-  // kernel
-  const Real t106 = t52 * t105;
-  const Real t107 = s_r_p_1_ * par.k28;
-  const Real t108 = product_error(s_r_p_1_, par.k14);
-  const Real t109 = t107 + t108;
-  const Real t110 = t109 * par.k1;
-
-  // joint angles
-  const Real t111 = s_r_p_1_ * par.k14;
-  const Real t112 = par.k1 * t111;
-
-  // kernel
-  const Real t113 = t110 + t112;
-
-  // joint angles
-  const Real t114 = par.c * t105;
-
-  // passive accelerations
-  const Real t115 = t114 - t113;
-
-  // accelerations
-  const Real t116 = t115 - t106;
-
-  // kernel
-  const Real t117 = t87 * t105;
-
-  // accelerations
-  const Real t118 = t117 + t116;
-  const Real t119 = t104 * t118;
-  const Real t120 = t90 * t118;
-  const Real t121 = t120 + t119;
-
-  // joint angles
-  const Real t122 = s_r_p_1_ * par.k2;
-
-  // kernel
-  const Real t123 = t122 * t62;
-  const Real t124 = t123 - t106;
-
-  // joint angles
-  const Real t125 = t122 * par.r_F;
-
-  // passive accelerations
-  const Real t126 = sum_error(t125, t114);
-
-  // kernel
-  const Real t127 = product_error(t122, par.r_F);
-
-  // passive accelerations
-  const Real t128 = t126 + t127;
-
-  // kernel
-  const Real t129 = s_r_p_1_ * par.k29;
-  const Real t130 = product_error(s_r_p_1_, par.k24);
+  const Real t129 = t22 * t84;
+  const Real t130 = t28 * t114;
   const Real t131 = t129 + t130;
+  const Real t132 = par.r_F * t114;
+  const Real t133 = t84 * par.c;
+  const Real t134 = t132 - t133;
+  const Real t135 = t134 + t131;
+  const Real t136 = par.r_R - t68;
+
+  // kernel
+  const Real t137 = c_r_p_1_ * t136;
+  const Real t138 = t135 - t137;
+  const Real t139 = t58 * t138;
+
+  // joint angles
+  const Real t140 = t22 * t59;
+  const Real t141 = t59 * par.c;
+  const Real t142 = t140 - t141;
+
+  // kernel
+  const Real t143 = t136 * t49;
+  const Real t144 = t142 + t143;
+  const Real t145 = t144 - t139;
+  const Real t146 = t128 * t145;
+  const Real t147 = -t139;
+  const Real t148 = sum_error(t144, t147);
+  const Real t149 = product_error(t58, t138);
+  const Real t150 = t148 - t149;
+  const Real t151 = t119 * t93;
+  const Real t152 = t150 * t151;
+  const Real t153 = t146 + t152;
+  const Real t154 = product_error(t145, t151);
+  const Real t155 = t153 + t154;
+  const Real t156 = t138 * t105;
+  const Real t157 = -t156;
+
+  // joint angles
+  const Real t158 = t62 + t60;
+
+  // kernel
+  const Real t159 = t59 * t136;
+  const Real t160 = t158 - t159;
+  const Real t161 = sum_error(t160, t157);
+  const Real t162 = product_error(t138, t105);
+  const Real t163 = t161 - t162;
+  const Real t164 = t163 - t155;
+  const Real t165 = t145 * t151;
+  const Real t166 = t160 - t156;
+  const Real t167 = t166 - t165;
+  const Real t168 = t164 + t167;
+  const Real t169 = t128 * t22;
+  const Real t170 = t22 * t151;
+  const Real t171 = t170 + t169;
+  const Real t172 = t171 - t28;
+  const Real t173 = constant<Real>(1.0L) / t172;
+  const Real t174 = t173 * t168;
+  const Real t175 = t22 * t174;
+  const Real t176 = sum_error(t145, t175);
+  const Real t177 = t150 + t176;
+  const Real t178 = t177 * t93;
+  const Real t179 = t145 + t175;
+  const Real t180 = t97 * t179;
+  const Real t181 = t180 + t178;
+  const Real t182 = product_error(t93, t179);
+  const Real t183 = t181 + t182;
+  const Real t184 = t183 * t72;
+  const Real t185 = t179 * t93;
+  const Real t186 = product_error(t72, t185);
+  const Real t187 = t184 + t186;
+  const Real t188 = t72 * t185;
+  const Real t189 = t138 - t188;
+  const Real t190 = t189 - t187;
+  const Real t191 = t48 * t190;
+  const Real t192 = t191 * nu[0];
+
+  // joint angles
+  const Real t193 = par.k1 * t28;
+  const Real t194 = t22 * par.k2;
+  const Real t195 = t193 + t194;
+  const Real t196 = t195 + par.k12;
+
+  // kernel
+  const Real t197 = t58 * t196;
+  const Real t198 = t128 * t197;
+  const Real t199 = product_error(t58, t196);
+  const Real t200 = t199 * t151;
+  const Real t201 = t200 + t198;
+  const Real t202 = product_error(t197, t151);
+  const Real t203 = t201 + t202;
+  const Real t204 = product_error(t196, t105);
+  const Real t205 = t203 - t204;
+  const Real t206 = t197 * t151;
+  const Real t207 = t196 * t105;
+  const Real t208 = t206 - t207;
+  const Real t209 = t208 + t205;
+  const Real t210 = t173 * t209;
+  const Real t211 = t22 * t210;
+  const Real t212 = -t197;
+  const Real t213 = sum_error(t211, t212);
+  const Real t214 = t213 - t199;
+  const Real t215 = t214 * t93;
+  const Real t216 = t211 - t197;
+  const Real t217 = t97 * t216;
+  const Real t218 = t215 + t217;
+  const Real t219 = product_error(t216, t93);
+  const Real t220 = t218 + t219;
+  const Real t221 = t72 * t220;
+  const Real t222 = t216 * t93;
+  const Real t223 = product_error(t222, t72);
+  const Real t224 = t223 + t221;
+  const Real t225 = t222 * t72;
+  const Real t226 = t196 - t225;
+  const Real t227 = t226 - t224;
+  const Real t228 = t227 * t48;
+  const Real t229 = t228 * nu[1];
+  const Real t230 = t192 + t229;
+  const Real t231 = t59 * t68;
+  const Real t232 = t56 + t231;
+  const Real t233 = t58 * t232;
+  const Real t234 = t84 * t68;
+  const Real t235 = t87 - t234;
+  const Real t236 = t235 - t233;
+  const Real t237 = t128 * t236;
+  const Real t238 = product_error(t236, t151);
 
   // passive accelerations
-  const Real t132 = t128 - t131;
+  const Real t239 = t238 + t237;
 
-  // joint angles
-  const Real t133 = t125 + t114;
-  const Real t134 = s_r_p_1_ * par.k24;
-  const Real t135 = t133 - t134;
+  // kernel
+  const Real t240 = t232 * t105;
+  const Real t241 = -t240;
+  const Real t242 = t68 * t114;
+  const Real t243 = t117 - t242;
+  const Real t244 = sum_error(t243, t241);
+  const Real t245 = product_error(t232, t105);
+  const Real t246 = t244 - t245;
 
   // passive accelerations
-  const Real t136 = t132 + t135;
-
-  // accelerations
-  const Real t137 = t124 + t136;
-
-  // joint angles
-  const Real t138 = R[8] * t82;
-  const Real t139 = t138 * par.r_R;
-  const Real t140 = t139 - par.r_R;
+  const Real t247 = t246 - t239;
 
   // kernel
-  const Real t141 = t140 * t122;
-
-  // accelerations
-  const Real t142 = t137 + t141;
-  const Real t143 = t142 + t117;
-  const Real t144 = t121 * t143;
-  const Real t145 = -t144;
-
-  // kernel
-  const Real t146 = t52 * c_r_p_1_;
-
-  // joint angles
-  const Real t147 = c_r_p_1_ * par.k24;
-
-  // kernel
-  const Real t148 = c_r_p_1_ * par.k29;
-  const Real t149 = t147 + t148;
-  const Real t150 = par.k1 * t149;
-  const Real t151 = par.k22 + t150;
-
-  // joint angles
-  const Real t152 = c_r_p_1_ * par.c;
-
-  // kernel
-  const Real t153 = t152 - t151;
-
-  // accelerations
-  const Real t154 = t153 - t146;
-
-  // kernel
-  const Real t155 = product_error(R[8], t82);
-  const Real t156 = R[8] * t84;
-  const Real t157 = t155 + t156;
-  const Real t158 = t157 * par.r_R;
-  const Real t159 = product_error(t138, par.r_R);
-  const Real t160 = t159 + t158;
-  const Real t161 = sum_error(t139, par.k6);
-  const Real t162 = t161 + t160;
-  const Real t163 = t162 * t65;
-  const Real t164 = t140 * t65;
-
-  // accelerations
-  const Real t165 = t164 + t163;
-  const Real t166 = t154 - t165;
-  const Real t167 = t58 * t87;
-  const Real t168 = t87 * t56;
-  const Real t169 = t167 + t168;
-  const Real t170 = t166 + t169;
-  const Real t171 = sum_error(t170, t145);
-  const Real t172 = product_error(t121, t143);
-  const Real t173 = sum_error(t141, t137);
-
-  // kernel
-  const Real t174 = t162 * t122;
-  const Real t175 = product_error(t140, t122);
-
-  // accelerations
-  const Real t176 = t174 + t175;
-  const Real t177 = t176 + t173;
-  const Real t178 = sum_error(t142, t117);
-  const Real t179 = t177 + t178;
-  const Real t180 = t179 * t121;
-  const Real t181 = t172 + t180;
-
-  // kernel
-  const Real t182 = -t146;
-
-  // accelerations
-  const Real t183 = sum_error(t153, t182);
-
-  // kernel
-  const Real t184 = -t151;
-  const Real t185 = sum_error(t152, t184);
-  const Real t186 = sum_error(t150, par.k22);
-  const Real t187 = t186 + par.k31;
-  const Real t188 = t185 - t187;
-
-  // accelerations
-  const Real t189 = t188 + t183;
-  const Real t190 = -t165;
-  const Real t191 = sum_error(t154, t190);
-  const Real t192 = t191 + t189;
-  const Real t193 = sum_error(t169, t166);
-  const Real t194 = t193 + t192;
-  const Real t195 = t194 - t181;
-  const Real t196 = t171 + t195;
-  const Real t197 = t170 - t144;
-  const Real t198 = constant<Real>(1.0L) / t197;
-  const Real t199 = t196 * t198;
-  const Real t200 = t199 / t197;
-  const Real t201 = quotient_error(constant<Real>(1.0L), t197);
-  const Real t202 = t201 - t200;
-
-  // kernel
-  const Real t203 = t62 * t105;
-
-  // joint angles
-  const Real t204 = par.k2 * t111;
-  const Real t205 = par.r_F * t105;
-  const Real t206 = t204 - t205;
-
-  // kernel
-  const Real t207 = t206 - t203;
-  const Real t208 = t87 * t122;
-
-  // accelerations
-  const Real t209 = t207 - t208;
-  const Real t210 = t209 * t90;
-  const Real t211 = t143 * t210;
-
-  // kernel
-  const Real t212 = t38 * c_r_p_1_;
-  const Real t213 = t212 * par.r_F;
-  const Real t214 = t213 * t50;
-
-  // accelerations
-  const Real t215 = par.k66 * t64;
-
-  // joint angles
-  const Real t216 = c_r_p_1_ * par.r_F;
-
-  // accelerations
-  const Real t217 = t215 + t216;
-  const Real t218 = t217 + t214;
-
-  // joint angles
-  const Real t219 = c_r_p_1_ * par.k2;
-  const Real t220 = par.k2 * t219;
-  const Real t221 = par.k20 + t220;
-
-  // kernel
-  const Real t222 = t140 * t221;
-
-  // accelerations
-  const Real t223 = t222 + t218;
-
-  // kernel
-  const Real t224 = t84 * par.k1;
-  const Real t225 = par.k1 * t82;
-  const Real t226 = t224 + t225;
-  const Real t227 = par.k2 * t226;
-  const Real t228 = t227 * t6;
-  const Real t229 = t228 * t6;
-  const Real t230 = t229 * R[6];
-  const Real t231 = t230 * par.r_R;
-  const Real t232 = constant<Real>(2.0L) * t231;
-
-  // accelerations
-  const Real t233 = t232 - t223;
-  const Real t234 = t233 - t211;
-  const Real t235 = t202 * t234;
-  const Real t236 = t104 * t209;
-
-  // kernel
-  const Real t237 = -t203;
-  const Real t238 = sum_error(t206, t237);
-  const Real t239 = t109 * par.k2;
-  const Real t240 = product_error(par.k2, t111);
-  const Real t241 = t240 + t239;
-  const Real t242 = -t205;
-  const Real t243 = sum_error(t204, t242);
+  const Real t248 = t236 * t151;
+  const Real t249 = t243 - t240;
+  const Real t250 = t249 - t248;
 
   // passive accelerations
-  const Real t244 = t241 + t243;
-  const Real t245 = t244 + t238;
+  const Real t251 = t247 + t250;
+  const Real t252 = t251 * t173;
+  const Real t253 = t252 * t22;
+  const Real t254 = sum_error(t236, t253);
+  const Real t255 = t254 * t93;
+  const Real t256 = t236 + t253;
+  const Real t257 = t256 * t97;
+  const Real t258 = t255 + t257;
+  const Real t259 = product_error(t256, t93);
+  const Real t260 = t259 + t258;
+  const Real t261 = t72 * t260;
+  const Real t262 = t256 * t93;
+  const Real t263 = product_error(t262, t72);
+  const Real t264 = t263 + t261;
+  const Real t265 = t262 * t72;
+  const Real t266 = t232 - t265;
+  const Real t267 = t266 - t264;
+  const Real t268 = t267 * t48;
+  const Real t269 = t268 * nu[2];
 
   // accelerations
-  const Real t246 = -t208;
-  const Real t247 = sum_error(t207, t246);
-  const Real t248 = t247 + t245;
-  const Real t249 = t248 * t90;
-  const Real t250 = t236 + t249;
-  const Real t251 = product_error(t90, t209);
-  const Real t252 = t251 + t250;
-  const Real t253 = t143 * t252;
-  const Real t254 = t179 * t210;
-  const Real t255 = t254 + t253;
-  const Real t256 = product_error(t210, t143);
-  const Real t257 = t255 + t256;
-  const Real t258 = -t223;
-  const Real t259 = sum_error(t232, t258);
-  const Real t260 = sum_error(t217, t214);
-  const Real t261 = sum_error(t215, t216);
+  const Real t270 = t269 + t230;
+  const Real t271 = t270 * R[7];
 
   // kernel
-  const Real t262 = product_error(c_r_p_1_, par.r_F);
-
-  // accelerations
-  const Real t263 = t262 + t261;
-  const Real t264 = t263 + t260;
-
-  // kernel
-  const Real t265 = t162 * t221;
-  const Real t266 = sum_error(par.k20, t220);
-  const Real t267 = product_error(c_r_p_1_, par.k2);
-  const Real t268 = t267 * par.k2;
-  const Real t269 = product_error(par.k2, t219);
-  const Real t270 = t268 + t269;
-  const Real t271 = t266 + t270;
-  const Real t272 = t140 * t271;
-
-  // accelerations
-  const Real t273 = t265 + t272;
-
-  // kernel
-  const Real t274 = product_error(t140, t221);
-
-  // accelerations
-  const Real t275 = t274 + t273;
-  const Real t276 = t275 + t264;
-  const Real t277 = sum_error(t222, t218);
-  const Real t278 = t277 + t276;
-  const Real t279 = t259 - t278;
-  const Real t280 = t279 - t257;
-  const Real t281 = -t211;
-  const Real t282 = sum_error(t233, t281);
-  const Real t283 = t280 + t282;
-  const Real t284 = t198 * t283;
-  const Real t285 = t284 + t235;
-  const Real t286 = product_error(t234, t198);
-  const Real t287 = t286 + t285;
-  const Real t288 = t52 * t287;
-  const Real t289 = t234 * t198;
-  const Real t290 = product_error(t52, t289);
-  const Real t291 = t288 + t290;
-  const Real t292 = t52 * t289;
-
-  // kernel
-  const Real t293 = -t62;
-
-  // accelerations
-  const Real t294 = sum_error(t292, t293);
-  const Real t295 = t294 + t291;
-  const Real t296 = t292 - t62;
-  const Real t297 = constant<Real>(1.0L) / t296;
-  const Real t298 = t297 * t295;
-  const Real t299 = t298 / t296;
-  const Real t300 = quotient_error(constant<Real>(1.0L), t296);
-  const Real t301 = t300 - t299;
-
-  // kernel
-  const Real t302 = t52 * par.k2;
-  const Real t303 = par.k1 * t62;
-  const Real t304 = t302 + t303;
-  const Real t305 = t304 + par.k13;
-
-  // accelerations
-  const Real t306 = t121 * t305;
-  const Real t307 = t306 * t289;
-  const Real t308 = t305 * t210;
-  const Real t309 = t307 - t308;
-  const Real t310 = t309 * t301;
-  const Real t311 = t306 * t287;
-  const Real t312 = product_error(t121, t305);
-  const Real t313 = t289 * t312;
-  const Real t314 = t311 + t313;
-  const Real t315 = product_error(t306, t289);
-  const Real t316 = t315 + t314;
-  const Real t317 = t305 * t252;
-  const Real t318 = product_error(t305, t210);
-  const Real t319 = t317 + t318;
-  const Real t320 = t316 - t319;
-  const Real t321 = -t308;
-  const Real t322 = sum_error(t307, t321);
-  const Real t323 = t322 + t320;
-  const Real t324 = t297 * t323;
-  const Real t325 = t310 + t324;
-  const Real t326 = product_error(t297, t309);
-  const Real t327 = t326 + t325;
-  const Real t328 = t52 * t327;
-  const Real t329 = t309 * t297;
-  const Real t330 = product_error(t52, t329);
-  const Real t331 = t328 + t330;
-  const Real t332 = t331 - t312;
-  const Real t333 = t52 * t329;
-  const Real t334 = -t306;
-  const Real t335 = sum_error(t333, t334);
-  const Real t336 = t332 + t335;
-  const Real t337 = t198 * t336;
-  const Real t338 = t333 - t306;
-  const Real t339 = t202 * t338;
-  const Real t340 = t339 + t337;
-  const Real t341 = product_error(t198, t338);
-  const Real t342 = t341 + t340;
-  const Real t343 = t342 * t143;
-  const Real t344 = t338 * t198;
-  const Real t345 = t179 * t344;
-  const Real t346 = t343 + t345;
-  const Real t347 = product_error(t344, t143);
-  const Real t348 = t346 + t347;
-  const Real t349 = t344 * t143;
-  const Real t350 = -t349;
-  const Real t351 = sum_error(t305, t350);
-  const Real t352 = t351 - t348;
-  const Real t353 = t352 * t90;
-  const Real t354 = t305 - t349;
-  const Real t355 = t104 * t354;
-  const Real t356 = t353 + t355;
-  const Real t357 = product_error(t90, t354);
-  const Real t358 = t356 + t357;
-  const Real t359 = t358 * nu[1];
-  const Real t360 = t90 * t354;
-  const Real t361 = t360 * nu[1];
-  const Real t362 = t359 + t361;
-
-  // kernel
-  const Real t363 = t62 * t271;
-  const Real t364 = t62 * t221;
-  const Real t365 = t363 + t364;
-  const Real t366 = t52 * t65;
-  const Real t367 = t366 + t365;
-  const Real t368 = par.r_F * t271;
-
-  // joint angles
-  const Real t369 = par.r_F * t221;
+  const Real t272 = nu[1] * t220;
+  const Real t273 = t222 * nu[1];
+  const Real t274 = t273 + t272;
+  const Real t275 = t183 * nu[0];
+  const Real t276 = t185 * nu[0];
+  const Real t277 = t275 + t276;
+  const Real t278 = t274 + t277;
 
   // passive accelerations
-  const Real t370 = t369 + t368;
+  const Real t279 = nu[2] * t260;
+  const Real t280 = t262 * nu[2];
+  const Real t281 = t280 + t279;
+
+  // accelerations
+  const Real t282 = t281 + t278;
+  const Real t283 = R[8] * t282;
+  const Real t284 = t283 - t271;
+  const Real t285 = t284 * par.k2;
+  const Real t286 = R[6] * t282;
+
+  // joint angles
+  const Real t287 = nu[0] * R[7];
+
+  // accelerations
+  const Real t288 = t287 + t286;
+  const Real t289 = t288 * par.k1;
+  const Real t290 = t289 + t285;
+  const Real t291 = c_r_p_1_ * t290;
+
+  // joint angles
+  const Real t292 = s_r_p_1_ * nu[1];
+  const Real t293 = t292 * t3;
+
+  // accelerations
+  const Real t294 = t291 - t293;
+  const Real t295 = t270 * R[6];
+
+  // joint angles
+  const Real t296 = R[8] * nu[0];
+
+  // accelerations
+  const Real t297 = t296 + t295;
+  const Real t298 = s_r_p_1_ * t297;
+
+  // joint angles
+  const Real t299 = c_r_p_1_ * nu[1];
+  const Real t300 = t299 * R[7];
+
+  // accelerations
+  const Real t301 = t298 + t300;
+  const Real t302 = t294 + t301;
+  const Real t303 = par.k2 * t302;
+  const Real t304 = t284 * par.k1;
+  const Real t305 = t288 * par.k2;
+  const Real t306 = t304 - t305;
+  const Real t307 = t306 * par.k1;
+  const Real t308 = t307 + t303;
+  const Real t309 = t308 * t16;
+  const Real t310 = t309 * constant<Real>(2.0L);
+  const Real t311 = par.k1 * t302;
+  const Real t312 = t306 * par.k2;
+  const Real t313 = t311 - t312;
+  const Real t314 = t12 * t313;
+  const Real t315 = t314 * constant<Real>(2.0L);
+  const Real t316 = t310 + t315;
+
+  // joint angles
+  const Real t317 = constant<Real>(2.0L) * t19;
+
+  // accelerations
+  const Real t318 = t316 / t317;
+  const Real t319 = t318 * t20;
+  const Real t320 = t319 / t19;
+  const Real t321 = t16 * t320;
+  const Real t322 = t308 * t20;
+  const Real t323 = t322 - t321;
+  const Real t324 = par.r_F * t323;
+  const Real t325 = par.k1 * t270;
+
+  // joint angles
+  const Real t326 = par.k2 * nu[0];
+
+  // accelerations
+  const Real t327 = t325 + t326;
+  const Real t328 = c_r_p_1_ * t327;
+  const Real t329 = s_r_p_1_ * t282;
+  const Real t330 = t328 - t329;
+  const Real t331 = par.k1 * t330;
+  const Real t332 = par.k2 * t270;
+
+  // joint angles
+  const Real t333 = par.k1 * nu[0];
+
+  // accelerations
+  const Real t334 = t333 - t332;
+  const Real t335 = t334 + nu[1];
+  const Real t336 = par.k2 * t335;
+  const Real t337 = t336 - t331;
+  const Real t338 = t324 * t337;
+  const Real t339 = t292 * t327;
+  const Real t340 = t299 * t282;
+  const Real t341 = t340 + t339;
+  const Real t342 = t341 * par.k1;
+  const Real t343 = t22 * t342;
+  const Real t344 = t338 + t343;
+  const Real t345 = t12 * t320;
+  const Real t346 = t20 * t313;
+  const Real t347 = t346 - t345;
+  const Real t348 = t347 * par.r_F;
+  const Real t349 = par.k2 * t330;
+  const Real t350 = par.k1 * t335;
+  const Real t351 = t350 + t349;
+  const Real t352 = t351 * t348;
+  const Real t353 = t341 * par.k2;
+  const Real t354 = t28 * t353;
+  const Real t355 = t352 - t354;
+  const Real t356 = t344 + t355;
+  const Real t357 = par.c * t342;
+  const Real t358 = par.r_F * t353;
+  const Real t359 = t357 + t358;
 
   // kernel
-  const Real t371 = t65 * par.c;
+  const Real t360 = t191 * t45;
+  const Real t361 = t360 - t136;
+  const Real t362 = t361 * nu[0];
+  const Real t363 = t228 * t45;
+  const Real t364 = t363 * nu[1];
+  const Real t365 = t362 + t364;
 
   // passive accelerations
-  const Real t372 = t370 - t371;
-  const Real t373 = t372 + t367;
-
-  // kernel
-  const Real t374 = -t139;
-  const Real t375 = sum_error(par.r_R, t374);
-  const Real t376 = t375 - t160;
-  const Real t377 = t376 * c_r_p_1_;
-
-  // joint angles
-  const Real t378 = par.r_R - t139;
-
-  // kernel
-  const Real t379 = c_r_p_1_ * t378;
+  const Real t366 = t268 * t45;
+  const Real t367 = t366 * nu[2];
 
   // accelerations
-  const Real t380 = t379 + t377;
-  const Real t381 = t373 - t380;
-  const Real t382 = t121 * t381;
+  const Real t368 = t365 + t367;
+  const Real t369 = t270 * par.k13;
+  const Real t370 = t368 - t369;
+  const Real t371 = t370 * t292;
 
   // kernel
-  const Real t383 = t122 * t52;
+  const Real t372 = t45 * t220;
+  const Real t373 = t222 * t45;
+  const Real t374 = t373 + t372;
+  const Real t375 = t374 * nu[1];
+  const Real t376 = t183 * t45;
+  const Real t377 = t185 * t45;
+  const Real t378 = t377 + t376;
+  const Real t379 = t378 * nu[0];
+  const Real t380 = t375 + t379;
 
-  // joint angles
-  const Real t384 = t122 * par.c;
-
-  // kernel
-  const Real t385 = t383 - t384;
-  const Real t386 = t376 * t105;
-  const Real t387 = t378 * t105;
+  // passive accelerations
+  const Real t381 = t45 * t260;
+  const Real t382 = t262 * t45;
+  const Real t383 = t382 + t381;
+  const Real t384 = t45 - t383;
+  const Real t385 = nu[2] * t384;
 
   // accelerations
+  const Real t386 = t385 - t380;
+  const Real t387 = par.k13 * t282;
   const Real t388 = t386 + t387;
-  const Real t389 = t385 + t388;
-  const Real t390 = t389 - t382;
-  const Real t391 = t390 * t287;
-  const Real t392 = -t382;
-  const Real t393 = sum_error(t389, t392);
-  const Real t394 = product_error(t121, t381);
-  const Real t395 = t393 - t394;
-  const Real t396 = t395 * t289;
-  const Real t397 = t396 + t391;
-  const Real t398 = product_error(t289, t390);
-  const Real t399 = t397 + t398;
-  const Real t400 = t381 * t252;
-  const Real t401 = product_error(t381, t210);
-  const Real t402 = t400 + t401;
-  const Real t403 = t381 * t210;
-  const Real t404 = -t403;
+  const Real t389 = par.k1 * t388;
 
   // kernel
-  const Real t405 = t125 + t123;
+  const Real t390 = t183 * t69;
+  const Real t391 = t69 * t185;
+  const Real t392 = t391 + t390;
+  const Real t393 = t392 * nu[0];
+  const Real t394 = t69 * t220;
+  const Real t395 = t222 * t69;
+  const Real t396 = t394 + t395;
+  const Real t397 = t396 * nu[1];
+  const Real t398 = t393 + t397;
 
   // passive accelerations
-  const Real t406 = t405 + t127;
-
-  // kernel
-  const Real t407 = t376 * t122;
-  const Real t408 = t122 * t378;
-
-  // accelerations
-  const Real t409 = t407 + t408;
-  const Real t410 = t406 - t409;
-  const Real t411 = sum_error(t410, t404);
-  const Real t412 = t411 - t402;
-  const Real t413 = t412 - t399;
-  const Real t414 = t390 * t289;
-  const Real t415 = t410 - t403;
-  const Real t416 = t415 - t414;
-  const Real t417 = t416 + t413;
-  const Real t418 = t301 * t417;
-  const Real t419 = t297 * t417;
-  const Real t420 = t418 + t419;
-  const Real t421 = t52 * t420;
-  const Real t422 = sum_error(t421, t390);
-  const Real t423 = t422 + t395;
-  const Real t424 = t423 * t198;
-  const Real t425 = t421 + t390;
-  const Real t426 = t202 * t425;
-  const Real t427 = t424 + t426;
-  const Real t428 = product_error(t198, t425);
-  const Real t429 = t427 + t428;
-  const Real t430 = t429 * t143;
-  const Real t431 = t198 * t425;
-  const Real t432 = t179 * t431;
-  const Real t433 = t432 + t430;
-  const Real t434 = product_error(t431, t143);
-  const Real t435 = t433 + t434;
-  const Real t436 = t143 * t431;
-  const Real t437 = t381 - t436;
-  const Real t438 = t437 - t435;
-  const Real t439 = t104 * t438;
-  const Real t440 = t438 * t90;
-  const Real t441 = t439 + t440;
-  const Real t442 = t441 * nu[0];
-  const Real t443 = t442 + t362;
-
-  // kernel
-  const Real t444 = t122 * t160;
-  const Real t445 = t122 * t139;
+  const Real t399 = t69 * t260;
+  const Real t400 = t262 * t69;
+  const Real t401 = t400 + t399;
+  const Real t402 = t401 - t68;
+  const Real t403 = nu[2] * t402;
 
   // accelerations
-  const Real t446 = t445 + t444;
-  const Real t447 = t117 + t446;
-  const Real t448 = t121 * t447;
+  const Real t404 = t403 + t398;
+  const Real t405 = t404 * par.k2;
+  const Real t406 = t405 - t389;
+  const Real t407 = t406 * t299;
+  const Real t408 = t371 + t407;
+  const Real t409 = t408 + t359;
+  const Real t410 = t409 - t356;
+  const Real t411 = t284 * R[6];
+  const Real t412 = t411 * constant<Real>(2.0L);
+  const Real t413 = R[8] * t288;
+  const Real t414 = t413 * constant<Real>(2.0L);
+  const Real t415 = t412 - t414;
 
-  // kernel
-  const Real t449 = t65 * t160;
-  const Real t450 = t139 * t65;
-
-  // accelerations
-  const Real t451 = t450 + t449;
-  const Real t452 = t169 - t451;
-  const Real t453 = t452 - t448;
-  const Real t454 = t453 * t289;
-  const Real t455 = t447 * t210;
-
-  // kernel
-  const Real t456 = t160 * t221;
-  const Real t457 = t139 * t271;
+  // joint angles
+  const Real t416 = constant<Real>(2.0L) * t42;
 
   // accelerations
-  const Real t458 = t457 + t456;
+  const Real t417 = t415 / t416;
+  const Real t418 = t43 * t417;
+  const Real t419 = t418 / t42;
+  const Real t420 = R[8] * t419;
+  const Real t421 = t288 * t43;
+  const Real t422 = t420 + t421;
+  const Real t423 = t422 * par.r_R;
+  const Real t424 = nu[2] - t282;
+  const Real t425 = t424 * t423;
+  const Real t426 = t425 * t59;
+  const Real t427 = t410 + t426;
+  const Real t428 = t419 * R[6];
+  const Real t429 = t284 * t43;
+  const Real t430 = t429 - t428;
+  const Real t431 = par.r_R * t430;
+  const Real t432 = t270 * t431;
+  const Real t433 = t423 * nu[0];
+  const Real t434 = t432 - t433;
+  const Real t435 = t434 * c_r_p_1_;
+  const Real t436 = t427 - t435;
+  const Real t437 = t424 * t431;
+  const Real t438 = t437 * t49;
+  const Real t439 = t436 - t438;
+  const Real t440 = t58 * t439;
+  const Real t441 = -t440;
+  const Real t442 = s_r_p_1_ * t327;
+  const Real t443 = c_r_p_1_ * t282;
+  const Real t444 = t443 + t442;
 
   // kernel
-  const Real t459 = t139 * t221;
+  const Real t445 = nu[0] * t174;
+  const Real t446 = t210 * nu[1];
+  const Real t447 = t445 + t446;
+
+  // passive accelerations
+  const Real t448 = t252 * nu[2];
 
   // accelerations
-  const Real t460 = t458 + t459;
-  const Real t461 = t87 * t65;
-  const Real t462 = t461 - t460;
-  const Real t463 = t462 - t455;
-  const Real t464 = t463 - t454;
-  const Real t465 = t464 * t301;
-  const Real t466 = t453 * t287;
-  const Real t467 = -t448;
-  const Real t468 = sum_error(t452, t467);
-  const Real t469 = product_error(t121, t447);
-  const Real t470 = t468 - t469;
-  const Real t471 = t470 * t289;
-  const Real t472 = t466 + t471;
-  const Real t473 = product_error(t453, t289);
-  const Real t474 = t472 + t473;
-  const Real t475 = t447 * t252;
-  const Real t476 = product_error(t210, t447);
-  const Real t477 = t476 + t475;
-  const Real t478 = -t455;
-  const Real t479 = sum_error(t462, t478);
-  const Real t480 = t479 - t477;
-  const Real t481 = t480 - t474;
-  const Real t482 = -t454;
-  const Real t483 = sum_error(t463, t482);
-  const Real t484 = t483 + t481;
-  const Real t485 = t484 * t297;
-  const Real t486 = t485 + t465;
-  const Real t487 = product_error(t464, t297);
+  const Real t449 = t447 + t448;
+  const Real t450 = t449 + t444;
+  const Real t451 = t324 * t450;
+  const Real t452 = t327 * t299;
+  const Real t453 = t292 * t282;
+  const Real t454 = t452 - t453;
+  const Real t455 = t22 * t454;
+  const Real t456 = t455 + t451;
+  const Real t457 = t370 * t299;
+  const Real t458 = t406 * t292;
+  const Real t459 = t457 - t458;
+  const Real t460 = par.k1 * t459;
+  const Real t461 = t454 * par.c;
+  const Real t462 = t460 + t461;
+  const Real t463 = t462 - t456;
+  const Real t464 = t425 * t84;
+  const Real t465 = t463 - t464;
+  const Real t466 = t434 * t49;
+  const Real t467 = t466 + t465;
+  const Real t468 = t437 * t25;
+  const Real t469 = t467 - t468;
+  const Real t470 = sum_error(t469, t441);
+  const Real t471 = product_error(t58, t439);
+  const Real t472 = t470 - t471;
+  const Real t473 = t151 * t472;
+  const Real t474 = t469 - t440;
+  const Real t475 = t128 * t474;
+  const Real t476 = t473 + t475;
+  const Real t477 = product_error(t474, t151);
+  const Real t478 = t476 + t477;
+  const Real t479 = t439 * t105;
+  const Real t480 = t450 * t348;
+  const Real t481 = t28 * t454;
+  const Real t482 = t481 + t480;
+  const Real t483 = t459 * par.k2;
+  const Real t484 = t454 * par.r_F;
+  const Real t485 = t484 + t483;
+  const Real t486 = t485 + t482;
+  const Real t487 = t425 * t114;
   const Real t488 = t486 + t487;
-  const Real t489 = t52 * t488;
-  const Real t490 = t464 * t297;
-  const Real t491 = product_error(t52, t490);
-  const Real t492 = t491 + t489;
-  const Real t493 = t492 + t470;
-  const Real t494 = t490 * t52;
-  const Real t495 = sum_error(t453, t494);
-  const Real t496 = t493 + t495;
-  const Real t497 = t496 * t198;
-  const Real t498 = t453 + t494;
-  const Real t499 = t202 * t498;
-  const Real t500 = t497 + t499;
-  const Real t501 = product_error(t198, t498);
-  const Real t502 = t500 + t501;
-  const Real t503 = t143 * t502;
-  const Real t504 = t198 * t498;
-  const Real t505 = t179 * t504;
-  const Real t506 = t505 + t503;
-  const Real t507 = product_error(t143, t504);
-  const Real t508 = t506 + t507;
-  const Real t509 = t504 * t143;
-  const Real t510 = -t509;
-  const Real t511 = sum_error(t447, t510);
-  const Real t512 = t511 - t508;
-  const Real t513 = t512 * t90;
-  const Real t514 = t447 - t509;
-  const Real t515 = t104 * t514;
-  const Real t516 = t515 + t513;
-  const Real t517 = product_error(t90, t514);
-  const Real t518 = t516 + t517;
-  const Real t519 = t518 * nu[2];
-  const Real t520 = t90 * t514;
-  const Real t521 = t520 * nu[2];
-  const Real t522 = t521 + t519;
-  const Real t523 = t443 + t522;
-  const Real t524 = t523 * R[7];
-  const Real t525 = t342 * nu[1];
-  const Real t526 = t344 * nu[1];
-  const Real t527 = t526 + t525;
-  const Real t528 = t429 * nu[0];
-  const Real t529 = nu[0] * t431;
-  const Real t530 = t529 + t528;
-  const Real t531 = t530 + t527;
-  const Real t532 = nu[2] * t502;
-  const Real t533 = t504 * nu[2];
-  const Real t534 = t533 + t532;
-  const Real t535 = t531 + t534;
-  const Real t536 = t535 * R[8];
-  const Real t537 = t536 - t524;
-  const Real t538 = par.k2 * t537;
-  const Real t539 = t535 * R[6];
+  const Real t489 = t434 * t59;
+  const Real t490 = t488 + t489;
+  const Real t491 = t437 * t30;
+  const Real t492 = t491 + t490;
+  const Real t493 = sum_error(t479, t492);
+  const Real t494 = product_error(t439, t105);
+  const Real t495 = t493 + t494;
+  const Real t496 = t478 + t495;
+  const Real t497 = t151 * t474;
+  const Real t498 = t479 + t492;
+  const Real t499 = t497 + t498;
+  const Real t500 = t499 + t496;
+  const Real t501 = t173 * t500;
+  const Real t502 = t22 * t501;
+  const Real t503 = -t502;
+  const Real t504 = sum_error(t474, t503);
+  const Real t505 = t504 + t472;
+  const Real t506 = t505 * t93;
+  const Real t507 = t474 - t502;
+  const Real t508 = t97 * t507;
+  const Real t509 = t508 + t506;
+  const Real t510 = product_error(t507, t93);
+  const Real t511 = t509 + t510;
+  const Real t512 = t72 * t511;
+  const Real t513 = t93 * t507;
+  const Real t514 = product_error(t72, t513);
+  const Real t515 = t514 + t512;
+  const Real t516 = t513 * t72;
+  const Real t517 = t439 - t516;
+  const Real t518 = t517 - t515;
+  const Real t519 = t48 * t518;
+  const Real t520 = t519 * t45;
+  const Real t521 = t434 - t520;
+  const Real t522 = t404 * t270;
+  const Real t523 = t386 * nu[0];
+  const Real t524 = t522 + t523;
+  const Real t525 = t521 - t524;
 
-  // joint angles
-  const Real t540 = nu[0] * R[7];
+  // frame: acceleration
+  const Real t526 = par.g * R[7];
 
   // accelerations
-  const Real t541 = t540 + t539;
-  const Real t542 = par.k1 * t541;
-  const Real t543 = t538 + t542;
-  const Real t544 = t543 * c_r_p_1_;
+  const Real t527 = t525 - t526;
+  const Real t528 = nu[0] * t282;
+  const Real t529 = t519 - t528;
+  const Real t530 = par.k13 * t529;
+  const Real t531 = t527 + t530;
+  const Real t532 = s_r_p_1_ * t531;
+  const Real t533 = t69 * t511;
+  const Real t534 = t513 * t69;
+  const Real t535 = t533 + t534;
+  const Real t536 = t425 - t535;
+  const Real t537 = t368 * t270;
+  const Real t538 = t386 * t282;
+  const Real t539 = t537 - t538;
+  const Real t540 = t539 + t536;
 
-  // joint angles
-  const Real t545 = s_r_p_1_ * nu[1];
-
-  // passive accelerations
-  const Real t546 = t545 * t12;
-
-  // joint angles
-  const Real t547 = t545 * t14;
-
-  // passive accelerations
-  const Real t548 = t547 + t546;
-
-  // accelerations
-  const Real t549 = t544 - t548;
-  const Real t550 = t523 * R[6];
-
-  // joint angles
-  const Real t551 = R[8] * nu[0];
+  // frame: acceleration
+  const Real t541 = par.g * R[6];
 
   // accelerations
-  const Real t552 = t551 + t550;
-  const Real t553 = s_r_p_1_ * t552;
+  const Real t542 = t540 - t541;
+  const Real t543 = t270 * t270;
+  const Real t544 = t282 * t282;
+  const Real t545 = t544 + t543;
+  const Real t546 = t545 * par.k13;
+  const Real t547 = t542 - t546;
+  const Real t548 = t547 * par.k2;
+  const Real t549 = t45 * t511;
+  const Real t550 = t513 * t45;
+  const Real t551 = t550 + t549;
+  const Real t552 = t437 + t551;
+  const Real t553 = t368 * nu[0];
+  const Real t554 = t404 * t282;
+  const Real t555 = t554 + t553;
+  const Real t556 = t552 + t555;
 
-  // joint angles
-  const Real t554 = c_r_p_1_ * nu[1];
-  const Real t555 = t554 * R[7];
-
-  // accelerations
-  const Real t556 = t553 + t555;
-  const Real t557 = t556 + t549;
-  const Real t558 = par.k2 * t557;
-  const Real t559 = par.k1 * t537;
-  const Real t560 = par.k2 * t541;
-  const Real t561 = t559 - t560;
-  const Real t562 = par.k1 * t561;
-  const Real t563 = t562 + t558;
-  const Real t564 = t46 * t563;
-  const Real t565 = t564 * constant<Real>(2.0L);
-  const Real t566 = par.k1 * t557;
-  const Real t567 = t561 * par.k2;
-  const Real t568 = t566 - t567;
-  const Real t569 = t568 * t38;
-  const Real t570 = t569 * constant<Real>(2.0L);
-  const Real t571 = t565 + t570;
-
-  // kernel
-  const Real t572 = t49 * constant<Real>(2.0L);
+  // frame: acceleration
+  const Real t557 = par.g * R[8];
 
   // accelerations
-  const Real t573 = t571 / t572;
-  const Real t574 = t50 * t573;
-  const Real t575 = t574 / t49;
-  const Real t576 = t38 * t575;
-  const Real t577 = t568 * t50;
-  const Real t578 = t577 - t576;
-  const Real t579 = t578 * par.r_F;
-  const Real t580 = par.k1 * t523;
+  const Real t558 = t556 - t557;
+  const Real t559 = t270 * nu[0];
+  const Real t560 = t559 + t513;
+  const Real t561 = t560 + t511;
+  const Real t562 = t561 * par.k13;
+  const Real t563 = t558 - t562;
+  const Real t564 = par.k1 * t563;
+  const Real t565 = t548 - t564;
+  const Real t566 = c_r_p_1_ * t565;
+  const Real t567 = t566 + t532;
+  const Real t568 = t519 * par.k1;
+  const Real t569 = s_r_p_1_ * t568;
+  const Real t570 = c_r_p_1_ * t511;
+  const Real t571 = t513 * c_r_p_1_;
+  const Real t572 = t571 + t570;
+  const Real t573 = t572 + t569;
+  const Real t574 = nu[1] * t330;
+  const Real t575 = t573 - t574;
+  const Real t576 = t335 * t330;
+  const Real t577 = t575 + t576;
+  const Real t578 = t577 * par.k11;
+  const Real t579 = t444 * t444;
+  const Real t580 = t335 * t335;
+  const Real t581 = t579 + t580;
+  const Real t582 = par.k12 * t581;
+  const Real t583 = t582 + t578;
+  const Real t584 = t567 - t583;
+  const Real t585 = par.k2 * t584;
+  const Real t586 = t576 - t575;
+  const Real t587 = t586 * par.k12;
+  const Real t588 = t330 * t330;
+  const Real t589 = t588 + t579;
+  const Real t590 = t589 * par.k11;
+  const Real t591 = t587 + t590;
+  const Real t592 = par.k2 * t563;
+  const Real t593 = par.k1 * t547;
+  const Real t594 = t592 + t593;
+  const Real t595 = t594 + t591;
+  const Real t596 = t595 * par.k1;
+  const Real t597 = t585 + t596;
+  const Real t598 = t597 * s_r_p_2_;
+  const Real t599 = t595 * par.k2;
+  const Real t600 = par.k1 * t584;
+  const Real t601 = t599 - t600;
+  const Real t602 = t601 * c_r_p_2_;
+  const Real t603 = t598 + t602;
+  const Real t604 = par.m_F * t603;
+  const Real t605 = c_r_p_2_ * t604;
+  const Real t606 = t597 * c_r_p_2_;
+  const Real t607 = t601 * s_r_p_2_;
+  const Real t608 = t606 - t607;
+  const Real t609 = par.m_F * t608;
+  const Real t610 = t609 * s_r_p_2_;
+  const Real t611 = t605 - t610;
+  const Real t612 = t611 * par.k2;
+  const Real t613 = t609 * c_r_p_2_;
+  const Real t614 = s_r_p_2_ * t604;
+  const Real t615 = t613 + t614;
+  const Real t616 = par.k1 * t615;
+  const Real t617 = t612 + t616;
+  const Real t618 = par.k12 * t617;
+  const Real t619 = t615 * par.k2;
+  const Real t620 = t611 * par.k1;
+  const Real t621 = t619 - t620;
+  const Real t622 = par.k11 * t621;
+  const Real t623 = t618 + t622;
+  const Real t624 = t575 - t501;
+  const Real t625 = t624 * par.I_Fyy;
+  const Real t626 = t625 - t623;
+  const Real t627 = par.k8 * t567;
+  const Real t628 = t594 * par.k10;
+  const Real t629 = t627 - t628;
+  const Real t630 = t575 * par.k7;
+  const Real t631 = par.k31 * t576;
+  const Real t632 = t630 + t631;
+  const Real t633 = t580 - t588;
+  const Real t634 = par.k5 * t633;
+  const Real t635 = t634 + t632;
+  const Real t636 = t629 + t635;
+  const Real t637 = t626 + t636;
+  const Real t638 = s_r_p_1_ * t637;
+  const Real t639 = c_r_p_1_ * t568;
+  const Real t640 = s_r_p_1_ * t511;
+  const Real t641 = s_r_p_1_ * t513;
+  const Real t642 = t640 + t641;
+  const Real t643 = t642 - t639;
+  const Real t644 = t444 * nu[1];
+  const Real t645 = t643 - t644;
+  const Real t646 = t645 * par.k1;
+  const Real t647 = t519 * par.k2;
+  const Real t648 = t647 * par.k2;
+  const Real t649 = t648 - t646;
+  const Real t650 = c_r_p_2_ * t649;
+  const Real t651 = t645 * par.k2;
+  const Real t652 = par.k1 * t647;
+  const Real t653 = t652 + t651;
+  const Real t654 = t653 * s_r_p_2_;
+  const Real t655 = t650 + t654;
+  const Real t656 = t351 * c_r_p_2_;
+  const Real t657 = t337 * s_r_p_2_;
+  const Real t658 = t656 - t657;
+  const Real t659 = t449 * t658;
+  const Real t660 = t655 - t659;
+  const Real t661 = par.I_Fxx * t660;
+  const Real t662 = t450 * t658;
+  const Real t663 = par.k36 * t662;
+  const Real t664 = t661 - t663;
+  const Real t665 = t664 * s_r_p_2_;
+  const Real t666 = t653 * c_r_p_2_;
+  const Real t667 = t649 * s_r_p_2_;
+  const Real t668 = t666 - t667;
+  const Real t669 = t351 * s_r_p_2_;
+  const Real t670 = c_r_p_2_ * t337;
+  const Real t671 = t669 + t670;
+  const Real t672 = t449 * t671;
+  const Real t673 = t672 + t668;
+  const Real t674 = par.I_Fxx * t673;
+  const Real t675 = t450 * t671;
+  const Real t676 = t675 * par.k35;
+  const Real t677 = t674 - t676;
+  const Real t678 = t677 * c_r_p_2_;
+  const Real t679 = t665 + t678;
+  const Real t680 = par.k2 * t679;
+  const Real t681 = c_r_p_2_ * t664;
+  const Real t682 = t677 * s_r_p_2_;
+  const Real t683 = t681 - t682;
+  const Real t684 = par.k1 * t683;
+  const Real t685 = t680 - t684;
+  const Real t686 = c_r_p_1_ * t531;
+  const Real t687 = s_r_p_1_ * t565;
+  const Real t688 = t686 - t687;
+  const Real t689 = t444 * t335;
+  const Real t690 = t689 + t645;
+  const Real t691 = t690 * par.k11;
+  const Real t692 = t444 * t330;
+  const Real t693 = t647 - t692;
+  const Real t694 = t693 * par.k12;
+  const Real t695 = t691 + t694;
+  const Real t696 = t688 + t695;
+  const Real t697 = t696 * par.m_F;
+  const Real t698 = t697 * par.k11;
+  const Real t699 = t698 + t685;
+  const Real t700 = t688 * par.k8;
+  const Real t701 = t645 * par.k17;
+  const Real t702 = t689 * par.k30;
+  const Real t703 = t701 - t702;
+  const Real t704 = t693 * par.k5;
+  const Real t705 = t703 + t704;
+  const Real t706 = t705 - t700;
+  const Real t707 = t699 + t706;
+  const Real t708 = c_r_p_1_ * t707;
+  const Real t709 = t708 - t638;
+  const Real t710 = t709 * par.k2;
+  const Real t711 = par.k1 * t679;
+  const Real t712 = par.k2 * t683;
+  const Real t713 = t711 + t712;
+  const Real t714 = t697 * par.k12;
+  const Real t715 = t714 + t713;
+  const Real t716 = t688 * par.k10;
+  const Real t717 = par.k5 * t690;
+  const Real t718 = par.k6 * t647;
+  const Real t719 = t692 * par.k32;
+  const Real t720 = t718 - t719;
+  const Real t721 = t717 + t720;
+  const Real t722 = t721 + t716;
+  const Real t723 = t722 + t715;
+  const Real t724 = par.k1 * t723;
+  const Real t725 = t724 + t710;
+  const Real t726 = t527 * par.k15;
+  const Real t727 = par.k3 * t529;
+  const Real t728 = t270 * t282;
+  const Real t729 = par.k26 * t728;
+  const Real t730 = t727 + t729;
+  const Real t731 = t730 - t726;
+  const Real t732 = t725 + t731;
+  const Real t733 = t728 * par.r_R;
+  const Real t734 = t527 - t733;
+  const Real t735 = t734 * par.m_R;
+  const Real t736 = t735 * par.r_R;
+  const Real t737 = t519 * s_r_p_0_;
+  const Real t738 = t270 * c_r_p_0_;
 
-  // joint angles
-  const Real t581 = par.k2 * nu[0];
+  // rear_wheel: twist
+  const Real t739 = nu[0] * s_r_p_0_;
 
   // accelerations
-  const Real t582 = t581 + t580;
-  const Real t583 = c_r_p_1_ * t582;
-  const Real t584 = t535 * s_r_p_1_;
-  const Real t585 = t583 - t584;
-  const Real t586 = t585 * par.k2;
-  const Real t587 = t523 * par.k2;
+  const Real t740 = t739 - t738;
+  const Real t741 = nu[2] * t740;
+  const Real t742 = t741 + t737;
+  const Real t743 = t742 * par.I_Rxx;
+  const Real t744 = t424 * t740;
+  const Real t745 = t744 * par.k29;
+  const Real t746 = t745 - t743;
+  const Real t747 = t746 * c_r_p_0_;
+  const Real t748 = t519 * c_r_p_0_;
+  const Real t749 = t270 * s_r_p_0_;
 
-  // joint angles
-  const Real t588 = par.k1 * nu[0];
-
-  // accelerations
-  const Real t589 = t588 - t587;
-  const Real t590 = t589 + nu[1];
-  const Real t591 = par.k1 * t590;
-  const Real t592 = t586 + t591;
-  const Real t593 = t579 * t592;
-  const Real t594 = t545 * t582;
-  const Real t595 = t535 * t554;
-  const Real t596 = t594 + t595;
-  const Real t597 = par.k2 * t596;
-  const Real t598 = t62 * t597;
-  const Real t599 = t593 - t598;
-  const Real t600 = t46 * t575;
-  const Real t601 = t563 * t50;
-  const Real t602 = t601 - t600;
-  const Real t603 = par.r_F * t602;
-  const Real t604 = t585 * par.k1;
-  const Real t605 = par.k2 * t590;
-  const Real t606 = t605 - t604;
-  const Real t607 = t603 * t606;
-  const Real t608 = par.k1 * t596;
-  const Real t609 = t608 * t52;
-  const Real t610 = t609 + t607;
-  const Real t611 = t599 + t610;
-  const Real t612 = par.r_F * t597;
-  const Real t613 = t608 * par.c;
-  const Real t614 = t612 + t613;
-  const Real t615 = t523 * par.k14;
-  const Real t616 = t523 * par.k28;
-  const Real t617 = t615 + t616;
-  const Real t618 = t87 * t358;
-  const Real t619 = t87 * t360;
-  const Real t620 = t618 + t619;
-  const Real t621 = t620 * nu[1];
-  const Real t622 = t87 * t441;
-  const Real t623 = sum_error(t622, t140);
-
-  // kernel
-  const Real t624 = t160 - t375;
+  // rear_wheel: twist
+  const Real t750 = nu[0] * c_r_p_0_;
 
   // accelerations
-  const Real t625 = t624 + t623;
-  const Real t626 = t625 * nu[0];
-  const Real t627 = t622 - t378;
-  const Real t628 = t627 * nu[0];
-  const Real t629 = t628 + t626;
-  const Real t630 = t629 + t621;
-  const Real t631 = t518 * t87;
-  const Real t632 = t87 * t520;
-  const Real t633 = t631 + t632;
-  const Real t634 = t633 * nu[2];
-  const Real t635 = t634 + t630;
-  const Real t636 = t635 - t617;
-  const Real t637 = t636 * t545;
-  const Real t638 = t140 * t502;
-  const Real t639 = t504 * t162;
-  const Real t640 = t638 + t639;
-  const Real t641 = t504 * t140;
-  const Real t642 = t641 + t640;
-  const Real t643 = t642 - t139;
-  const Real t644 = t643 - t160;
-  const Real t645 = t644 * nu[2];
-  const Real t646 = t140 * t342;
-  const Real t647 = t162 * t344;
-  const Real t648 = t647 + t646;
-  const Real t649 = t140 * t344;
-  const Real t650 = t649 + t648;
-  const Real t651 = t650 * nu[1];
-  const Real t652 = t429 * t140;
-  const Real t653 = t162 * t431;
-  const Real t654 = t652 + t653;
-  const Real t655 = t140 * t431;
-  const Real t656 = t654 + t655;
-  const Real t657 = t656 * nu[0];
-  const Real t658 = t657 + t651;
-  const Real t659 = t658 + t645;
-  const Real t660 = t659 * par.k2;
-  const Real t661 = t535 * par.k14;
-  const Real t662 = t535 * par.k28;
-  const Real t663 = t661 + t662;
-  const Real t664 = t87 * t502;
-  const Real t665 = product_error(t87, t504);
-  const Real t666 = t665 + t664;
-  const Real t667 = t87 * t504;
-  const Real t668 = -t667;
-  const Real t669 = sum_error(t87, t668);
-  const Real t670 = t669 - t666;
-  const Real t671 = t670 * nu[2];
-  const Real t672 = t87 - t667;
-  const Real t673 = t672 * nu[2];
-  const Real t674 = t671 + t673;
-  const Real t675 = t87 * t342;
-  const Real t676 = product_error(t344, t87);
-  const Real t677 = t675 + t676;
-  const Real t678 = t677 * nu[1];
-  const Real t679 = t87 * t344;
-  const Real t680 = t679 * nu[1];
-  const Real t681 = t678 + t680;
-  const Real t682 = t429 * t87;
-  const Real t683 = t87 * t431;
-  const Real t684 = t682 + t683;
-  const Real t685 = t684 * nu[0];
-  const Real t686 = t685 + t681;
-  const Real t687 = t674 - t686;
-  const Real t688 = t663 + t687;
-  const Real t689 = t688 * par.k1;
-  const Real t690 = t660 - t689;
-  const Real t691 = t690 * t554;
-  const Real t692 = t637 + t691;
-  const Real t693 = t692 + t614;
-  const Real t694 = t693 - t611;
-  const Real t695 = R[6] * t537;
-  const Real t696 = t695 * constant<Real>(2.0L);
-  const Real t697 = R[8] * t541;
-  const Real t698 = t697 * constant<Real>(2.0L);
-  const Real t699 = t696 - t698;
-
-  // joint angles
-  const Real t700 = constant<Real>(2.0L) * t81;
-
-  // accelerations
-  const Real t701 = t699 / t700;
-  const Real t702 = t82 * t701;
-  const Real t703 = t84 * t701;
-  const Real t704 = t702 + t703;
-  const Real t705 = t704 / t81;
-  const Real t706 = R[8] * t705;
-  const Real t707 = t84 * t541;
-  const Real t708 = t82 * t541;
-  const Real t709 = t707 + t708;
-  const Real t710 = t706 + t709;
-  const Real t711 = t710 * par.r_R;
-  const Real t712 = nu[2] - t535;
-  const Real t713 = t712 * t711;
-  const Real t714 = t122 * t713;
-  const Real t715 = t694 + t714;
-  const Real t716 = t705 * R[6];
-  const Real t717 = t84 * t537;
-  const Real t718 = t82 * t537;
-  const Real t719 = t717 + t718;
-  const Real t720 = t719 - t716;
-  const Real t721 = par.r_R * t720;
-  const Real t722 = t523 * t721;
-  const Real t723 = t711 * nu[0];
-  const Real t724 = t722 - t723;
-  const Real t725 = t724 * c_r_p_1_;
-  const Real t726 = t715 - t725;
-  const Real t727 = t712 * t721;
-  const Real t728 = t727 * t105;
-  const Real t729 = t726 - t728;
-  const Real t730 = t121 * t729;
-  const Real t731 = -t730;
-  const Real t732 = s_r_p_1_ * t582;
-  const Real t733 = t535 * c_r_p_1_;
-  const Real t734 = t733 + t732;
-  const Real t735 = t327 * nu[1];
-  const Real t736 = t329 * nu[1];
-  const Real t737 = t736 + t735;
-  const Real t738 = t420 * nu[0];
-  const Real t739 = t737 + t738;
-  const Real t740 = t488 * nu[2];
-  const Real t741 = t490 * nu[2];
-  const Real t742 = t741 + t740;
-  const Real t743 = t742 + t739;
-  const Real t744 = t734 + t743;
-  const Real t745 = t744 * t603;
-  const Real t746 = t554 * t582;
-  const Real t747 = t535 * t545;
-  const Real t748 = t746 - t747;
-  const Real t749 = t52 * t748;
-  const Real t750 = t749 + t745;
-  const Real t751 = t636 * t554;
-  const Real t752 = t690 * t545;
-  const Real t753 = t751 - t752;
-  const Real t754 = t753 * par.k1;
-  const Real t755 = par.c * t748;
-  const Real t756 = t754 + t755;
-  const Real t757 = t756 - t750;
-  const Real t758 = t65 * t713;
-  const Real t759 = t757 - t758;
-  const Real t760 = t724 * t105;
-  const Real t761 = t759 + t760;
-  const Real t762 = t56 * t727;
-  const Real t763 = t58 * t727;
+  const Real t751 = t750 + t749;
+  const Real t752 = t751 * nu[2];
+  const Real t753 = t752 + t748;
+  const Real t754 = t753 * par.I_Rxx;
+  const Real t755 = t424 * t751;
+  const Real t756 = par.k28 * t755;
+  const Real t757 = t754 + t756;
+  const Real t758 = t757 * s_r_p_0_;
+  const Real t759 = t747 + t758;
+  const Real t760 = t759 + t736;
+  const Real t761 = t760 + t732;
+  const Real t762 = t361 * t361;
+  const Real t763 = t392 * t392;
   const Real t764 = t762 + t763;
-  const Real t765 = t761 - t764;
-  const Real t766 = sum_error(t765, t731);
-  const Real t767 = product_error(t121, t729);
-  const Real t768 = t766 - t767;
-  const Real t769 = t768 * t289;
-  const Real t770 = t765 - t730;
-  const Real t771 = t287 * t770;
-  const Real t772 = t771 + t769;
-  const Real t773 = product_error(t289, t770);
+  const Real t765 = t378 * t378;
+  const Real t766 = t764 + t765;
+  const Real t767 = constant<Real>(1.0L) + t766;
+  const Real t768 = t183 * t185;
+  const Real t769 = t768 * constant<Real>(2.0L);
+  const Real t770 = t185 * t185;
+  const Real t771 = t769 + t770;
+  const Real t772 = t771 + t767;
+  const Real t773 = t191 * t191;
   const Real t774 = t773 + t772;
-  const Real t775 = t729 * t210;
-  const Real t776 = t744 * t579;
-  const Real t777 = t62 * t748;
-  const Real t778 = t777 + t776;
-  const Real t779 = t753 * par.k2;
-  const Real t780 = par.r_F * t748;
-  const Real t781 = t779 + t780;
-  const Real t782 = t781 + t778;
-  const Real t783 = t713 * t221;
-  const Real t784 = t271 * t713;
+  const Real t775 = t174 * t174;
+  const Real t776 = t774 + t775;
+  const Real t777 = constant<Real>(1.0L) / t776;
+  const Real t778 = t363 * t361;
+  const Real t779 = t392 * t396;
+  const Real t780 = t779 + t778;
+  const Real t781 = t374 * t378;
+  const Real t782 = t780 + t781;
+  const Real t783 = t183 * t222;
+  const Real t784 = t185 * t220;
   const Real t785 = t783 + t784;
-  const Real t786 = t782 + t785;
-  const Real t787 = t724 * t122;
-  const Real t788 = t787 + t786;
-  const Real t789 = t727 * t65;
+  const Real t786 = t222 * t185;
+  const Real t787 = t785 + t786;
+  const Real t788 = t787 + t782;
+  const Real t789 = t191 * t228;
   const Real t790 = t788 + t789;
-  const Real t791 = sum_error(t790, t775);
-  const Real t792 = product_error(t210, t729);
-  const Real t793 = t729 * t252;
-  const Real t794 = t792 + t793;
-  const Real t795 = t791 + t794;
-  const Real t796 = t774 + t795;
-  const Real t797 = t289 * t770;
-  const Real t798 = t775 + t790;
-  const Real t799 = t797 + t798;
+  const Real t791 = t210 * t174;
+  const Real t792 = t791 + t790;
+  const Real t793 = t777 * t792;
+  const Real t794 = t793 * t361;
+  const Real t795 = t363 - t794;
+  const Real t796 = t795 * t795;
+  const Real t797 = t793 * t392;
+  const Real t798 = t396 - t797;
+  const Real t799 = t798 * t798;
   const Real t800 = t796 + t799;
-  const Real t801 = t301 * t800;
-  const Real t802 = t297 * t800;
-  const Real t803 = t801 + t802;
-  const Real t804 = t803 * t52;
-  const Real t805 = -t804;
-  const Real t806 = sum_error(t770, t805);
-  const Real t807 = product_error(t52, t803);
-  const Real t808 = t768 - t807;
-  const Real t809 = t808 + t806;
-  const Real t810 = t809 * t198;
-  const Real t811 = t770 - t804;
-  const Real t812 = t202 * t811;
-  const Real t813 = t810 + t812;
-  const Real t814 = product_error(t198, t811);
-  const Real t815 = t814 + t813;
-  const Real t816 = t815 * t143;
-  const Real t817 = t198 * t811;
-  const Real t818 = t179 * t817;
-  const Real t819 = t818 + t816;
-  const Real t820 = product_error(t143, t817);
-  const Real t821 = t820 + t819;
-  const Real t822 = t817 * t143;
-  const Real t823 = t729 - t822;
-  const Real t824 = t823 - t821;
-  const Real t825 = t824 * t90;
-  const Real t826 = t104 * t824;
-  const Real t827 = t825 + t826;
-  const Real t828 = t87 * t827;
-  const Real t829 = t724 - t828;
-
-  // passive accelerations
-  const Real t830 = c_r_p_2_ * t271;
-
-  // front_wheel: acceleration
-  const Real t831 = c_r_p_2_ * t221;
-
-  // passive accelerations
-  const Real t832 = t830 + t831;
-  const Real t833 = t65 * s_r_p_2_;
-  const Real t834 = t832 - t833;
-  const Real t835 = t834 * par.m_F;
-  const Real t836 = c_r_p_2_ * t835;
-  const Real t837 = t271 * s_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t838 = t221 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t839 = t838 + t837;
-  const Real t840 = c_r_p_2_ * t65;
-  const Real t841 = t839 + t840;
-  const Real t842 = par.m_F * t841;
-  const Real t843 = t842 * s_r_p_2_;
-  const Real t844 = t836 + t843;
-  const Real t845 = t844 * par.k2;
-  const Real t846 = c_r_p_2_ * t842;
-  const Real t847 = t835 * s_r_p_2_;
-  const Real t848 = t846 - t847;
-  const Real t849 = par.k1 * t848;
-  const Real t850 = t845 - t849;
-  const Real t851 = t267 * par.m_H;
-
-  // fork: wrench
-  const Real t852 = par.m_H * t219;
-
-  // passive accelerations
-  const Real t853 = t851 + t852;
-  const Real t854 = t850 + t853;
-  const Real t855 = s_r_p_1_ * t854;
-
-  // fork: wrench
-  const Real t856 = t122 * par.m_H;
-
-  // front_wheel: wrench
-  const Real t857 = t122 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t858 = t856 + t857;
-
-  // fork: joint force
-  const Real t859 = c_r_p_1_ * t858;
-
-  // passive accelerations
-  const Real t860 = t855 - t859;
-
-  // accelerations
-  const Real t861 = t829 * t860;
-  const Real t862 = t140 * t815;
-  const Real t863 = t817 * t162;
-  const Real t864 = t862 + t863;
-  const Real t865 = t140 * t817;
-  const Real t866 = t864 + t865;
-  const Real t867 = t713 - t866;
-
-  // passive accelerations
-  const Real t868 = c_r_p_1_ * t854;
-
-  // fork: joint force
-  const Real t869 = s_r_p_1_ * t858;
-
-  // passive accelerations
-  const Real t870 = t869 + t868;
-  const Real t871 = t870 * par.k2;
-  const Real t872 = par.k2 * t848;
-  const Real t873 = par.k1 * t844;
-  const Real t874 = t872 + t873;
-  const Real t875 = t874 + par.k41;
-  const Real t876 = par.k1 * t875;
-  const Real t877 = t876 + t871;
-  const Real t878 = t877 + par.m_B;
-
-  // rear_wheel: wrench
-  const Real t879 = par.m_R * c_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t880 = t879 * c_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t881 = par.m_R * s_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t882 = t881 * s_r_p_0_;
-  const Real t883 = t880 + t882;
-
-  // accelerations
-  const Real t884 = sum_error(t883, t878);
-  const Real t885 = sum_error(t877, par.m_B);
-  const Real t886 = t885 + t884;
-  const Real t887 = t886 * t867;
-
-  // passive accelerations
-  const Real t888 = t883 + t878;
-
-  // accelerations
-  const Real t889 = t888 * t867;
-  const Real t890 = t887 + t889;
-  const Real t891 = t861 + t890;
-  const Real t892 = t87 * t815;
-  const Real t893 = t87 * t817;
-  const Real t894 = t892 + t893;
-  const Real t895 = t727 + t894;
-
-  // passive accelerations
-  const Real t896 = par.k1 * t870;
-  const Real t897 = t875 * par.k2;
-  const Real t898 = t897 - t896;
-
-  // rear_wheel: joint force
-  const Real t899 = t881 * c_r_p_0_;
-  const Real t900 = t879 * s_r_p_0_;
+  const Real t801 = t793 * t378;
+  const Real t802 = t801 - t374;
+  const Real t803 = t802 * t802;
+  const Real t804 = t803 + t800;
+  const Real t805 = t793 * t793;
+  const Real t806 = t805 + t804;
+  const Real t807 = t185 * t793;
+  const Real t808 = t183 * t793;
+  const Real t809 = t807 + t808;
+  const Real t810 = t809 - t222;
+  const Real t811 = t810 - t220;
+  const Real t812 = t811 * t811;
+  const Real t813 = t812 + t806;
+  const Real t814 = t191 * t793;
+  const Real t815 = t814 - t228;
+  const Real t816 = t815 * t815;
+  const Real t817 = t816 + t813;
+  const Real t818 = constant<Real>(1.0L) + t817;
+  const Real t819 = t793 * t174;
+  const Real t820 = t819 - t210;
+  const Real t821 = t820 * t820;
+  const Real t822 = t821 + t818;
+  const Real t823 = constant<Real>(1.0L) / t822;
+  const Real t824 = t366 * t361;
+  const Real t825 = t392 * t402;
+  const Real t826 = t825 + t824;
+  const Real t827 = t378 * t384;
+  const Real t828 = t826 - t827;
+  const Real t829 = t183 * t262;
+  const Real t830 = t185 * t260;
+  const Real t831 = t829 + t830;
+  const Real t832 = t262 * t185;
+  const Real t833 = t831 + t832;
+  const Real t834 = t828 + t833;
+  const Real t835 = t191 * t268;
+  const Real t836 = t834 + t835;
+  const Real t837 = t252 * t174;
+  const Real t838 = t836 + t837;
+  const Real t839 = t777 * t838;
+  const Real t840 = t839 * t392;
+  const Real t841 = t402 - t840;
+  const Real t842 = t841 * t798;
+  const Real t843 = t839 * t361;
+  const Real t844 = t366 - t843;
+  const Real t845 = t844 * t795;
+  const Real t846 = t842 + t845;
+  const Real t847 = t839 * t378;
+  const Real t848 = t847 + t384;
+  const Real t849 = t848 * t802;
+  const Real t850 = t849 + t846;
+  const Real t851 = t839 * t793;
+  const Real t852 = t851 + t850;
+  const Real t853 = t183 * t839;
+  const Real t854 = t839 * t185;
+  const Real t855 = t853 + t854;
+  const Real t856 = t855 - t262;
+  const Real t857 = t856 - t260;
+  const Real t858 = t811 * t857;
+  const Real t859 = t858 + t852;
+  const Real t860 = t191 * t839;
+  const Real t861 = t860 - t268;
+  const Real t862 = t861 * t815;
+  const Real t863 = t862 + t859;
+  const Real t864 = t839 * t174;
+  const Real t865 = t864 - t252;
+  const Real t866 = t820 * t865;
+  const Real t867 = t866 + t863;
+  const Real t868 = t823 * t867;
+  const Real t869 = t868 * t793;
+  const Real t870 = t869 - t839;
+  const Real t871 = t870 * t761;
+  const Real t872 = par.m_H * t567;
+  const Real t873 = t577 * par.k8;
+  const Real t874 = par.k10 * t581;
+  const Real t875 = t873 - t874;
+  const Real t876 = t872 + t875;
+  const Real t877 = t876 + t621;
+  const Real t878 = c_r_p_1_ * t877;
+  const Real t879 = t688 * par.m_H;
+  const Real t880 = par.k8 * t690;
+  const Real t881 = t693 * par.k10;
+  const Real t882 = t881 - t880;
+  const Real t883 = t879 + t882;
+  const Real t884 = t697 + t883;
+  const Real t885 = s_r_p_1_ * t884;
+  const Real t886 = t878 - t885;
+  const Real t887 = par.k2 * t886;
+  const Real t888 = t586 * par.k10;
+  const Real t889 = par.k8 * t589;
+  const Real t890 = t888 - t889;
+  const Real t891 = t594 * par.m_H;
+  const Real t892 = t890 + t891;
+  const Real t893 = t892 + t617;
+  const Real t894 = t893 * par.k1;
+  const Real t895 = t894 + t887;
+  const Real t896 = t542 * par.m_B;
+  const Real t897 = t513 - t559;
+  const Real t898 = t897 + t511;
+  const Real t899 = t898 * par.k15;
+  const Real t900 = t545 * par.k16;
   const Real t901 = t899 - t900;
-
-  // passive accelerations
-  const Real t902 = t901 + t898;
-
-  // accelerations
-  const Real t903 = t902 * t895;
-  const Real t904 = t891 + t903;
-
-  // passive accelerations
-  const Real t905 = par.k14 * t898;
-
-  // accelerations
-  const Real t906 = par.k28 * t898;
-  const Real t907 = t905 + t906;
-
-  // passive accelerations
-  const Real t908 = t850 * par.k12;
-  const Real t909 = par.k13 * t874;
-  const Real t910 = t908 + t909;
-
-  // fork: wrench
-  const Real t911 = par.k9 * t219;
-
-  // passive accelerations
-  const Real t912 = par.k9 * t267;
-  const Real t913 = t911 + t912;
-  const Real t914 = t913 - par.k40;
-  const Real t915 = t914 - t910;
-  const Real t916 = t915 * c_r_p_1_;
-
-  // front_wheel: joint force
-  const Real t917 = t857 * par.k12;
-
-  // fork: wrench
-  const Real t918 = par.k9 * t122;
-
-  // front_wheel: joint force
-  const Real t919 = t918 - t917;
-
-  // fork: joint force
-  const Real t920 = t919 * s_r_p_1_;
-
-  // passive accelerations
-  const Real t921 = t920 + t916;
-
-  // accelerations
-  const Real t922 = t921 - t907;
-  const Real t923 = t922 + par.k16;
-
-  // rear_wheel: joint force
-  const Real t924 = t883 * par.r_R;
-
-  // accelerations
-  const Real t925 = t923 - t924;
-  const Real t926 = t925 * t817;
-  const Real t927 = t904 + t926;
-
-  // passive accelerations
-  const Real t928 = s_r_p_1_ * t915;
-
-  // fork: joint force
-  const Real t929 = t919 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t930 = t929 - t928;
-  const Real t931 = t930 * par.k1;
-
-  // front_wheel: joint force
-  const Real t932 = t857 * par.k13;
-
-  // fork: wrench
-  const Real t933 = t122 * par.k11;
-
-  // front_wheel: joint force
-  const Real t934 = t933 + t932;
-
-  // fork: joint force
-  const Real t935 = par.k2 * t934;
-
-  // passive accelerations
-  const Real t936 = t931 + t935;
-  const Real t937 = par.k14 * t860;
-
-  // accelerations
-  const Real t938 = par.k28 * t860;
-  const Real t939 = t937 + t938;
-  const Real t940 = t939 - t936;
-  const Real t941 = t827 * t940;
-  const Real t942 = sum_error(t941, t927);
-  const Real t943 = sum_error(t926, t904);
-  const Real t944 = t925 * t815;
-
-  // rear_wheel: joint force
-  const Real t945 = -t924;
-
-  // accelerations
-  const Real t946 = sum_error(t923, t945);
-  const Real t947 = sum_error(t922, par.k16);
-  const Real t948 = t947 + par.k62;
-  const Real t949 = t946 + t948;
-  const Real t950 = t949 * t817;
-  const Real t951 = t950 + t944;
-  const Real t952 = product_error(t817, t925);
-  const Real t953 = t952 + t951;
-  const Real t954 = t953 + t943;
-  const Real t955 = t942 + t954;
-  const Real t956 = t523 * t635;
-  const Real t957 = t535 * t687;
-  const Real t958 = t956 - t957;
+  const Real t902 = t896 + t901;
+  const Real t903 = t895 + t902;
+  const Real t904 = t898 * par.r_R;
+  const Real t905 = t542 - t904;
+  const Real t906 = t905 * c_r_p_0_;
 
   // frame: acceleration
-  const Real t959 = par.g * R[6];
+  const Real t907 = nu[0] * nu[0];
 
   // accelerations
-  const Real t960 = t958 - t959;
-  const Real t961 = t523 * t523;
-  const Real t962 = t535 * t535;
-  const Real t963 = t962 + t961;
-  const Real t964 = t963 * par.k14;
-  const Real t965 = t963 * par.k28;
-  const Real t966 = t964 + t965;
-  const Real t967 = t960 - t966;
-  const Real t968 = par.k2 * t967;
-  const Real t969 = t635 * nu[0];
-  const Real t970 = t535 * t659;
-  const Real t971 = t969 + t970;
-
-  // frame: acceleration
-  const Real t972 = par.g * R[8];
-
-  // accelerations
-  const Real t973 = t971 - t972;
-  const Real t974 = t523 * nu[0];
-  const Real t975 = t974 * par.k14;
-  const Real t976 = par.k28 * t974;
-  const Real t977 = t975 + t976;
-  const Real t978 = t973 - t977;
-  const Real t979 = t978 * par.k1;
-  const Real t980 = t968 - t979;
-  const Real t981 = t980 * c_r_p_1_;
-  const Real t982 = t659 * t523;
-  const Real t983 = t687 * nu[0];
-  const Real t984 = t983 + t982;
-
-  // frame: acceleration
-  const Real t985 = par.g * R[7];
-
-  // accelerations
-  const Real t986 = sum_error(t984, t985);
-
-  // passive accelerations
-  const Real t987 = product_error(par.g, R[7]);
-
-  // accelerations
-  const Real t988 = t986 + t987;
-  const Real t989 = t985 + t984;
-  const Real t990 = t535 * nu[0];
-  const Real t991 = par.k28 * t990;
-  const Real t992 = t990 * par.k14;
-  const Real t993 = t991 + t992;
-  const Real t994 = t993 + t989;
-  const Real t995 = t988 + t994;
-  const Real t996 = s_r_p_1_ * t995;
-  const Real t997 = t981 - t996;
-  const Real t998 = t585 * t590;
-  const Real t999 = t585 * nu[1];
+  const Real t908 = t544 + t907;
+  const Real t909 = t908 * par.r_R;
+  const Real t910 = t558 + t909;
+  const Real t911 = t910 * s_r_p_0_;
+  const Real t912 = t906 - t911;
+  const Real t913 = par.m_R * t912;
+  const Real t914 = c_r_p_0_ * t913;
+  const Real t915 = t905 * s_r_p_0_;
+  const Real t916 = t910 * c_r_p_0_;
+  const Real t917 = t915 + t916;
+  const Real t918 = par.m_R * t917;
+  const Real t919 = t918 * s_r_p_0_;
+  const Real t920 = t914 + t919;
+  const Real t921 = t920 + t903;
+  const Real t922 = t868 * t798;
+  const Real t923 = t841 - t922;
+  const Real t924 = t923 * t921;
+  const Real t925 = s_r_p_1_ * t877;
+  const Real t926 = t884 * c_r_p_1_;
+  const Real t927 = t925 + t926;
+  const Real t928 = t527 * par.m_B;
+  const Real t929 = t529 * par.k16;
+  const Real t930 = t728 * par.k15;
+  const Real t931 = t930 + t929;
+  const Real t932 = t928 + t931;
+  const Real t933 = t932 + t927;
+  const Real t934 = t933 + t735;
+  const Real t935 = t868 * t795;
+  const Real t936 = t844 - t935;
+  const Real t937 = t934 * t936;
+  const Real t938 = t924 + t937;
+  const Real t939 = par.k1 * t886;
+  const Real t940 = t893 * par.k2;
+  const Real t941 = t940 - t939;
+  const Real t942 = t558 * par.m_B;
+  const Real t943 = t561 * par.k16;
+  const Real t944 = t908 * par.k15;
+  const Real t945 = t943 + t944;
+  const Real t946 = t942 - t945;
+  const Real t947 = t946 + t941;
+  const Real t948 = t918 * c_r_p_0_;
+  const Real t949 = s_r_p_0_ * t913;
+  const Real t950 = t948 - t949;
+  const Real t951 = t950 + t947;
+  const Real t952 = t868 * t802;
+  const Real t953 = t848 - t952;
+  const Real t954 = t953 * t951;
+  const Real t955 = t938 + t954;
+  const Real t956 = t955 + t871;
+  const Real t957 = c_r_p_1_ * t637;
+  const Real t958 = s_r_p_1_ * t707;
+  const Real t959 = t958 + t957;
+  const Real t960 = t941 * par.k13;
+  const Real t961 = t959 - t960;
+  const Real t962 = t542 * par.k15;
+  const Real t963 = t558 * par.k16;
+  const Real t964 = t962 - t963;
+  const Real t965 = par.k4 * t511;
+  const Real t966 = par.k4 * t513;
+  const Real t967 = t966 + t965;
+  const Real t968 = t559 * par.k27;
+  const Real t969 = t967 - t968;
+  const Real t970 = t543 - t907;
+  const Real t971 = par.k3 * t970;
+  const Real t972 = t969 + t971;
+  const Real t973 = t972 + t964;
+  const Real t974 = t961 + t973;
+  const Real t975 = t920 * par.r_R;
+  const Real t976 = par.I_Ryy * t511;
+  const Real t977 = t513 * par.I_Ryy;
+  const Real t978 = t976 + t977;
+  const Real t979 = t978 - t975;
+  const Real t980 = t974 + t979;
+  const Real t981 = t868 * t811;
+  const Real t982 = t857 - t981;
+  const Real t983 = t980 * t982;
+  const Real t984 = t956 + t983;
+  const Real t985 = t709 * par.k1;
+  const Real t986 = par.k2 * t723;
+  const Real t987 = t986 - t985;
+  const Real t988 = par.k13 * t927;
+  const Real t989 = t987 + t988;
+  const Real t990 = t527 * par.k16;
+  const Real t991 = t519 * par.k14;
+  const Real t992 = par.k25 * t528;
+  const Real t993 = t991 - t992;
+  const Real t994 = par.k3 * t728;
+  const Real t995 = t993 - t994;
+  const Real t996 = t990 + t995;
+  const Real t997 = t989 + t996;
+  const Real t998 = t757 * c_r_p_0_;
+  const Real t999 = t746 * s_r_p_0_;
   const Real t1000 = t998 - t999;
-  const Real t1001 = par.k12 * t1000;
-  const Real t1002 = t734 * t734;
-  const Real t1003 = t590 * t590;
-  const Real t1004 = t1002 + t1003;
-  const Real t1005 = t1004 * par.k13;
-  const Real t1006 = t1001 + t1005;
-  const Real t1007 = t997 - t1006;
-  const Real t1008 = t1007 * par.k2;
-  const Real t1009 = t585 * t585;
-  const Real t1010 = t1002 + t1009;
-  const Real t1011 = t1010 * par.k12;
-  const Real t1012 = t998 + t999;
-  const Real t1013 = t1012 * par.k13;
-  const Real t1014 = t1011 + t1013;
-  const Real t1015 = par.k1 * t967;
-  const Real t1016 = t978 * par.k2;
-  const Real t1017 = t1015 + t1016;
-  const Real t1018 = t1014 + t1017;
-  const Real t1019 = t1018 * par.k1;
-  const Real t1020 = t1008 + t1019;
-  const Real t1021 = c_r_p_2_ * t1020;
-  const Real t1022 = t1007 * par.k1;
-  const Real t1023 = t1018 * par.k2;
-  const Real t1024 = t1023 - t1022;
-  const Real t1025 = t1024 * s_r_p_2_;
-  const Real t1026 = t1021 - t1025;
-  const Real t1027 = t1026 * par.m_F;
-  const Real t1028 = t1027 * c_r_p_2_;
-  const Real t1029 = t1024 * c_r_p_2_;
-  const Real t1030 = t1020 * s_r_p_2_;
-  const Real t1031 = t1029 + t1030;
-  const Real t1032 = t1031 * par.m_F;
-  const Real t1033 = t1032 * s_r_p_2_;
-  const Real t1034 = t1028 + t1033;
-  const Real t1035 = par.k2 * t1034;
-  const Real t1036 = c_r_p_2_ * t1032;
-  const Real t1037 = t1027 * s_r_p_2_;
-  const Real t1038 = t1036 - t1037;
-  const Real t1039 = par.k1 * t1038;
-  const Real t1040 = t1035 - t1039;
-  const Real t1041 = t997 * par.m_H;
-  const Real t1042 = par.k9 * t1000;
-  const Real t1043 = t1004 * par.k11;
-  const Real t1044 = t1042 - t1043;
-  const Real t1045 = t1041 + t1044;
-  const Real t1046 = t1040 + t1045;
-  const Real t1047 = c_r_p_1_ * t1046;
-  const Real t1048 = s_r_p_1_ * t980;
-  const Real t1049 = c_r_p_1_ * t995;
-  const Real t1050 = t1049 + t1048;
-  const Real t1051 = par.m_H * t1050;
-  const Real t1052 = t734 * nu[1];
-  const Real t1053 = t734 * t590;
-  const Real t1054 = t1052 - t1053;
-  const Real t1055 = par.k9 * t1054;
-  const Real t1056 = t734 * t585;
-  const Real t1057 = t1056 * par.k11;
-  const Real t1058 = t1055 - t1057;
-  const Real t1059 = t1058 - t1051;
-  const Real t1060 = par.k12 * t1054;
-  const Real t1061 = t1056 * par.k13;
-  const Real t1062 = t1061 + t1060;
-  const Real t1063 = t1062 + t1050;
-  const Real t1064 = t1063 * par.m_F;
-  const Real t1065 = t1059 - t1064;
-  const Real t1066 = s_r_p_1_ * t1065;
-  const Real t1067 = t1047 - t1066;
-  const Real t1068 = par.k2 * t1067;
-  const Real t1069 = par.k2 * t1038;
-  const Real t1070 = par.k1 * t1034;
-  const Real t1071 = t1069 + t1070;
-  const Real t1072 = par.m_H * t1017;
-  const Real t1073 = par.k11 * t1012;
-  const Real t1074 = par.k9 * t1010;
-  const Real t1075 = t1073 - t1074;
-  const Real t1076 = t1072 + t1075;
-  const Real t1077 = t1076 + t1071;
-  const Real t1078 = par.k1 * t1077;
-  const Real t1079 = t1068 + t1078;
-  const Real t1080 = t960 * par.m_B;
-  const Real t1081 = par.k65 * t963;
-  const Real t1082 = t963 * par.k17;
-  const Real t1083 = t1081 + t1082;
-  const Real t1084 = t974 * par.k16;
-  const Real t1085 = par.k62 * t974;
-  const Real t1086 = t1084 + t1085;
-  const Real t1087 = t1086 + t1083;
-  const Real t1088 = t1080 - t1087;
-  const Real t1089 = sum_error(t1088, t1079);
-  const Real t1090 = -t1087;
-  const Real t1091 = sum_error(t1080, t1090);
-  const Real t1092 = product_error(par.m_B, t960);
-  const Real t1093 = t1091 + t1092;
-  const Real t1094 = t1093 + t1089;
-  const Real t1095 = t1079 + t1088;
-  const Real t1096 = t974 * par.r_R;
-  const Real t1097 = t960 + t1096;
-  const Real t1098 = t1097 * s_r_p_0_;
-
-  // frame: acceleration
-  const Real t1099 = nu[0] * nu[0];
-
-  // accelerations
-  const Real t1100 = t1099 + t962;
-  const Real t1101 = t1100 * par.r_R;
-  const Real t1102 = t1101 + t973;
-  const Real t1103 = t1102 * c_r_p_0_;
-  const Real t1104 = t1098 + t1103;
-  const Real t1105 = t1104 * par.m_R;
-  const Real t1106 = s_r_p_0_ * t1105;
-  const Real t1107 = t1097 * c_r_p_0_;
-  const Real t1108 = t1102 * s_r_p_0_;
-  const Real t1109 = t1107 - t1108;
-  const Real t1110 = t1109 * par.m_R;
-  const Real t1111 = t1110 * c_r_p_0_;
-  const Real t1112 = t1106 + t1111;
-  const Real t1113 = sum_error(t1112, t1095);
-  const Real t1114 = t1094 + t1113;
-  const Real t1115 = t1114 + t955;
-  const Real t1116 = t927 + t941;
-  const Real t1117 = t1095 + t1112;
-  const Real t1118 = sum_error(t1117, t1116);
-  const Real t1119 = t1118 + t1115;
-  const Real t1120 = t627 * t625;
-  const Real t1121 = t1120 * constant<Real>(2.0L);
-  const Real t1122 = t627 * t627;
-  const Real t1123 = t1121 + t1122;
-  const Real t1124 = t656 * t656;
-  const Real t1125 = t1124 + t1123;
-  const Real t1126 = t684 * t684;
-  const Real t1127 = t1125 + t1126;
-  const Real t1128 = constant<Real>(1.0L) + t1127;
-  const Real t1129 = t429 * t431;
-  const Real t1130 = t1129 * constant<Real>(2.0L);
-  const Real t1131 = t431 * t431;
-  const Real t1132 = t1131 + t1130;
-  const Real t1133 = t1132 + t1128;
-  const Real t1134 = t441 * t441;
-  const Real t1135 = t1133 + t1134;
-  const Real t1136 = t420 * t420;
-  const Real t1137 = t1136 + t1135;
-  const Real t1138 = constant<Real>(1.0L) / t1137;
-  const Real t1139 = t620 * t627;
-  const Real t1140 = t620 * t625;
-  const Real t1141 = t1139 + t1140;
-  const Real t1142 = t656 * t650;
-  const Real t1143 = t1142 + t1141;
-  const Real t1144 = t677 * t684;
-  const Real t1145 = t679 * t684;
-  const Real t1146 = t1144 + t1145;
-  const Real t1147 = t1143 + t1146;
-  const Real t1148 = t342 * t431;
-  const Real t1149 = t429 * t344;
-  const Real t1150 = t1148 + t1149;
-  const Real t1151 = t344 * t431;
-  const Real t1152 = t1151 + t1150;
-  const Real t1153 = t1152 + t1147;
-  const Real t1154 = t358 * t441;
-  const Real t1155 = t360 * t441;
+  const Real t1001 = t1000 + t997;
+  const Real t1002 = t868 * t815;
+  const Real t1003 = t861 - t1002;
+  const Real t1004 = t1001 * t1003;
+  const Real t1005 = t1004 + t984;
+  const Real t1006 = t1005 + t978;
+  const Real t1007 = t868 * t723;
+  const Real t1008 = t1007 - t1006;
+  const Real t1009 = t820 * t868;
+  const Real t1010 = t865 - t1009;
+  const Real t1011 = t625 * t1010;
+  const Real t1012 = t1008 - t1011;
+  const Real t1013 = t980 * t185;
+  const Real t1014 = t183 * t980;
+  const Real t1015 = t1013 + t1014;
+  const Real t1016 = t392 * t921;
+  const Real t1017 = t934 * t361;
+  const Real t1018 = t1017 + t1016;
+  const Real t1019 = t951 * t378;
+  const Real t1020 = t1019 - t1018;
+  const Real t1021 = t1020 - t761;
+  const Real t1022 = t1015 + t1021;
+  const Real t1023 = t1001 * t191;
+  const Real t1024 = t1022 + t1023;
+  const Real t1025 = t625 * t174;
+  const Real t1026 = t1025 + t1024;
+  const Real t1027 = t191 * par.k1;
+  const Real t1028 = par.k2 + t1027;
+  const Real t1029 = s_r_p_1_ * t1028;
+  const Real t1030 = t183 * c_r_p_1_;
+  const Real t1031 = c_r_p_1_ * t185;
+  const Real t1032 = t1031 + t1030;
+  const Real t1033 = t1032 + t1029;
+  const Real t1034 = t1033 * par.k12;
+  const Real t1035 = t183 * par.k13;
+  const Real t1036 = t185 * par.k13;
+  const Real t1037 = t1035 + t1036;
+  const Real t1038 = t1037 - t378;
+  const Real t1039 = par.k2 * t1038;
+  const Real t1040 = par.k1 * t392;
+  const Real t1041 = t1039 + t1040;
+  const Real t1042 = t1034 + t1041;
+  const Real t1043 = par.k1 * t1042;
+  const Real t1044 = par.k11 * t1033;
+  const Real t1045 = t191 * par.k13;
+  const Real t1046 = t361 - t1045;
+  const Real t1047 = s_r_p_1_ * t1046;
+  const Real t1048 = par.k1 * t1038;
+  const Real t1049 = par.k2 * t392;
+  const Real t1050 = t1049 - t1048;
+  const Real t1051 = c_r_p_1_ * t1050;
+  const Real t1052 = t1047 + t1051;
+  const Real t1053 = t1044 + t1052;
+  const Real t1054 = t1053 * par.k2;
+  const Real t1055 = t1043 + t1054;
+  const Real t1056 = c_r_p_2_ * t1055;
+  const Real t1057 = t1042 * par.k2;
+  const Real t1058 = par.k1 * t1053;
+  const Real t1059 = t1057 - t1058;
+  const Real t1060 = t1059 * s_r_p_2_;
+  const Real t1061 = t1056 - t1060;
+  const Real t1062 = par.m_F * t1061;
+  const Real t1063 = t1062 * c_r_p_2_;
+  const Real t1064 = c_r_p_2_ * t1059;
+  const Real t1065 = t1055 * s_r_p_2_;
+  const Real t1066 = t1064 + t1065;
+  const Real t1067 = par.m_F * t1066;
+  const Real t1068 = t1067 * s_r_p_2_;
+  const Real t1069 = t1063 + t1068;
+  const Real t1070 = par.k2 * t1069;
+  const Real t1071 = t1067 * c_r_p_2_;
+  const Real t1072 = t1062 * s_r_p_2_;
+  const Real t1073 = t1071 - t1072;
+  const Real t1074 = par.k1 * t1073;
+  const Real t1075 = t1070 - t1074;
+  const Real t1076 = t1052 * par.m_H;
+  const Real t1077 = par.k8 * t1033;
+  const Real t1078 = t1076 - t1077;
+  const Real t1079 = t1078 + t1075;
+  const Real t1080 = c_r_p_1_ * t1079;
+  const Real t1081 = c_r_p_1_ * t1028;
+  const Real t1082 = t183 * s_r_p_1_;
+  const Real t1083 = s_r_p_1_ * t185;
+  const Real t1084 = t1082 + t1083;
+  const Real t1085 = t1084 - t1081;
+  const Real t1086 = t1085 * par.k11;
+  const Real t1087 = t191 * par.k2;
+  const Real t1088 = par.k1 - t1087;
+  const Real t1089 = par.k12 * t1088;
+  const Real t1090 = t1089 - t1086;
+  const Real t1091 = c_r_p_1_ * t1046;
+  const Real t1092 = s_r_p_1_ * t1050;
+  const Real t1093 = t1091 - t1092;
+  const Real t1094 = t1090 + t1093;
+  const Real t1095 = t1094 * par.m_F;
+  const Real t1096 = t1085 * par.k8;
+  const Real t1097 = par.k10 * t1088;
+  const Real t1098 = t1097 + t1096;
+  const Real t1099 = par.m_H * t1093;
+  const Real t1100 = t1098 + t1099;
+  const Real t1101 = t1100 + t1095;
+  const Real t1102 = s_r_p_1_ * t1101;
+  const Real t1103 = t1080 - t1102;
+  const Real t1104 = t1103 * par.k2;
+  const Real t1105 = par.k1 * t1069;
+  const Real t1106 = par.k2 * t1073;
+  const Real t1107 = t1105 + t1106;
+  const Real t1108 = par.k10 * t1033;
+  const Real t1109 = par.m_H * t1041;
+  const Real t1110 = t1109 + t1108;
+  const Real t1111 = t1107 + t1110;
+  const Real t1112 = par.k1 * t1111;
+  const Real t1113 = t1112 + t1104;
+  const Real t1114 = t392 * par.m_B;
+  const Real t1115 = t183 * par.k15;
+  const Real t1116 = t185 * par.k15;
+  const Real t1117 = t1115 + t1116;
+  const Real t1118 = t1114 - t1117;
+  const Real t1119 = t1113 + t1118;
+  const Real t1120 = t183 * par.r_R;
+  const Real t1121 = t185 * par.r_R;
+  const Real t1122 = t1120 + t1121;
+  const Real t1123 = t1122 + t392;
+  const Real t1124 = t1123 * c_r_p_0_;
+  const Real t1125 = t378 * s_r_p_0_;
+  const Real t1126 = t1125 + t1124;
+  const Real t1127 = par.m_R * t1126;
+  const Real t1128 = t1127 * c_r_p_0_;
+  const Real t1129 = t1123 * s_r_p_0_;
+  const Real t1130 = t378 * c_r_p_0_;
+  const Real t1131 = t1129 - t1130;
+  const Real t1132 = par.m_R * t1131;
+  const Real t1133 = t1132 * s_r_p_0_;
+  const Real t1134 = t1128 + t1133;
+  const Real t1135 = t1119 + t1134;
+  const Real t1136 = t1135 * t923;
+  const Real t1137 = s_r_p_1_ * t1079;
+  const Real t1138 = t1101 * c_r_p_1_;
+  const Real t1139 = t1138 + t1137;
+  const Real t1140 = t361 * par.m_B;
+  const Real t1141 = t191 * par.k16;
+  const Real t1142 = t1141 + par.k15;
+  const Real t1143 = t1140 - t1142;
+  const Real t1144 = t1139 + t1143;
+  const Real t1145 = t361 + par.r_R;
+  const Real t1146 = par.m_R * t1145;
+  const Real t1147 = t1144 + t1146;
+  const Real t1148 = t936 * t1147;
+  const Real t1149 = t1136 + t1148;
+  const Real t1150 = t1103 * par.k1;
+  const Real t1151 = par.k2 * t1111;
+  const Real t1152 = t1151 - t1150;
+  const Real t1153 = t378 * par.m_B;
+  const Real t1154 = t183 * par.k16;
+  const Real t1155 = t185 * par.k16;
   const Real t1156 = t1155 + t1154;
-  const Real t1157 = t1156 + t1153;
-  const Real t1158 = t420 * t327;
-  const Real t1159 = t329 * t420;
-  const Real t1160 = t1158 + t1159;
-  const Real t1161 = t1157 + t1160;
-  const Real t1162 = t1138 * t1161;
-  const Real t1163 = t1162 * t656;
-  const Real t1164 = t650 - t1163;
-  const Real t1165 = t1119 * t1164;
-  const Real t1166 = t1116 + t1117;
-  const Real t1167 = t1166 * t1164;
-  const Real t1168 = t1165 + t1167;
-  const Real t1169 = -t1168;
-
-  // front_wheel: acceleration
-  const Real t1170 = t122 * c_r_p_2_;
-  const Real t1171 = t105 * s_r_p_2_;
-  const Real t1172 = t1170 + t1171;
-
-  // front_wheel: wrench
-  const Real t1173 = par.m_F * t1172;
-
-  // front_wheel: joint force
-  const Real t1174 = c_r_p_2_ * t1173;
-
-  // passive accelerations
-  const Real t1175 = s_r_p_1_ * t2;
-  const Real t1176 = t1175 * par.m_F;
-  const Real t1177 = t1176 * s_r_p_2_;
-  const Real t1178 = t1174 + t1177;
-  const Real t1179 = t1178 * par.k2;
-
-  // front_wheel: joint force
-  const Real t1180 = t1173 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t1181 = t1176 * c_r_p_2_;
-  const Real t1182 = t1181 - t1180;
-  const Real t1183 = par.k1 * t1182;
-  const Real t1184 = t1179 - t1183;
-
-  // fork: wrench
-  const Real t1185 = s_r_p_1_ * par.m_H;
-
-  // passive accelerations
-  const Real t1186 = t1185 + t1184;
-  const Real t1187 = s_r_p_1_ * t1186;
-
-  // fork: wrench
-  const Real t1188 = par.m_H * c_r_p_1_;
-
-  // front_wheel: wrench
-  const Real t1189 = c_r_p_1_ * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1190 = t1188 + t1189;
-
-  // fork: joint force
-  const Real t1191 = t1190 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t1192 = t1187 + t1191;
-  const Real t1193 = t1192 + par.m_B;
-
-  // accelerations
-  const Real t1194 = sum_error(par.m_R, t1193);
-  const Real t1195 = sum_error(t1192, par.m_B);
-  const Real t1196 = t1194 + t1195;
-  const Real t1197 = t829 * t1196;
-
-  // passive accelerations
-  const Real t1198 = par.m_R + t1193;
-
-  // accelerations
-  const Real t1199 = t829 * t1198;
-  const Real t1200 = t1197 + t1199;
-  const Real t1201 = t860 * t867;
-  const Real t1202 = t1201 + t1200;
-
-  // passive accelerations
-  const Real t1203 = c_r_p_1_ * t1186;
-
-  // fork: joint force
-  const Real t1204 = s_r_p_1_ * t1190;
-
-  // passive accelerations
-  const Real t1205 = t1203 - t1204;
-  const Real t1206 = t1205 * par.k1;
-  const Real t1207 = par.k2 * t1182;
-  const Real t1208 = t1178 * par.k1;
-  const Real t1209 = t1207 + t1208;
-  const Real t1210 = t1209 * par.k2;
-  const Real t1211 = t1210 - t1206;
-
-  // accelerations
-  const Real t1212 = t1211 * t895;
-  const Real t1213 = t1212 + t1202;
-  const Real t1214 = par.k28 * t1211;
-
-  // passive accelerations
-  const Real t1215 = par.k14 * t1211;
-
-  // accelerations
-  const Real t1216 = t1214 + t1215;
-
-  // passive accelerations
-  const Real t1217 = t1209 * par.k13;
-  const Real t1218 = t1184 * par.k12;
-  const Real t1219 = t1217 + t1218;
-
-  // fork: wrench
-  const Real t1220 = s_r_p_1_ * par.k9;
-
-  // passive accelerations
+  const Real t1157 = t1156 - t1153;
+  const Real t1158 = t1157 + t1152;
+  const Real t1159 = t1132 * c_r_p_0_;
+  const Real t1160 = t1127 * s_r_p_0_;
+  const Real t1161 = t1159 - t1160;
+  const Real t1162 = t1158 + t1161;
+  const Real t1163 = t953 * t1162;
+  const Real t1164 = t1149 + t1163;
+  const Real t1165 = t1107 * par.k12;
+  const Real t1166 = par.k11 * t1075;
+  const Real t1167 = t1165 + t1166;
+  const Real t1168 = t1033 + t174;
+  const Real t1169 = t1168 * par.I_Fyy;
+  const Real t1170 = t1167 + t1169;
+  const Real t1171 = par.k8 * t1052;
+  const Real t1172 = t1041 * par.k10;
+  const Real t1173 = t1171 - t1172;
+  const Real t1174 = par.k7 * t1033;
+  const Real t1175 = t1173 - t1174;
+  const Real t1176 = t1175 - t1170;
+  const Real t1177 = s_r_p_1_ * t1176;
+  const Real t1178 = t1081 - t1084;
+  const Real t1179 = par.k1 * t1178;
+  const Real t1180 = par.k2 * t1088;
+  const Real t1181 = t1180 - t1179;
+  const Real t1182 = c_r_p_2_ * t1181;
+  const Real t1183 = t1178 * par.k2;
+  const Real t1184 = par.k1 * t1088;
+  const Real t1185 = t1183 + t1184;
+  const Real t1186 = t1185 * s_r_p_2_;
+  const Real t1187 = t1182 + t1186;
+  const Real t1188 = par.I_Fxx * t1187;
+  const Real t1189 = t1188 * s_r_p_2_;
+  const Real t1190 = c_r_p_2_ * t1185;
+  const Real t1191 = t1181 * s_r_p_2_;
+  const Real t1192 = t1190 - t1191;
+  const Real t1193 = par.I_Fxx * t1192;
+  const Real t1194 = c_r_p_2_ * t1193;
+  const Real t1195 = t1189 + t1194;
+  const Real t1196 = par.k2 * t1195;
+  const Real t1197 = c_r_p_2_ * t1188;
+  const Real t1198 = t1193 * s_r_p_2_;
+  const Real t1199 = t1197 - t1198;
+  const Real t1200 = t1199 * par.k1;
+  const Real t1201 = t1196 - t1200;
+  const Real t1202 = par.k11 * t1095;
+  const Real t1203 = t1202 + t1201;
+  const Real t1204 = t1178 * par.k17;
+  const Real t1205 = par.k5 * t1088;
+  const Real t1206 = t1205 + t1204;
+  const Real t1207 = par.k8 * t1093;
+  const Real t1208 = t1206 - t1207;
+  const Real t1209 = t1208 + t1203;
+  const Real t1210 = t1209 * c_r_p_1_;
+  const Real t1211 = t1210 - t1177;
+  const Real t1212 = t1211 * par.k2;
+  const Real t1213 = par.k1 * t1195;
+  const Real t1214 = t1199 * par.k2;
+  const Real t1215 = t1213 + t1214;
+  const Real t1216 = par.k12 * t1095;
+  const Real t1217 = t1216 + t1215;
+  const Real t1218 = par.k10 * t1093;
+  const Real t1219 = t1085 * par.k5;
+  const Real t1220 = par.k6 * t1088;
   const Real t1221 = t1220 - t1219;
-  const Real t1222 = c_r_p_1_ * t1221;
-
-  // front_wheel: joint force
-  const Real t1223 = par.k12 * t1189;
-
-  // fork: wrench
-  const Real t1224 = par.k9 * c_r_p_1_;
-
-  // front_wheel: joint force
-  const Real t1225 = t1223 - t1224;
-
-  // fork: joint force
-  const Real t1226 = s_r_p_1_ * t1225;
-
-  // passive accelerations
-  const Real t1227 = t1226 + t1222;
-
-  // accelerations
-  const Real t1228 = t1227 - t1216;
-  const Real t1229 = t1228 * t815;
-  const Real t1230 = t1228 * t817;
-  const Real t1231 = t1229 + t1230;
-  const Real t1232 = t1213 + t1231;
-
-  // passive accelerations
-  const Real t1233 = s_r_p_1_ * t1221;
-
-  // fork: joint force
-  const Real t1234 = c_r_p_1_ * t1225;
-
-  // passive accelerations
-  const Real t1235 = t1234 - t1233;
-  const Real t1236 = par.k1 * t1235;
-
-  // front_wheel: joint force
-  const Real t1237 = par.k13 * t1189;
-
-  // fork: wrench
-  const Real t1238 = c_r_p_1_ * par.k11;
-
-  // front_wheel: joint force
-  const Real t1239 = t1238 + t1237;
-
-  // fork: joint force
-  const Real t1240 = par.k2 * t1239;
-
-  // passive accelerations
-  const Real t1241 = t1240 - t1236;
-
-  // accelerations
-  const Real t1242 = par.k28 * t1192;
-
-  // passive accelerations
-  const Real t1243 = t1192 * par.k14;
-
-  // accelerations
-  const Real t1244 = t1242 + t1243;
-  const Real t1245 = t1244 + t1241;
-  const Real t1246 = sum_error(t1245, par.k17);
-  const Real t1247 = par.k65 + t1246;
-  const Real t1248 = t827 * t1247;
-  const Real t1249 = t1245 + par.k17;
-  const Real t1250 = t1249 * t827;
-  const Real t1251 = t1248 + t1250;
-  const Real t1252 = t1251 + t1232;
-  const Real t1253 = s_r_p_1_ * t1046;
-  const Real t1254 = c_r_p_1_ * t1065;
-  const Real t1255 = t1253 + t1254;
-  const Real t1256 = t535 * t523;
-  const Real t1257 = t1256 * par.k16;
-  const Real t1258 = par.k62 * t1256;
-  const Real t1259 = t1257 + t1258;
-  const Real t1260 = par.k65 * t990;
-  const Real t1261 = t990 * par.k17;
-  const Real t1262 = t1260 + t1261;
-  const Real t1263 = t1259 - t1262;
-  const Real t1264 = par.m_B * t989;
-  const Real t1265 = t1263 - t1264;
-  const Real t1266 = t1265 + t1255;
-  const Real t1267 = t1256 * par.r_R;
-  const Real t1268 = t1267 + t989;
-  const Real t1269 = t1268 + t988;
-  const Real t1270 = par.m_R * t1269;
-  const Real t1271 = t1270 - t1266;
-  const Real t1272 = t1271 - t1252;
-  const Real t1273 = t627 * t1162;
-  const Real t1274 = t1162 * t625;
-  const Real t1275 = t1273 + t1274;
-  const Real t1276 = t620 - t1275;
-  const Real t1277 = t1272 * t1276;
-  const Real t1278 = sum_error(t1277, t1169);
-  const Real t1279 = -t1252;
-  const Real t1280 = sum_error(t1271, t1279);
-  const Real t1281 = -t1266;
-  const Real t1282 = sum_error(t1270, t1281);
-  const Real t1283 = sum_error(t1255, t1265);
-  const Real t1284 = -t1264;
-  const Real t1285 = sum_error(t1263, t1284);
-  const Real t1286 = t988 * par.m_B;
-  const Real t1287 = product_error(par.m_B, t989);
-  const Real t1288 = t1287 + t1286;
-  const Real t1289 = t1285 - t1288;
-  const Real t1290 = t1283 + t1289;
-  const Real t1291 = t1282 - t1290;
-  const Real t1292 = t1280 + t1291;
-  const Real t1293 = t1276 * t1292;
-  const Real t1294 = product_error(t1276, t1272);
+  const Real t1222 = t1218 + t1221;
+  const Real t1223 = t1222 + t1217;
+  const Real t1224 = t1223 * par.k1;
+  const Real t1225 = t1212 + t1224;
+  const Real t1226 = t361 * par.k15;
+  const Real t1227 = par.k3 * t191;
+  const Real t1228 = par.k9 - t1227;
+  const Real t1229 = t1228 - t1226;
+  const Real t1230 = t1229 + t1225;
+  const Real t1231 = par.r_R * t1146;
+  const Real t1232 = t191 * c_r_p_0_;
+  const Real t1233 = s_r_p_0_ - t1232;
+  const Real t1234 = t1233 * par.I_Rxx;
+  const Real t1235 = t1234 * s_r_p_0_;
+  const Real t1236 = t191 * s_r_p_0_;
+  const Real t1237 = t1236 + c_r_p_0_;
+  const Real t1238 = par.I_Rxx * t1237;
+  const Real t1239 = t1238 * c_r_p_0_;
+  const Real t1240 = t1235 + t1239;
+  const Real t1241 = t1231 + t1240;
+  const Real t1242 = t1230 + t1241;
+  const Real t1243 = t870 * t1242;
+  const Real t1244 = t1243 + t1164;
+  const Real t1245 = c_r_p_1_ * t1176;
+  const Real t1246 = s_r_p_1_ * t1209;
+  const Real t1247 = t1245 + t1246;
+  const Real t1248 = par.k13 * t1152;
+  const Real t1249 = t1247 - t1248;
+  const Real t1250 = t378 * par.k16;
+  const Real t1251 = t392 * par.k15;
+  const Real t1252 = t1250 + t1251;
+  const Real t1253 = t183 * par.k4;
+  const Real t1254 = par.k4 * t185;
+  const Real t1255 = t1254 + t1253;
+  const Real t1256 = t1252 - t1255;
+  const Real t1257 = t1256 + t1249;
+  const Real t1258 = par.r_R * t1134;
+  const Real t1259 = t183 * par.I_Ryy;
+  const Real t1260 = par.I_Ryy * t185;
+  const Real t1261 = t1259 + t1260;
+  const Real t1262 = t1258 + t1261;
+  const Real t1263 = t1257 - t1262;
+  const Real t1264 = t982 * t1263;
+  const Real t1265 = t1264 + t1244;
+  const Real t1266 = par.k1 * t1211;
+  const Real t1267 = t1223 * par.k2;
+  const Real t1268 = t1267 - t1266;
+  const Real t1269 = t1139 * par.k13;
+  const Real t1270 = t1269 + t1268;
+  const Real t1271 = t361 * par.k16;
+  const Real t1272 = t191 * par.k14;
+  const Real t1273 = par.k41 + t1272;
+  const Real t1274 = t1271 - t1273;
+  const Real t1275 = t1274 + t1270;
+  const Real t1276 = t1234 * c_r_p_0_;
+  const Real t1277 = t1238 * s_r_p_0_;
+  const Real t1278 = t1276 - t1277;
+  const Real t1279 = t1275 + t1278;
+  const Real t1280 = t1279 * t1003;
+  const Real t1281 = t1280 + t1265;
+  const Real t1282 = t1281 - t1261;
+  const Real t1283 = t1223 * t868;
+  const Real t1284 = t1282 - t1283;
+  const Real t1285 = t1010 * t1169;
+  const Real t1286 = t1284 - t1285;
+  const Real t1287 = t1135 * t392;
+  const Real t1288 = t1147 * t361;
+  const Real t1289 = t1287 + t1288;
+  const Real t1290 = t1162 * t378;
+  const Real t1291 = t1289 - t1290;
+  const Real t1292 = t1291 + t1242;
+  const Real t1293 = t183 * t1263;
+  const Real t1294 = t185 * t1263;
   const Real t1295 = t1293 + t1294;
-  const Real t1296 = t1295 + t1278;
-  const Real t1297 = t1277 - t1168;
-  const Real t1298 = t829 * t1211;
-  const Real t1299 = t902 * t867;
-  const Real t1300 = t1299 + t1298;
-  const Real t1301 = c_r_p_2_ * t56;
-
-  // front_wheel: acceleration
-  const Real t1302 = t58 * c_r_p_2_;
-
-  // accelerations
-  const Real t1303 = t1302 + t1301;
-  const Real t1304 = t1303 + t833;
-  const Real t1305 = t1304 * par.m_F;
-  const Real t1306 = t1305 * s_r_p_2_;
-  const Real t1307 = t56 * s_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1308 = t58 * s_r_p_2_;
-
-  // accelerations
-  const Real t1309 = t1308 + t1307;
-  const Real t1310 = t840 - t1309;
-  const Real t1311 = par.m_F * t1310;
-  const Real t1312 = t1311 * c_r_p_2_;
-  const Real t1313 = t1306 + t1312;
-  const Real t1314 = t1313 * par.k2;
-  const Real t1315 = t1305 * c_r_p_2_;
-  const Real t1316 = t1311 * s_r_p_2_;
-  const Real t1317 = t1315 - t1316;
-  const Real t1318 = par.k1 * t1317;
-  const Real t1319 = t1314 - t1318;
-
-  // fork: wrench
-  const Real t1320 = par.m_H * t53;
-
-  // accelerations
-  const Real t1321 = t1319 - t1320;
-  const Real t1322 = c_r_p_1_ * t1321;
-
-  // fork: wrench
-  const Real t1323 = par.m_H * t105;
-
-  // front_wheel: wrench
-  const Real t1324 = par.m_F * t105;
-
-  // front_wheel: joint force
-  const Real t1325 = t1323 + t1324;
-
-  // fork: joint force
-  const Real t1326 = s_r_p_1_ * t1325;
-
-  // accelerations
-  const Real t1327 = t1322 - t1326;
-  const Real t1328 = par.k1 * t1327;
-  const Real t1329 = t1313 * par.k1;
-  const Real t1330 = par.k2 * t1317;
-  const Real t1331 = t1329 + t1330;
-  const Real t1332 = t1331 + par.k46;
-  const Real t1333 = t1332 * par.k2;
-  const Real t1334 = t1333 - t1328;
-  const Real t1335 = t1334 + par.m_B;
-  const Real t1336 = t883 + t1335;
-  const Real t1337 = t895 * t1336;
-  const Real t1338 = t1337 + t1300;
-  const Real t1339 = par.k28 * t1334;
-  const Real t1340 = par.k14 * t1334;
-  const Real t1341 = t1339 + t1340;
-  const Real t1342 = par.k12 * t1319;
-  const Real t1343 = t1331 * par.k13;
-  const Real t1344 = t1342 + t1343;
-
-  // fork: wrench
-  const Real t1345 = par.k9 * t53;
-  const Real t1346 = par.k47 + t1345;
-
-  // accelerations
-  const Real t1347 = t1344 + t1346;
-  const Real t1348 = t1347 * c_r_p_1_;
-
-  // front_wheel: joint force
-  const Real t1349 = par.k12 * t1324;
-
-  // fork: wrench
-  const Real t1350 = par.k9 * t105;
-
-  // front_wheel: joint force
-  const Real t1351 = t1349 - t1350;
-
-  // fork: joint force
-  const Real t1352 = s_r_p_1_ * t1351;
-
-  // accelerations
-  const Real t1353 = t1352 - t1348;
-  const Real t1354 = t1353 - t1341;
-  const Real t1355 = t1354 - par.k17;
-  const Real t1356 = t1355 - par.k65;
-
-  // rear_wheel: joint force
-  const Real t1357 = t900 - t899;
-  const Real t1358 = t1357 * par.r_R;
-
-  // accelerations
-  const Real t1359 = t1356 - t1358;
-  const Real t1360 = t817 * t1359;
-  const Real t1361 = t1360 + t1338;
-  const Real t1362 = t1347 * s_r_p_1_;
-
-  // fork: joint force
-  const Real t1363 = c_r_p_1_ * t1351;
-
-  // accelerations
-  const Real t1364 = t1362 + t1363;
-  const Real t1365 = t1364 * par.k1;
-
-  // front_wheel: joint force
-  const Real t1366 = par.k13 * t1324;
-
-  // fork: wrench
-  const Real t1367 = par.k11 * t105;
-
-  // front_wheel: joint force
-  const Real t1368 = t1367 + t1366;
-
-  // fork: joint force
-  const Real t1369 = t1368 * par.k2;
-
-  // accelerations
-  const Real t1370 = t1369 - t1365;
-  const Real t1371 = s_r_p_1_ * t1321;
-
-  // fork: joint force
-  const Real t1372 = c_r_p_1_ * t1325;
-
-  // accelerations
-  const Real t1373 = t1372 + t1371;
-  const Real t1374 = t1373 * par.k14;
-  const Real t1375 = t1373 * par.k28;
-  const Real t1376 = t1374 + t1375;
-  const Real t1377 = t1376 + t1370;
-  const Real t1378 = t827 * t1377;
-  const Real t1379 = t1378 + t1361;
-  const Real t1380 = par.k1 * t1067;
-  const Real t1381 = par.k2 * t1077;
-  const Real t1382 = t1381 - t1380;
-  const Real t1383 = t973 * par.m_B;
-  const Real t1384 = par.k65 * t974;
-  const Real t1385 = t974 * par.k17;
-  const Real t1386 = t1384 + t1385;
-  const Real t1387 = t1100 * par.k62;
-  const Real t1388 = t1100 * par.k16;
-  const Real t1389 = t1387 + t1388;
-  const Real t1390 = t1389 + t1386;
-  const Real t1391 = t1383 - t1390;
-  const Real t1392 = t1382 + t1391;
-  const Real t1393 = t1105 * c_r_p_0_;
-  const Real t1394 = t1110 * s_r_p_0_;
+  const Real t1296 = t1292 - t1295;
+  const Real t1297 = t191 * t1279;
+  const Real t1298 = t1296 - t1297;
+  const Real t1299 = t1169 * t174;
+  const Real t1300 = t1298 + t1299;
+  const Real t1301 = constant<Real>(1.0L) / t1300;
+  const Real t1302 = t1301 * t1286;
+  const Real t1303 = t1026 * t1302;
+  const Real t1304 = t1012 - t1303;
+  const Real t1305 = t793 * t761;
+  const Real t1306 = t798 * t921;
+  const Real t1307 = t934 * t795;
+  const Real t1308 = t1306 + t1307;
+  const Real t1309 = t951 * t802;
+  const Real t1310 = t1309 + t1308;
+  const Real t1311 = t1305 - t1310;
+  const Real t1312 = t980 * t811;
+  const Real t1313 = t1311 - t1312;
+  const Real t1314 = t1001 * t815;
+  const Real t1315 = t1313 - t1314;
+  const Real t1316 = t1315 - t723;
+  const Real t1317 = t625 * t820;
+  const Real t1318 = t1316 - t1317;
+  const Real t1319 = t793 * t1242;
+  const Real t1320 = t1135 * t798;
+  const Real t1321 = t1147 * t795;
+  const Real t1322 = t1320 + t1321;
+  const Real t1323 = t1162 * t802;
+  const Real t1324 = t1322 + t1323;
+  const Real t1325 = t1324 - t1319;
+  const Real t1326 = t811 * t1263;
+  const Real t1327 = t1325 + t1326;
+  const Real t1328 = t1279 * t815;
+  const Real t1329 = t1328 + t1327;
+  const Real t1330 = t1223 + t1329;
+  const Real t1331 = t820 * t1169;
+  const Real t1332 = t1330 - t1331;
+  const Real t1333 = t1332 * t1301;
+  const Real t1334 = t1333 * t1026;
+  const Real t1335 = t1318 - t1334;
+  const Real t1336 = t222 - t809;
+  const Real t1337 = t1336 + t220;
+  const Real t1338 = t1337 * par.k13;
+  const Real t1339 = t1338 + t802;
+  const Real t1340 = par.k1 * t1339;
+  const Real t1341 = par.k2 * t798;
+  const Real t1342 = t1341 - t1340;
+  const Real t1343 = c_r_p_1_ * t1342;
+  const Real t1344 = par.k13 * t815;
+  const Real t1345 = t1344 + t795;
+  const Real t1346 = s_r_p_1_ * t1345;
+  const Real t1347 = t1346 + t1343;
+  const Real t1348 = c_r_p_1_ * t811;
+  const Real t1349 = par.k1 * t815;
+  const Real t1350 = t793 * par.k2;
+  const Real t1351 = t1350 + t1349;
+  const Real t1352 = t1351 * s_r_p_1_;
+  const Real t1353 = t1348 + t1352;
+  const Real t1354 = par.k11 * t1353;
+  const Real t1355 = t1347 - t1354;
+  const Real t1356 = par.k2 * t1355;
+  const Real t1357 = par.k2 * t1339;
+  const Real t1358 = par.k1 * t798;
+  const Real t1359 = t1357 + t1358;
+  const Real t1360 = t1353 * par.k12;
+  const Real t1361 = t1359 - t1360;
+  const Real t1362 = par.k1 * t1361;
+  const Real t1363 = t1362 + t1356;
+  const Real t1364 = s_r_p_2_ * t1363;
+  const Real t1365 = par.k1 * t1355;
+  const Real t1366 = par.k2 * t1361;
+  const Real t1367 = t1366 - t1365;
+  const Real t1368 = c_r_p_2_ * t1367;
+  const Real t1369 = t1364 + t1368;
+  const Real t1370 = t1369 * par.m_F;
+  const Real t1371 = t1370 * s_r_p_2_;
+  const Real t1372 = c_r_p_2_ * t1363;
+  const Real t1373 = t1367 * s_r_p_2_;
+  const Real t1374 = t1372 - t1373;
+  const Real t1375 = par.m_F * t1374;
+  const Real t1376 = t1375 * c_r_p_2_;
+  const Real t1377 = t1371 + t1376;
+  const Real t1378 = t1377 * par.k2;
+  const Real t1379 = c_r_p_2_ * t1370;
+  const Real t1380 = t1375 * s_r_p_2_;
+  const Real t1381 = t1379 - t1380;
+  const Real t1382 = par.k1 * t1381;
+  const Real t1383 = t1378 - t1382;
+  const Real t1384 = t1383 * par.k11;
+  const Real t1385 = t1377 * par.k1;
+  const Real t1386 = t1381 * par.k2;
+  const Real t1387 = t1385 + t1386;
+  const Real t1388 = t1387 * par.k12;
+  const Real t1389 = t1384 + t1388;
+  const Real t1390 = t820 + t1353;
+  const Real t1391 = t1390 * par.I_Fyy;
+  const Real t1392 = t1391 - t1389;
+  const Real t1393 = par.k8 * t1347;
+  const Real t1394 = par.k10 * t1359;
   const Real t1395 = t1393 - t1394;
-  const Real t1396 = t1395 + t1392;
-  const Real t1397 = sum_error(t1396, t1379);
-  const Real t1398 = sum_error(t1378, t1361);
-  const Real t1399 = sum_error(t1338, t1360);
-  const Real t1400 = t815 * t1359;
-  const Real t1401 = product_error(t817, t1359);
-  const Real t1402 = t1401 + t1400;
-  const Real t1403 = t1402 + t1399;
-  const Real t1404 = t1398 + t1403;
-  const Real t1405 = t1397 + t1404;
-  const Real t1406 = t684 * t1162;
-  const Real t1407 = t1406 - t679;
-  const Real t1408 = t1407 * t1405;
-  const Real t1409 = t1396 + t1379;
-  const Real t1410 = -t679;
-  const Real t1411 = sum_error(t1406, t1410);
-  const Real t1412 = t1411 - t677;
-  const Real t1413 = t1412 * t1409;
-  const Real t1414 = t1408 + t1413;
-  const Real t1415 = t1407 * t1409;
-  const Real t1416 = t1415 + t1414;
-  const Real t1417 = -t1416;
-  const Real t1418 = sum_error(t1297, t1417);
-  const Real t1419 = t1418 + t1296;
-
-  // passive accelerations
-  const Real t1420 = par.k2 * t1235;
-
-  // fork: joint force
-  const Real t1421 = par.k1 * t1239;
-
-  // passive accelerations
-  const Real t1422 = t1420 + t1421;
-  const Real t1423 = t1422 - par.k16;
-  const Real t1424 = par.k45 + t1423;
-
-  // accelerations
-  const Real t1425 = t829 * t1424;
-
-  // passive accelerations
-  const Real t1426 = sum_error(t1422, par.k44);
-  const Real t1427 = t1426 - par.k62;
-  const Real t1428 = sum_error(par.k45, t1423);
-  const Real t1429 = t1427 + t1428;
-
-  // accelerations
-  const Real t1430 = t829 * t1429;
-  const Real t1431 = t1425 + t1430;
-
-  // passive accelerations
-  const Real t1432 = t930 * par.k2;
-
-  // fork: joint force
-  const Real t1433 = par.k1 * t934;
-
-  // passive accelerations
-  const Real t1434 = t1432 - t1433;
-
-  // accelerations
-  const Real t1435 = t1434 * t867;
-  const Real t1436 = t1431 + t1435;
-  const Real t1437 = t1364 * par.k2;
-
-  // fork: joint force
-  const Real t1438 = par.k1 * t1368;
-
-  // accelerations
-  const Real t1439 = t1437 + t1438;
-  const Real t1440 = t1439 * t895;
-  const Real t1441 = t1436 + t1440;
-
-  // front_wheel: acceleration
-  const Real t1442 = t122 * par.k13;
-  const Real t1443 = t1442 * par.k1;
-  const Real t1444 = t122 * par.k12;
-  const Real t1445 = t1444 * par.k2;
-  const Real t1446 = t1443 + t1445;
-  const Real t1447 = c_r_p_2_ * t1446;
-  const Real t1448 = t1442 * par.k2;
-  const Real t1449 = par.k1 * t1444;
-  const Real t1450 = t1448 - t1449;
-  const Real t1451 = s_r_p_2_ * t1450;
-  const Real t1452 = t1447 - t1451;
-
-  // front_wheel: wrench
-  const Real t1453 = t1452 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1454 = t1453 * c_r_p_2_;
-
-  // front_wheel: acceleration
-  const Real t1455 = c_r_p_2_ * t1450;
-  const Real t1456 = t1446 * s_r_p_2_;
-  const Real t1457 = t1455 + t1456;
-
-  // front_wheel: wrench
-  const Real t1458 = t1457 * par.m_F;
-
-  // front_wheel: joint force
-  const Real t1459 = t1458 * s_r_p_2_;
-  const Real t1460 = t1454 + t1459;
-  const Real t1461 = t1460 * par.k2;
-  const Real t1462 = t1458 * c_r_p_2_;
-  const Real t1463 = t1453 * s_r_p_2_;
-  const Real t1464 = t1462 - t1463;
-  const Real t1465 = par.k1 * t1464;
-  const Real t1466 = t1461 - t1465;
-  const Real t1467 = t1466 - t918;
-
-  // fork: joint force
-  const Real t1468 = t1467 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t1469 = t267 * par.k12;
-
-  // front_wheel: acceleration
-  const Real t1470 = par.k12 * t219;
-
-  // passive accelerations
-  const Real t1471 = t1469 + t1470;
-  const Real t1472 = par.k48 + t1471;
-  const Real t1473 = t1472 * par.m_F;
-  const Real t1474 = par.k40 - t913;
-  const Real t1475 = t1474 + t1473;
-  const Real t1476 = s_r_p_1_ * t1475;
-  const Real t1477 = t1468 - t1476;
-  const Real t1478 = t1477 * par.k1;
-
-  // front_wheel: joint force
-  const Real t1479 = par.k2 * t1464;
-  const Real t1480 = t1460 * par.k1;
-  const Real t1481 = t1479 + t1480;
-  const Real t1482 = t1481 + t933;
-
-  // fork: joint force
-  const Real t1483 = t1482 * par.k2;
-
-  // passive accelerations
-  const Real t1484 = t1483 - t1478;
-  const Real t1485 = t1484 * par.k14;
-
-  // accelerations
-  const Real t1486 = t1484 * par.k28;
-  const Real t1487 = t1485 + t1486;
-
-  // front_wheel: joint force
-  const Real t1488 = par.k12 * t1466;
-  const Real t1489 = t1481 * par.k13;
-  const Real t1490 = t1488 + t1489;
-
-  // front_wheel: wrench
-  const Real t1491 = t122 * par.I_Fyy;
-
-  // front_wheel: joint force
-  const Real t1492 = t1491 + t1490;
-
-  // fork: wrench
-  const Real t1493 = par.k8 * t122;
-
-  // front_wheel: joint force
-  const Real t1494 = t1493 + t1492;
-
-  // fork: joint force
-  const Real t1495 = t1494 * c_r_p_1_;
-
-  // passive accelerations
-  const Real t1496 = par.I_Fxx * t841;
-  const Real t1497 = t1496 * s_r_p_2_;
-  const Real t1498 = t834 * par.I_Fxx;
-  const Real t1499 = t1498 * c_r_p_2_;
-  const Real t1500 = t1497 + t1499;
-  const Real t1501 = par.k2 * t1500;
-  const Real t1502 = c_r_p_2_ * t1496;
-  const Real t1503 = t1498 * s_r_p_2_;
-  const Real t1504 = t1502 - t1503;
+  const Real t1396 = par.k7 * t1353;
+  const Real t1397 = t1396 + t1395;
+  const Real t1398 = t1397 + t1392;
+  const Real t1399 = s_r_p_1_ * t1398;
+  const Real t1400 = s_r_p_1_ * t811;
+  const Real t1401 = t1351 * c_r_p_1_;
+  const Real t1402 = t1400 - t1401;
+  const Real t1403 = t1402 * par.k2;
+  const Real t1404 = par.k2 * t815;
+  const Real t1405 = par.k1 * t793;
+  const Real t1406 = t1404 - t1405;
+  const Real t1407 = t1406 + constant<Real>(1.0L);
+  const Real t1408 = par.k1 * t1407;
+  const Real t1409 = t1403 + t1408;
+  const Real t1410 = t1409 * s_r_p_2_;
+  const Real t1411 = par.k1 * t1402;
+  const Real t1412 = t1407 * par.k2;
+  const Real t1413 = t1412 - t1411;
+  const Real t1414 = c_r_p_2_ * t1413;
+  const Real t1415 = t1410 + t1414;
+  const Real t1416 = par.I_Fxx * t1415;
+  const Real t1417 = t1416 * s_r_p_2_;
+  const Real t1418 = c_r_p_2_ * t1409;
+  const Real t1419 = t1413 * s_r_p_2_;
+  const Real t1420 = t1418 - t1419;
+  const Real t1421 = par.I_Fxx * t1420;
+  const Real t1422 = t1421 * c_r_p_2_;
+  const Real t1423 = t1417 + t1422;
+  const Real t1424 = par.k2 * t1423;
+  const Real t1425 = t1416 * c_r_p_2_;
+  const Real t1426 = t1421 * s_r_p_2_;
+  const Real t1427 = t1425 - t1426;
+  const Real t1428 = t1427 * par.k1;
+  const Real t1429 = t1424 - t1428;
+  const Real t1430 = s_r_p_1_ * t1342;
+  const Real t1431 = t1345 * c_r_p_1_;
+  const Real t1432 = t1431 - t1430;
+  const Real t1433 = t1401 - t1400;
+  const Real t1434 = t1433 * par.k11;
+  const Real t1435 = t1407 * par.k12;
+  const Real t1436 = t1435 - t1434;
+  const Real t1437 = t1432 + t1436;
+  const Real t1438 = t1437 * par.m_F;
+  const Real t1439 = t1438 * par.k11;
+  const Real t1440 = t1439 + t1429;
+  const Real t1441 = t1432 * par.k8;
+  const Real t1442 = t1402 * par.k17;
+  const Real t1443 = par.k5 * t1407;
+  const Real t1444 = t1443 + t1442;
+  const Real t1445 = t1444 - t1441;
+  const Real t1446 = t1445 + t1440;
+  const Real t1447 = c_r_p_1_ * t1446;
+  const Real t1448 = t1447 - t1399;
+  const Real t1449 = t1448 * par.k2;
+  const Real t1450 = t1427 * par.k2;
+  const Real t1451 = par.k1 * t1423;
+  const Real t1452 = t1450 + t1451;
+  const Real t1453 = t1438 * par.k12;
+  const Real t1454 = t1452 + t1453;
+  const Real t1455 = t1432 * par.k10;
+  const Real t1456 = par.k5 * t1433;
+  const Real t1457 = par.k6 * t1407;
+  const Real t1458 = t1457 - t1456;
+  const Real t1459 = t1458 + t1455;
+  const Real t1460 = t1459 + t1454;
+  const Real t1461 = par.k1 * t1460;
+  const Real t1462 = t1449 + t1461;
+  const Real t1463 = par.k3 * t815;
+  const Real t1464 = par.k9 * t793;
+  const Real t1465 = t1463 - t1464;
+  const Real t1466 = par.k15 * t795;
+  const Real t1467 = t1465 - t1466;
+  const Real t1468 = t1467 + t1462;
+  const Real t1469 = t815 * c_r_p_0_;
+  const Real t1470 = t793 * s_r_p_0_;
+  const Real t1471 = t1469 - t1470;
+  const Real t1472 = par.I_Rxx * t1471;
+  const Real t1473 = t1472 * s_r_p_0_;
+  const Real t1474 = t815 * s_r_p_0_;
+  const Real t1475 = t793 * c_r_p_0_;
+  const Real t1476 = t1475 + t1474;
+  const Real t1477 = par.I_Rxx * t1476;
+  const Real t1478 = t1477 * c_r_p_0_;
+  const Real t1479 = t1473 - t1478;
+  const Real t1480 = t793 * par.r_R;
+  const Real t1481 = t795 - t1480;
+  const Real t1482 = par.m_R * t1481;
+  const Real t1483 = t1482 * par.r_R;
+  const Real t1484 = t1479 + t1483;
+  const Real t1485 = t1468 + t1484;
+  const Real t1486 = t1485 * t793;
+  const Real t1487 = par.m_H * t1347;
+  const Real t1488 = par.k8 * t1353;
+  const Real t1489 = t1487 + t1488;
+  const Real t1490 = t1383 + t1489;
+  const Real t1491 = c_r_p_1_ * t1490;
+  const Real t1492 = t1432 * par.m_H;
+  const Real t1493 = par.k8 * t1433;
+  const Real t1494 = t1407 * par.k10;
+  const Real t1495 = t1493 + t1494;
+  const Real t1496 = t1492 + t1495;
+  const Real t1497 = t1438 + t1496;
+  const Real t1498 = s_r_p_1_ * t1497;
+  const Real t1499 = t1491 - t1498;
+  const Real t1500 = par.k2 * t1499;
+  const Real t1501 = par.m_H * t1359;
+  const Real t1502 = par.k10 * t1353;
+  const Real t1503 = t1501 - t1502;
+  const Real t1504 = t1387 + t1503;
   const Real t1505 = par.k1 * t1504;
-  const Real t1506 = t1501 - t1505;
-  const Real t1507 = t1473 * par.k12;
-  const Real t1508 = t1506 + t1507;
-
-  // fork: wrench
-  const Real t1509 = t219 * par.k18;
-
-  // passive accelerations
-  const Real t1510 = t267 * par.k18;
-  const Real t1511 = t1509 + t1510;
-  const Real t1512 = par.k51 + t1511;
-  const Real t1513 = t1512 + t1508;
-  const Real t1514 = s_r_p_1_ * t1513;
-  const Real t1515 = t1514 - t1495;
-
-  // accelerations
-  const Real t1516 = t1515 - t1487;
-  const Real t1517 = t815 * t1516;
-  const Real t1518 = t817 * t1516;
-  const Real t1519 = t1518 + t1517;
-  const Real t1520 = t1519 + t1441;
-
-  // fork: joint force
-  const Real t1521 = t1494 * s_r_p_1_;
-
-  // passive accelerations
-  const Real t1522 = c_r_p_1_ * t1513;
-  const Real t1523 = t1522 + t1521;
-  const Real t1524 = par.k1 * t1523;
-  const Real t1525 = par.k2 * t1504;
-  const Real t1526 = par.k1 * t1500;
-  const Real t1527 = t1525 + t1526;
-  const Real t1528 = t1473 * par.k13;
-  const Real t1529 = t1528 + t1527;
-
-  // fork: wrench
-  const Real t1530 = par.k5 * t219;
-
-  // passive accelerations
-  const Real t1531 = par.k5 * t267;
-  const Real t1532 = t1530 + t1531;
-  const Real t1533 = par.k50 + t1532;
-  const Real t1534 = t1533 + t1529;
-  const Real t1535 = t1534 * par.k2;
-  const Real t1536 = t1535 - t1524;
-
-  // fork: joint force
-  const Real t1537 = t1467 * s_r_p_1_;
-
-  // passive accelerations
-  const Real t1538 = c_r_p_1_ * t1475;
-  const Real t1539 = t1537 + t1538;
-  const Real t1540 = t1539 * par.k14;
-
-  // accelerations
-  const Real t1541 = par.k28 * t1539;
-  const Real t1542 = t1540 + t1541;
-  const Real t1543 = t1536 + t1542;
-  const Real t1544 = t1543 + par.k3;
-
-  // rear_wheel: wrench
-  const Real t1545 = par.I_Rxx * s_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t1546 = t1545 * c_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t1547 = par.I_Rxx * c_r_p_0_;
-
-  // rear_wheel: joint force
-  const Real t1548 = t1547 * s_r_p_0_;
-  const Real t1549 = t1546 - t1548;
-
-  // accelerations
-  const Real t1550 = t1544 + t1549;
-  const Real t1551 = t1550 * t827;
-  const Real t1552 = sum_error(t1549, t1544);
-  const Real t1553 = sum_error(par.k3, t1543);
-  const Real t1554 = t1553 + par.k72;
-  const Real t1555 = t1552 + t1554;
-  const Real t1556 = t1555 * t827;
-  const Real t1557 = t1551 + t1556;
-  const Real t1558 = t1557 + t1520;
-  const Real t1559 = t803 * t1491;
-  const Real t1560 = t1558 + t1559;
-  const Real t1561 = t1071 * par.k13;
-  const Real t1562 = t1040 * par.k12;
-  const Real t1563 = t1561 + t1562;
-  const Real t1564 = t999 * par.I_Fyy;
-  const Real t1565 = t1563 + t1564;
-  const Real t1566 = par.k9 * t997;
-  const Real t1567 = par.k11 * t1017;
-  const Real t1568 = t1566 - t1567;
-  const Real t1569 = t585 + t590;
-  const Real t1570 = t590 - t585;
-  const Real t1571 = t1569 * t1570;
-  const Real t1572 = par.k5 * t1571;
-  const Real t1573 = t998 * par.k38;
-  const Real t1574 = par.k8 * t999;
-  const Real t1575 = t1573 - t1574;
-  const Real t1576 = t1572 + t1575;
-  const Real t1577 = t1576 + t1568;
-  const Real t1578 = t1577 - t1565;
-  const Real t1579 = s_r_p_1_ * t1578;
-  const Real t1580 = c_r_p_2_ * t606;
-  const Real t1581 = t592 * s_r_p_2_;
+  const Real t1506 = t1500 + t1505;
+  const Real t1507 = t811 * par.k15;
+  const Real t1508 = t798 * par.m_B;
+  const Real t1509 = t1507 + t1508;
+  const Real t1510 = t1509 + t1506;
+  const Real t1511 = t811 * par.r_R;
+  const Real t1512 = t798 - t1511;
+  const Real t1513 = t1512 * s_r_p_0_;
+  const Real t1514 = t802 * c_r_p_0_;
+  const Real t1515 = t1514 + t1513;
+  const Real t1516 = t1515 * par.m_R;
+  const Real t1517 = t1516 * s_r_p_0_;
+  const Real t1518 = t1512 * c_r_p_0_;
+  const Real t1519 = t802 * s_r_p_0_;
+  const Real t1520 = t1518 - t1519;
+  const Real t1521 = t1520 * par.m_R;
+  const Real t1522 = c_r_p_0_ * t1521;
+  const Real t1523 = t1517 + t1522;
+  const Real t1524 = t1510 + t1523;
+  const Real t1525 = t1524 * t798;
+  const Real t1526 = s_r_p_1_ * t1490;
+  const Real t1527 = c_r_p_1_ * t1497;
+  const Real t1528 = t1526 + t1527;
+  const Real t1529 = par.k16 * t815;
+  const Real t1530 = t793 * par.k15;
+  const Real t1531 = t1529 + t1530;
+  const Real t1532 = t795 * par.m_B;
+  const Real t1533 = t1532 + t1531;
+  const Real t1534 = t1533 + t1528;
+  const Real t1535 = t1534 + t1482;
+  const Real t1536 = t1535 * t795;
+  const Real t1537 = t1536 + t1525;
+  const Real t1538 = par.k1 * t1499;
+  const Real t1539 = t1504 * par.k2;
+  const Real t1540 = t1539 - t1538;
+  const Real t1541 = t1337 * par.k16;
+  const Real t1542 = par.m_B * t802;
+  const Real t1543 = t1542 + t1541;
+  const Real t1544 = t1540 + t1543;
+  const Real t1545 = t1516 * c_r_p_0_;
+  const Real t1546 = s_r_p_0_ * t1521;
+  const Real t1547 = t1545 - t1546;
+  const Real t1548 = t1547 + t1544;
+  const Real t1549 = t1548 * t802;
+  const Real t1550 = t1549 + t1537;
+  const Real t1551 = t1550 - t1486;
+  const Real t1552 = t1398 * c_r_p_1_;
+  const Real t1553 = s_r_p_1_ * t1446;
+  const Real t1554 = t1553 + t1552;
+  const Real t1555 = t1540 * par.k13;
+  const Real t1556 = t1554 - t1555;
+  const Real t1557 = par.k4 * t811;
+  const Real t1558 = t798 * par.k15;
+  const Real t1559 = par.k16 * t802;
+  const Real t1560 = t1558 - t1559;
+  const Real t1561 = t1560 + t1557;
+  const Real t1562 = t1556 + t1561;
+  const Real t1563 = par.r_R * t1523;
+  const Real t1564 = par.I_Ryy * t811;
+  const Real t1565 = t1564 - t1563;
+  const Real t1566 = t1562 + t1565;
+  const Real t1567 = t1566 * t811;
+  const Real t1568 = t1567 + t1551;
+  const Real t1569 = par.k1 * t1448;
+  const Real t1570 = par.k2 * t1460;
+  const Real t1571 = t1570 - t1569;
+  const Real t1572 = par.k13 * t1528;
+  const Real t1573 = t1571 + t1572;
+  const Real t1574 = par.k14 * t815;
+  const Real t1575 = par.k3 * t793;
+  const Real t1576 = t1574 - t1575;
+  const Real t1577 = t795 * par.k16;
+  const Real t1578 = t1577 + t1576;
+  const Real t1579 = t1573 + t1578;
+  const Real t1580 = t1472 * c_r_p_0_;
+  const Real t1581 = t1477 * s_r_p_0_;
   const Real t1582 = t1580 + t1581;
-  const Real t1583 = t743 * t1582;
-  const Real t1584 = t1052 * par.k1;
-  const Real t1585 = t1584 * s_r_p_2_;
-  const Real t1586 = t1052 * par.k2;
-  const Real t1587 = c_r_p_2_ * t1586;
-  const Real t1588 = t1585 + t1587;
-  const Real t1589 = t1583 - t1588;
-  const Real t1590 = t1589 * par.I_Fxx;
-  const Real t1591 = t744 * t1582;
-  const Real t1592 = t1591 * par.k42;
-  const Real t1593 = t1590 - t1592;
-  const Real t1594 = t1593 * c_r_p_2_;
-  const Real t1595 = c_r_p_2_ * t592;
-  const Real t1596 = s_r_p_2_ * t606;
-  const Real t1597 = t1595 - t1596;
-  const Real t1598 = t743 * t1597;
-  const Real t1599 = t1052 * t4;
-  const Real t1600 = t1599 - t1598;
-  const Real t1601 = par.I_Fxx * t1600;
-  const Real t1602 = t744 * t1597;
-  const Real t1603 = par.k43 * t1602;
-  const Real t1604 = t1601 - t1603;
-  const Real t1605 = t1604 * s_r_p_2_;
-  const Real t1606 = t1594 + t1605;
-  const Real t1607 = t1606 * par.k2;
-  const Real t1608 = c_r_p_2_ * t1604;
-  const Real t1609 = t1593 * s_r_p_2_;
-  const Real t1610 = t1608 - t1609;
-  const Real t1611 = par.k1 * t1610;
-  const Real t1612 = t1607 - t1611;
-  const Real t1613 = t1064 * par.k12;
-  const Real t1614 = t1612 - t1613;
-  const Real t1615 = par.k9 * t1050;
-  const Real t1616 = t1052 * par.k18;
-  const Real t1617 = t1053 * par.k37;
-  const Real t1618 = t1616 + t1617;
-  const Real t1619 = par.k5 * t1056;
-  const Real t1620 = t1618 + t1619;
-  const Real t1621 = t1615 - t1620;
-  const Real t1622 = t1621 + t1614;
-  const Real t1623 = t1622 * c_r_p_1_;
-  const Real t1624 = t1623 - t1579;
-  const Real t1625 = t1624 * par.k2;
-  const Real t1626 = par.k2 * t1610;
-  const Real t1627 = par.k1 * t1606;
-  const Real t1628 = t1626 + t1627;
-  const Real t1629 = t1064 * par.k13;
-  const Real t1630 = t1628 - t1629;
-  const Real t1631 = par.k11 * t1050;
-  const Real t1632 = par.k5 * t1054;
-  const Real t1633 = t1056 * par.k39;
-  const Real t1634 = t1632 + t1633;
-  const Real t1635 = t1634 + t1631;
-  const Real t1636 = t1630 - t1635;
-  const Real t1637 = par.k1 * t1636;
-  const Real t1638 = t1625 + t1637;
-  const Real t1639 = par.k16 * t989;
-  const Real t1640 = par.k70 * t1256;
-  const Real t1641 = t990 * par.k72;
-  const Real t1642 = par.k3 * t990;
-  const Real t1643 = t1641 + t1642;
-  const Real t1644 = t1640 - t1643;
-  const Real t1645 = t1644 + t1639;
-  const Real t1646 = t1638 + t1645;
-  const Real t1647 = t523 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t1648 = nu[0] * c_r_p_0_;
-
-  // accelerations
-  const Real t1649 = t1648 + t1647;
-  const Real t1650 = t1649 * nu[2];
-  const Real t1651 = t1650 * par.I_Rxx;
-  const Real t1652 = t1649 * t712;
-  const Real t1653 = t1652 * par.k35;
-  const Real t1654 = t1651 + t1653;
-  const Real t1655 = t1654 * s_r_p_0_;
-  const Real t1656 = t523 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t1657 = nu[0] * s_r_p_0_;
-
-  // accelerations
-  const Real t1658 = t1657 - t1656;
-  const Real t1659 = t712 * t1658;
-  const Real t1660 = t1659 * par.k36;
-  const Real t1661 = t1658 * nu[2];
-  const Real t1662 = t1661 * par.I_Rxx;
-  const Real t1663 = t1660 - t1662;
-  const Real t1664 = t1663 * c_r_p_0_;
-  const Real t1665 = t1655 + t1664;
-  const Real t1666 = par.r_R * t1270;
-  const Real t1667 = t1665 - t1666;
-  const Real t1668 = t1667 + t1646;
-  const Real t1669 = sum_error(t1560, t1668);
-  const Real t1670 = sum_error(t1645, t1638);
-  const Real t1671 = t988 * par.k16;
-  const Real t1672 = par.k62 * t989;
-  const Real t1673 = t1671 + t1672;
-  const Real t1674 = product_error(par.k16, t989);
-  const Real t1675 = t1673 + t1674;
-  const Real t1676 = sum_error(t1639, t1644);
-  const Real t1677 = t1676 + t1675;
-  const Real t1678 = t1670 + t1677;
-  const Real t1679 = sum_error(t1667, t1646);
-  const Real t1680 = t1678 + t1679;
-  const Real t1681 = t1669 + t1680;
-  const Real t1682 = t1681 * t1162;
-  const Real t1683 = t1560 + t1668;
-  const Real t1684 = product_error(t1162, t1683);
-  const Real t1685 = t1684 + t1682;
-  const Real t1686 = t1685 + t1419;
-  const Real t1687 = t1297 - t1416;
-  const Real t1688 = t1683 * t1162;
-  const Real t1689 = sum_error(t1687, t1688);
-  const Real t1690 = t1689 + t1686;
-  const Real t1691 = t1228 * t829;
-  const Real t1692 = t925 * t867;
-  const Real t1693 = t949 * t867;
-  const Real t1694 = t1692 + t1693;
-  const Real t1695 = t1694 + t1691;
-  const Real t1696 = t1359 * t895;
-  const Real t1697 = t1695 + t1696;
-
-  // front_wheel: acceleration
-  const Real t1698 = c_r_p_1_ * par.k13;
-  const Real t1699 = t1698 + par.k21;
-
-  // accelerations
-  const Real t1700 = par.k30 + t1699;
+  const Real t1583 = t1579 + t1582;
+  const Real t1584 = t1583 * t815;
+  const Real t1585 = t1584 + t1568;
+  const Real t1586 = t1585 + t1460;
+  const Real t1587 = t820 * t1391;
+  const Real t1588 = t1587 + t1586;
+  const Real t1589 = t1333 * t1332;
+  const Real t1590 = t1588 - t1589;
+  const Real t1591 = constant<Real>(1.0L) / t1590;
+  const Real t1592 = t1485 * t870;
+  const Real t1593 = t1524 * t923;
+  const Real t1594 = t936 * t1535;
+  const Real t1595 = t1594 + t1593;
+  const Real t1596 = t953 * t1548;
+  const Real t1597 = t1595 + t1596;
+  const Real t1598 = t1597 + t1592;
+  const Real t1599 = t1566 * t982;
+  const Real t1600 = t1599 + t1598;
+  const Real t1601 = t1583 * t1003;
+  const Real t1602 = t1600 + t1601;
+  const Real t1603 = t1564 + t1602;
+  const Real t1604 = t868 * t1460;
+  const Real t1605 = t1603 - t1604;
+  const Real t1606 = t1010 * t1391;
+  const Real t1607 = t1605 + t1606;
+  const Real t1608 = t1333 * t1286;
+  const Real t1609 = t1607 - t1608;
+  const Real t1610 = t1591 * t1609;
+  const Real t1611 = t1335 * t1610;
+  const Real t1612 = t1304 - t1611;
+  const Real t1613 = t981 - t857;
+  const Real t1614 = par.k13 * t1613;
+  const Real t1615 = t953 + t1614;
+  const Real t1616 = par.k1 * t1615;
+  const Real t1617 = par.k2 * t923;
+  const Real t1618 = t1617 - t1616;
+  const Real t1619 = c_r_p_1_ * t1618;
+  const Real t1620 = par.k13 * t1003;
+  const Real t1621 = t1620 + t936;
+  const Real t1622 = s_r_p_1_ * t1621;
+  const Real t1623 = t1619 + t1622;
+  const Real t1624 = t870 * par.k2;
+  const Real t1625 = par.k1 * t1003;
+  const Real t1626 = t1624 - t1625;
+  const Real t1627 = s_r_p_1_ * t1626;
+  const Real t1628 = c_r_p_1_ * t982;
+  const Real t1629 = t1628 - t1627;
+  const Real t1630 = t1629 * par.k11;
+  const Real t1631 = t1623 - t1630;
+  const Real t1632 = t1631 * par.k2;
+  const Real t1633 = t1627 - t1628;
+  const Real t1634 = t1633 * par.k12;
+  const Real t1635 = t1615 * par.k2;
+  const Real t1636 = par.k1 * t923;
+  const Real t1637 = t1636 + t1635;
+  const Real t1638 = t1634 + t1637;
+  const Real t1639 = par.k1 * t1638;
+  const Real t1640 = t1632 + t1639;
+  const Real t1641 = t1640 * s_r_p_2_;
+  const Real t1642 = par.k1 * t1631;
+  const Real t1643 = par.k2 * t1638;
+  const Real t1644 = t1643 - t1642;
+  const Real t1645 = t1644 * c_r_p_2_;
+  const Real t1646 = t1641 + t1645;
+  const Real t1647 = par.m_F * t1646;
+  const Real t1648 = s_r_p_2_ * t1647;
+  const Real t1649 = c_r_p_2_ * t1640;
+  const Real t1650 = t1644 * s_r_p_2_;
+  const Real t1651 = t1649 - t1650;
+  const Real t1652 = t1651 * par.m_F;
+  const Real t1653 = c_r_p_2_ * t1652;
+  const Real t1654 = t1648 + t1653;
+  const Real t1655 = par.k2 * t1654;
+  const Real t1656 = c_r_p_2_ * t1647;
+  const Real t1657 = t1652 * s_r_p_2_;
+  const Real t1658 = t1656 - t1657;
+  const Real t1659 = par.k1 * t1658;
+  const Real t1660 = t1655 - t1659;
+  const Real t1661 = par.k11 * t1660;
+  const Real t1662 = par.k1 * t1654;
+  const Real t1663 = par.k2 * t1658;
+  const Real t1664 = t1662 + t1663;
+  const Real t1665 = par.k12 * t1664;
+  const Real t1666 = t1661 + t1665;
+  const Real t1667 = t1010 + t1629;
+  const Real t1668 = par.I_Fyy * t1667;
+  const Real t1669 = t1668 - t1666;
+  const Real t1670 = par.k8 * t1623;
+  const Real t1671 = t1637 * par.k10;
+  const Real t1672 = t1670 - t1671;
+  const Real t1673 = t1629 * par.k7;
+  const Real t1674 = t1672 + t1673;
+  const Real t1675 = t1674 + t1669;
+  const Real t1676 = t1675 * s_r_p_1_;
+  const Real t1677 = c_r_p_1_ * t1626;
+  const Real t1678 = s_r_p_1_ * t982;
+  const Real t1679 = t1678 + t1677;
+  const Real t1680 = par.k2 * t1679;
+  const Real t1681 = par.k2 * t1003;
+  const Real t1682 = par.k1 * t870;
+  const Real t1683 = t1681 + t1682;
+  const Real t1684 = t1683 - t868;
+  const Real t1685 = par.k1 * t1684;
+  const Real t1686 = t1685 + t1680;
+  const Real t1687 = t1686 * s_r_p_2_;
+  const Real t1688 = par.k1 * t1679;
+  const Real t1689 = par.k2 * t1684;
+  const Real t1690 = t1689 - t1688;
+  const Real t1691 = c_r_p_2_ * t1690;
+  const Real t1692 = t1687 + t1691;
+  const Real t1693 = par.I_Fxx * t1692;
+  const Real t1694 = t1693 * s_r_p_2_;
+  const Real t1695 = c_r_p_2_ * t1686;
+  const Real t1696 = t1690 * s_r_p_2_;
+  const Real t1697 = t1695 - t1696;
+  const Real t1698 = par.I_Fxx * t1697;
+  const Real t1699 = c_r_p_2_ * t1698;
+  const Real t1700 = t1694 + t1699;
   const Real t1701 = par.k2 * t1700;
-
-  // front_wheel: acceleration
-  const Real t1702 = c_r_p_1_ * par.k12;
-
-  // accelerations
-  const Real t1703 = t149 - t1702;
-  const Real t1704 = par.k1 * t1703;
-  const Real t1705 = t1701 + t1704;
-  const Real t1706 = t1705 * s_r_p_2_;
-  const Real t1707 = t1703 * par.k2;
-  const Real t1708 = par.k1 * t1700;
-  const Real t1709 = t1707 - t1708;
-  const Real t1710 = t1709 * c_r_p_2_;
-  const Real t1711 = t1706 + t1710;
-  const Real t1712 = t1711 * par.m_F;
-  const Real t1713 = t1712 * c_r_p_2_;
-  const Real t1714 = t1709 * s_r_p_2_;
-  const Real t1715 = t1705 * c_r_p_2_;
-  const Real t1716 = t1714 - t1715;
-  const Real t1717 = par.m_F * t1716;
-  const Real t1718 = t1717 * s_r_p_2_;
-  const Real t1719 = t1713 + t1718;
-  const Real t1720 = par.k2 * t1719;
-  const Real t1721 = c_r_p_2_ * t1717;
-  const Real t1722 = t1712 * s_r_p_2_;
-  const Real t1723 = t1721 - t1722;
-  const Real t1724 = par.k1 * t1723;
-  const Real t1725 = t1720 - t1724;
-  const Real t1726 = par.m_H * t149;
-  const Real t1727 = t1224 + t1726;
-  const Real t1728 = t1727 + t1725;
-  const Real t1729 = c_r_p_1_ * t1728;
-  const Real t1730 = par.m_H * t131;
-
-  // fork: wrench
-  const Real t1731 = par.m_H * t134;
-
-  // accelerations
-  const Real t1732 = t1731 + t1730;
-  const Real t1733 = t1220 + t1732;
-
-  // front_wheel: acceleration
-  const Real t1734 = s_r_p_1_ * par.k12;
-  const Real t1735 = t1734 - t134;
-
-  // accelerations
-  const Real t1736 = t1735 - t131;
-  const Real t1737 = par.m_F * t1736;
-  const Real t1738 = t1737 - t1733;
-  const Real t1739 = s_r_p_1_ * t1738;
-  const Real t1740 = t1729 - t1739;
-  const Real t1741 = par.k1 * t1740;
-  const Real t1742 = par.k1 * t1719;
-  const Real t1743 = t1723 * par.k2;
-  const Real t1744 = t1742 + t1743;
-  const Real t1745 = par.k69 + t1238;
-  const Real t1746 = t1744 - t1745;
-  const Real t1747 = par.k2 * t1746;
-  const Real t1748 = t1747 - t1741;
-  const Real t1749 = t1748 * par.k14;
-  const Real t1750 = t1748 * par.k28;
-  const Real t1751 = t1749 + t1750;
-  const Real t1752 = par.k13 * t1744;
-  const Real t1753 = par.k12 * t1725;
-  const Real t1754 = t1752 + t1753;
-
-  // front_wheel: wrench
-  const Real t1755 = c_r_p_1_ * par.I_Fyy;
-
-  // accelerations
-  const Real t1756 = t1755 - t1754;
-  const Real t1757 = par.k9 * t149;
-  const Real t1758 = t1757 + par.k71;
-
-  // fork: wrench
-  const Real t1759 = par.k8 * c_r_p_1_;
-
-  // accelerations
-  const Real t1760 = t1759 + t1758;
-  const Real t1761 = t1760 + t1756;
-  const Real t1762 = c_r_p_1_ * t1761;
-
-  // front_wheel: wrench
-  const Real t1763 = par.I_Fxx * t1172;
-
-  // front_wheel: joint force
-  const Real t1764 = c_r_p_2_ * t1763;
-
-  // passive accelerations
-  const Real t1765 = t1175 * par.I_Fxx;
-  const Real t1766 = t1765 * s_r_p_2_;
-  const Real t1767 = t1766 + t1764;
-  const Real t1768 = t1767 * par.k2;
-
-  // front_wheel: joint force
-  const Real t1769 = t1763 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t1770 = t1765 * c_r_p_2_;
-  const Real t1771 = t1770 - t1769;
-  const Real t1772 = par.k1 * t1771;
-  const Real t1773 = t1768 - t1772;
-
-  // accelerations
-  const Real t1774 = par.k12 * t1737;
-  const Real t1775 = t1773 + t1774;
-  const Real t1776 = par.k9 * t131;
-
-  // fork: wrench
-  const Real t1777 = par.k9 * t134;
-
-  // accelerations
-  const Real t1778 = t1776 + t1777;
-
-  // fork: wrench
-  const Real t1779 = s_r_p_1_ * par.k18;
-
-  // accelerations
+  const Real t1702 = t1693 * c_r_p_2_;
+  const Real t1703 = t1698 * s_r_p_2_;
+  const Real t1704 = t1702 - t1703;
+  const Real t1705 = t1704 * par.k1;
+  const Real t1706 = t1701 - t1705;
+  const Real t1707 = s_r_p_1_ * t1618;
+  const Real t1708 = c_r_p_1_ * t1621;
+  const Real t1709 = t1708 - t1707;
+  const Real t1710 = par.k11 * t1679;
+  const Real t1711 = par.k12 * t1684;
+  const Real t1712 = t1710 + t1711;
+  const Real t1713 = t1709 + t1712;
+  const Real t1714 = t1713 * par.m_F;
+  const Real t1715 = par.k11 * t1714;
+  const Real t1716 = t1715 + t1706;
+  const Real t1717 = t1709 * par.k8;
+  const Real t1718 = t1679 * par.k17;
+  const Real t1719 = par.k5 * t1684;
+  const Real t1720 = t1719 + t1718;
+  const Real t1721 = t1720 - t1717;
+  const Real t1722 = t1716 + t1721;
+  const Real t1723 = t1722 * c_r_p_1_;
+  const Real t1724 = t1723 - t1676;
+  const Real t1725 = t1724 * par.k2;
+  const Real t1726 = par.k1 * t1700;
+  const Real t1727 = t1704 * par.k2;
+  const Real t1728 = t1726 + t1727;
+  const Real t1729 = par.k12 * t1714;
+  const Real t1730 = t1728 + t1729;
+  const Real t1731 = t1709 * par.k10;
+  const Real t1732 = par.k5 * t1679;
+  const Real t1733 = par.k6 * t1684;
+  const Real t1734 = t1733 + t1732;
+  const Real t1735 = t1731 + t1734;
+  const Real t1736 = t1730 + t1735;
+  const Real t1737 = par.k1 * t1736;
+  const Real t1738 = t1737 + t1725;
+  const Real t1739 = par.k3 * t1003;
+  const Real t1740 = t870 * par.k9;
+  const Real t1741 = t1739 + t1740;
+  const Real t1742 = t936 * par.k15;
+  const Real t1743 = t1741 - t1742;
+  const Real t1744 = t1738 + t1743;
+  const Real t1745 = t1003 * c_r_p_0_;
+  const Real t1746 = t870 * s_r_p_0_;
+  const Real t1747 = t1745 + t1746;
+  const Real t1748 = t1747 * par.I_Rxx;
+  const Real t1749 = t1748 * s_r_p_0_;
+  const Real t1750 = t870 * c_r_p_0_;
+  const Real t1751 = t1003 * s_r_p_0_;
+  const Real t1752 = t1750 - t1751;
+  const Real t1753 = par.I_Rxx * t1752;
+  const Real t1754 = t1753 * c_r_p_0_;
+  const Real t1755 = t1749 + t1754;
+  const Real t1756 = t839 - t869;
+  const Real t1757 = t1756 * par.r_R;
+  const Real t1758 = t936 - t1757;
+  const Real t1759 = t1758 * par.m_R;
+  const Real t1760 = t1759 * par.r_R;
+  const Real t1761 = t1755 + t1760;
+  const Real t1762 = t1744 + t1761;
+  const Real t1763 = t870 * t1762;
+  const Real t1764 = par.m_H * t1623;
+  const Real t1765 = t1629 * par.k8;
+  const Real t1766 = t1764 + t1765;
+  const Real t1767 = t1766 + t1660;
+  const Real t1768 = c_r_p_1_ * t1767;
+  const Real t1769 = t1709 * par.m_H;
+  const Real t1770 = par.k8 * t1679;
+  const Real t1771 = par.k10 * t1684;
+  const Real t1772 = t1771 - t1770;
+  const Real t1773 = t1772 + t1769;
+  const Real t1774 = t1773 + t1714;
+  const Real t1775 = s_r_p_1_ * t1774;
+  const Real t1776 = t1768 - t1775;
+  const Real t1777 = t1776 * par.k2;
+  const Real t1778 = t1633 * par.k10;
+  const Real t1779 = t1637 * par.m_H;
   const Real t1780 = t1778 + t1779;
-  const Real t1781 = t1780 + t1775;
-  const Real t1782 = s_r_p_1_ * t1781;
-  const Real t1783 = t1782 + t1762;
-  const Real t1784 = t1783 - t1751;
-  const Real t1785 = par.k4 + t1784;
-
-  // rear_wheel: acceleration
-  const Real t1786 = par.r_R * c_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t1787 = par.m_R * t1786;
-
-  // rear_wheel: joint force
-  const Real t1788 = t1787 * c_r_p_0_;
-
-  // rear_wheel: acceleration
-  const Real t1789 = par.r_R * s_r_p_0_;
-
-  // rear_wheel: wrench
-  const Real t1790 = par.m_R * t1789;
-
-  // rear_wheel: joint force
-  const Real t1791 = t1790 * s_r_p_0_;
-  const Real t1792 = t1788 + t1791;
-  const Real t1793 = t1792 * par.r_R;
-  const Real t1794 = par.I_Ryy + t1793;
-
-  // accelerations
-  const Real t1795 = t1794 + t1785;
-  const Real t1796 = t1795 * t817;
-  const Real t1797 = sum_error(t1697, t1796);
-  const Real t1798 = sum_error(t1695, t1696);
-  const Real t1799 = t1795 * t815;
-  const Real t1800 = sum_error(par.k4, t1784);
-  const Real t1801 = t1800 + par.k67;
-  const Real t1802 = sum_error(t1794, t1785);
-  const Real t1803 = t1801 + t1802;
-  const Real t1804 = t1803 * t817;
-  const Real t1805 = t1804 + t1799;
-  const Real t1806 = product_error(t1795, t817);
-  const Real t1807 = t1806 + t1805;
-  const Real t1808 = t1798 + t1807;
-  const Real t1809 = t1797 + t1808;
-  const Real t1810 = t1796 + t1697;
-  const Real t1811 = s_r_p_1_ * t1761;
-  const Real t1812 = c_r_p_1_ * t1781;
-  const Real t1813 = t1812 - t1811;
-  const Real t1814 = par.k1 * t1813;
-
-  // passive accelerations
-  const Real t1815 = t1767 * par.k1;
-  const Real t1816 = par.k2 * t1771;
-  const Real t1817 = t1815 + t1816;
-
-  // accelerations
-  const Real t1818 = par.k13 * t1737;
-  const Real t1819 = t1818 + t1817;
-  const Real t1820 = par.k11 * t131;
-
-  // fork: wrench
-  const Real t1821 = par.k11 * t134;
-
-  // accelerations
-  const Real t1822 = t1820 + t1821;
-
-  // fork: wrench
-  const Real t1823 = s_r_p_1_ * par.k5;
-
-  // accelerations
-  const Real t1824 = t1823 - t1822;
-  const Real t1825 = t1819 + t1824;
-  const Real t1826 = par.k2 * t1825;
-  const Real t1827 = t1826 - t1814;
-  const Real t1828 = s_r_p_1_ * t1728;
-  const Real t1829 = c_r_p_1_ * t1738;
-  const Real t1830 = t1828 + t1829;
-  const Real t1831 = par.k14 * t1830;
-  const Real t1832 = par.k28 * t1830;
-  const Real t1833 = t1831 + t1832;
-  const Real t1834 = t1827 + t1833;
-  const Real t1835 = t1834 * t827;
-  const Real t1836 = sum_error(t1835, t1810);
-  const Real t1837 = t1809 + t1836;
-  const Real t1838 = t1835 + t1810;
-  const Real t1839 = t1755 * t803;
-  const Real t1840 = -t1839;
-  const Real t1841 = sum_error(t1838, t1840);
-  const Real t1842 = t1837 + t1841;
-  const Real t1843 = t1382 * par.k28;
-  const Real t1844 = t1382 * par.k14;
-  const Real t1845 = t1843 + t1844;
-  const Real t1846 = c_r_p_1_ * t1578;
-  const Real t1847 = s_r_p_1_ * t1622;
-  const Real t1848 = t1847 + t1846;
-  const Real t1849 = t1848 - t1845;
-  const Real t1850 = par.k65 * t973;
-  const Real t1851 = t973 * par.k17;
-  const Real t1852 = t1850 + t1851;
-  const Real t1853 = t960 * par.k16;
-  const Real t1854 = t1853 - t1852;
-  const Real t1855 = t523 + nu[0];
-  const Real t1856 = t523 - nu[0];
-  const Real t1857 = t1855 * t1856;
-  const Real t1858 = t1857 * par.k72;
-  const Real t1859 = par.k3 * t1857;
-  const Real t1860 = t1858 + t1859;
-  const Real t1861 = par.k63 * t974;
-  const Real t1862 = t1860 - t1861;
-  const Real t1863 = t1862 + t1854;
-  const Real t1864 = t1849 + t1863;
-  const Real t1865 = -t1864;
-  const Real t1866 = par.r_R * t1112;
-  const Real t1867 = sum_error(t1866, t1865);
-  const Real t1868 = sum_error(t1863, t1849);
-  const Real t1869 = -t1852;
-  const Real t1870 = sum_error(t1853, t1869);
-  const Real t1871 = product_error(par.k16, t960);
-  const Real t1872 = par.k62 * t960;
-  const Real t1873 = t1871 + t1872;
-  const Real t1874 = t1870 + t1873;
-  const Real t1875 = sum_error(t1854, t1862);
-  const Real t1876 = t1875 + t1874;
-  const Real t1877 = t1876 + t1868;
-  const Real t1878 = t1867 - t1877;
-  const Real t1879 = t1878 - t1842;
-  const Real t1880 = t1839 - t1838;
-  const Real t1881 = t1866 - t1864;
-  const Real t1882 = sum_error(t1881, t1880);
-  const Real t1883 = t1879 + t1882;
-  const Real t1884 = t1162 * t431;
-  const Real t1885 = t429 * t1162;
-  const Real t1886 = t1884 + t1885;
-  const Real t1887 = t1886 - t344;
-  const Real t1888 = t1887 * t1883;
-  const Real t1889 = t1838 - t1839;
-  const Real t1890 = t1881 - t1889;
-  const Real t1891 = -t344;
-  const Real t1892 = sum_error(t1886, t1891);
-  const Real t1893 = t1892 - t342;
-  const Real t1894 = t1893 * t1890;
-  const Real t1895 = t1888 + t1894;
-  const Real t1896 = product_error(t1887, t1890);
-  const Real t1897 = t1896 + t1895;
-  const Real t1898 = t1690 + t1897;
-  const Real t1899 = t1687 + t1688;
-  const Real t1900 = t1887 * t1890;
-  const Real t1901 = sum_error(t1899, t1900);
-  const Real t1902 = t1901 + t1898;
-  const Real t1903 = t1249 * t829;
-  const Real t1904 = t829 * t1247;
-  const Real t1905 = t1903 + t1904;
-  const Real t1906 = t940 * t867;
-  const Real t1907 = t1905 + t1906;
-  const Real t1908 = t1377 * t895;
+  const Real t1781 = t1664 + t1780;
+  const Real t1782 = t1781 * par.k1;
+  const Real t1783 = t1782 + t1777;
+  const Real t1784 = t982 * par.k15;
+  const Real t1785 = t923 * par.m_B;
+  const Real t1786 = t1784 + t1785;
+  const Real t1787 = t1786 + t1783;
+  const Real t1788 = t982 * par.r_R;
+  const Real t1789 = t923 - t1788;
+  const Real t1790 = t1789 * c_r_p_0_;
+  const Real t1791 = t953 * s_r_p_0_;
+  const Real t1792 = t1790 - t1791;
+  const Real t1793 = t1792 * par.m_R;
+  const Real t1794 = t1793 * c_r_p_0_;
+  const Real t1795 = t1789 * s_r_p_0_;
+  const Real t1796 = t953 * c_r_p_0_;
+  const Real t1797 = t1795 + t1796;
+  const Real t1798 = t1797 * par.m_R;
+  const Real t1799 = t1798 * s_r_p_0_;
+  const Real t1800 = t1794 + t1799;
+  const Real t1801 = t1800 + t1787;
+  const Real t1802 = t1801 * t923;
+  const Real t1803 = s_r_p_1_ * t1767;
+  const Real t1804 = c_r_p_1_ * t1774;
+  const Real t1805 = t1804 + t1803;
+  const Real t1806 = t1756 * par.k15;
+  const Real t1807 = t1003 * par.k16;
+  const Real t1808 = t1806 + t1807;
+  const Real t1809 = t936 * par.m_B;
+  const Real t1810 = t1809 + t1808;
+  const Real t1811 = t1805 + t1810;
+  const Real t1812 = t1759 + t1811;
+  const Real t1813 = t936 * t1812;
+  const Real t1814 = t1802 + t1813;
+  const Real t1815 = par.k1 * t1776;
+  const Real t1816 = t1781 * par.k2;
+  const Real t1817 = t1816 - t1815;
+  const Real t1818 = t953 * par.m_B;
+  const Real t1819 = t1613 * par.k16;
+  const Real t1820 = t1818 + t1819;
+  const Real t1821 = t1817 + t1820;
+  const Real t1822 = t1798 * c_r_p_0_;
+  const Real t1823 = t1793 * s_r_p_0_;
+  const Real t1824 = t1822 - t1823;
+  const Real t1825 = t1824 + t1821;
+  const Real t1826 = t953 * t1825;
+  const Real t1827 = t1826 + t1814;
+  const Real t1828 = t1763 + t1827;
+  const Real t1829 = t1675 * c_r_p_1_;
+  const Real t1830 = t1722 * s_r_p_1_;
+  const Real t1831 = t1829 + t1830;
+  const Real t1832 = t1817 * par.k13;
+  const Real t1833 = t1831 - t1832;
+  const Real t1834 = t923 * par.k15;
+  const Real t1835 = t953 * par.k16;
+  const Real t1836 = t1834 - t1835;
+  const Real t1837 = par.k4 * t982;
+  const Real t1838 = t1836 + t1837;
+  const Real t1839 = t1833 + t1838;
+  const Real t1840 = t1800 * par.r_R;
+  const Real t1841 = constant<Real>(1.0L) + t982;
+  const Real t1842 = par.I_Ryy * t1841;
+  const Real t1843 = t1842 - t1840;
+  const Real t1844 = t1843 + t1839;
+  const Real t1845 = t1844 * t982;
+  const Real t1846 = t1828 + t1845;
+  const Real t1847 = par.k1 * t1724;
+  const Real t1848 = par.k2 * t1736;
+  const Real t1849 = t1848 - t1847;
+  const Real t1850 = t1805 * par.k13;
+  const Real t1851 = t1849 + t1850;
+  const Real t1852 = par.k14 * t1003;
+  const Real t1853 = par.k3 * t1756;
+  const Real t1854 = t1852 - t1853;
+  const Real t1855 = t936 * par.k16;
+  const Real t1856 = t1854 + t1855;
+  const Real t1857 = t1851 + t1856;
+  const Real t1858 = t1748 * c_r_p_0_;
+  const Real t1859 = t1753 * s_r_p_0_;
+  const Real t1860 = t1858 - t1859;
+  const Real t1861 = t1857 + t1860;
+  const Real t1862 = t1861 * t1003;
+  const Real t1863 = t1846 + t1862;
+  const Real t1864 = t1863 + t1842;
+  const Real t1865 = t868 * t1736;
+  const Real t1866 = t1864 - t1865;
+  const Real t1867 = t1010 * t1668;
+  const Real t1868 = t1867 + t1866;
+  const Real t1869 = t1286 * t1302;
+  const Real t1870 = t1868 - t1869;
+  const Real t1871 = t1609 * t1610;
+  const Real t1872 = t1870 - t1871;
+  const Real t1873 = constant<Real>(1.0L) / t1872;
+  const Real t1874 = t1873 * t1612;
+  const Real t1875 = t1610 * t1874;
+  const Real t1876 = t1591 * t1335;
+  const Real t1877 = t1876 - t1875;
+  const Real t1878 = t1333 * t1877;
+  const Real t1879 = t1026 * t1301;
+  const Real t1880 = t1879 - t1878;
+  const Real t1881 = t1874 * t1302;
+  const Real t1882 = t1880 - t1881;
+  const Real t1883 = t1882 * t174;
+  const Real t1884 = t820 * t1877;
+  const Real t1885 = t1884 - t1883;
+  const Real t1886 = t1010 * t1874;
+  const Real t1887 = t1885 + t1886;
+  const Real t1888 = t1887 - t501;
+  const Real t1889 = t868 * t1874;
+  const Real t1890 = t1877 - t1889;
+  const Real t1891 = t191 * t1882;
+  const Real t1892 = t1877 * t815;
+  const Real t1893 = t1892 - t1891;
+  const Real t1894 = t1874 * t1003;
+  const Real t1895 = t1894 + t1893;
+  const Real t1896 = t519 + t1895;
+  const Real t1897 = t1882 * t185;
+  const Real t1898 = t183 * t1882;
+  const Real t1899 = t1897 + t1898;
+  const Real t1900 = t811 * t1877;
+  const Real t1901 = t1900 - t1899;
+  const Real t1902 = t982 * t1874;
+  const Real t1903 = t1902 + t1901;
+  const Real t1904 = t513 + t1903;
+  const Real t1905 = t1904 + t511;
+  const Real t1906 = t793 * t1877;
+  const Real t1907 = t1882 - t1906;
+  const Real t1908 = t870 * t1874;
   const Real t1909 = t1908 + t1907;
-  const Real t1910 = t1834 * t815;
-  const Real t1911 = t1834 * t817;
-  const Real t1912 = t1911 + t1910;
-  const Real t1913 = t1912 + t1909;
-
-  // front_wheel: acceleration
-  const Real t1914 = par.k12 * t105;
-  const Real t1915 = t111 - t1914;
-
-  // accelerations
-  const Real t1916 = t109 + t1915;
-  const Real t1917 = t1916 * par.k2;
-
-  // front_wheel: acceleration
-  const Real t1918 = par.k13 * t105;
-  const Real t1919 = t1918 * par.k1;
-
-  // accelerations
-  const Real t1920 = t1917 - t1919;
-  const Real t1921 = t1920 * s_r_p_2_;
-  const Real t1922 = t1916 * par.k1;
-
-  // front_wheel: acceleration
-  const Real t1923 = t1918 * par.k2;
-
-  // accelerations
+  const Real t1910 = t1882 * t378;
+  const Real t1911 = t1877 * t802;
+  const Real t1912 = t1911 - t1910;
+  const Real t1913 = t953 * t1874;
+  const Real t1914 = t1913 + t1912;
+  const Real t1915 = t552 + t1914;
+  const Real t1916 = t1882 * t361;
+  const Real t1917 = t1877 * t795;
+  const Real t1918 = t1916 + t1917;
+  const Real t1919 = t936 * t1874;
+  const Real t1920 = t1918 + t1919;
+  const Real t1921 = t521 + t1920;
+  const Real t1922 = t1882 * t392;
+  const Real t1923 = t1877 * t798;
   const Real t1924 = t1922 + t1923;
-  const Real t1925 = t1924 * c_r_p_2_;
-  const Real t1926 = t1921 - t1925;
-  const Real t1927 = t1926 * par.m_F;
-  const Real t1928 = t1927 * s_r_p_2_;
-  const Real t1929 = t1924 * s_r_p_2_;
-  const Real t1930 = c_r_p_2_ * t1920;
-  const Real t1931 = t1929 + t1930;
-  const Real t1932 = par.m_F * t1931;
-  const Real t1933 = c_r_p_2_ * t1932;
-  const Real t1934 = t1928 + t1933;
-  const Real t1935 = par.k1 * t1934;
-  const Real t1936 = c_r_p_2_ * t1927;
-  const Real t1937 = t1932 * s_r_p_2_;
-  const Real t1938 = t1936 - t1937;
-  const Real t1939 = t1938 * par.k2;
-  const Real t1940 = t1935 + t1939;
-  const Real t1941 = t1940 * par.k13;
-  const Real t1942 = par.k2 * t1934;
-  const Real t1943 = t1938 * par.k1;
-  const Real t1944 = t1942 - t1943;
-  const Real t1945 = t1944 * par.k12;
-  const Real t1946 = t1941 + t1945;
+  const Real t1925 = t1874 * t923;
+  const Real t1926 = t1924 + t1925;
+  const Real t1927 = t1926 + t536;
+  const Real t1928 = t793 * t1890;
+  const Real t1929 = t1882 - t1928;
+  const Real t1930 = t839 * t1874;
+  const Real t1931 = t1929 - t1930;
 
-  // front_wheel: wrench
-  const Real t1947 = par.I_Fyy * t105;
-
-  // accelerations
-  const Real t1948 = t1947 - t1946;
-  const Real t1949 = t109 * par.k9;
-
-  // fork: wrench
-  const Real t1950 = par.k9 * t111;
-
-  // accelerations
-  const Real t1951 = t1949 + t1950;
-
-  // fork: wrench
-  const Real t1952 = par.k8 * t105;
-
-  // accelerations
-  const Real t1953 = t1951 + t1952;
-  const Real t1954 = t1953 + t1948;
-  const Real t1955 = s_r_p_1_ * t1954;
-  const Real t1956 = par.I_Fxx * t1304;
-  const Real t1957 = t1956 * s_r_p_2_;
-  const Real t1958 = par.I_Fxx * t1310;
-  const Real t1959 = c_r_p_2_ * t1958;
-  const Real t1960 = t1957 + t1959;
-  const Real t1961 = t1960 * par.k2;
-  const Real t1962 = t1956 * c_r_p_2_;
-  const Real t1963 = t1958 * s_r_p_2_;
-  const Real t1964 = t1962 - t1963;
-  const Real t1965 = par.k1 * t1964;
-  const Real t1966 = t1961 - t1965;
-
-  // front_wheel: acceleration
-  const Real t1967 = t53 * par.k12;
-  const Real t1968 = par.k55 - t1967;
-  const Real t1969 = t75 + t1968;
-
-  // accelerations
-  const Real t1970 = t1969 + t95;
-  const Real t1971 = par.m_F * t1970;
-  const Real t1972 = t1971 * par.k12;
-  const Real t1973 = t1966 + t1972;
-  const Real t1974 = par.k9 * t95;
-
-  // fork: wrench
-  const Real t1975 = par.k9 * t75;
-
-  // accelerations
-  const Real t1976 = t1974 + t1975;
-
-  // fork: wrench
-  const Real t1977 = t53 * par.k18;
-  const Real t1978 = par.k56 - t1977;
-
-  // accelerations
-  const Real t1979 = t1978 - t1976;
-  const Real t1980 = t1979 + t1973;
-  const Real t1981 = c_r_p_1_ * t1980;
-  const Real t1982 = t1981 - t1955;
-  const Real t1983 = t1982 * par.k1;
-  const Real t1984 = par.k1 * t1960;
-  const Real t1985 = par.k2 * t1964;
-  const Real t1986 = t1984 + t1985;
-  const Real t1987 = t1971 * par.k13;
-  const Real t1988 = t1987 + t1986;
-  const Real t1989 = par.k11 * t95;
-
-  // fork: wrench
-  const Real t1990 = t75 * par.k11;
-
-  // accelerations
-  const Real t1991 = t1990 + t1989;
-
-  // fork: wrench
-  const Real t1992 = par.k5 * t53;
-  const Real t1993 = par.k57 - t1992;
-
-  // accelerations
-  const Real t1994 = t1993 + t1991;
-  const Real t1995 = t1988 + t1994;
-  const Real t1996 = t1995 * par.k2;
-  const Real t1997 = t1996 - t1983;
-  const Real t1998 = t109 * par.m_H;
-
-  // fork: wrench
-  const Real t1999 = par.m_H * t111;
-
-  // accelerations
-  const Real t2000 = t1998 + t1999;
-  const Real t2001 = t1350 + t2000;
-  const Real t2002 = t2001 + t1944;
-  const Real t2003 = t2002 * s_r_p_1_;
-  const Real t2004 = par.m_H * t95;
-
-  // fork: wrench
-  const Real t2005 = par.m_H * t75;
-
-  // accelerations
-  const Real t2006 = t2005 + t2004;
-  const Real t2007 = t1346 + t2006;
-  const Real t2008 = t1971 + t2007;
-  const Real t2009 = c_r_p_1_ * t2008;
-  const Real t2010 = t2009 + t2003;
-  const Real t2011 = t2010 * par.k14;
-  const Real t2012 = t2010 * par.k28;
-  const Real t2013 = t2011 + t2012;
-  const Real t2014 = t1997 + t2013;
-  const Real t2015 = par.k15 + t2014;
-
-  // rear_wheel: joint force
-  const Real t2016 = t1545 * s_r_p_0_;
-  const Real t2017 = t1547 * c_r_p_0_;
-  const Real t2018 = t2016 + t2017;
-
-  // accelerations
-  const Real t2019 = t2015 + t2018;
-  const Real t2020 = t827 * t2019;
-  const Real t2021 = t2020 + t1913;
-  const Real t2022 = t803 * t1947;
-  const Real t2023 = t2021 - t2022;
-  const Real t2024 = par.k1 * t1624;
-  const Real t2025 = par.k2 * t1636;
-  const Real t2026 = t2025 - t2024;
-  const Real t2027 = t1255 * par.k14;
-  const Real t2028 = par.k28 * t1255;
-  const Real t2029 = t2027 + t2028;
-  const Real t2030 = t2026 + t2029;
-  const Real t2031 = par.k3 * t1256;
-  const Real t2032 = t1256 * par.k72;
-  const Real t2033 = t2031 + t2032;
-  const Real t2034 = par.k68 * t990;
-  const Real t2035 = t2033 + t2034;
-  const Real t2036 = par.k17 * t989;
-  const Real t2037 = t2035 + t2036;
-  const Real t2038 = t2030 - t2037;
-  const Real t2039 = t1654 * c_r_p_0_;
-  const Real t2040 = t1663 * s_r_p_0_;
-  const Real t2041 = t2039 - t2040;
-  const Real t2042 = t2038 + t2041;
-  const Real t2043 = sum_error(t2042, t2023);
-  const Real t2044 = -t2037;
-  const Real t2045 = sum_error(t2030, t2044);
-  const Real t2046 = t988 * par.k17;
-  const Real t2047 = par.k65 * t989;
-  const Real t2048 = t2047 + t2046;
-  const Real t2049 = product_error(par.k17, t989);
-  const Real t2050 = t2049 + t2048;
-  const Real t2051 = sum_error(t2035, t2036);
-  const Real t2052 = t2051 + t2050;
-  const Real t2053 = t2045 - t2052;
-  const Real t2054 = sum_error(t2041, t2038);
-  const Real t2055 = t2053 + t2054;
-  const Real t2056 = t2055 + t2043;
-  const Real t2057 = t441 * t1162;
-  const Real t2058 = t2057 - t360;
-  const Real t2059 = t2058 * t2056;
-  const Real t2060 = t2042 + t2023;
-  const Real t2061 = -t360;
-  const Real t2062 = sum_error(t2057, t2061);
-  const Real t2063 = t2062 - t358;
-  const Real t2064 = t2060 * t2063;
-  const Real t2065 = t2064 + t2059;
-  const Real t2066 = product_error(t2060, t2058);
-  const Real t2067 = t2066 + t2065;
-  const Real t2068 = t1902 - t2067;
-  const Real t2069 = t1899 + t1900;
-  const Real t2070 = t2058 * t2060;
-  const Real t2071 = -t2070;
-  const Real t2072 = sum_error(t2069, t2071);
-  const Real t2073 = t2068 + t2072;
-  const Real t2074 = t2069 - t2070;
-  const Real t2075 = t829 * t1239;
-  const Real t2076 = t934 * t867;
-  const Real t2077 = t2075 - t2076;
-  const Real t2078 = t1368 * t895;
-  const Real t2079 = t2077 + t2078;
-  const Real t2080 = t815 * t1825;
-  const Real t2081 = t817 * t1825;
-  const Real t2082 = t2081 + t2080;
-  const Real t2083 = t2079 + t2082;
-  const Real t2084 = t1995 * t827;
-  const Real t2085 = t2084 + t2083;
-  const Real t2086 = t1635 - t1630;
-  const Real t2087 = t2086 - t2085;
-  const Real t2088 = sum_error(t2074, t2087);
-  const Real t2089 = t2088 + t2073;
-  const Real t2090 = t2087 + t2074;
-  const Real t2091 = t827 * t1947;
-  const Real t2092 = t1755 * t815;
-  const Real t2093 = t1755 * t817;
-  const Real t2094 = t2093 + t2092;
-  const Real t2095 = t2094 + t2091;
-  const Real t2096 = t803 * par.I_Fyy;
-  const Real t2097 = t2095 - t2096;
-  const Real t2098 = t1564 - t2097;
-  const Real t2099 = t420 * t1162;
-  const Real t2100 = t2099 - t329;
-  const Real t2101 = t2100 * t2098;
-  const Real t2102 = -t329;
-  const Real t2103 = sum_error(t2099, t2102);
-  const Real t2104 = t2103 - t327;
-  const Real t2105 = t2104 * t2098;
-  const Real t2106 = t2101 + t2105;
-  const Real t2107 = sum_error(t2106, t2090);
-  const Real t2108 = t2107 + t2089;
-  const Real t2109 = t627 * t1292;
-  const Real t2110 = t1272 * t625;
-  const Real t2111 = t2109 + t2110;
-  const Real t2112 = product_error(t627, t1272);
-  const Real t2113 = t2112 + t2111;
-  const Real t2114 = t1119 * t656;
-  const Real t2115 = t1166 * t656;
-  const Real t2116 = t2115 + t2114;
-  const Real t2117 = -t2116;
-  const Real t2118 = t1272 * t627;
-  const Real t2119 = sum_error(t2118, t2117);
-  const Real t2120 = t2113 + t2119;
-  const Real t2121 = t2118 - t2116;
-  const Real t2122 = t684 * t1405;
-  const Real t2123 = t684 * t1409;
-  const Real t2124 = t2123 + t2122;
-  const Real t2125 = sum_error(t2124, t2121);
-  const Real t2126 = t2125 + t2120;
-  const Real t2127 = t2126 - t1681;
-  const Real t2128 = t2121 + t2124;
-  const Real t2129 = -t1683;
-  const Real t2130 = sum_error(t2128, t2129);
-  const Real t2131 = t2130 + t2127;
-  const Real t2132 = t2128 - t1683;
-  const Real t2133 = t1883 * t431;
-  const Real t2134 = t429 * t1890;
-  const Real t2135 = t2133 + t2134;
-  const Real t2136 = t1890 * t431;
-  const Real t2137 = t2136 + t2135;
-  const Real t2138 = -t2137;
-  const Real t2139 = sum_error(t2132, t2138);
-  const Real t2140 = t2131 + t2139;
-  const Real t2141 = t2132 - t2137;
-  const Real t2142 = t2056 * t441;
-  const Real t2143 = t2060 * t441;
-  const Real t2144 = t2142 + t2143;
-  const Real t2145 = sum_error(t2144, t2141);
-  const Real t2146 = t2145 + t2140;
-  const Real t2147 = t2144 + t2141;
-  const Real t2148 = t2098 * t420;
-  const Real t2149 = -t2148;
-  const Real t2150 = sum_error(t2147, t2149);
-  const Real t2151 = t2146 + t2150;
-  const Real t2152 = t1198 * t627;
-  const Real t2153 = t656 * t860;
-  const Real t2154 = t2152 + t2153;
-  const Real t2155 = t684 * t1211;
-  const Real t2156 = t2154 - t2155;
-  const Real t2157 = t2156 + t1424;
-  const Real t2158 = t429 * t1228;
-  const Real t2159 = t1228 * t431;
-  const Real t2160 = t2159 + t2158;
-  const Real t2161 = t2157 - t2160;
-  const Real t2162 = t441 * t1247;
-  const Real t2163 = t1249 * t441;
-  const Real t2164 = t2162 + t2163;
-  const Real t2165 = t2161 - t2164;
-  const Real t2166 = t1276 * t2165;
-  const Real t2167 = t1198 * t625;
-  const Real t2168 = t627 * t1196;
-  const Real t2169 = t2167 + t2168;
-  const Real t2170 = product_error(t627, t1198);
-  const Real t2171 = t2169 + t2170;
-  const Real t2172 = sum_error(t2152, t2153);
-  const Real t2173 = t2171 + t2172;
-  const Real t2174 = -t2155;
-  const Real t2175 = sum_error(t2154, t2174);
-  const Real t2176 = t2173 + t2175;
-  const Real t2177 = t2176 + t1429;
-  const Real t2178 = sum_error(t1424, t2156);
-  const Real t2179 = t2177 + t2178;
-  const Real t2180 = -t2160;
-  const Real t2181 = sum_error(t2157, t2180);
-  const Real t2182 = t2181 + t2179;
-  const Real t2183 = -t2164;
-  const Real t2184 = sum_error(t2161, t2183);
-  const Real t2185 = t2184 + t2182;
-  const Real t2186 = t2185 * t1276;
-  const Real t2187 = t2166 + t2186;
-  const Real t2188 = t625 * t860;
-  const Real t2189 = t627 * t860;
-  const Real t2190 = t2189 + t2188;
-  const Real t2191 = t888 * t656;
-  const Real t2192 = t886 * t656;
-  const Real t2193 = t2191 + t2192;
-  const Real t2194 = t2193 + t2190;
-  const Real t2195 = t902 * t684;
-  const Real t2196 = t2194 - t2195;
-  const Real t2197 = t1434 + t2196;
-  const Real t2198 = t925 * t431;
-  const Real t2199 = t2197 - t2198;
-  const Real t2200 = t940 * t441;
-  const Real t2201 = -t2200;
-  const Real t2202 = sum_error(t2199, t2201);
-  const Real t2203 = -t2198;
-  const Real t2204 = sum_error(t2197, t2203);
-  const Real t2205 = t429 * t925;
-  const Real t2206 = t949 * t431;
-  const Real t2207 = t2205 + t2206;
-  const Real t2208 = product_error(t431, t925);
-  const Real t2209 = t2207 + t2208;
-  const Real t2210 = t2204 - t2209;
-  const Real t2211 = t2202 + t2210;
-  const Real t2212 = t2211 * t1164;
-  const Real t2213 = t2199 - t2200;
-  const Real t2214 = t1164 * t2213;
-  const Real t2215 = t2212 + t2214;
-  const Real t2216 = t2215 + t2187;
-  const Real t2217 = t1211 * t625;
-  const Real t2218 = t627 * t1211;
-  const Real t2219 = t2218 + t2217;
-  const Real t2220 = t902 * t656;
-  const Real t2221 = t2219 + t2220;
-  const Real t2222 = t684 * t1336;
-  const Real t2223 = t2221 - t2222;
-  const Real t2224 = t1439 + t2223;
-  const Real t2225 = t429 * t1359;
-  const Real t2226 = t1359 * t431;
-  const Real t2227 = t2226 + t2225;
-  const Real t2228 = t2224 - t2227;
-  const Real t2229 = t441 * t1377;
-  const Real t2230 = t2228 - t2229;
-  const Real t2231 = t2230 * t1412;
-  const Real t2232 = t2230 * t1407;
-  const Real t2233 = t2231 + t2232;
-  const Real t2234 = t2233 + t2216;
-  const Real t2235 = t625 * t1424;
-  const Real t2236 = t1429 * t627;
-  const Real t2237 = t2235 + t2236;
-  const Real t2238 = product_error(t627, t1424);
-  const Real t2239 = t2238 + t2237;
-  const Real t2240 = t627 * t1424;
-  const Real t2241 = t1434 * t656;
-  const Real t2242 = sum_error(t2241, t2240);
-  const Real t2243 = t2242 + t2239;
-  const Real t2244 = t2241 + t2240;
-  const Real t2245 = t1439 * t684;
-  const Real t2246 = -t2245;
-  const Real t2247 = sum_error(t2244, t2246);
-  const Real t2248 = t2247 + t2243;
-
-  // passive accelerations
-  const Real t2249 = par.k2 * t1523;
-  const Real t2250 = par.k1 * t1534;
-  const Real t2251 = t2249 + t2250;
-  const Real t2252 = sum_error(t2251, par.k10);
-  const Real t2253 = par.k60 + t2252;
-  const Real t2254 = par.k10 + t2251;
-
-  // rear_wheel: joint force
-  const Real t2255 = par.k52 + t2018;
-
-  // passive accelerations
-  const Real t2256 = sum_error(t2254, t2255);
-  const Real t2257 = t2253 + t2256;
-
-  // accelerations
-  const Real t2258 = t2248 + t2257;
-  const Real t2259 = t2244 - t2245;
-
-  // passive accelerations
-  const Real t2260 = t2254 + t2255;
-
-  // accelerations
-  const Real t2261 = sum_error(t2260, t2259);
-  const Real t2262 = t2258 + t2261;
-  const Real t2263 = t2260 + t2259;
-  const Real t2264 = t429 * t1516;
-  const Real t2265 = t1516 * t431;
-  const Real t2266 = t2264 + t2265;
-  const Real t2267 = -t2266;
-  const Real t2268 = sum_error(t2263, t2267);
-  const Real t2269 = t2268 + t2262;
-  const Real t2270 = t2263 - t2266;
-  const Real t2271 = t1555 * t441;
-  const Real t2272 = t1550 * t441;
-  const Real t2273 = t2271 + t2272;
-  const Real t2274 = -t2273;
-  const Real t2275 = sum_error(t2270, t2274);
-  const Real t2276 = t2269 + t2275;
-  const Real t2277 = t2270 - t2273;
-  const Real t2278 = t1491 * t420;
-  const Real t2279 = sum_error(t2278, t2277);
-  const Real t2280 = t2279 + t2276;
-  const Real t2281 = t2280 * t1162;
-  const Real t2282 = t2277 + t2278;
-  const Real t2283 = t1162 * t2282;
-  const Real t2284 = t2281 + t2283;
-  const Real t2285 = t2234 - t2284;
-  const Real t2286 = t1228 * t625;
-  const Real t2287 = t1228 * t627;
-  const Real t2288 = t2287 + t2286;
-  const Real t2289 = t949 * t656;
-  const Real t2290 = t925 * t656;
-  const Real t2291 = t2289 + t2290;
-  const Real t2292 = t2288 + t2291;
-  const Real t2293 = t684 * t1359;
-  const Real t2294 = t2292 - t2293;
-  const Real t2295 = t2294 + t1516;
-  const Real t2296 = t1795 * t431;
-  const Real t2297 = t2295 - t2296;
-  const Real t2298 = t1834 * t441;
-  const Real t2299 = t2297 - t2298;
-  const Real t2300 = t1755 * t420;
-  const Real t2301 = t2299 - t2300;
-  const Real t2302 = t2301 * t1893;
-  const Real t2303 = -t2298;
-  const Real t2304 = sum_error(t2297, t2303);
-  const Real t2305 = -t2296;
-  const Real t2306 = sum_error(t2295, t2305);
-  const Real t2307 = t429 * t1795;
-  const Real t2308 = t1803 * t431;
-  const Real t2309 = t2307 + t2308;
-  const Real t2310 = product_error(t431, t1795);
-  const Real t2311 = t2310 + t2309;
-  const Real t2312 = t2306 - t2311;
-  const Real t2313 = t2304 + t2312;
-  const Real t2314 = -t2300;
-  const Real t2315 = sum_error(t2299, t2314);
-  const Real t2316 = t2313 + t2315;
-  const Real t2317 = t1887 * t2316;
-  const Real t2318 = t2317 + t2302;
-  const Real t2319 = t1887 * t2301;
-  const Real t2320 = t2319 + t2318;
-  const Real t2321 = t2285 + t2320;
-  const Real t2322 = t1249 * t627;
-  const Real t2323 = t940 * t656;
-  const Real t2324 = t2323 + t2322;
-  const Real t2325 = t684 * t1377;
-  const Real t2326 = t2324 - t2325;
-  const Real t2327 = t1550 + t2326;
-  const Real t2328 = t429 * t1834;
-  const Real t2329 = t1834 * t431;
-  const Real t2330 = t2329 + t2328;
-  const Real t2331 = t2327 - t2330;
-  const Real t2332 = t441 * t2019;
-  const Real t2333 = t2331 - t2332;
-  const Real t2334 = t1947 * t420;
-  const Real t2335 = t2333 - t2334;
-  const Real t2336 = t2058 * t2335;
-  const Real t2337 = t2321 + t2336;
-  const Real t2338 = t1239 * t625;
-  const Real t2339 = t627 * t1239;
-  const Real t2340 = t2338 + t2339;
-  const Real t2341 = t934 * t656;
-  const Real t2342 = t2340 - t2341;
-  const Real t2343 = t684 * t1368;
-  const Real t2344 = t2342 - t2343;
-  const Real t2345 = t2344 + t1534;
-  const Real t2346 = t429 * t1825;
-  const Real t2347 = t1825 * t431;
-  const Real t2348 = t2347 + t2346;
-  const Real t2349 = t2345 - t2348;
-  const Real t2350 = t1995 * t441;
-  const Real t2351 = t2349 - t2350;
-  const Real t2352 = t2351 + t2337;
-  const Real t2353 = t1947 * t441;
-  const Real t2354 = t1755 * t429;
-  const Real t2355 = t1755 * t431;
-  const Real t2356 = t2354 + t2355;
-  const Real t2357 = t1491 + t2356;
-  const Real t2358 = t2357 + t2353;
-  const Real t2359 = par.I_Fyy * t420;
-  const Real t2360 = t2358 + t2359;
-  const Real t2361 = t2104 * t2360;
-  const Real t2362 = t2100 * t2360;
-  const Real t2363 = t2362 + t2361;
-  const Real t2364 = t2352 - t2363;
-  const Real t2365 = t2185 * t627;
-  const Real t2366 = t2165 * t625;
-  const Real t2367 = t2366 + t2365;
-  const Real t2368 = t627 * t2165;
-  const Real t2369 = t2367 + t2368;
-  const Real t2370 = t2211 * t656;
-  const Real t2371 = t656 * t2213;
-  const Real t2372 = t2371 + t2370;
-  const Real t2373 = t2369 + t2372;
-  const Real t2374 = t2230 * t684;
-  const Real t2375 = t2373 - t2374;
-  const Real t2376 = t2375 + t2282;
-  const Real t2377 = t2316 * t431;
-  const Real t2378 = t429 * t2301;
-  const Real t2379 = t2377 + t2378;
-  const Real t2380 = t2301 * t431;
-  const Real t2381 = t2379 + t2380;
-  const Real t2382 = t2376 - t2381;
-  const Real t2383 = t1249 * t625;
-  const Real t2384 = t627 * t1247;
-  const Real t2385 = t2383 + t2384;
-  const Real t2386 = product_error(t627, t1249);
-  const Real t2387 = t2386 + t2385;
-  const Real t2388 = sum_error(t2322, t2323);
-  const Real t2389 = t2388 + t2387;
-  const Real t2390 = -t2325;
-  const Real t2391 = sum_error(t2324, t2390);
-  const Real t2392 = t2389 + t2391;
-  const Real t2393 = t1555 + t2392;
-  const Real t2394 = sum_error(t2326, t1550);
-  const Real t2395 = t2393 + t2394;
-  const Real t2396 = -t2330;
-  const Real t2397 = sum_error(t2327, t2396);
-  const Real t2398 = t2395 + t2397;
-  const Real t2399 = -t2332;
-  const Real t2400 = sum_error(t2331, t2399);
-  const Real t2401 = t2400 + t2398;
-  const Real t2402 = -t2334;
-  const Real t2403 = sum_error(t2333, t2402);
-  const Real t2404 = t2401 + t2403;
-  const Real t2405 = t441 * t2404;
-  const Real t2406 = t441 * t2335;
-  const Real t2407 = t2406 + t2405;
-  const Real t2408 = t2382 - t2407;
-  const Real t2409 = t2360 * t420;
-  const Real t2410 = t2408 + t2409;
-  const Real t2411 = constant<Real>(1.0L) / t2410;
-  const Real t2412 = t2364 * t2411;
-  const Real t2413 = t2151 * t2412;
-  const Real t2414 = t2147 - t2148;
-  const Real t2415 = sum_error(t2321, t2336);
-  const Real t2416 = t2063 * t2335;
-  const Real t2417 = t2058 * t2404;
-  const Real t2418 = t2417 + t2416;
-  const Real t2419 = product_error(t2335, t2058);
-  const Real t2420 = t2419 + t2418;
-  const Real t2421 = t2420 + t2415;
-  const Real t2422 = sum_error(t2351, t2337);
-  const Real t2423 = t2421 + t2422;
-  const Real t2424 = -t2363;
-  const Real t2425 = sum_error(t2352, t2424);
-  const Real t2426 = t2423 + t2425;
-  const Real t2427 = t2411 * t2426;
-  const Real t2428 = -t2407;
-  const Real t2429 = sum_error(t2382, t2428);
-  const Real t2430 = sum_error(t2282, t2375);
-  const Real t2431 = t2280 + t2430;
-  const Real t2432 = -t2381;
-  const Real t2433 = sum_error(t2376, t2432);
-  const Real t2434 = t2431 + t2433;
-  const Real t2435 = t2429 + t2434;
-  const Real t2436 = sum_error(t2408, t2409);
-  const Real t2437 = t2435 + t2436;
-  const Real t2438 = t2411 * t2437;
-  const Real t2439 = t2438 / t2410;
-  const Real t2440 = quotient_error(constant<Real>(1.0L), t2410);
-  const Real t2441 = t2440 - t2439;
-  const Real t2442 = t2364 * t2441;
-  const Real t2443 = t2427 + t2442;
-  const Real t2444 = product_error(t2364, t2411);
-  const Real t2445 = t2443 + t2444;
-  const Real t2446 = t2414 * t2445;
-  const Real t2447 = t2446 + t2413;
-  const Real t2448 = product_error(t2412, t2414);
-  const Real t2449 = t2447 + t2448;
-  const Real t2450 = t2108 - t2449;
-  const Real t2451 = t2414 * t2412;
-  const Real t2452 = -t2451;
-  const Real t2453 = t2106 + t2090;
-  const Real t2454 = sum_error(t2453, t2452);
-  const Real t2455 = t2454 + t2450;
-  const Real t2456 = t1407 * t1412;
-  const Real t2457 = t2456 * constant<Real>(2.0L);
-  const Real t2458 = t1407 * t1407;
-  const Real t2459 = t2458 + t2457;
-  const Real t2460 = t1276 * t1276;
-  const Real t2461 = t1164 * t1164;
-  const Real t2462 = t2460 + t2461;
-  const Real t2463 = t2459 + t2462;
-  const Real t2464 = t1162 * t1162;
-  const Real t2465 = t2463 + t2464;
-  const Real t2466 = t1887 * t1893;
-  const Real t2467 = t2466 * constant<Real>(2.0L);
-  const Real t2468 = t1887 * t1887;
-  const Real t2469 = t2468 + t2467;
-  const Real t2470 = t2469 + t2465;
-  const Real t2471 = t2058 * t2063;
-  const Real t2472 = t2471 * constant<Real>(2.0L);
-  const Real t2473 = t2058 * t2058;
-  const Real t2474 = t2473 + t2472;
-  const Real t2475 = t2474 + t2470;
-  const Real t2476 = t2475 + constant<Real>(1.0L);
-  const Real t2477 = t2100 * t2104;
-  const Real t2478 = t2477 * constant<Real>(2.0L);
-  const Real t2479 = t2100 * t2100;
-  const Real t2480 = t2478 + t2479;
-  const Real t2481 = t2476 + t2480;
-  const Real t2482 = constant<Real>(1.0L) / t2481;
-  const Real t2483 = t633 * t627;
-  const Real t2484 = t633 * t625;
-  const Real t2485 = t2483 + t2484;
-  const Real t2486 = t644 * t656;
-  const Real t2487 = t2485 + t2486;
-  const Real t2488 = t670 * t684;
-  const Real t2489 = t684 * t672;
-  const Real t2490 = t2489 + t2488;
-  const Real t2491 = t2487 - t2490;
-  const Real t2492 = t431 * t502;
-  const Real t2493 = t429 * t504;
-  const Real t2494 = t2493 + t2492;
-  const Real t2495 = t504 * t431;
-  const Real t2496 = t2495 + t2494;
-  const Real t2497 = t2491 + t2496;
-  const Real t2498 = t518 * t441;
-  const Real t2499 = t441 * t520;
-  const Real t2500 = t2498 + t2499;
-  const Real t2501 = t2497 + t2500;
-  const Real t2502 = t420 * t488;
-  const Real t2503 = t490 * t420;
-  const Real t2504 = t2502 + t2503;
-  const Real t2505 = t2504 + t2501;
-  const Real t2506 = t1138 * t2505;
-  const Real t2507 = t2506 * t684;
-  const Real t2508 = sum_error(t672, t2507);
-  const Real t2509 = t670 + t2508;
-  const Real t2510 = t2509 * t1407;
-  const Real t2511 = t2507 + t672;
-  const Real t2512 = t2511 * t1412;
-  const Real t2513 = t2510 + t2512;
-  const Real t2514 = t1407 * t2511;
-  const Real t2515 = t2513 + t2514;
-  const Real t2516 = t2506 * t627;
-  const Real t2517 = t2506 * t625;
-  const Real t2518 = t2516 + t2517;
-  const Real t2519 = t633 - t2518;
-  const Real t2520 = t2519 * t1276;
-  const Real t2521 = t2506 * t656;
-  const Real t2522 = t644 - t2521;
-  const Real t2523 = t2522 * t1164;
-  const Real t2524 = t2523 + t2520;
-  const Real t2525 = t2524 + t2515;
-  const Real t2526 = t2506 * t1162;
-  const Real t2527 = t2525 + t2526;
-  const Real t2528 = t2506 * t431;
-  const Real t2529 = t429 * t2506;
-  const Real t2530 = t2528 + t2529;
-  const Real t2531 = t2530 - t504;
-  const Real t2532 = t2531 * t1893;
-  const Real t2533 = -t504;
-  const Real t2534 = sum_error(t2530, t2533);
-  const Real t2535 = t2534 - t502;
-  const Real t2536 = t1887 * t2535;
-  const Real t2537 = t2532 + t2536;
-  const Real t2538 = t1887 * t2531;
-  const Real t2539 = t2538 + t2537;
-  const Real t2540 = t2527 + t2539;
-  const Real t2541 = t2506 * t441;
-  const Real t2542 = -t520;
-  const Real t2543 = sum_error(t2541, t2542);
-  const Real t2544 = t2543 - t518;
-  const Real t2545 = t2058 * t2544;
-  const Real t2546 = t2541 - t520;
-  const Real t2547 = t2063 * t2546;
-  const Real t2548 = t2545 + t2547;
-  const Real t2549 = t2058 * t2546;
-  const Real t2550 = t2548 + t2549;
-  const Real t2551 = t2540 + t2550;
-  const Real t2552 = t2506 * t420;
-  const Real t2553 = -t490;
-  const Real t2554 = sum_error(t2552, t2553);
-  const Real t2555 = t2554 - t488;
-  const Real t2556 = t2100 * t2555;
-  const Real t2557 = t2552 - t490;
-  const Real t2558 = t2557 * t2104;
-  const Real t2559 = t2556 + t2558;
-  const Real t2560 = t2557 * t2100;
-  const Real t2561 = t2560 + t2559;
-  const Real t2562 = t2561 + t2551;
-  const Real t2563 = t2562 * t2482;
-  const Real t2564 = product_error(t2563, t1407);
-  const Real t2565 = t2563 * t1412;
-  const Real t2566 = t2564 + t2565;
-  const Real t2567 = t2509 - t2566;
-  const Real t2568 = t1407 * t2563;
-  const Real t2569 = t2511 - t2568;
-  const Real t2570 = t2569 + t2567;
-  const Real t2571 = t2230 * t2570;
-  const Real t2572 = t2563 * t1276;
-  const Real t2573 = t2519 - t2572;
-  const Real t2574 = t2165 * t2573;
-  const Real t2575 = t2185 * t2573;
-  const Real t2576 = t2574 + t2575;
-  const Real t2577 = t2563 * t1164;
-  const Real t2578 = t2522 - t2577;
-  const Real t2579 = t2578 * t2213;
-  const Real t2580 = t2576 + t2579;
-  const Real t2581 = t2571 + t2580;
-  const Real t2582 = t2563 * t1162;
-  const Real t2583 = t2582 - t2506;
-  const Real t2584 = t2583 * t2282;
-  const Real t2585 = t2280 * t2583;
-  const Real t2586 = t2584 + t2585;
-  const Real t2587 = t2581 + t2586;
-  const Real t2588 = product_error(t1887, t2563);
-  const Real t2589 = t2563 * t1893;
-  const Real t2590 = t2588 + t2589;
-  const Real t2591 = t2535 - t2590;
-  const Real t2592 = t1887 * t2563;
-  const Real t2593 = t2531 - t2592;
-  const Real t2594 = t2591 + t2593;
-  const Real t2595 = t2316 * t2594;
-  const Real t2596 = t2301 * t2594;
-  const Real t2597 = t2595 + t2596;
-  const Real t2598 = t2597 + t2587;
-  const Real t2599 = product_error(t2563, t2058);
-  const Real t2600 = t2063 * t2563;
-  const Real t2601 = t2599 + t2600;
-  const Real t2602 = t2544 - t2601;
-  const Real t2603 = t2058 * t2563;
-  const Real t2604 = t2546 - t2603;
-  const Real t2605 = t2604 + t2602;
-  const Real t2606 = t2605 * t2404;
-  const Real t2607 = t2605 * t2335;
-  const Real t2608 = t2606 + t2607;
-  const Real t2609 = t2598 + t2608;
-  const Real t2610 = t429 * par.I_Ryy;
-  const Real t2611 = par.I_Ryy * t431;
-  const Real t2612 = t2610 + t2611;
-  const Real t2613 = -t2612;
-  const Real t2614 = sum_error(t2609, t2613);
-  const Real t2615 = sum_error(t2571, t2580);
-  const Real t2616 = sum_error(t2579, t2576);
-  const Real t2617 = product_error(t2578, t2213);
-  const Real t2618 = t2211 * t2578;
-  const Real t2619 = t2617 + t2618;
-  const Real t2620 = t2616 + t2619;
-  const Real t2621 = t2615 + t2620;
-  const Real t2622 = sum_error(t2586, t2581);
-  const Real t2623 = t2621 + t2622;
-  const Real t2624 = sum_error(t2597, t2587);
-  const Real t2625 = t2623 + t2624;
-  const Real t2626 = sum_error(t2598, t2608);
-  const Real t2627 = t2625 + t2626;
-  const Real t2628 = t2614 + t2627;
-  const Real t2629 = t2609 - t2612;
-  const Real t2630 = t2351 * t2563;
-  const Real t2631 = -t2630;
-  const Real t2632 = sum_error(t2629, t2631);
-  const Real t2633 = t2628 + t2632;
-  const Real t2634 = t2629 - t2630;
-  const Real t2635 = t2104 * t2563;
-  const Real t2636 = product_error(t2100, t2563);
-  const Real t2637 = t2635 + t2636;
-  const Real t2638 = t2555 - t2637;
-  const Real t2639 = t2100 * t2563;
-  const Real t2640 = t2557 - t2639;
-  const Real t2641 = t2640 + t2638;
-  const Real t2642 = t2641 * t2360;
-  const Real t2643 = -t2642;
-  const Real t2644 = sum_error(t2634, t2643);
-  const Real t2645 = t2633 + t2644;
-  const Real t2646 = t2412 * t2645;
-  const Real t2647 = t2634 - t2642;
-  const Real t2648 = t2647 * t2445;
-  const Real t2649 = t2646 + t2648;
-  const Real t2650 = t2412 * t2647;
-  const Real t2651 = t2649 + t2650;
-  const Real t2652 = t1276 * t1211;
-  const Real t2653 = t902 * t1164;
-  const Real t2654 = t2653 + t2652;
-  const Real t2655 = t1412 * t1336;
-  const Real t2656 = t1407 * t1336;
-  const Real t2657 = t2655 + t2656;
-  const Real t2658 = t2654 + t2657;
-  const Real t2659 = t1439 * t1162;
-  const Real t2660 = t2658 - t2659;
-  const Real t2661 = t1887 * t1359;
-  const Real t2662 = t2660 + t2661;
-  const Real t2663 = t2063 * t1377;
-  const Real t2664 = t2058 * t1377;
-  const Real t2665 = t2664 + t2663;
-  const Real t2666 = t2665 + t2662;
-  const Real t2667 = t1368 + t2666;
-  const Real t2668 = t2570 * t2667;
-  const Real t2669 = t1276 * t860;
-  const Real t2670 = t888 * t1164;
-  const Real t2671 = t886 * t1164;
-  const Real t2672 = t2670 + t2671;
-  const Real t2673 = t2669 + t2672;
-  const Real t2674 = t902 * t1412;
-  const Real t2675 = t902 * t1407;
-  const Real t2676 = t2674 + t2675;
-  const Real t2677 = t2673 + t2676;
-  const Real t2678 = t1434 * t1162;
-  const Real t2679 = t2677 - t2678;
-  const Real t2680 = t925 * t1887;
-  const Real t2681 = t2679 + t2680;
-  const Real t2682 = t2063 * t940;
-  const Real t2683 = t2058 * t940;
-  const Real t2684 = t2683 + t2682;
-  const Real t2685 = t2681 + t2684;
-  const Real t2686 = t2685 - t934;
-  const Real t2687 = t2578 * t2686;
-  const Real t2688 = t1198 * t1276;
-  const Real t2689 = t1276 * t1196;
-  const Real t2690 = t2688 + t2689;
-  const Real t2691 = t1164 * t860;
-  const Real t2692 = t2690 + t2691;
-  const Real t2693 = t1412 * t1211;
-  const Real t2694 = t1407 * t1211;
-  const Real t2695 = t2693 + t2694;
-  const Real t2696 = t2692 + t2695;
-  const Real t2697 = t1429 * t1162;
-  const Real t2698 = t1162 * t1424;
-  const Real t2699 = t2697 + t2698;
-  const Real t2700 = t2696 - t2699;
-  const Real t2701 = t1228 * t1893;
-  const Real t2702 = t1228 * t1887;
-  const Real t2703 = t2701 + t2702;
-  const Real t2704 = t2700 + t2703;
-  const Real t2705 = t1249 * t2063;
-  const Real t2706 = t2058 * t1247;
-  const Real t2707 = t2705 + t2706;
-  const Real t2708 = t1249 * t2058;
-  const Real t2709 = t2708 + t2707;
-  const Real t2710 = t2704 + t2709;
-  const Real t2711 = t2710 + t1239;
-  const Real t2712 = t2711 * t2573;
-  const Real t2713 = t2687 + t2712;
-  const Real t2714 = t2668 + t2713;
-  const Real t2715 = t1429 * t1276;
-  const Real t2716 = t1276 * t1424;
-  const Real t2717 = t2715 + t2716;
-  const Real t2718 = t1434 * t1164;
-  const Real t2719 = t2718 + t2717;
-  const Real t2720 = t1439 * t1412;
-  const Real t2721 = t1439 * t1407;
-  const Real t2722 = t2721 + t2720;
-  const Real t2723 = t2719 + t2722;
-  const Real t2724 = t2260 * t1162;
-  const Real t2725 = t2257 * t1162;
-  const Real t2726 = t2724 + t2725;
-  const Real t2727 = t2723 - t2726;
-  const Real t2728 = t1893 * t1516;
-  const Real t2729 = t1887 * t1516;
-  const Real t2730 = t2728 + t2729;
-  const Real t2731 = t2727 + t2730;
-  const Real t2732 = t1550 * t2063;
-  const Real t2733 = t2058 * t1555;
-  const Real t2734 = t2732 + t2733;
-  const Real t2735 = t1550 * t2058;
-  const Real t2736 = t2734 + t2735;
-  const Real t2737 = t2731 + t2736;
-  const Real t2738 = t1534 + t2737;
-  const Real t2739 = t1491 * t2104;
-  const Real t2740 = t1491 * t2100;
-  const Real t2741 = t2740 + t2739;
-  const Real t2742 = t2738 - t2741;
-  const Real t2743 = t2583 * t2742;
-  const Real t2744 = t2714 + t2743;
-  const Real t2745 = t949 * t1164;
-  const Real t2746 = t925 * t1164;
-  const Real t2747 = t2745 + t2746;
-  const Real t2748 = t1228 * t1276;
-  const Real t2749 = t2747 + t2748;
-  const Real t2750 = t1359 * t1412;
-  const Real t2751 = t1407 * t1359;
-  const Real t2752 = t2751 + t2750;
-  const Real t2753 = t2749 + t2752;
-  const Real t2754 = t1162 * t1516;
-  const Real t2755 = t2753 - t2754;
-  const Real t2756 = t1795 * t1887;
-  const Real t2757 = t2756 + t2755;
-  const Real t2758 = t1834 * t2063;
-  const Real t2759 = t2058 * t1834;
-  const Real t2760 = t2758 + t2759;
-  const Real t2761 = t2760 + t2757;
-  const Real t2762 = t1825 + t2761;
-  const Real t2763 = t1755 * t2104;
-  const Real t2764 = t1755 * t2100;
-  const Real t2765 = t2764 + t2763;
-  const Real t2766 = t2765 + t2762;
-  const Real t2767 = t2766 * t2594;
-  const Real t2768 = t2744 + t2767;
-  const Real t2769 = t1276 * t1247;
-  const Real t2770 = t1249 * t1276;
-  const Real t2771 = t2769 + t2770;
-  const Real t2772 = t940 * t1164;
-  const Real t2773 = t2771 + t2772;
-  const Real t2774 = t1412 * t1377;
-  const Real t2775 = t1407 * t1377;
-  const Real t2776 = t2775 + t2774;
-  const Real t2777 = t2773 + t2776;
-  const Real t2778 = t1555 * t1162;
-  const Real t2779 = t1550 * t1162;
-  const Real t2780 = t2778 + t2779;
-  const Real t2781 = t2777 - t2780;
-  const Real t2782 = t1834 * t1893;
-  const Real t2783 = t1834 * t1887;
-  const Real t2784 = t2782 + t2783;
-  const Real t2785 = t2784 + t2781;
-  const Real t2786 = t2058 * t2019;
-  const Real t2787 = t2786 + t2785;
-  const Real t2788 = t2063 * t2019;
-  const Real t2789 = product_error(t2019, t2058);
-  const Real t2790 = t2789 + t2788;
-  const Real t2791 = t2790 + t2787;
-  const Real t2792 = t2791 + t1995;
-  const Real t2793 = t1947 * t2104;
-  const Real t2794 = t2100 * t1947;
-  const Real t2795 = t2793 + t2794;
-  const Real t2796 = t2795 + t2792;
-  const Real t2797 = t2796 * t2605;
-  const Real t2798 = t2797 + t2768;
-  const Real t2799 = par.I_Ryy * t1893;
-  const Real t2800 = par.I_Ryy * t1887;
-  const Real t2801 = t2799 + t2800;
-  const Real t2802 = t2798 + t2801;
-  const Real t2803 = t1276 * t1239;
-  const Real t2804 = t934 * t1164;
-  const Real t2805 = t2803 - t2804;
-  const Real t2806 = t1368 * t1412;
-  const Real t2807 = t1407 * t1368;
-  const Real t2808 = t2807 + t2806;
-  const Real t2809 = t2805 + t2808;
-  const Real t2810 = t1534 * t1162;
-  const Real t2811 = t2809 - t2810;
-  const Real t2812 = t1893 * t1825;
-  const Real t2813 = t1887 * t1825;
-  const Real t2814 = t2812 + t2813;
-  const Real t2815 = t2811 + t2814;
-  const Real t2816 = t1995 * t2063;
-  const Real t2817 = t2058 * t1995;
-  const Real t2818 = t2817 + t2816;
-  const Real t2819 = t2815 + t2818;
-
-  // front_wheel: acceleration
-  const Real t2820 = c_r_p_2_ * par.k2;
-  const Real t2821 = par.k1 * s_r_p_2_;
-  const Real t2822 = t2820 + t2821;
-
-  // front_wheel: wrench
-  const Real t2823 = par.I_Fxx * t2822;
-
-  // front_wheel: joint force
-  const Real t2824 = t2823 * s_r_p_2_;
-
-  // passive accelerations
-  const Real t2825 = par.I_Fxx * t4;
-  const Real t2826 = t2825 * c_r_p_2_;
-  const Real t2827 = t2824 + t2826;
-  const Real t2828 = t2827 * par.k1;
-
-  // front_wheel: joint force
-  const Real t2829 = c_r_p_2_ * t2823;
-
-  // passive accelerations
-  const Real t2830 = t2825 * s_r_p_2_;
-  const Real t2831 = t2829 - t2830;
-  const Real t2832 = par.k2 * t2831;
-  const Real t2833 = t2828 + t2832;
-  const Real t2834 = par.k58 + t2833;
-  const Real t2835 = par.k7 + t2834;
-
-  // accelerations
-  const Real t2836 = t2819 + t2835;
-  const Real t2837 = t2836 * t2563;
-  const Real t2838 = t2802 - t2837;
-  const Real t2839 = t1755 * t1893;
-  const Real t2840 = t1755 * t1887;
-  const Real t2841 = t2839 + t2840;
-  const Real t2842 = t1491 * t1162;
-  const Real t2843 = t2841 + t2842;
-  const Real t2844 = t1947 * t2063;
-  const Real t2845 = t2058 * t1947;
-  const Real t2846 = t2844 + t2845;
-  const Real t2847 = t2843 + t2846;
-  const Real t2848 = t2104 * par.I_Fyy;
-  const Real t2849 = t2100 * par.I_Fyy;
-  const Real t2850 = t2849 + t2848;
-  const Real t2851 = t2850 + t2847;
-  const Real t2852 = t2641 * t2851;
-  const Real t2853 = t2838 + t2852;
-  const Real t2854 = t2853 - t2651;
-  const Real t2855 = sum_error(t1368, t2666);
-  const Real t2856 = sum_error(t2661, t2660);
-  const Real t2857 = t1359 * t1893;
-  const Real t2858 = product_error(t1887, t1359);
-  const Real t2859 = t2857 + t2858;
-  const Real t2860 = t2859 + t2856;
-  const Real t2861 = sum_error(t2665, t2662);
-  const Real t2862 = t2860 + t2861;
-  const Real t2863 = t2855 + t2862;
-  const Real t2864 = t1407 * t2863;
-  const Real t2865 = t1412 * t2667;
-  const Real t2866 = t2865 + t2864;
-  const Real t2867 = t1407 * t2667;
-  const Real t2868 = t2867 + t2866;
-  const Real t2869 = sum_error(t2679, t2680);
-  const Real t2870 = t925 * t1893;
-  const Real t2871 = t949 * t1887;
-  const Real t2872 = t2871 + t2870;
-  const Real t2873 = product_error(t1887, t925);
-  const Real t2874 = t2873 + t2872;
-  const Real t2875 = t2869 + t2874;
-  const Real t2876 = sum_error(t2684, t2681);
-  const Real t2877 = t2875 + t2876;
-
-  // front_wheel: joint force
-  const Real t2878 = -t934;
-
-  // accelerations
-  const Real t2879 = sum_error(t2685, t2878);
-  const Real t2880 = t2877 + t2879;
-  const Real t2881 = t2880 * t1164;
-  const Real t2882 = t1164 * t2686;
-  const Real t2883 = t2881 + t2882;
-  const Real t2884 = t2711 * t1276;
-  const Real t2885 = t2884 + t2883;
-  const Real t2886 = t2868 + t2885;
-  const Real t2887 = t1162 * t2742;
-  const Real t2888 = t2886 - t2887;
-  const Real t2889 = t1887 * t2766;
-  const Real t2890 = t2888 + t2889;
-  const Real t2891 = t2058 * t2796;
-  const Real t2892 = t2796 * t2063;
-  const Real t2893 = t2891 + t2892;
-  const Real t2894 = t2893 + t2890;
-  const Real t2895 = t2836 + t2894;
-  const Real t2896 = t2104 * t2851;
-  const Real t2897 = t2100 * t2851;
-  const Real t2898 = t2896 + t2897;
-  const Real t2899 = t2898 + t2895;
-  const Real t2900 = t2364 * t2445;
-  const Real t2901 = t2426 * t2412;
-  const Real t2902 = t2901 + t2900;
-  const Real t2903 = t2364 * t2412;
-  const Real t2904 = t2902 + t2903;
-  const Real t2905 = t2899 - t2904;
-  const Real t2906 = constant<Real>(1.0L) / t2905;
-  const Real t2907 = t2854 * t2906;
-  const Real t2908 = t2455 * t2907;
-  const Real t2909 = t2453 - t2451;
-  const Real t2910 = -t2651;
-  const Real t2911 = sum_error(t2853, t2910);
-  const Real t2912 = product_error(t2667, t2570);
-  const Real t2913 = t2570 * t2863;
-  const Real t2914 = t2912 + t2913;
-  const Real t2915 = sum_error(t2687, t2712);
-  const Real t2916 = t2880 * t2578;
-  const Real t2917 = product_error(t2686, t2578);
-  const Real t2918 = t2916 + t2917;
-  const Real t2919 = t2915 + t2918;
-  const Real t2920 = t2914 + t2919;
-  const Real t2921 = sum_error(t2713, t2668);
-  const Real t2922 = t2920 + t2921;
-  const Real t2923 = sum_error(t2743, t2714);
-  const Real t2924 = t2923 + t2922;
-  const Real t2925 = -t2754;
-  const Real t2926 = sum_error(t2753, t2925);
-  const Real t2927 = sum_error(t2752, t2749);
-  const Real t2928 = t2927 + t2926;
-  const Real t2929 = t1795 * t1893;
-  const Real t2930 = t1803 * t1887;
-  const Real t2931 = t2930 + t2929;
-  const Real t2932 = product_error(t1887, t1795);
-  const Real t2933 = t2931 + t2932;
-  const Real t2934 = t2928 + t2933;
-  const Real t2935 = sum_error(t2755, t2756);
-  const Real t2936 = t2935 + t2934;
-  const Real t2937 = sum_error(t2757, t2760);
-  const Real t2938 = t2936 + t2937;
-  const Real t2939 = sum_error(t2761, t1825);
-  const Real t2940 = t2938 + t2939;
-  const Real t2941 = sum_error(t2765, t2762);
-  const Real t2942 = t2941 + t2940;
-  const Real t2943 = t2942 * t2594;
-  const Real t2944 = product_error(t2766, t2594);
-  const Real t2945 = t2943 + t2944;
-  const Real t2946 = t2924 + t2945;
-  const Real t2947 = sum_error(t2767, t2744);
-  const Real t2948 = t2946 + t2947;
-  const Real t2949 = sum_error(t2797, t2768);
-  const Real t2950 = t2949 + t2948;
-  const Real t2951 = sum_error(t2798, t2801);
-  const Real t2952 = t2950 + t2951;
-  const Real t2953 = -t2837;
-  const Real t2954 = sum_error(t2802, t2953);
-  const Real t2955 = t2954 + t2952;
-  const Real t2956 = sum_error(t2852, t2838);
-  const Real t2957 = t2955 + t2956;
-  const Real t2958 = t2957 + t2911;
-  const Real t2959 = t2958 * t2906;
-  const Real t2960 = sum_error(t2895, t2898);
-  const Real t2961 = sum_error(t2890, t2893);
-  const Real t2962 = sum_error(t2889, t2888);
-  const Real t2963 = t1887 * t2942;
-  const Real t2964 = t2766 * t1893;
-  const Real t2965 = t2963 + t2964;
-  const Real t2966 = product_error(t1887, t2766);
-  const Real t2967 = t2965 + t2966;
-  const Real t2968 = t2967 + t2962;
-  const Real t2969 = t2961 + t2968;
-  const Real t2970 = sum_error(t2894, t2836);
-  const Real t2971 = t2969 + t2970;
-  const Real t2972 = t2960 + t2971;
-  const Real t2973 = -t2904;
-  const Real t2974 = sum_error(t2899, t2973);
-  const Real t2975 = t2972 + t2974;
-  const Real t2976 = t2975 * t2906;
-  const Real t2977 = t2976 / t2905;
-  const Real t2978 = quotient_error(constant<Real>(1.0L), t2905);
-  const Real t2979 = t2978 - t2977;
-  const Real t2980 = t2979 * t2854;
-  const Real t2981 = t2959 + t2980;
-  const Real t2982 = product_error(t2854, t2906);
-  const Real t2983 = t2981 + t2982;
-  const Real t2984 = t2909 * t2983;
-  const Real t2985 = t2984 + t2908;
-  const Real t2986 = product_error(t2909, t2907);
-  const Real t2987 = t2985 + t2986;
-  const Real t2988 = t1292 * t2573;
-  const Real t2989 = t1272 * t2573;
-  const Real t2990 = t2989 + t2988;
-  const Real t2991 = t1166 * t2578;
-  const Real t2992 = -t2991;
-  const Real t2993 = sum_error(t2990, t2992);
-  const Real t2994 = t1119 * t2578;
-  const Real t2995 = product_error(t1166, t2578);
-  const Real t2996 = t2994 + t2995;
-  const Real t2997 = t2993 - t2996;
-  const Real t2998 = t2570 * t1405;
-  const Real t2999 = product_error(t1409, t2570);
-  const Real t3000 = t2999 + t2998;
-  const Real t3001 = t2997 - t3000;
-  const Real t3002 = t2990 - t2991;
-  const Real t3003 = t2570 * t1409;
-  const Real t3004 = -t3003;
-  const Real t3005 = sum_error(t3002, t3004);
-  const Real t3006 = t3001 + t3005;
-  const Real t3007 = t1681 * t2583;
-  const Real t3008 = product_error(t2583, t1683);
-  const Real t3009 = t3008 + t3007;
-  const Real t3010 = t3006 - t3009;
-  const Real t3011 = t3002 - t3003;
-  const Real t3012 = t1683 * t2583;
-  const Real t3013 = -t3012;
-  const Real t3014 = sum_error(t3011, t3013);
-  const Real t3015 = t3010 + t3014;
-  const Real t3016 = t1883 * t2594;
-  const Real t3017 = product_error(t1890, t2594);
-  const Real t3018 = t3017 + t3016;
-  const Real t3019 = t3015 + t3018;
-  const Real t3020 = t3011 - t3012;
-  const Real t3021 = t1890 * t2594;
-  const Real t3022 = sum_error(t3020, t3021);
-  const Real t3023 = t3022 + t3019;
-  const Real t3024 = t3021 + t3020;
-  const Real t3025 = t2056 * t2605;
-  const Real t3026 = t2060 * t2605;
-  const Real t3027 = t3025 + t3026;
-  const Real t3028 = -t3027;
-  const Real t3029 = sum_error(t3024, t3028);
-  const Real t3030 = t3029 + t3023;
-  const Real t3031 = t3024 - t3027;
-  const Real t3032 = par.I_Ryy * t815;
-  const Real t3033 = par.I_Ryy * t817;
-  const Real t3034 = t3032 + t3033;
-  const Real t3035 = -t3034;
-  const Real t3036 = sum_error(t3031, t3035);
-  const Real t3037 = t3030 + t3036;
-  const Real t3038 = t3031 - t3034;
-  const Real t3039 = t2087 * t2563;
-  const Real t3040 = -t3039;
-  const Real t3041 = sum_error(t3038, t3040);
-  const Real t3042 = t3041 + t3037;
-  const Real t3043 = t3038 - t3039;
-  const Real t3044 = t2641 * t2098;
-  const Real t3045 = sum_error(t3044, t3043);
-  const Real t3046 = t3042 + t3045;
-  const Real t3047 = t2411 * t2647;
-  const Real t3048 = t2151 * t3047;
-  const Real t3049 = t2411 * t2645;
-  const Real t3050 = t2441 * t2647;
-  const Real t3051 = t3050 + t3049;
-  const Real t3052 = product_error(t2411, t2647);
-  const Real t3053 = t3051 + t3052;
-  const Real t3054 = t2414 * t3053;
-  const Real t3055 = t3048 + t3054;
-  const Real t3056 = product_error(t3047, t2414);
-  const Real t3057 = t3056 + t3055;
-  const Real t3058 = t3046 - t3057;
-  const Real t3059 = t3044 + t3043;
-  const Real t3060 = t2414 * t3047;
-  const Real t3061 = -t3060;
-  const Real t3062 = sum_error(t3059, t3061);
-  const Real t3063 = t3062 + t3058;
-  const Real t3064 = t3063 - t2987;
-  const Real t3065 = t3059 - t3060;
-  const Real t3066 = t2909 * t2907;
-  const Real t3067 = t3065 - t3066;
-  const Real t3068 = t3067 + t3064;
-  const Real t3069 = t2854 * t2983;
-  const Real t3070 = t2958 * t2907;
-  const Real t3071 = t3070 + t3069;
-  const Real t3072 = t2854 * t2907;
-  const Real t3073 = t3072 + t3071;
-  const Real t3074 = t902 * t2570;
-  const Real t3075 = t860 * t2573;
-  const Real t3076 = t888 * t2578;
-  const Real t3077 = t3075 + t3076;
-  const Real t3078 = t3077 + t3074;
-  const Real t3079 = t1434 * t2583;
-  const Real t3080 = t3079 + t3078;
-  const Real t3081 = t925 * t2594;
-  const Real t3082 = t949 * t2594;
-  const Real t3083 = t3081 + t3082;
-  const Real t3084 = t3083 + t3080;
-  const Real t3085 = sum_error(t3079, t3078);
-  const Real t3086 = sum_error(t3074, t3077);
-  const Real t3087 = sum_error(t3075, t3076);
-  const Real t3088 = product_error(t888, t2578);
-  const Real t3089 = t886 * t2578;
-  const Real t3090 = t3088 + t3089;
-  const Real t3091 = t3087 + t3090;
-  const Real t3092 = t3086 + t3091;
-  const Real t3093 = t3085 + t3092;
-  const Real t3094 = t3084 + t3093;
-  const Real t3095 = t2605 * t940;
-  const Real t3096 = t3095 + t3094;
-  const Real t3097 = t2563 * t934;
-  const Real t3098 = t3097 + t3096;
-  const Real t3099 = t3098 * t2578;
-  const Real t3100 = t1198 * t2573;
-  const Real t3101 = t1196 * t2573;
-  const Real t3102 = t3100 + t3101;
-  const Real t3103 = t2578 * t860;
-  const Real t3104 = t3103 + t3102;
-  const Real t3105 = t2570 * t1211;
-  const Real t3106 = t3104 + t3105;
-  const Real t3107 = t2583 * t1424;
-  const Real t3108 = t1429 * t2583;
-  const Real t3109 = t3107 + t3108;
-  const Real t3110 = t3109 + t3106;
-  const Real t3111 = t1228 * t2594;
-  const Real t3112 = t3111 + t3110;
-  const Real t3113 = t2605 * t1247;
-  const Real t3114 = t1249 * t2605;
-  const Real t3115 = t3113 + t3114;
-  const Real t3116 = t3112 + t3115;
-  const Real t3117 = t2563 * t1239;
-  const Real t3118 = t3116 - t3117;
-  const Real t3119 = t3118 * t2573;
-  const Real t3120 = t3119 + t3099;
-  const Real t3121 = t2570 * t1336;
-  const Real t3122 = t902 * t2578;
-  const Real t3123 = t1211 * t2573;
-  const Real t3124 = t3122 + t3123;
-  const Real t3125 = t3121 + t3124;
-  const Real t3126 = t1439 * t2583;
-  const Real t3127 = t3125 + t3126;
-  const Real t3128 = t1359 * t2594;
-  const Real t3129 = t3128 + t3127;
-  const Real t3130 = t2605 * t1377;
-  const Real t3131 = t3130 + t3129;
-  const Real t3132 = t1368 * t2563;
-  const Real t3133 = t3131 - t3132;
-  const Real t3134 = t2570 * t3133;
-  const Real t3135 = t3134 + t3120;
-  const Real t3136 = t1439 * t2570;
-  const Real t3137 = t1424 * t2573;
-  const Real t3138 = t1429 * t2573;
-  const Real t3139 = t3137 + t3138;
-  const Real t3140 = t1434 * t2578;
-  const Real t3141 = t3139 + t3140;
-  const Real t3142 = t3136 + t3141;
-  const Real t3143 = t2260 * t2583;
-  const Real t3144 = t2257 * t2583;
-  const Real t3145 = t3143 + t3144;
-  const Real t3146 = t3142 + t3145;
-  const Real t3147 = t1516 * t2594;
-  const Real t3148 = t3146 + t3147;
-  const Real t3149 = t1550 * t2605;
-  const Real t3150 = t1555 * t2605;
-  const Real t3151 = t3149 + t3150;
-  const Real t3152 = t3151 + t3148;
-  const Real t3153 = t1534 * t2563;
-  const Real t3154 = t3152 - t3153;
-  const Real t3155 = t1491 * t2641;
-  const Real t3156 = t3154 - t3155;
-  const Real t3157 = t3156 * t2583;
-  const Real t3158 = t3157 + t3135;
-  const Real t3159 = t925 * t2578;
-  const Real t3160 = t949 * t2578;
-  const Real t3161 = t3159 + t3160;
-  const Real t3162 = t1228 * t2573;
-  const Real t3163 = t3162 + t3161;
-  const Real t3164 = t2570 * t1359;
-  const Real t3165 = t3163 + t3164;
-  const Real t3166 = t2583 * t1516;
-  const Real t3167 = t3166 + t3165;
-  const Real t3168 = t1803 * t2594;
-  const Real t3169 = t1795 * t2594;
-  const Real t3170 = t3168 + t3169;
-  const Real t3171 = t3167 + t3170;
-  const Real t3172 = t1834 * t2605;
-  const Real t3173 = t3172 + t3171;
-  const Real t3174 = t3173 + par.I_Ryy;
-  const Real t3175 = t2563 * t1825;
-  const Real t3176 = t3174 - t3175;
-  const Real t3177 = t1755 * t2641;
-  const Real t3178 = t3176 + t3177;
-  const Real t3179 = t3178 * t2594;
-  const Real t3180 = t3158 + t3179;
-  const Real t3181 = t2570 * t1377;
-  const Real t3182 = t1247 * t2573;
-  const Real t3183 = t1249 * t2573;
-  const Real t3184 = t3182 + t3183;
-  const Real t3185 = t940 * t2578;
-  const Real t3186 = t3184 + t3185;
-  const Real t3187 = t3181 + t3186;
-  const Real t3188 = t1550 * t2583;
-  const Real t3189 = t1555 * t2583;
-  const Real t3190 = t3188 + t3189;
-  const Real t3191 = t3190 + t3187;
-  const Real t3192 = t1834 * t2594;
-  const Real t3193 = t3191 + t3192;
-  const Real t3194 = t2605 * t2019;
-  const Real t3195 = t3194 + t3193;
-  const Real t3196 = t1995 * t2563;
-  const Real t3197 = t3195 - t3196;
-  const Real t3198 = t1947 * t2641;
-  const Real t3199 = t3198 + t3197;
-  const Real t3200 = t3199 * t2605;
-  const Real t3201 = t3200 + t3180;
-  const Real t3202 = par.I_Ryy * t2594;
-  const Real t3203 = t3202 + par.I_Ryy;
-  const Real t3204 = t3201 + t3203;
-  const Real t3205 = t2570 * t1368;
-  const Real t3206 = t1239 * t2573;
-  const Real t3207 = t934 * t2578;
-  const Real t3208 = t3206 - t3207;
-  const Real t3209 = t3208 + t3205;
-  const Real t3210 = t1534 * t2583;
-  const Real t3211 = t3210 + t3209;
-  const Real t3212 = t1825 * t2594;
-  const Real t3213 = t3211 + t3212;
-  const Real t3214 = t1995 * t2605;
-  const Real t3215 = t3214 + t3213;
-  const Real t3216 = t2563 * t2835;
-  const Real t3217 = t3215 - t3216;
-  const Real t3218 = t2563 * t3217;
-  const Real t3219 = t3204 - t3218;
-  const Real t3220 = t1755 * t2594;
-  const Real t3221 = t1491 * t2583;
-  const Real t3222 = t3220 - t3221;
-  const Real t3223 = t1947 * t2605;
-  const Real t3224 = t3223 + t3222;
-  const Real t3225 = t2641 * par.I_Fyy;
-  const Real t3226 = t3224 + t3225;
-  const Real t3227 = t3226 * t2641;
-  const Real t3228 = t3227 + t3219;
-  const Real t3229 = t3053 * t2647;
-  const Real t3230 = t3047 * t2645;
-  const Real t3231 = t3229 + t3230;
-  const Real t3232 = t3047 * t2647;
-  const Real t3233 = t3232 + t3231;
-  const Real t3234 = t3228 - t3233;
-  const Real t3235 = t3234 - t3073;
-  const Real t3236 = constant<Real>(1.0L) / t3235;
-  const Real t3237 = t3236 * t3068;
-  const Real t3238 = t3237 * t2983;
-  const Real t3239 = t3237 * t2907;
-  const Real t3240 = t3238 + t3239;
-  const Real t3241 = -t3240;
-  const Real t3242 = t2909 * t2906;
-  const Real t3243 = sum_error(t3242, t3241);
-  const Real t3244 = t2455 * t2906;
-  const Real t3245 = t2909 * t2979;
-  const Real t3246 = t3244 + t3245;
-  const Real t3247 = product_error(t2909, t2906);
-  const Real t3248 = t3247 + t3246;
-  const Real t3249 = t3248 + t3243;
-  const Real t3250 = t2412 * t3249;
-  const Real t3251 = t3242 - t3240;
-  const Real t3252 = t3251 * t2445;
-  const Real t3253 = t3252 + t3250;
-  const Real t3254 = t3251 * t2412;
-  const Real t3255 = t3253 + t3254;
-  const Real t3256 = -t3255;
-  const Real t3257 = t2414 * t2411;
-  const Real t3258 = sum_error(t3257, t3256);
-  const Real t3259 = t2411 * t2151;
-  const Real t3260 = t2414 * t2441;
-  const Real t3261 = t3259 + t3260;
-  const Real t3262 = product_error(t2411, t2414);
-  const Real t3263 = t3262 + t3261;
-  const Real t3264 = t3258 + t3263;
-  const Real t3265 = t3257 - t3255;
-  const Real t3266 = t3237 * t3053;
-  const Real t3267 = t3237 * t3047;
-  const Real t3268 = t3266 + t3267;
-  const Real t3269 = -t3268;
-  const Real t3270 = sum_error(t3265, t3269);
-  const Real t3271 = t3264 + t3270;
-  const Real t3272 = t3271 * t420;
-  const Real t3273 = t3265 - t3268;
-  const Real t3274 = t3273 * t420;
-  const Real t3275 = t3274 + t3272;
-  const Real t3276 = -t3275;
-  const Real t3277 = t2100 * t3251;
-  const Real t3278 = sum_error(t3277, t3276);
-  const Real t3279 = t2100 * t3249;
-  const Real t3280 = t3251 * t2104;
-  const Real t3281 = t3280 + t3279;
-  const Real t3282 = product_error(t2100, t3251);
-  const Real t3283 = t3281 + t3282;
-  const Real t3284 = t3283 + t3278;
-  const Real t3285 = t3277 - t3275;
-  const Real t3286 = t2641 * t3237;
-  const Real t3287 = sum_error(t3286, t3285);
-  const Real t3288 = t3284 + t3287;
-  const Real t3289 = t3285 + t3286;
-  const Real t3290 = t3289 - t803;
-  const Real t3291 = t3288 + t3290;
-  const Real t3292 = t3237 * t2563;
-  const Real t3293 = t3251 - t3292;
-  const Real t3294 = t3293 + t3249;
-  const Real t3295 = t3271 * t441;
-  const Real t3296 = t3273 * t441;
-  const Real t3297 = t3295 + t3296;
-  const Real t3298 = t2058 * t3249;
-  const Real t3299 = t3251 * t2063;
-  const Real t3300 = t3299 + t3298;
-  const Real t3301 = t2058 * t3251;
-  const Real t3302 = t3301 + t3300;
-  const Real t3303 = t3302 - t3297;
-  const Real t3304 = t3237 * t2605;
-  const Real t3305 = t3303 + t3304;
-  const Real t3306 = t827 + t3305;
-  const Real t3307 = t3271 * t431;
-  const Real t3308 = t3273 * t429;
-  const Real t3309 = t3307 + t3308;
-  const Real t3310 = t3273 * t431;
-  const Real t3311 = t3309 + t3310;
-  const Real t3312 = -t3311;
-  const Real t3313 = t3251 * t1887;
-  const Real t3314 = sum_error(t3313, t3312);
-  const Real t3315 = t1887 * t3249;
-  const Real t3316 = t3251 * t1893;
-  const Real t3317 = t3316 + t3315;
-  const Real t3318 = product_error(t1887, t3251);
-  const Real t3319 = t3318 + t3317;
-  const Real t3320 = t3314 + t3319;
-  const Real t3321 = t3313 - t3311;
-  const Real t3322 = t3237 * t2594;
-  const Real t3323 = sum_error(t3322, t3321);
-  const Real t3324 = t3320 + t3323;
-  const Real t3325 = t3324 + t815;
-  const Real t3326 = t3321 + t3322;
-  const Real t3327 = sum_error(t817, t3326);
-  const Real t3328 = t3325 + t3327;
-  const Real t3329 = t817 + t3326;
-  const Real t3330 = t3328 + t3329;
-  const Real t3331 = t1162 * t3249;
-  const Real t3332 = t3251 * t1162;
-  const Real t3333 = t3331 + t3332;
-  const Real t3334 = -t3333;
-  const Real t3335 = sum_error(t3273, t3334);
-  const Real t3336 = t3335 + t3271;
-  const Real t3337 = t3273 - t3333;
-  const Real t3338 = t3237 * t2583;
-  const Real t3339 = sum_error(t3337, t3338);
-  const Real t3340 = t3336 + t3339;
-  const Real t3341 = t3337 + t3338;
-  const Real t3342 = t3341 + t3340;
-  const Real t3343 = t3271 * t684;
-  const Real t3344 = t3273 * t684;
-  const Real t3345 = t3344 + t3343;
-  const Real t3346 = t1407 * t3249;
-  const Real t3347 = t3251 * t1412;
-  const Real t3348 = t3346 + t3347;
-  const Real t3349 = t3251 * t1407;
-  const Real t3350 = t3349 + t3348;
-  const Real t3351 = t3350 - t3345;
-  const Real t3352 = t3237 * t2570;
-  const Real t3353 = t3351 + t3352;
-  const Real t3354 = t3353 + t895;
-  const Real t3355 = t3271 * t627;
-  const Real t3356 = t3273 * t625;
-  const Real t3357 = t3356 + t3355;
-  const Real t3358 = t3273 * t627;
-  const Real t3359 = t3358 + t3357;
-  const Real t3360 = t1276 * t3249;
-  const Real t3361 = t3251 * t1276;
-  const Real t3362 = t3360 + t3361;
-  const Real t3363 = t3359 + t3362;
-  const Real t3364 = t3237 * t2573;
-  const Real t3365 = t3364 + t3363;
-  const Real t3366 = t829 + t3365;
-  const Real t3367 = t3271 * t656;
-  const Real t3368 = t3273 * t656;
-  const Real t3369 = t3368 + t3367;
-  const Real t3370 = t1164 * t3249;
-  const Real t3371 = t3251 * t1164;
-  const Real t3372 = t3370 + t3371;
-  const Real t3373 = t3369 + t3372;
-  const Real t3374 = t3237 * t2578;
-  const Real t3375 = t3373 + t3374;
-  const Real t3376 = t3375 + t867;
-  const Real t3377 = t3294 * t1162;
-  const Real t3378 = t3273 - t3377;
-  const Real t3379 = t3271 + t3378;
-  const Real t3380 = t2506 * t3237;
-  const Real t3381 = t3379 - t3380;
-
-  nu_dot_out[0] = t3381;
-  nu_dot_out[1] = t3294;
-  nu_dot_out[2] = t3237;
-  eta_dot[0] = t3376;
-  eta_dot[1] = t3366;
-  eta_dot[2] = t3354;
-  eta_dot[3] = t3342;
-  eta_dot[4] = t3330;
-  eta_dot[5] = t3306;
-  r_p_ddot[0] = t3237;
-  r_p_ddot[1] = t3294;
-  r_p_ddot[2] = t3291;
+  nu_dot_out[0] = t1931;
+  nu_dot_out[1] = t1890;
+  nu_dot_out[2] = t1874;
+  eta_dot[0] = t1927;
+  eta_dot[1] = t1921;
+  eta_dot[2] = t1915;
+  eta_dot[3] = t1909;
+  eta_dot[4] = t1905;
+  eta_dot[5] = t1896;
+  r_p_ddot[0] = t1874;
+  r_p_ddot[1] = t1890;
+  r_p_ddot[2] = t1888;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, stable forms, compensated beyond 0.5 ulps
-/// operations: 1524 add, 1033 mul, 15 div, 29 neg, 2 sqrt, 4 sin, 3 cos
+/// route: projected recursion, compensated beyond 16 ulps
+/// operations: 543 add, 585 mul, 9 div, 4 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p     (3) rad or m: rear_spin, steer, front_spin
@@ -9135,7 +6298,6 @@ inline void multipliers(const Prepared<Real>& par,
   using std::sqrt;
   using detail::constant;
   using detail::product_error;
-  using detail::quotient_error;
   using detail::sum_error;
   const Real s_r_p_0_ = sin(r_p[0]);
   const Real c_r_p_0_ = cos(r_p[0]);
@@ -9143,1416 +6305,925 @@ inline void multipliers(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
   const Real s_r_p_2_ = sin(r_p[2]);
   const Real c_r_p_2_ = cos(r_p[2]);
-  const Real t1 = constant<Real>(0.5L) * r_p[1];
-  const Real t2 = sin(t1);
 
   // joint angles
-  const Real t3 = c_r_p_1_ * par.k24;
-  const Real t4 = R[6] * R[6];
-  const Real t5 = R[8] * R[8];
+  const Real t1 = par.k2 * R[6];
+  const Real t2 = R[8] * par.k1;
+  const Real t3 = t1 - t2;
+  const Real t4 = c_r_p_1_ * t3;
+  const Real t5 = s_r_p_1_ * R[7];
   const Real t6 = t4 + t5;
-  const Real t7 = sqrt(t6);
-  const Real t8 = constant<Real>(2.0L) * t7;
-  const Real t9 = c_r_p_1_ * par.c;
-  const Real t10 = constant<Real>(1.0L) / t7;
-  const Real t11 = R[8] * t10;
-  const Real t12 = t11 * par.r_R;
-  const Real t13 = t12 - par.r_R;
-  const Real t14 = par.k2 * R[6];
-  const Real t15 = R[8] * par.k1;
-  const Real t16 = t14 - t15;
-  const Real t17 = c_r_p_1_ * t16;
-  const Real t18 = s_r_p_1_ * R[7];
-  const Real t19 = t17 + t18;
-  const Real t20 = par.k1 * t19;
-  const Real t21 = par.k1 * R[6];
-  const Real t22 = R[8] * par.k2;
-  const Real t23 = t21 + t22;
-  const Real t24 = t23 * par.k2;
-  const Real t25 = t20 - t24;
-  const Real t26 = t25 * t25;
-  const Real t27 = par.k2 * t19;
-  const Real t28 = par.r_R - t12;
-  const Real t29 = c_r_p_1_ * par.k14;
-  const Real t30 = c_r_p_1_ * par.k2;
-  const Real t31 = par.k2 * t30;
-  const Real t32 = par.k20 + t31;
-  const Real t33 = par.r_F * t32;
-  const Real t34 = s_r_p_1_ * par.k2;
-  const Real t35 = t34 * par.c;
-  const Real t36 = par.k1 * c_r_p_1_;
-  const Real t37 = par.k1 * t36;
-  const Real t38 = par.k19 + t37;
-  const Real t39 = t38 * par.c;
-  const Real t40 = par.k1 * t23;
-  const Real t41 = c_r_p_1_ * par.r_F;
-  const Real t42 = t10 * R[6];
-  const Real t43 = t42 * par.r_R;
-  const Real t44 = s_r_p_1_ * par.k14;
-  const Real t45 = par.k2 * t44;
-  const Real t46 = s_r_p_1_ * par.k1;
-  const Real t47 = par.r_F * t46;
-  const Real t48 = t45 - t47;
-  const Real t49 = t34 * par.r_F;
-  const Real t50 = par.c * t46;
-  const Real t51 = t49 + t50;
-  const Real t52 = s_r_p_1_ * par.k24;
-  const Real t53 = t51 - t52;
-  const Real t54 = par.k1 * t44;
+  const Real t7 = par.k1 * t6;
+  const Real t8 = par.k1 * R[6];
+  const Real t9 = R[8] * par.k2;
+  const Real t10 = t8 + t9;
+  const Real t11 = t10 * par.k2;
+  const Real t12 = t7 - t11;
+  const Real t13 = t12 * t12;
+  const Real t14 = par.k2 * t6;
+  const Real t15 = par.k1 * t10;
+  const Real t16 = t14 + t15;
+  const Real t17 = t16 * t16;
+  const Real t18 = t13 + t17;
+  const Real t19 = sqrt(t18);
+  const Real t20 = constant<Real>(1.0L) / t19;
+  const Real t21 = t12 * t20;
+  const Real t22 = par.r_F * t21;
+  const Real t23 = par.k1 * t22;
+  const Real t24 = t20 * t16;
+  const Real t25 = t24 * par.r_F;
+  const Real t26 = t25 * par.k2;
+  const Real t27 = t23 + t26;
+  const Real t28 = t27 + par.k12;
+  const Real t29 = par.k1 * c_r_p_1_;
+  const Real t30 = par.k1 * t29;
+  const Real t31 = par.k18 + t30;
+  const Real t32 = t31 * t25;
+  const Real t33 = t29 * par.k2;
+  const Real t34 = par.k22 - t33;
+  const Real t35 = t22 * t34;
+  const Real t36 = t32 + t35;
+  const Real t37 = c_r_p_1_ * par.k13;
+  const Real t38 = t34 * par.r_F;
+  const Real t39 = t31 * par.c;
+  const Real t40 = t38 - t39;
+  const Real t41 = t37 + t40;
+  const Real t42 = t36 + t41;
+  const Real t43 = s_r_p_1_ * par.k13;
+  const Real t44 = par.k2 * t43;
+  const Real t45 = s_r_p_1_ * par.k1;
+  const Real t46 = par.r_F * t45;
+  const Real t47 = t44 - t46;
+  const Real t48 = t22 * t45;
+  const Real t49 = t47 - t48;
+  const Real t50 = R[6] * R[6];
+  const Real t51 = R[8] * R[8];
+  const Real t52 = t50 + t51;
+  const Real t53 = sqrt(t52);
+  const Real t54 = constant<Real>(2.0L) * t53;
+  const Real t55 = constant<Real>(1.0L) / t53;
+  const Real t56 = R[8] * t55;
+  const Real t57 = t56 * par.r_R;
+  const Real t58 = t57 - par.r_R;
+  const Real t59 = s_r_p_1_ * par.k2;
+  const Real t60 = t25 * t59;
+  const Real t61 = t59 * par.c;
+  const Real t62 = t60 - t61;
+  const Real t63 = par.r_R - t57;
+  const Real t64 = c_r_p_1_ * par.c;
+  const Real t65 = c_r_p_1_ * par.k23;
+  const Real t66 = t65 * par.k1;
+  const Real t67 = t66 + par.k21;
+  const Real t68 = t64 - t67;
+  const Real t69 = t25 * c_r_p_1_;
+  const Real t70 = t68 - t69;
+  const Real t71 = constant<Real>(2.0L) * t19;
+  const Real t72 = t59 * par.r_F;
+  const Real t73 = t22 * t59;
+  const Real t74 = t72 + t73;
+  const Real t75 = t65 * par.k2;
+  const Real t76 = t75 - par.k24;
+  const Real t77 = c_r_p_1_ * par.r_F;
+  const Real t78 = t76 - t77;
+  const Real t79 = t22 * c_r_p_1_;
+  const Real t80 = t78 - t79;
+  const Real t81 = t25 * t45;
+  const Real t82 = t73 - t81;
+  const Real t83 = par.c * t45;
+  const Real t84 = t72 + t83;
+  const Real t85 = s_r_p_1_ * par.k23;
+  const Real t86 = t84 - t85;
+  const Real t87 = t82 + t86;
+  const Real t88 = c_r_p_1_ * par.k2;
+  const Real t89 = par.k2 * t88;
+  const Real t90 = par.k19 + t89;
+  const Real t91 = par.r_F * t90;
+  const Real t92 = par.k1 * t88;
+  const Real t93 = par.k22 - t92;
+  const Real t94 = t93 * par.c;
+  const Real t95 = t91 - t94;
+  const Real t96 = t25 * t93;
+  const Real t97 = t22 * t90;
+  const Real t98 = t96 + t97;
+  const Real t99 = t95 + t98;
+  const Real t100 = t55 * R[6];
+  const Real t101 = t100 * par.r_R;
+  const Real t102 = par.k1 * t43;
+  const Real t103 = t83 - t102;
+  const Real t104 = t103 - t81;
 
   // kernel
-  const Real t55 = product_error(t13, t32);
-  const Real t56 = sum_error(t12, par.k6);
-  const Real t57 = t56 * t32;
-  const Real t58 = sum_error(par.k20, t31);
-  const Real t59 = product_error(c_r_p_1_, par.k2);
-  const Real t60 = t59 * par.k2;
-  const Real t61 = product_error(par.k2, t30);
-  const Real t62 = t60 + t61;
-  const Real t63 = t58 + t62;
-  const Real t64 = t13 * t63;
-  const Real t65 = t57 + t64;
-  const Real t66 = t55 + t65;
-  const Real t67 = t2 * t2;
-  const Real t68 = constant<Real>(2.0L) * t67;
-  const Real t69 = t68 * par.k23;
-  const Real t70 = t69 * par.c;
-  const Real t71 = -t70;
-  const Real t72 = sum_error(t33, t71);
-  const Real t73 = product_error(par.r_F, t32);
-  const Real t74 = par.r_F * t63;
-  const Real t75 = t73 + t74;
-  const Real t76 = t72 + t75;
-  const Real t77 = par.k1 * t10;
-  const Real t78 = par.k2 * t77;
-  const Real t79 = t78 * t2;
-  const Real t80 = t79 * t2;
-  const Real t81 = t80 * R[6];
-  const Real t82 = t81 * par.r_R;
-  const Real t83 = t82 * constant<Real>(2.0L);
-  const Real t84 = t34 * t56;
-  const Real t85 = product_error(t34, t28);
-  const Real t86 = t34 * t43;
-  const Real t87 = -t86;
-  const Real t88 = t13 * t32;
-  const Real t89 = product_error(c_r_p_1_, par.r_F);
-  const Real t90 = t38 * t43;
-  const Real t91 = t12 * t69;
-  const Real t92 = t90 - t91;
-  const Real t93 = product_error(par.k1, R[6]);
-  const Real t94 = sum_error(t21, t22);
-  const Real t95 = t93 + t94;
-  const Real t96 = par.k1 * t95;
-  const Real t97 = t96 + t40;
-  const Real t98 = par.r_F * t69;
-  const Real t99 = t98 - t39;
-  const Real t100 = t99 + t29;
-  const Real t101 = c_r_p_1_ * t25;
-  const Real t102 = product_error(t23, par.k2);
-  const Real t103 = par.k2 * t95;
-  const Real t104 = t102 + t103;
-  const Real t105 = product_error(par.k1, t19);
-  const Real t106 = product_error(s_r_p_1_, R[7]);
-  const Real t107 = product_error(c_r_p_1_, t16);
-  const Real t108 = -t15;
-  const Real t109 = sum_error(t14, t108);
-  const Real t110 = product_error(par.k2, R[6]);
-  const Real t111 = t109 + t110;
-  const Real t112 = t111 * c_r_p_1_;
-  const Real t113 = t107 + t112;
-  const Real t114 = t106 + t113;
-  const Real t115 = sum_error(t17, t18);
-  const Real t116 = t114 + t115;
-  const Real t117 = t116 * par.k1;
-  const Real t118 = t105 + t117;
-  const Real t119 = t33 - t70;
-  const Real t120 = t116 * par.k2;
-  const Real t121 = t13 * t69;
-  const Real t122 = t69 * t56;
-  const Real t123 = t121 + t122;
-  const Real t124 = sum_error(t99, t29);
-  const Real t125 = product_error(par.k2, t44);
-  const Real t126 = s_r_p_1_ * par.k28;
-  const Real t127 = product_error(s_r_p_1_, par.k14);
-  const Real t128 = t126 + t127;
-  const Real t129 = t128 * par.k2;
-  const Real t130 = t125 + t129;
-  const Real t131 = c_r_p_1_ * t28;
-  const Real t132 = c_r_p_1_ * par.k29;
-  const Real t133 = t3 + t132;
-  const Real t134 = par.k1 * t133;
-  const Real t135 = par.k22 + t134;
-  const Real t136 = t9 - t135;
-  const Real t137 = -t135;
-  const Real t138 = sum_error(t9, t137);
-  const Real t139 = sum_error(t134, par.k22);
-  const Real t140 = t139 + par.k31;
-  const Real t141 = t138 - t140;
-  const Real t142 = t13 * t34;
-  const Real t143 = t128 * par.k1;
-  const Real t144 = t143 + t54;
-  const Real t145 = t46 * t43;
-  const Real t146 = t34 * t12;
-  const Real t147 = t145 + t146;
-  const Real t148 = c_r_p_1_ * t43;
-  const Real t149 = -t148;
-  const Real t150 = s_r_p_1_ * par.k29;
-  const Real t151 = product_error(s_r_p_1_, par.k24);
-  const Real t152 = t150 + t151;
-  const Real t153 = t69 * t43;
-  const Real t154 = t12 * t63;
-  const Real t155 = t12 * t32;
-  const Real t156 = t154 + t155;
-  const Real t157 = t153 - t156;
-  const Real t158 = product_error(t34, par.r_F);
-  const Real t159 = product_error(t13, t34);
-  const Real t160 = product_error(c_r_p_1_, par.k14);
-  const Real t161 = c_r_p_1_ * par.k28;
-  const Real t162 = t160 + t161;
-  const Real t163 = -t47;
-  const Real t164 = sum_error(t45, t163);
-  const Real t165 = t34 * t28;
-  const Real t166 = product_error(c_r_p_1_, t28);
-  const Real t167 = t28 * t46;
+  const Real t105 = t45 * t101;
+  const Real t106 = t105 + t104;
+  const Real t107 = c_r_p_1_ * t101;
+  const Real t108 = t42 - t107;
+  const Real t109 = constant<Real>(1.0L) / t108;
+  const Real t110 = t106 * t109;
+  const Real t111 = product_error(t110, t28);
+  const Real t112 = t58 * t90;
+  const Real t113 = t80 - t112;
+  const Real t114 = t34 * t101;
+  const Real t115 = t113 + t114;
+  const Real t116 = t58 * t59;
+  const Real t117 = t116 + t87;
+  const Real t118 = t117 + t105;
+  const Real t119 = t59 * t101;
+  const Real t120 = t49 - t119;
+  const Real t121 = t109 * t120;
+  const Real t122 = t118 * t121;
+  const Real t123 = t115 - t122;
+  const Real t124 = t31 * t101;
+  const Real t125 = t58 * t93;
+  const Real t126 = t70 - t125;
+  const Real t127 = t124 + t126;
+  const Real t128 = t110 * t118;
+  const Real t129 = t127 - t128;
+  const Real t130 = constant<Real>(1.0L) / t129;
+  const Real t131 = t123 * t130;
+  const Real t132 = t111 * t131;
+  const Real t133 = t110 * t28;
+  const Real t134 = t133 * t131;
+  const Real t135 = t28 * t121;
+  const Real t136 = t134 - t135;
+  const Real t137 = -t133;
+  const Real t138 = t59 * t63;
+  const Real t139 = t74 - t138;
+  const Real t140 = c_r_p_1_ * t63;
+  const Real t141 = t99 - t140;
+  const Real t142 = t141 * t121;
+  const Real t143 = t139 - t142;
+  const Real t144 = t63 * t45;
+  const Real t145 = t62 + t144;
+  const Real t146 = t110 * t141;
+  const Real t147 = t145 - t146;
+  const Real t148 = t147 * t131;
+  const Real t149 = t93 * t57;
+  const Real t150 = t124 - t149;
+  const Real t151 = t59 * t57;
+  const Real t152 = t105 + t151;
+  const Real t153 = t110 * t152;
+  const Real t154 = t150 - t153;
+  const Real t155 = product_error(t154, t131);
+  const Real t156 = t25 * t131;
+  const Real t157 = t57 * t90;
+  const Real t158 = t114 - t157;
+  const Real t159 = t152 * t121;
+  const Real t160 = t158 - t159;
+  const Real t161 = t154 * t131;
+  const Real t162 = t160 - t161;
+  const Real t163 = product_error(t28, t121);
+  const Real t164 = product_error(t133, t131);
+  const Real t165 = product_error(t123, t130);
+  const Real t166 = -t159;
+  const Real t167 = sum_error(t158, t166);
+  const Real t168 = product_error(t152, t121);
+  const Real t169 = t167 - t168;
+  const Real t170 = -t122;
+  const Real t171 = sum_error(t115, t170);
+  const Real t172 = product_error(t118, t121);
+  const Real t173 = t171 - t172;
+  const Real t174 = t173 * t130;
 
   // frame: acceleration
-  const Real t168 = par.g * R[7];
-  const Real t169 = par.g * R[8];
-  const Real t170 = par.g * R[6];
+  const Real t175 = par.g * R[7];
+  const Real t176 = par.g * R[8];
+  const Real t177 = par.g * R[6];
 
   // joint angles
-  const Real t171 = R[8] * nu[0];
-  const Real t172 = par.k2 * nu[0];
-  const Real t173 = par.k1 * nu[0];
-  const Real t174 = s_r_p_1_ * nu[1];
-  const Real t175 = t174 * t16;
-  const Real t176 = c_r_p_1_ * nu[1];
-  const Real t177 = t176 * R[7];
-  const Real t178 = nu[0] * R[7];
+  const Real t178 = R[8] * nu[0];
+  const Real t179 = par.k2 * nu[0];
+  const Real t180 = par.k1 * nu[0];
+  const Real t181 = s_r_p_1_ * nu[1];
+  const Real t182 = t181 * t3;
+  const Real t183 = c_r_p_1_ * nu[1];
+  const Real t184 = t183 * R[7];
+  const Real t185 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t179 = nu[0] * c_r_p_0_;
-  const Real t180 = nu[0] * s_r_p_0_;
+  const Real t186 = nu[0] * c_r_p_0_;
+  const Real t187 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t181 = nu[0] * nu[0];
-
-  // passive accelerations
-  const Real t182 = t174 * t111;
-  const Real t183 = t175 + t182;
-  const Real t184 = t130 + t164;
-  const Real t185 = t50 - t144;
-  const Real t186 = -t123;
-  const Real t187 = sum_error(t49, t50);
-  const Real t188 = t187 + t158;
-  const Real t189 = t188 - t152;
-  const Real t190 = t189 + t53;
-  const Real t191 = t84 + t159;
-  const Real t192 = t97 + t27;
-  const Real t193 = t192 * t192;
-
-  // accelerations
-  const Real t194 = par.k66 * t68;
-  const Real t195 = sum_error(t194, t41);
-  const Real t196 = t89 + t195;
-  const Real t197 = t194 + t41;
-  const Real t198 = t124 + t162;
+  const Real t188 = nu[0] * nu[0];
 
   // rear_wheel: acceleration
-  const Real t199 = nu_dot[0] * c_r_p_0_;
-  const Real t200 = nu_dot[0] * s_r_p_0_;
+  const Real t189 = nu_dot[0] * c_r_p_0_;
+  const Real t190 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t201 = nu_dot[0] * par.k2;
-  const Real t202 = par.k1 * nu_dot[0];
+  const Real t191 = nu_dot[0] * par.k2;
+  const Real t192 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t203 = sum_error(t27, t97);
-  const Real t204 = product_error(par.k2, t19);
-  const Real t205 = t120 + t204;
-  const Real t206 = t203 + t205;
-  const Real t207 = t192 * t206;
-  const Real t208 = t207 * constant<Real>(2.0L);
-  const Real t209 = t208 + t193;
-  const Real t210 = -t24;
-  const Real t211 = sum_error(t20, t210);
-  const Real t212 = t118 - t104;
-  const Real t213 = t211 + t212;
-  const Real t214 = t25 * t213;
-  const Real t215 = t214 * constant<Real>(2.0L);
-  const Real t216 = t215 + t26;
-  const Real t217 = t209 + t216;
-  const Real t218 = sqrt(t217);
-  const Real t219 = constant<Real>(1.0L) / t218;
-  const Real t220 = product_error(t219, t192);
-  const Real t221 = t219 * t206;
-  const Real t222 = t220 + t221;
-  const Real t223 = par.r_F * t222;
-  const Real t224 = t192 * t219;
-  const Real t225 = product_error(t224, par.r_F);
-  const Real t226 = t223 + t225;
-  const Real t227 = c_r_p_1_ * t226;
-  const Real t228 = par.r_F * t224;
-  const Real t229 = c_r_p_1_ * t228;
-  const Real t230 = t227 + t229;
-  const Real t231 = t136 - t230;
-  const Real t232 = t231 - t123;
-  const Real t233 = t90 + t232;
-  const Real t234 = t219 * t25;
-  const Real t235 = product_error(par.r_F, t234);
-  const Real t236 = product_error(t25, t219);
-  const Real t237 = t219 * t213;
-  const Real t238 = t236 + t237;
-  const Real t239 = par.r_F * t238;
-  const Real t240 = t235 + t239;
-  const Real t241 = t240 * t34;
-  const Real t242 = t234 * par.r_F;
-  const Real t243 = t242 * t34;
-  const Real t244 = t241 + t243;
-  const Real t245 = t228 * t46;
-  const Real t246 = t226 * t46;
-  const Real t247 = t245 + t246;
-  const Real t248 = t244 - t247;
-  const Real t249 = t248 + t190;
-  const Real t250 = t142 + t249;
-  const Real t251 = t250 + t145;
-  const Real t252 = t240 * t69;
-  const Real t253 = t242 * t69;
-  const Real t254 = t252 + t253;
-  const Real t255 = t38 * t228;
-  const Real t256 = t38 * t226;
-  const Real t257 = t255 + t256;
-  const Real t258 = t254 + t257;
-  const Real t259 = t100 + t258;
-  const Real t260 = t259 - t148;
-  const Real t261 = constant<Real>(1.0L) / t260;
-  const Real t262 = t185 - t247;
-  const Real t263 = t145 + t262;
-  const Real t264 = t261 * t263;
-  const Real t265 = quotient_error(constant<Real>(1.0L), t260);
-  const Real t266 = sum_error(t100, t258);
-  const Real t267 = t198 + t266;
-  const Real t268 = sum_error(t259, t149);
+  const Real t193 = t165 + t174;
+  const Real t194 = t193 * t154;
+  const Real t195 = t194 + t155;
+  const Real t196 = t169 - t195;
+  const Real t197 = t162 + t196;
+  const Real t198 = t193 * t25;
+  const Real t199 = t156 + t198;
+  const Real t200 = t199 - t22;
+  const Real t201 = constant<Real>(1.0L) / t200;
+  const Real t202 = t197 * t201;
+  const Real t203 = t25 * t202;
+  const Real t204 = t154 + t203;
+  const Real t205 = t204 * t130;
+  const Real t206 = t205 * t118;
+  const Real t207 = t152 - t206;
+  const Real t208 = product_error(t205, t118);
+  const Real t209 = sum_error(t154, t203);
+  const Real t210 = t209 * t130;
+  const Real t211 = product_error(t204, t130);
+  const Real t212 = t210 + t211;
+  const Real t213 = t118 * t212;
+  const Real t214 = t208 + t213;
+  const Real t215 = t207 - t214;
+  const Real t216 = t215 * t109;
+  const Real t217 = t216 * nu[2];
+  const Real t218 = t193 * t133;
+  const Real t219 = t132 + t218;
+  const Real t220 = t219 + t164;
+  const Real t221 = t220 - t163;
+  const Real t222 = t221 + t136;
+  const Real t223 = t222 * t201;
+  const Real t224 = t25 * t223;
+  const Real t225 = t224 - t133;
+  const Real t226 = t225 * t130;
+  const Real t227 = t226 * t118;
+  const Real t228 = t28 - t227;
+  const Real t229 = product_error(t226, t118);
+  const Real t230 = sum_error(t224, t137);
+  const Real t231 = t230 - t111;
+  const Real t232 = t231 * t130;
+  const Real t233 = product_error(t225, t130);
+  const Real t234 = t232 + t233;
+  const Real t235 = t234 * t118;
+  const Real t236 = t229 + t235;
+  const Real t237 = t228 - t236;
+  const Real t238 = t109 * t237;
+  const Real t239 = t238 * nu[1];
+  const Real t240 = t193 * t147;
+  const Real t241 = t240 + t148;
+  const Real t242 = t143 - t241;
+  const Real t243 = t242 * t201;
+  const Real t244 = t25 * t243;
+  const Real t245 = t147 + t244;
+  const Real t246 = t245 * t130;
+  const Real t247 = t118 * t246;
+  const Real t248 = t141 - t247;
+  const Real t249 = product_error(t130, t245);
+  const Real t250 = sum_error(t147, t244);
+  const Real t251 = t250 * t130;
+  const Real t252 = t249 + t251;
+  const Real t253 = t118 * t252;
+  const Real t254 = product_error(t118, t246);
+  const Real t255 = t253 + t254;
+  const Real t256 = t248 - t255;
+  const Real t257 = t256 * t109;
+  const Real t258 = t257 * nu[0];
+  const Real t259 = t239 + t258;
+  const Real t260 = t217 + t259;
+  const Real t261 = par.k1 * t260;
+  const Real t262 = t179 + t261;
+  const Real t263 = t262 * c_r_p_1_;
+  const Real t264 = t226 * nu[1];
+  const Real t265 = t234 * nu[1];
+  const Real t266 = t264 + t265;
+  const Real t267 = t252 * nu[0];
+  const Real t268 = t246 * nu[0];
   const Real t269 = t267 + t268;
-  const Real t270 = t269 * t261;
-  const Real t271 = t270 / t260;
-  const Real t272 = t265 - t271;
-  const Real t273 = t272 * t263;
-  const Real t274 = t264 + t273;
-  const Real t275 = t251 * t274;
-  const Real t276 = t233 - t275;
-  const Real t277 = constant<Real>(1.0L) / t276;
-  const Real t278 = t34 * t226;
-  const Real t279 = t34 * t228;
-  const Real t280 = t278 + t279;
-  const Real t281 = t280 - t35;
-  const Real t282 = t281 + t167;
-  const Real t283 = t242 * t32;
-  const Real t284 = t242 * t63;
-  const Real t285 = t240 * t32;
-  const Real t286 = t284 + t285;
-  const Real t287 = t283 + t286;
-  const Real t288 = t69 * t226;
-  const Real t289 = t228 * t69;
-  const Real t290 = t288 + t289;
-  const Real t291 = t287 + t290;
-  const Real t292 = t291 + t119;
-  const Real t293 = t292 - t131;
-  const Real t294 = sum_error(t119, t291);
-  const Real t295 = t76 + t294;
-  const Real t296 = t295 - t166;
-  const Real t297 = t293 + t296;
-  const Real t298 = t297 * t274;
-  const Real t299 = t282 - t298;
-  const Real t300 = sum_error(t49, t244);
-  const Real t301 = t300 + t158;
-  const Real t302 = t301 - t85;
-  const Real t303 = t244 + t49;
-  const Real t304 = t303 - t165;
-  const Real t305 = t302 + t304;
-  const Real t306 = t242 * t46;
-  const Real t307 = t240 * t46;
+  const Real t270 = t266 + t269;
+  const Real t271 = t212 * nu[2];
+  const Real t272 = t205 * nu[2];
+  const Real t273 = t271 + t272;
+  const Real t274 = t270 + t273;
+  const Real t275 = t274 * s_r_p_1_;
+  const Real t276 = t263 - t275;
+  const Real t277 = par.k2 * t260;
+  const Real t278 = t180 - t277;
+  const Real t279 = nu[1] + t278;
+  const Real t280 = t276 * t279;
+  const Real t281 = t262 * t183;
+  const Real t282 = t274 * t181;
+  const Real t283 = t281 - t282;
+  const Real t284 = t283 * par.c;
+  const Real t285 = t216 * t101;
+  const Real t286 = nu[2] * t285;
+  const Real t287 = t238 * t101;
+  const Real t288 = t287 * nu[1];
+  const Real t289 = t257 * t101;
+  const Real t290 = t289 - t63;
+  const Real t291 = t290 * nu[0];
+  const Real t292 = t288 + t291;
+  const Real t293 = t286 + t292;
+  const Real t294 = par.k13 * t260;
+  const Real t295 = t293 - t294;
+  const Real t296 = t295 * t183;
+  const Real t297 = t58 * t252;
+  const Real t298 = t58 * t246;
+  const Real t299 = t297 + t298;
+  const Real t300 = t299 * nu[0];
+  const Real t301 = t58 * t234;
+  const Real t302 = t226 * t58;
+  const Real t303 = t301 + t302;
+  const Real t304 = t303 * nu[1];
+  const Real t305 = t300 + t304;
+  const Real t306 = t205 * t58;
+  const Real t307 = t58 * t212;
   const Real t308 = t306 + t307;
-  const Real t309 = t48 - t308;
-  const Real t310 = t309 - t86;
-  const Real t311 = t310 * t261;
-  const Real t312 = t311 * t297;
-  const Real t313 = t305 - t312;
-  const Real t314 = c_r_p_1_ * t213;
-  const Real t315 = t101 + t314;
-  const Real t316 = par.r_F * t315;
-  const Real t317 = t316 * t219;
-  const Real t318 = t197 + t317;
-  const Real t319 = t318 + t88;
-  const Real t320 = t83 - t319;
-  const Real t321 = t311 * t251;
-  const Real t322 = t320 - t321;
-  const Real t323 = t277 * t322;
-  const Real t324 = t299 * t323;
-  const Real t325 = t313 - t324;
-  const Real t326 = -t312;
-  const Real t327 = sum_error(t305, t326);
-  const Real t328 = product_error(t297, t311);
-  const Real t329 = product_error(t261, t310);
-  const Real t330 = -t308;
-  const Real t331 = sum_error(t48, t330);
-  const Real t332 = t331 + t184;
-  const Real t333 = sum_error(t309, t87);
-  const Real t334 = t332 + t333;
-  const Real t335 = t261 * t334;
-  const Real t336 = t310 * t272;
-  const Real t337 = t335 + t336;
-  const Real t338 = t329 + t337;
-  const Real t339 = t297 * t338;
-  const Real t340 = t328 + t339;
-  const Real t341 = t327 - t340;
-  const Real t342 = product_error(t323, t299);
-  const Real t343 = product_error(t322, t277);
-  const Real t344 = -t321;
-  const Real t345 = sum_error(t320, t344);
-  const Real t346 = -t319;
-  const Real t347 = sum_error(t83, t346);
-  const Real t348 = sum_error(t197, t317);
-  const Real t349 = t196 + t348;
-  const Real t350 = t66 + t349;
-  const Real t351 = sum_error(t88, t318);
-  const Real t352 = t350 + t351;
-  const Real t353 = t347 - t352;
-  const Real t354 = product_error(t311, t251);
-  const Real t355 = sum_error(t250, t145);
-  const Real t356 = sum_error(t142, t249);
-  const Real t357 = t191 + t356;
-  const Real t358 = t355 + t357;
-  const Real t359 = t311 * t358;
-  const Real t360 = t251 * t338;
+  const Real t309 = t308 - t57;
+  const Real t310 = t309 * nu[2];
+  const Real t311 = t305 + t310;
+  const Real t312 = t311 * par.k2;
+  const Real t313 = t274 * par.k13;
+  const Real t314 = t205 * t101;
+  const Real t315 = t212 * t101;
+  const Real t316 = t314 + t315;
+  const Real t317 = t101 - t316;
+  const Real t318 = t317 * nu[2];
+  const Real t319 = t246 * t101;
+  const Real t320 = t252 * t101;
+  const Real t321 = t319 + t320;
+  const Real t322 = t321 * nu[0];
+  const Real t323 = t234 * t101;
+  const Real t324 = t226 * t101;
+  const Real t325 = t323 + t324;
+  const Real t326 = t325 * nu[1];
+  const Real t327 = t322 + t326;
+  const Real t328 = t318 - t327;
+  const Real t329 = t313 + t328;
+  const Real t330 = t329 * par.k1;
+  const Real t331 = t312 - t330;
+  const Real t332 = t181 * t331;
+  const Real t333 = t296 - t332;
+  const Real t334 = par.k1 * t333;
+  const Real t335 = t284 + t334;
+  const Real t336 = t283 * t25;
+  const Real t337 = t202 * nu[2];
+  const Real t338 = t223 * nu[1];
+  const Real t339 = t243 * nu[0];
+  const Real t340 = t338 + t339;
+  const Real t341 = t337 + t340;
+  const Real t342 = t262 * s_r_p_1_;
+  const Real t343 = t274 * c_r_p_1_;
+  const Real t344 = t342 + t343;
+  const Real t345 = t341 + t344;
+  const Real t346 = t274 * R[8];
+  const Real t347 = t260 * R[7];
+  const Real t348 = t346 - t347;
+  const Real t349 = t348 * par.k1;
+  const Real t350 = t274 * R[6];
+  const Real t351 = t185 + t350;
+  const Real t352 = t351 * par.k2;
+  const Real t353 = t349 - t352;
+  const Real t354 = par.k1 * t353;
+  const Real t355 = R[6] * t260;
+  const Real t356 = t178 + t355;
+  const Real t357 = t356 * s_r_p_1_;
+  const Real t358 = t357 + t184;
+  const Real t359 = par.k1 * t351;
+  const Real t360 = t348 * par.k2;
   const Real t361 = t359 + t360;
-  const Real t362 = t354 + t361;
-  const Real t363 = t353 - t362;
-  const Real t364 = t345 + t363;
-  const Real t365 = t277 * t364;
-  const Real t366 = quotient_error(constant<Real>(1.0L), t276);
-  const Real t367 = sum_error(t90, t232);
-  const Real t368 = -t230;
-  const Real t369 = sum_error(t136, t368);
-  const Real t370 = t141 + t369;
-  const Real t371 = sum_error(t231, t186);
-  const Real t372 = t370 + t371;
-  const Real t373 = t367 + t372;
-  const Real t374 = product_error(t274, t251);
-  const Real t375 = t358 * t274;
-  const Real t376 = t374 + t375;
-  const Real t377 = t373 - t376;
-  const Real t378 = -t275;
-  const Real t379 = sum_error(t233, t378);
-  const Real t380 = t377 + t379;
-  const Real t381 = t277 * t380;
-  const Real t382 = t381 / t276;
-  const Real t383 = t366 - t382;
-  const Real t384 = t322 * t383;
-  const Real t385 = t365 + t384;
-  const Real t386 = t343 + t385;
-  const Real t387 = t299 * t386;
-  const Real t388 = -t298;
-  const Real t389 = sum_error(t282, t388);
-  const Real t390 = product_error(t274, t297);
-  const Real t391 = t389 - t390;
-  const Real t392 = t391 * t323;
-  const Real t393 = t387 + t392;
-  const Real t394 = t342 + t393;
-  const Real t395 = t341 - t394;
-  const Real t396 = t325 + t395;
-  const Real t397 = t323 * t228;
-  const Real t398 = t397 - t242;
-  const Real t399 = quotient_error(constant<Real>(1.0L), t398);
-  const Real t400 = constant<Real>(1.0L) / t398;
-  const Real t401 = -t242;
-  const Real t402 = sum_error(t397, t401);
-  const Real t403 = product_error(t228, t323);
-  const Real t404 = t323 * t226;
-  const Real t405 = t228 * t386;
-  const Real t406 = t404 + t405;
-  const Real t407 = t403 + t406;
-  const Real t408 = t407 - t240;
-  const Real t409 = t402 + t408;
-  const Real t410 = t400 * t409;
-  const Real t411 = t410 / t398;
-  const Real t412 = t399 - t411;
-  const Real t413 = t396 * t412;
-  const Real t414 = t396 * t400;
-  const Real t415 = t413 + t414;
-  const Real t416 = t228 * t415;
-  const Real t417 = t226 * t415;
-  const Real t418 = t416 + t417;
-  const Real t419 = t299 + t418;
-  const Real t420 = product_error(t277, t419);
-  const Real t421 = sum_error(t418, t299);
-  const Real t422 = t421 + t391;
-  const Real t423 = t422 * t277;
-  const Real t424 = t419 * t383;
-  const Real t425 = t423 + t424;
-  const Real t426 = t420 + t425;
-  const Real t427 = t426 * nu[0];
-  const Real t428 = t419 * t277;
-  const Real t429 = nu[0] * t428;
-  const Real t430 = t427 + t429;
-  const Real t431 = t242 * par.k1;
-  const Real t432 = t240 * par.k1;
-  const Real t433 = t431 + t432;
-  const Real t434 = par.k2 * t228;
-  const Real t435 = par.k2 * t226;
-  const Real t436 = t434 + t435;
-  const Real t437 = t433 + t436;
-  const Real t438 = t437 + par.k13;
-  const Real t439 = t438 * t274;
-  const Real t440 = t439 * t323;
-  const Real t441 = t311 * t438;
-  const Real t442 = t440 - t441;
-  const Real t443 = t442 * t400;
-  const Real t444 = t443 * t228;
-  const Real t445 = t444 - t439;
-  const Real t446 = t445 * t383;
-  const Real t447 = -t439;
-  const Real t448 = sum_error(t444, t447);
-  const Real t449 = product_error(t228, t443);
-  const Real t450 = t443 * t226;
-  const Real t451 = t442 * t412;
-  const Real t452 = product_error(t274, t438);
-  const Real t453 = t452 * t323;
-  const Real t454 = t439 * t386;
-  const Real t455 = t453 + t454;
-  const Real t456 = product_error(t439, t323);
+  const Real t362 = c_r_p_1_ * t361;
+  const Real t363 = t362 - t182;
+  const Real t364 = t358 + t363;
+  const Real t365 = t364 * par.k2;
+  const Real t366 = t354 + t365;
+  const Real t367 = t20 * t366;
+  const Real t368 = par.k1 * t364;
+  const Real t369 = t353 * par.k2;
+  const Real t370 = t368 - t369;
+  const Real t371 = t12 * t370;
+  const Real t372 = t371 * constant<Real>(2.0L);
+  const Real t373 = t16 * t366;
+  const Real t374 = t373 * constant<Real>(2.0L);
+  const Real t375 = t372 + t374;
+  const Real t376 = t375 / t71;
+  const Real t377 = t376 * t20;
+  const Real t378 = t377 / t19;
+  const Real t379 = t378 * t16;
+  const Real t380 = t367 - t379;
+  const Real t381 = par.r_F * t380;
+  const Real t382 = t345 * t381;
+  const Real t383 = t336 + t382;
+  const Real t384 = t335 - t383;
+  const Real t385 = nu[2] - t274;
+  const Real t386 = t55 * t351;
+  const Real t387 = t348 * R[6];
+  const Real t388 = t387 * constant<Real>(2.0L);
+  const Real t389 = R[8] * t351;
+  const Real t390 = t389 * constant<Real>(2.0L);
+  const Real t391 = t388 - t390;
+  const Real t392 = t391 / t54;
+  const Real t393 = t55 * t392;
+  const Real t394 = t393 / t53;
+  const Real t395 = t394 * R[8];
+  const Real t396 = t386 + t395;
+  const Real t397 = par.r_R * t396;
+  const Real t398 = t385 * t397;
+  const Real t399 = t93 * t398;
+  const Real t400 = t384 - t399;
+  const Real t401 = t348 * t55;
+  const Real t402 = t394 * R[6];
+  const Real t403 = t401 - t402;
+  const Real t404 = par.r_R * t403;
+  const Real t405 = t404 * t260;
+  const Real t406 = t397 * nu[0];
+  const Real t407 = t405 - t406;
+  const Real t408 = t407 * t45;
+  const Real t409 = t400 + t408;
+  const Real t410 = t385 * t404;
+  const Real t411 = t31 * t410;
+  const Real t412 = t409 - t411;
+  const Real t413 = t59 * t398;
+  const Real t414 = t181 * t295;
+  const Real t415 = t331 * t183;
+  const Real t416 = t414 + t415;
+  const Real t417 = t274 * t183;
+  const Real t418 = t262 * t181;
+  const Real t419 = t417 + t418;
+  const Real t420 = par.k1 * t419;
+  const Real t421 = par.c * t420;
+  const Real t422 = par.k2 * t419;
+  const Real t423 = t422 * par.r_F;
+  const Real t424 = t421 + t423;
+  const Real t425 = t416 + t424;
+  const Real t426 = t370 * t20;
+  const Real t427 = t378 * t12;
+  const Real t428 = t426 - t427;
+  const Real t429 = t428 * par.r_F;
+  const Real t430 = par.k1 * t279;
+  const Real t431 = par.k2 * t276;
+  const Real t432 = t430 + t431;
+  const Real t433 = t429 * t432;
+  const Real t434 = t422 * t22;
+  const Real t435 = t433 - t434;
+  const Real t436 = par.k2 * t279;
+  const Real t437 = par.k1 * t276;
+  const Real t438 = t436 - t437;
+  const Real t439 = t381 * t438;
+  const Real t440 = t25 * t420;
+  const Real t441 = t439 + t440;
+  const Real t442 = t435 + t441;
+  const Real t443 = t425 - t442;
+  const Real t444 = t413 + t443;
+  const Real t445 = t407 * c_r_p_1_;
+  const Real t446 = t444 - t445;
+  const Real t447 = t410 * t45;
+  const Real t448 = t446 - t447;
+  const Real t449 = t448 * t110;
+  const Real t450 = t412 - t449;
+  const Real t451 = t398 * t90;
+  const Real t452 = t283 * t22;
+  const Real t453 = t345 * t429;
+  const Real t454 = t452 + t453;
+  const Real t455 = t283 * par.r_F;
+  const Real t456 = t333 * par.k2;
   const Real t457 = t455 + t456;
-  const Real t458 = t438 * t338;
-  const Real t459 = product_error(t438, t311);
-  const Real t460 = t458 + t459;
-  const Real t461 = t457 - t460;
-  const Real t462 = -t441;
-  const Real t463 = sum_error(t440, t462);
-  const Real t464 = t461 + t463;
-  const Real t465 = t400 * t464;
-  const Real t466 = t451 + t465;
-  const Real t467 = product_error(t400, t442);
+  const Real t458 = t454 + t457;
+  const Real t459 = t451 + t458;
+  const Real t460 = t407 * t59;
+  const Real t461 = t459 + t460;
+  const Real t462 = t410 * t34;
+  const Real t463 = t461 + t462;
+  const Real t464 = t448 * t121;
+  const Real t465 = t463 + t464;
+  const Real t466 = t131 * t450;
+  const Real t467 = t193 * t450;
   const Real t468 = t466 + t467;
-  const Real t469 = t468 * t228;
-  const Real t470 = t450 + t469;
-  const Real t471 = t449 + t470;
-  const Real t472 = t471 - t452;
-  const Real t473 = t448 + t472;
-  const Real t474 = t473 * t277;
-  const Real t475 = t446 + t474;
-  const Real t476 = product_error(t277, t445);
-  const Real t477 = t475 + t476;
-  const Real t478 = t477 * nu[1];
-  const Real t479 = t445 * t277;
-  const Real t480 = t479 * nu[1];
-  const Real t481 = t478 + t480;
-  const Real t482 = t430 + t481;
-  const Real t483 = t311 * t147;
-  const Real t484 = t157 - t483;
-  const Real t485 = t147 * t274;
-  const Real t486 = t92 - t485;
-  const Real t487 = t323 * t486;
-  const Real t488 = t484 - t487;
-  const Real t489 = -t483;
-  const Real t490 = sum_error(t157, t489);
-  const Real t491 = t147 * t338;
-  const Real t492 = product_error(t311, t147);
+  const Real t469 = t465 + t468;
+  const Real t470 = t469 * t201;
+  const Real t471 = t470 * t25;
+  const Real t472 = t450 - t471;
+  const Real t473 = t472 * t130;
+  const Real t474 = nu_dot[2] * t212;
+  const Real t475 = nu_dot[2] * t205;
+  const Real t476 = t474 + t475;
+  const Real t477 = nu_dot[0] * t246;
+  const Real t478 = nu_dot[0] * t252;
+  const Real t479 = t477 + t478;
+  const Real t480 = nu_dot[1] * t234;
+  const Real t481 = nu_dot[1] * t226;
+  const Real t482 = t480 + t481;
+  const Real t483 = t479 + t482;
+  const Real t484 = t476 + t483;
+  const Real t485 = t473 - t484;
+  const Real t486 = c_r_p_1_ * t485;
+  const Real t487 = t473 * t118;
+  const Real t488 = t448 - t487;
+  const Real t489 = t488 * t109;
+  const Real t490 = nu_dot[2] * t216;
+  const Real t491 = t257 * nu_dot[0];
+  const Real t492 = nu_dot[1] * t238;
   const Real t493 = t491 + t492;
-  const Real t494 = t490 - t493;
-  const Real t495 = t386 * t486;
-  const Real t496 = -t485;
-  const Real t497 = sum_error(t92, t496);
-  const Real t498 = product_error(t274, t147);
-  const Real t499 = t497 - t498;
-  const Real t500 = t323 * t499;
-  const Real t501 = t495 + t500;
-  const Real t502 = product_error(t486, t323);
-  const Real t503 = t501 + t502;
-  const Real t504 = t494 - t503;
-  const Real t505 = t488 + t504;
-  const Real t506 = t505 * t412;
-  const Real t507 = t400 * t505;
-  const Real t508 = t506 + t507;
-  const Real t509 = t228 * t508;
-  const Real t510 = t226 * t508;
-  const Real t511 = t509 + t510;
-  const Real t512 = t511 + t486;
-  const Real t513 = product_error(t277, t512);
-  const Real t514 = sum_error(t486, t511);
-  const Real t515 = t514 + t499;
-  const Real t516 = t515 * t277;
-  const Real t517 = t512 * t383;
+  const Real t494 = t490 + t493;
+  const Real t495 = t489 - t494;
+  const Real t496 = par.k1 * t495;
+  const Real t497 = t191 - t496;
+  const Real t498 = s_r_p_1_ * t497;
+  const Real t499 = t486 - t498;
+  const Real t500 = t276 * nu[1];
+  const Real t501 = t499 - t500;
+  const Real t502 = t280 - t501;
+  const Real t503 = t502 * par.k12;
+  const Real t504 = t344 * t344;
+  const Real t505 = t276 * t276;
+  const Real t506 = t504 + t505;
+  const Real t507 = t506 * par.k11;
+  const Real t508 = t503 + t507;
+  const Real t509 = t293 * t260;
+  const Real t510 = t274 * t328;
+  const Real t511 = t509 - t510;
+  const Real t512 = t473 * t58;
+  const Real t513 = t398 - t512;
+  const Real t514 = nu_dot[0] * t299;
+  const Real t515 = nu_dot[1] * t303;
+  const Real t516 = t514 + t515;
+  const Real t517 = nu_dot[2] * t309;
   const Real t518 = t516 + t517;
   const Real t519 = t513 + t518;
-  const Real t520 = nu[2] * t519;
-  const Real t521 = t512 * t277;
-  const Real t522 = t521 * nu[2];
-  const Real t523 = t520 + t522;
-  const Real t524 = t482 + t523;
-  const Real t525 = t524 * R[8];
-  const Real t526 = t251 * t521;
-  const Real t527 = t147 - t526;
-  const Real t528 = t251 * t519;
-  const Real t529 = t521 * t358;
-  const Real t530 = t528 + t529;
-  const Real t531 = product_error(t251, t521);
-  const Real t532 = t530 + t531;
-  const Real t533 = t527 - t532;
-  const Real t534 = t533 * t261;
-  const Real t535 = t533 * t272;
-  const Real t536 = t534 + t535;
-  const Real t537 = t536 * nu[2];
-  const Real t538 = t251 * t428;
-  const Real t539 = t297 - t538;
-  const Real t540 = t358 * t428;
-  const Real t541 = t426 * t251;
-  const Real t542 = t540 + t541;
-  const Real t543 = product_error(t428, t251);
-  const Real t544 = t542 + t543;
-  const Real t545 = t539 - t544;
-  const Real t546 = t272 * t545;
-  const Real t547 = t261 * t545;
-  const Real t548 = t546 + t547;
-  const Real t549 = t548 * nu[0];
-  const Real t550 = t251 * t479;
-  const Real t551 = t438 - t550;
-  const Real t552 = product_error(t479, t251);
-  const Real t553 = t251 * t477;
-  const Real t554 = t358 * t479;
-  const Real t555 = t553 + t554;
-  const Real t556 = t552 + t555;
-  const Real t557 = t551 - t556;
-  const Real t558 = t557 * t261;
-  const Real t559 = t557 * t272;
-  const Real t560 = t558 + t559;
-  const Real t561 = t560 * nu[1];
-  const Real t562 = t549 + t561;
-  const Real t563 = t537 + t562;
-  const Real t564 = t563 * R[7];
-  const Real t565 = t525 - t564;
-  const Real t566 = t565 * t10;
-  const Real t567 = t565 * R[6];
-  const Real t568 = t567 * constant<Real>(2.0L);
-  const Real t569 = t524 * R[6];
-  const Real t570 = t178 + t569;
-  const Real t571 = R[8] * t570;
-  const Real t572 = t571 * constant<Real>(2.0L);
-  const Real t573 = t568 - t572;
-  const Real t574 = t573 / t8;
-  const Real t575 = t10 * t574;
-  const Real t576 = t575 / t7;
-  const Real t577 = t576 * R[6];
-  const Real t578 = t566 - t577;
-  const Real t579 = t578 * par.r_R;
-  const Real t580 = nu[2] - t524;
-  const Real t581 = t579 * t580;
-  const Real t582 = t560 * t43;
-  const Real t583 = t582 * nu[1];
-  const Real t584 = t548 * t43;
-  const Real t585 = t584 - t28;
-  const Real t586 = t585 * nu[0];
-  const Real t587 = t583 + t586;
-  const Real t588 = t536 * t43;
-  const Real t589 = t588 * nu[2];
-  const Real t590 = t587 + t589;
-  const Real t591 = t563 * par.k14;
-  const Real t592 = t563 * par.k28;
-  const Real t593 = t591 + t592;
-  const Real t594 = t590 - t593;
-  const Real t595 = t176 * t594;
-  const Real t596 = t13 * t428;
-  const Real t597 = t56 * t428;
-  const Real t598 = t426 * t13;
-  const Real t599 = t597 + t598;
-  const Real t600 = t596 + t599;
-  const Real t601 = t600 * nu[0];
-  const Real t602 = t13 * t479;
-  const Real t603 = t13 * t477;
-  const Real t604 = t56 * t479;
-  const Real t605 = t603 + t604;
-  const Real t606 = t602 + t605;
-  const Real t607 = t606 * nu[1];
-  const Real t608 = t601 + t607;
-  const Real t609 = t521 * t56;
-  const Real t610 = t13 * t519;
-  const Real t611 = t609 + t610;
-  const Real t612 = t13 * t521;
-  const Real t613 = t611 + t612;
-  const Real t614 = t613 - t12;
-  const Real t615 = t614 * nu[2];
-  const Real t616 = t608 + t615;
-  const Real t617 = t616 * par.k2;
-  const Real t618 = t521 * t43;
-  const Real t619 = t43 * t519;
-  const Real t620 = t618 + t619;
-  const Real t621 = t43 - t620;
-  const Real t622 = t621 * nu[2];
-  const Real t623 = t477 * t43;
-  const Real t624 = t43 * t479;
-  const Real t625 = t623 + t624;
-  const Real t626 = t625 * nu[1];
-  const Real t627 = t43 * t428;
-  const Real t628 = t426 * t43;
+  const Real t520 = t511 + t519;
+  const Real t521 = t520 - t177;
+  const Real t522 = t260 * t260;
+  const Real t523 = t274 * t274;
+  const Real t524 = t522 + t523;
+  const Real t525 = t524 * par.k13;
+  const Real t526 = t521 - t525;
+  const Real t527 = t526 * par.k1;
+  const Real t528 = t473 * t101;
+  const Real t529 = t410 + t528;
+  const Real t530 = t317 * nu_dot[2];
+  const Real t531 = nu_dot[1] * t325;
+  const Real t532 = nu_dot[0] * t321;
+  const Real t533 = t531 + t532;
+  const Real t534 = t530 - t533;
+  const Real t535 = t529 + t534;
+  const Real t536 = t293 * nu[0];
+  const Real t537 = t274 * t311;
+  const Real t538 = t536 + t537;
+  const Real t539 = t535 + t538;
+  const Real t540 = t539 - t176;
+  const Real t541 = nu[0] * t260;
+  const Real t542 = t485 + t541;
+  const Real t543 = par.k13 * t542;
+  const Real t544 = t540 - t543;
+  const Real t545 = par.k2 * t544;
+  const Real t546 = t527 + t545;
+  const Real t547 = t508 + t546;
+  const Real t548 = par.k1 * t547;
+  const Real t549 = t526 * par.k2;
+  const Real t550 = par.k1 * t544;
+  const Real t551 = t549 - t550;
+  const Real t552 = t551 * c_r_p_1_;
+  const Real t553 = t274 * nu[0];
+  const Real t554 = t495 - t553;
+  const Real t555 = par.k13 * t554;
+  const Real t556 = nu_dot[2] * t285;
+  const Real t557 = t290 * nu_dot[0];
+  const Real t558 = nu_dot[1] * t287;
+  const Real t559 = t557 + t558;
+  const Real t560 = t556 + t559;
+  const Real t561 = t489 * t101;
+  const Real t562 = t407 - t561;
+  const Real t563 = t560 + t562;
+  const Real t564 = t311 * t260;
+  const Real t565 = nu[0] * t328;
+  const Real t566 = t564 + t565;
+  const Real t567 = t563 - t566;
+  const Real t568 = t567 - t175;
+  const Real t569 = t555 + t568;
+  const Real t570 = s_r_p_1_ * t569;
+  const Real t571 = t552 + t570;
+  const Real t572 = t280 + t501;
+  const Real t573 = t572 * par.k11;
+  const Real t574 = t279 * t279;
+  const Real t575 = t504 + t574;
+  const Real t576 = t575 * par.k12;
+  const Real t577 = t573 + t576;
+  const Real t578 = t571 - t577;
+  const Real t579 = t578 * par.k2;
+  const Real t580 = t548 + t579;
+  const Real t581 = t580 * c_r_p_2_;
+  const Real t582 = t547 * par.k2;
+  const Real t583 = par.k1 * t578;
+  const Real t584 = t582 - t583;
+  const Real t585 = t584 * s_r_p_2_;
+  const Real t586 = t581 - t585;
+  const Real t587 = par.m_F * t586;
+  const Real t588 = t587 * c_r_p_2_;
+  const Real t589 = t584 * c_r_p_2_;
+  const Real t590 = t580 * s_r_p_2_;
+  const Real t591 = t589 + t590;
+  const Real t592 = par.m_F * t591;
+  const Real t593 = t592 * s_r_p_2_;
+  const Real t594 = t588 + t593;
+  const Real t595 = par.k1 * t594;
+  const Real t596 = c_r_p_2_ * t592;
+  const Real t597 = t587 * s_r_p_2_;
+  const Real t598 = t596 - t597;
+  const Real t599 = par.k2 * t598;
+  const Real t600 = t595 + t599;
+  const Real t601 = t546 * par.m_H;
+  const Real t602 = t502 * par.k10;
+  const Real t603 = par.k8 * t506;
+  const Real t604 = t602 - t603;
+  const Real t605 = t601 + t604;
+  const Real t606 = t600 + t605;
+  const Real t607 = t606 * par.k2;
+  const Real t608 = t594 * par.k2;
+  const Real t609 = par.k1 * t598;
+  const Real t610 = t608 - t609;
+  const Real t611 = t572 * par.k8;
+  const Real t612 = par.k10 * t575;
+  const Real t613 = t611 - t612;
+  const Real t614 = par.m_H * t571;
+  const Real t615 = t613 + t614;
+  const Real t616 = t610 + t615;
+  const Real t617 = c_r_p_1_ * t616;
+  const Real t618 = c_r_p_1_ * t569;
+  const Real t619 = s_r_p_1_ * t551;
+  const Real t620 = t618 - t619;
+  const Real t621 = t495 * par.k2;
+  const Real t622 = t192 + t621;
+  const Real t623 = nu_dot[1] + t622;
+  const Real t624 = t276 * t344;
+  const Real t625 = t623 - t624;
+  const Real t626 = par.k12 * t625;
+  const Real t627 = c_r_p_1_ * t497;
+  const Real t628 = s_r_p_1_ * t485;
   const Real t629 = t627 + t628;
-  const Real t630 = t629 * nu[0];
-  const Real t631 = t626 + t630;
-  const Real t632 = t622 - t631;
-  const Real t633 = t524 * par.k14;
-  const Real t634 = t524 * par.k28;
-  const Real t635 = t633 + t634;
-  const Real t636 = t632 + t635;
-  const Real t637 = par.k1 * t636;
-  const Real t638 = t617 - t637;
-  const Real t639 = t174 * t638;
-  const Real t640 = t595 - t639;
-  const Real t641 = par.k1 * t640;
-  const Real t642 = t563 * par.k1;
-  const Real t643 = t172 + t642;
-  const Real t644 = t643 * t176;
-  const Real t645 = t524 * t174;
-  const Real t646 = t644 - t645;
-  const Real t647 = par.c * t646;
-  const Real t648 = t641 + t647;
-  const Real t649 = t228 * t646;
-  const Real t650 = t226 * t646;
-  const Real t651 = t649 + t650;
-  const Real t652 = par.k1 * t570;
-  const Real t653 = t565 * par.k2;
-  const Real t654 = t652 + t653;
-  const Real t655 = c_r_p_1_ * t654;
-  const Real t656 = t655 - t183;
-  const Real t657 = t563 * R[6];
-  const Real t658 = t171 + t657;
-  const Real t659 = s_r_p_1_ * t658;
-  const Real t660 = t659 + t177;
-  const Real t661 = t656 + t660;
-  const Real t662 = t661 * par.k2;
-  const Real t663 = t565 * par.k1;
-  const Real t664 = t570 * par.k2;
-  const Real t665 = t663 - t664;
-  const Real t666 = par.k1 * t665;
-  const Real t667 = t662 + t666;
-  const Real t668 = t667 * t219;
-  const Real t669 = t661 * par.k1;
-  const Real t670 = par.k2 * t665;
-  const Real t671 = t669 - t670;
-  const Real t672 = t213 * t671;
-  const Real t673 = t25 * t671;
-  const Real t674 = t672 + t673;
-  const Real t675 = t674 * constant<Real>(2.0L);
-  const Real t676 = t667 * t206;
-  const Real t677 = t192 * t667;
-  const Real t678 = t676 + t677;
-  const Real t679 = t678 * constant<Real>(2.0L);
-  const Real t680 = t675 + t679;
-  const Real t681 = t218 * constant<Real>(2.0L);
-  const Real t682 = t680 / t681;
-  const Real t683 = t219 * t682;
-  const Real t684 = t683 / t218;
-  const Real t685 = t192 * t684;
-  const Real t686 = t684 * t206;
-  const Real t687 = t685 + t686;
-  const Real t688 = t668 - t687;
-  const Real t689 = par.r_F * t688;
-  const Real t690 = t524 * c_r_p_1_;
-  const Real t691 = s_r_p_1_ * t643;
-  const Real t692 = t690 + t691;
-  const Real t693 = t468 * nu[1];
-  const Real t694 = t443 * nu[1];
-  const Real t695 = t693 + t694;
-  const Real t696 = t415 * nu[0];
-  const Real t697 = t695 + t696;
-  const Real t698 = nu[2] * t508;
-  const Real t699 = t697 + t698;
-  const Real t700 = t692 + t699;
-  const Real t701 = t689 * t700;
-  const Real t702 = t651 + t701;
-  const Real t703 = t648 - t702;
-  const Real t704 = t570 * t10;
-  const Real t705 = R[8] * t576;
-  const Real t706 = t704 + t705;
-  const Real t707 = t706 * par.r_R;
-  const Real t708 = t580 * t707;
-  const Real t709 = t69 * t708;
-  const Real t710 = t703 - t709;
-  const Real t711 = t563 * t579;
-  const Real t712 = t707 * nu[0];
-  const Real t713 = t711 - t712;
-  const Real t714 = t713 * t46;
-  const Real t715 = t710 + t714;
-  const Real t716 = t581 * t38;
-  const Real t717 = t715 - t716;
-  const Real t718 = t34 * t708;
-  const Real t719 = t524 * t176;
-  const Real t720 = t643 * t174;
-  const Real t721 = t719 + t720;
-  const Real t722 = par.k1 * t721;
-  const Real t723 = t722 * par.c;
-  const Real t724 = par.k2 * t721;
-  const Real t725 = t724 * par.r_F;
-  const Real t726 = t723 + t725;
-  const Real t727 = t176 * t638;
-  const Real t728 = t174 * t594;
-  const Real t729 = t727 + t728;
-  const Real t730 = t726 + t729;
-  const Real t731 = t643 * c_r_p_1_;
-  const Real t732 = t524 * s_r_p_1_;
-  const Real t733 = t731 - t732;
-  const Real t734 = par.k2 * t733;
-  const Real t735 = t563 * par.k2;
-  const Real t736 = t173 - t735;
-  const Real t737 = t736 + nu[1];
-  const Real t738 = t737 * par.k1;
-  const Real t739 = t734 + t738;
-  const Real t740 = t219 * t671;
-  const Real t741 = t213 * t684;
-  const Real t742 = t25 * t684;
+  const Real t630 = t344 * nu[1];
+  const Real t631 = t629 - t630;
+  const Real t632 = t279 * t344;
+  const Real t633 = t631 + t632;
+  const Real t634 = t633 * par.k11;
+  const Real t635 = t626 + t634;
+  const Real t636 = t620 + t635;
+  const Real t637 = t636 * par.m_F;
+  const Real t638 = par.k10 * t625;
+  const Real t639 = par.k8 * t633;
+  const Real t640 = t638 - t639;
+  const Real t641 = t620 * par.m_H;
+  const Real t642 = t640 + t641;
+  const Real t643 = t637 + t642;
+  const Real t644 = s_r_p_1_ * t643;
+  const Real t645 = t617 - t644;
+  const Real t646 = t645 * par.k1;
+  const Real t647 = t607 - t646;
+  const Real t648 = t540 * par.m_B;
+  const Real t649 = t188 + t523;
+  const Real t650 = t649 * par.k15;
+  const Real t651 = par.k16 * t542;
+  const Real t652 = t650 + t651;
+  const Real t653 = t648 - t652;
+  const Real t654 = t647 + t653;
+  const Real t655 = t649 * par.r_R;
+  const Real t656 = t540 + t655;
+  const Real t657 = t656 * c_r_p_0_;
+  const Real t658 = t485 - t541;
+  const Real t659 = t658 * par.r_R;
+  const Real t660 = t521 - t659;
+  const Real t661 = t660 * s_r_p_0_;
+  const Real t662 = t657 + t661;
+  const Real t663 = t662 * par.m_R;
+  const Real t664 = t663 * c_r_p_0_;
+  const Real t665 = t660 * c_r_p_0_;
+  const Real t666 = t656 * s_r_p_0_;
+  const Real t667 = t665 - t666;
+  const Real t668 = t667 * par.m_R;
+  const Real t669 = t668 * s_r_p_0_;
+  const Real t670 = t664 - t669;
+  const Real t671 = t654 + t670;
+  const Real t672 = t671 * t101;
+  const Real t673 = t631 * par.k17;
+  const Real t674 = par.k30 * t632;
+  const Real t675 = t673 - t674;
+  const Real t676 = par.k5 * t625;
+  const Real t677 = t675 + t676;
+  const Real t678 = t620 * par.k8;
+  const Real t679 = t677 - t678;
+  const Real t680 = par.k2 * t631;
+  const Real t681 = par.k1 * t623;
+  const Real t682 = t680 + t681;
+  const Real t683 = t682 * s_r_p_2_;
+  const Real t684 = t623 * par.k2;
+  const Real t685 = par.k1 * t631;
+  const Real t686 = t684 - t685;
+  const Real t687 = c_r_p_2_ * t686;
+  const Real t688 = t683 + t687;
+  const Real t689 = t432 * c_r_p_2_;
+  const Real t690 = s_r_p_2_ * t438;
+  const Real t691 = t689 - t690;
+  const Real t692 = t341 * t691;
+  const Real t693 = t688 - t692;
+  const Real t694 = t693 * par.I_Fxx;
+  const Real t695 = t345 * t691;
+  const Real t696 = t695 * par.k36;
+  const Real t697 = t694 - t696;
+  const Real t698 = t697 * s_r_p_2_;
+  const Real t699 = t682 * c_r_p_2_;
+  const Real t700 = t686 * s_r_p_2_;
+  const Real t701 = t699 - t700;
+  const Real t702 = t432 * s_r_p_2_;
+  const Real t703 = c_r_p_2_ * t438;
+  const Real t704 = t702 + t703;
+  const Real t705 = t341 * t704;
+  const Real t706 = t701 + t705;
+  const Real t707 = par.I_Fxx * t706;
+  const Real t708 = t345 * t704;
+  const Real t709 = par.k35 * t708;
+  const Real t710 = t707 - t709;
+  const Real t711 = c_r_p_2_ * t710;
+  const Real t712 = t698 + t711;
+  const Real t713 = t712 * par.k2;
+  const Real t714 = c_r_p_2_ * t697;
+  const Real t715 = t710 * s_r_p_2_;
+  const Real t716 = t714 - t715;
+  const Real t717 = par.k1 * t716;
+  const Real t718 = t713 - t717;
+  const Real t719 = t637 * par.k11;
+  const Real t720 = t718 + t719;
+  const Real t721 = t679 + t720;
+  const Real t722 = s_r_p_1_ * t721;
+  const Real t723 = t574 - t505;
+  const Real t724 = par.k5 * t723;
+  const Real t725 = par.k7 * t501;
+  const Real t726 = t280 * par.k31;
+  const Real t727 = t725 + t726;
+  const Real t728 = t724 + t727;
+  const Real t729 = par.k8 * t571;
+  const Real t730 = t546 * par.k10;
+  const Real t731 = t729 - t730;
+  const Real t732 = t728 + t731;
+  const Real t733 = nu_dot[2] * t202;
+  const Real t734 = nu_dot[1] * t223;
+  const Real t735 = nu_dot[0] * t243;
+  const Real t736 = t734 + t735;
+  const Real t737 = t733 + t736;
+  const Real t738 = t470 + t737;
+  const Real t739 = t501 - t738;
+  const Real t740 = par.I_Fyy * t739;
+  const Real t741 = t600 * par.k12;
+  const Real t742 = t610 * par.k11;
   const Real t743 = t741 + t742;
   const Real t744 = t740 - t743;
-  const Real t745 = t744 * par.r_F;
-  const Real t746 = t739 * t745;
-  const Real t747 = t242 * t724;
-  const Real t748 = t240 * t724;
-  const Real t749 = t747 + t748;
-  const Real t750 = t746 - t749;
-  const Real t751 = t737 * par.k2;
-  const Real t752 = par.k1 * t733;
-  const Real t753 = t751 - t752;
-  const Real t754 = t689 * t753;
-  const Real t755 = t722 * t226;
-  const Real t756 = t722 * t228;
-  const Real t757 = t755 + t756;
-  const Real t758 = t754 + t757;
-  const Real t759 = t750 + t758;
-  const Real t760 = t730 - t759;
-  const Real t761 = t718 + t760;
-  const Real t762 = t713 * c_r_p_1_;
-  const Real t763 = t761 - t762;
-  const Real t764 = t581 * t46;
-  const Real t765 = t763 - t764;
-  const Real t766 = t765 * t274;
-  const Real t767 = t717 - t766;
-  const Real t768 = t767 * t323;
-  const Real t769 = t311 * t765;
-  const Real t770 = t581 * t69;
-  const Real t771 = t713 * t34;
-  const Real t772 = t745 * t700;
-  const Real t773 = t240 * t646;
-  const Real t774 = t242 * t646;
-  const Real t775 = t773 + t774;
-  const Real t776 = t772 + t775;
-  const Real t777 = par.k2 * t640;
-  const Real t778 = par.r_F * t646;
-  const Real t779 = t777 + t778;
-  const Real t780 = t776 + t779;
-  const Real t781 = t32 * t708;
-  const Real t782 = t63 * t708;
-  const Real t783 = t781 + t782;
-  const Real t784 = t780 + t783;
-  const Real t785 = t771 + t784;
-  const Real t786 = t770 + t785;
-  const Real t787 = t769 + t786;
-  const Real t788 = t768 + t787;
-  const Real t789 = t765 * t338;
-  const Real t790 = product_error(t311, t765);
-  const Real t791 = t789 + t790;
-  const Real t792 = sum_error(t786, t769);
-  const Real t793 = t791 + t792;
-  const Real t794 = t767 * t386;
-  const Real t795 = -t766;
-  const Real t796 = sum_error(t717, t795);
-  const Real t797 = product_error(t274, t765);
-  const Real t798 = t796 - t797;
-  const Real t799 = t798 * t323;
-  const Real t800 = t794 + t799;
-  const Real t801 = product_error(t323, t767);
-  const Real t802 = t800 + t801;
-  const Real t803 = t793 + t802;
-  const Real t804 = t788 + t803;
-  const Real t805 = t400 * t804;
-  const Real t806 = t804 * t412;
+  const Real t745 = t732 + t744;
+  const Real t746 = t745 * c_r_p_1_;
+  const Real t747 = t722 + t746;
+  const Real t748 = t647 * par.k13;
+  const Real t749 = t747 - t748;
+  const Real t750 = t522 - t188;
+  const Real t751 = par.k3 * t750;
+  const Real t752 = par.k4 * t485;
+  const Real t753 = par.k27 * t541;
+  const Real t754 = t752 - t753;
+  const Real t755 = t751 + t754;
+  const Real t756 = t521 * par.k15;
+  const Real t757 = t540 * par.k16;
+  const Real t758 = t756 - t757;
+  const Real t759 = t755 + t758;
+  const Real t760 = t749 + t759;
+  const Real t761 = nu_dot[2] + t485;
+  const Real t762 = par.I_Ryy * t761;
+  const Real t763 = t663 * s_r_p_0_;
+  const Real t764 = t668 * c_r_p_0_;
+  const Real t765 = t763 + t764;
+  const Real t766 = t765 * par.r_R;
+  const Real t767 = t762 - t766;
+  const Real t768 = t760 + t767;
+  const Real t769 = t658 * par.k15;
+  const Real t770 = t524 * par.k16;
+  const Real t771 = t769 - t770;
+  const Real t772 = t521 * par.m_B;
+  const Real t773 = t771 + t772;
+  const Real t774 = t606 * par.k1;
+  const Real t775 = t645 * par.k2;
+  const Real t776 = t774 + t775;
+  const Real t777 = t773 + t776;
+  const Real t778 = t777 + t765;
+  const Real t779 = t58 * t778;
+  const Real t780 = t768 - t779;
+  const Real t781 = t672 + t780;
+  const Real t782 = t260 * s_r_p_0_;
+  const Real t783 = t186 + t782;
+  const Real t784 = t385 * t783;
+  const Real t785 = t784 * par.k28;
+  const Real t786 = t495 * c_r_p_0_;
+  const Real t787 = t786 + t190;
+  const Real t788 = t783 * nu[2];
+  const Real t789 = t787 + t788;
+  const Real t790 = par.I_Rxx * t789;
+  const Real t791 = t785 + t790;
+  const Real t792 = t791 * c_r_p_0_;
+  const Real t793 = t260 * c_r_p_0_;
+  const Real t794 = t187 - t793;
+  const Real t795 = t794 * t385;
+  const Real t796 = t795 * par.k29;
+  const Real t797 = t495 * s_r_p_0_;
+  const Real t798 = t189 - t797;
+  const Real t799 = t794 * nu[2];
+  const Real t800 = t798 - t799;
+  const Real t801 = par.I_Rxx * t800;
+  const Real t802 = t796 + t801;
+  const Real t803 = t802 * s_r_p_0_;
+  const Real t804 = t792 - t803;
+  const Real t805 = c_r_p_1_ * t643;
+  const Real t806 = s_r_p_1_ * t616;
   const Real t807 = t805 + t806;
-  const Real t808 = t807 * t226;
-  const Real t809 = t807 * t228;
-  const Real t810 = t808 + t809;
-  const Real t811 = t767 - t810;
-  const Real t812 = t277 * t811;
-  const Real t813 = t43 * t812;
-  const Real t814 = product_error(t277, t811);
-  const Real t815 = -t810;
-  const Real t816 = sum_error(t767, t815);
-  const Real t817 = t798 + t816;
-  const Real t818 = t817 * t277;
-  const Real t819 = t811 * t383;
+  const Real t808 = t807 * par.k13;
+  const Real t809 = t620 * par.k10;
+  const Real t810 = par.k6 * t623;
+  const Real t811 = t624 * par.k32;
+  const Real t812 = t810 - t811;
+  const Real t813 = par.k5 * t633;
+  const Real t814 = t812 + t813;
+  const Real t815 = t809 + t814;
+  const Real t816 = t712 * par.k1;
+  const Real t817 = t716 * par.k2;
+  const Real t818 = t816 + t817;
+  const Real t819 = t637 * par.k12;
   const Real t820 = t818 + t819;
-  const Real t821 = t814 + t820;
-  const Real t822 = t43 * t821;
-  const Real t823 = t813 + t822;
-  const Real t824 = t581 + t823;
-  const Real t825 = nu_dot[2] * t621;
-  const Real t826 = t629 * nu_dot[0];
-  const Real t827 = nu_dot[1] * t625;
-  const Real t828 = t826 + t827;
-  const Real t829 = t825 - t828;
-  const Real t830 = t824 + t829;
-  const Real t831 = t590 * nu[0];
-  const Real t832 = t524 * t616;
-  const Real t833 = t831 + t832;
-  const Real t834 = t830 + t833;
-  const Real t835 = t834 - t169;
-  const Real t836 = par.m_B * t835;
-  const Real t837 = t524 * t524;
-  const Real t838 = t837 + t181;
-  const Real t839 = t838 * par.k16;
-  const Real t840 = par.k62 * t838;
-  const Real t841 = t839 + t840;
-  const Real t842 = nu_dot[2] * t519;
-  const Real t843 = nu_dot[2] * t521;
-  const Real t844 = t842 + t843;
-  const Real t845 = nu_dot[1] * t479;
-  const Real t846 = nu_dot[1] * t477;
+  const Real t821 = t815 + t820;
+  const Real t822 = par.k2 * t821;
+  const Real t823 = t721 * c_r_p_1_;
+  const Real t824 = s_r_p_1_ * t745;
+  const Real t825 = t823 - t824;
+  const Real t826 = par.k1 * t825;
+  const Real t827 = t822 - t826;
+  const Real t828 = t808 + t827;
+  const Real t829 = t568 * par.k16;
+  const Real t830 = t495 * par.k14;
+  const Real t831 = t553 * par.k25;
+  const Real t832 = t830 - t831;
+  const Real t833 = t274 * t260;
+  const Real t834 = t833 - nu_dot[0];
+  const Real t835 = par.k3 * t834;
+  const Real t836 = t832 - t835;
+  const Real t837 = t829 + t836;
+  const Real t838 = t828 + t837;
+  const Real t839 = t804 + t838;
+  const Real t840 = t834 * par.r_R;
+  const Real t841 = t568 - t840;
+  const Real t842 = par.m_R * t841;
+  const Real t843 = t834 * par.k15;
+  const Real t844 = t554 * par.k16;
+  const Real t845 = t843 + t844;
+  const Real t846 = t568 * par.m_B;
   const Real t847 = t845 + t846;
-  const Real t848 = t426 * nu_dot[0];
-  const Real t849 = nu_dot[0] * t428;
-  const Real t850 = t848 + t849;
-  const Real t851 = t847 + t850;
-  const Real t852 = t844 + t851;
-  const Real t853 = t812 - t852;
-  const Real t854 = t853 + t821;
-  const Real t855 = t563 * nu[0];
-  const Real t856 = t854 + t855;
-  const Real t857 = t856 * par.k17;
-  const Real t858 = t841 + t857;
-  const Real t859 = t836 - t858;
-  const Real t860 = t737 * t733;
-  const Real t861 = t854 * c_r_p_1_;
-  const Real t862 = t251 * t812;
-  const Real t863 = t765 - t862;
-  const Real t864 = product_error(t251, t812);
-  const Real t865 = t358 * t812;
-  const Real t866 = t251 * t821;
-  const Real t867 = t865 + t866;
-  const Real t868 = t864 + t867;
-  const Real t869 = t863 - t868;
-  const Real t870 = t869 * t261;
-  const Real t871 = t869 * t272;
-  const Real t872 = t870 + t871;
-  const Real t873 = t536 * nu_dot[2];
-  const Real t874 = t548 * nu_dot[0];
-  const Real t875 = nu_dot[1] * t560;
-  const Real t876 = t874 + t875;
-  const Real t877 = t873 + t876;
-  const Real t878 = t872 - t877;
-  const Real t879 = par.k1 * t878;
-  const Real t880 = t201 - t879;
-  const Real t881 = s_r_p_1_ * t880;
-  const Real t882 = t861 - t881;
-  const Real t883 = t733 * nu[1];
-  const Real t884 = t882 - t883;
-  const Real t885 = t860 - t884;
-  const Real t886 = par.k11 * t885;
-  const Real t887 = t733 * t733;
-  const Real t888 = t692 * t692;
-  const Real t889 = t887 + t888;
-  const Real t890 = t889 * par.k9;
-  const Real t891 = t886 - t890;
-  const Real t892 = t856 * par.k14;
-  const Real t893 = t856 * par.k28;
-  const Real t894 = t892 + t893;
-  const Real t895 = t835 - t894;
-  const Real t896 = t895 * par.k2;
-  const Real t897 = t563 * t590;
-  const Real t898 = t524 * t632;
-  const Real t899 = t897 - t898;
-  const Real t900 = nu_dot[2] * t614;
-  const Real t901 = t600 * nu_dot[0];
-  const Real t902 = nu_dot[1] * t606;
-  const Real t903 = t901 + t902;
-  const Real t904 = t900 + t903;
-  const Real t905 = t13 * t812;
-  const Real t906 = t56 * t812;
-  const Real t907 = t13 * t821;
-  const Real t908 = t906 + t907;
-  const Real t909 = t905 + t908;
-  const Real t910 = t708 - t909;
-  const Real t911 = t904 + t910;
-  const Real t912 = t899 + t911;
-  const Real t913 = t912 - t170;
-  const Real t914 = t563 * t563;
-  const Real t915 = t837 + t914;
-  const Real t916 = par.k28 * t915;
-  const Real t917 = par.k14 * t915;
-  const Real t918 = t916 + t917;
-  const Real t919 = t913 - t918;
-  const Real t920 = -t170;
-  const Real t921 = sum_error(t912, t920);
-  const Real t922 = product_error(par.g, R[6]);
-  const Real t923 = t921 - t922;
-  const Real t924 = t919 + t923;
-  const Real t925 = t924 * par.k1;
-  const Real t926 = t896 + t925;
-  const Real t927 = par.m_H * t926;
-  const Real t928 = t891 + t927;
-  const Real t929 = t889 * par.k12;
-  const Real t930 = par.k13 * t885;
-  const Real t931 = t929 + t930;
-  const Real t932 = t931 + t926;
-  const Real t933 = par.k1 * t932;
-  const Real t934 = t924 * par.k2;
-  const Real t935 = par.k1 * t895;
-  const Real t936 = t934 - t935;
-  const Real t937 = c_r_p_1_ * t936;
-  const Real t938 = t524 * nu[0];
-  const Real t939 = t878 - t938;
-  const Real t940 = par.k28 * t939;
-  const Real t941 = par.k14 * t939;
-  const Real t942 = t940 + t941;
-  const Real t943 = nu_dot[2] * t588;
-  const Real t944 = nu_dot[0] * t585;
-  const Real t945 = t582 * nu_dot[1];
-  const Real t946 = t944 + t945;
-  const Real t947 = t943 + t946;
-  const Real t948 = t872 * t43;
-  const Real t949 = t713 - t948;
-  const Real t950 = t947 + t949;
-  const Real t951 = t563 * t616;
-  const Real t952 = t632 * nu[0];
-  const Real t953 = t951 + t952;
-  const Real t954 = t950 - t953;
-  const Real t955 = t954 - t168;
-  const Real t956 = t942 + t955;
-  const Real t957 = s_r_p_1_ * t956;
-  const Real t958 = t937 + t957;
-  const Real t959 = t860 + t884;
-  const Real t960 = t959 * par.k12;
-  const Real t961 = t737 * t737;
-  const Real t962 = t961 + t888;
-  const Real t963 = par.k13 * t962;
-  const Real t964 = t960 + t963;
-  const Real t965 = t958 - t964;
-  const Real t966 = par.k2 * t965;
-  const Real t967 = t933 + t966;
-  const Real t968 = t967 * c_r_p_2_;
-  const Real t969 = par.k2 * t932;
-  const Real t970 = par.k1 * t965;
-  const Real t971 = t969 - t970;
-  const Real t972 = t971 * s_r_p_2_;
-  const Real t973 = t968 - t972;
-  const Real t974 = t973 * par.m_F;
-  const Real t975 = c_r_p_2_ * t974;
-  const Real t976 = t967 * s_r_p_2_;
-  const Real t977 = c_r_p_2_ * t971;
-  const Real t978 = t976 + t977;
-  const Real t979 = t978 * par.m_F;
-  const Real t980 = t979 * s_r_p_2_;
-  const Real t981 = t975 + t980;
-  const Real t982 = par.k1 * t981;
-  const Real t983 = t979 * c_r_p_2_;
-  const Real t984 = t974 * s_r_p_2_;
-  const Real t985 = t983 - t984;
-  const Real t986 = par.k2 * t985;
-  const Real t987 = t982 + t986;
-  const Real t988 = t928 + t987;
-  const Real t989 = t988 * par.k2;
-  const Real t990 = par.k2 * t981;
-  const Real t991 = par.k1 * t985;
-  const Real t992 = t990 - t991;
-  const Real t993 = t959 * par.k9;
-  const Real t994 = par.k11 * t962;
-  const Real t995 = t993 - t994;
-  const Real t996 = par.m_H * t958;
-  const Real t997 = t995 + t996;
-  const Real t998 = t992 + t997;
-  const Real t999 = c_r_p_1_ * t998;
-  const Real t1000 = t854 * s_r_p_1_;
-  const Real t1001 = c_r_p_1_ * t880;
-  const Real t1002 = t1000 + t1001;
-  const Real t1003 = t692 * nu[1];
-  const Real t1004 = t1002 - t1003;
-  const Real t1005 = t737 * t692;
-  const Real t1006 = t1004 + t1005;
-  const Real t1007 = par.k12 * t1006;
-  const Real t1008 = par.k2 * t878;
-  const Real t1009 = t202 + t1008;
-  const Real t1010 = t1009 + nu_dot[1];
-  const Real t1011 = t692 * t733;
-  const Real t1012 = t1010 - t1011;
-  const Real t1013 = t1012 * par.k13;
-  const Real t1014 = t1007 + t1013;
-  const Real t1015 = c_r_p_1_ * t956;
-  const Real t1016 = s_r_p_1_ * t936;
-  const Real t1017 = t1015 - t1016;
-  const Real t1018 = t1014 + t1017;
-  const Real t1019 = par.m_F * t1018;
-  const Real t1020 = t1012 * par.k11;
-  const Real t1021 = par.k9 * t1006;
-  const Real t1022 = t1020 - t1021;
-  const Real t1023 = par.m_H * t1017;
-  const Real t1024 = t1022 + t1023;
-  const Real t1025 = t1019 + t1024;
-  const Real t1026 = s_r_p_1_ * t1025;
-  const Real t1027 = t999 - t1026;
-  const Real t1028 = par.k1 * t1027;
-  const Real t1029 = t989 - t1028;
-  const Real t1030 = t859 + t1029;
-  const Real t1031 = t838 * par.r_R;
-  const Real t1032 = t1031 + t835;
-  const Real t1033 = t1032 * c_r_p_0_;
-  const Real t1034 = t854 - t855;
-  const Real t1035 = t1034 * par.r_R;
-  const Real t1036 = t913 - t1035;
-  const Real t1037 = t1036 + t923;
-  const Real t1038 = t1037 * s_r_p_0_;
-  const Real t1039 = t1033 + t1038;
-  const Real t1040 = t1039 * par.m_R;
-  const Real t1041 = t1040 * c_r_p_0_;
-  const Real t1042 = t1037 * c_r_p_0_;
-  const Real t1043 = t1032 * s_r_p_0_;
-  const Real t1044 = t1042 - t1043;
-  const Real t1045 = t1044 * par.m_R;
-  const Real t1046 = t1045 * s_r_p_0_;
-  const Real t1047 = t1041 - t1046;
-  const Real t1048 = t1030 + t1047;
-  const Real t1049 = sum_error(t1047, t1030);
-  const Real t1050 = -t858;
-  const Real t1051 = sum_error(t836, t1050);
-  const Real t1052 = product_error(t835, par.m_B);
-  const Real t1053 = t1051 + t1052;
-  const Real t1054 = sum_error(t1029, t859);
-  const Real t1055 = t1053 + t1054;
-  const Real t1056 = t1049 + t1055;
-  const Real t1057 = t1056 * t43;
-  const Real t1058 = t1048 * t43;
-  const Real t1059 = t1057 + t1058;
-  const Real t1060 = t854 + nu_dot[2];
-  const Real t1061 = par.I_Ryy * t1060;
-  const Real t1062 = t1045 * c_r_p_0_;
-  const Real t1063 = t1040 * s_r_p_0_;
-  const Real t1064 = t1062 + t1063;
-  const Real t1065 = t1064 * par.r_R;
-  const Real t1066 = t1061 - t1065;
-  const Real t1067 = t563 - nu[0];
-  const Real t1068 = t563 + nu[0];
-  const Real t1069 = t1067 * t1068;
-  const Real t1070 = par.k3 * t1069;
-  const Real t1071 = t854 * par.k4;
-  const Real t1072 = par.k34 * t855;
-  const Real t1073 = t1071 - t1072;
-  const Real t1074 = t1070 + t1073;
-  const Real t1075 = t913 * par.k16;
-  const Real t1076 = par.k17 * t835;
-  const Real t1077 = t1075 - t1076;
-  const Real t1078 = t1074 + t1077;
-  const Real t1079 = par.k8 * t884;
-  const Real t1080 = t860 * par.k38;
-  const Real t1081 = t1079 + t1080;
-  const Real t1082 = t737 - t733;
-  const Real t1083 = t737 + t733;
-  const Real t1084 = t1082 * t1083;
-  const Real t1085 = par.k5 * t1084;
-  const Real t1086 = t1081 + t1085;
-  const Real t1087 = par.k9 * t958;
-  const Real t1088 = par.k11 * t926;
-  const Real t1089 = t1087 - t1088;
-  const Real t1090 = t1086 + t1089;
-  const Real t1091 = nu_dot[2] * t508;
-  const Real t1092 = nu_dot[0] * t415;
-  const Real t1093 = t443 * nu_dot[1];
-  const Real t1094 = nu_dot[1] * t468;
-  const Real t1095 = t1093 + t1094;
-  const Real t1096 = t1092 + t1095;
-  const Real t1097 = t1091 + t1096;
-  const Real t1098 = t807 + t1097;
-  const Real t1099 = t884 - t1098;
-  const Real t1100 = t1099 * par.I_Fyy;
-  const Real t1101 = t992 * par.k12;
-  const Real t1102 = par.k13 * t987;
-  const Real t1103 = t1101 + t1102;
-  const Real t1104 = t1100 - t1103;
-  const Real t1105 = t1090 + t1104;
-  const Real t1106 = c_r_p_1_ * t1105;
-  const Real t1107 = t1010 * par.k2;
-  const Real t1108 = t1004 * par.k1;
-  const Real t1109 = t1107 - t1108;
-  const Real t1110 = c_r_p_2_ * t1109;
-  const Real t1111 = t1010 * par.k1;
-  const Real t1112 = t1004 * par.k2;
-  const Real t1113 = t1111 + t1112;
-  const Real t1114 = t1113 * s_r_p_2_;
-  const Real t1115 = t1110 + t1114;
-  const Real t1116 = t739 * c_r_p_2_;
-  const Real t1117 = t753 * s_r_p_2_;
-  const Real t1118 = t1116 - t1117;
-  const Real t1119 = t699 * t1118;
-  const Real t1120 = t1115 - t1119;
-  const Real t1121 = t1120 * par.I_Fxx;
-  const Real t1122 = t1118 * t700;
-  const Real t1123 = par.k43 * t1122;
-  const Real t1124 = t1121 - t1123;
-  const Real t1125 = t1124 * s_r_p_2_;
-  const Real t1126 = t1113 * c_r_p_2_;
-  const Real t1127 = t1109 * s_r_p_2_;
-  const Real t1128 = t1126 - t1127;
-  const Real t1129 = t753 * c_r_p_2_;
-  const Real t1130 = t739 * s_r_p_2_;
-  const Real t1131 = t1129 + t1130;
-  const Real t1132 = t699 * t1131;
-  const Real t1133 = t1128 + t1132;
-  const Real t1134 = par.I_Fxx * t1133;
-  const Real t1135 = t1131 * t700;
-  const Real t1136 = par.k42 * t1135;
-  const Real t1137 = t1134 - t1136;
-  const Real t1138 = t1137 * c_r_p_2_;
-  const Real t1139 = t1125 + t1138;
-  const Real t1140 = par.k2 * t1139;
-  const Real t1141 = t1124 * c_r_p_2_;
-  const Real t1142 = t1137 * s_r_p_2_;
-  const Real t1143 = t1141 - t1142;
-  const Real t1144 = t1143 * par.k1;
-  const Real t1145 = t1140 - t1144;
-  const Real t1146 = t1019 * par.k12;
-  const Real t1147 = t1145 + t1146;
-  const Real t1148 = t1004 * par.k18;
-  const Real t1149 = t1005 * par.k37;
-  const Real t1150 = t1148 - t1149;
-  const Real t1151 = t1012 * par.k5;
-  const Real t1152 = t1150 + t1151;
-  const Real t1153 = par.k9 * t1017;
-  const Real t1154 = t1152 - t1153;
-  const Real t1155 = t1147 + t1154;
-  const Real t1156 = s_r_p_1_ * t1155;
-  const Real t1157 = t1106 + t1156;
-  const Real t1158 = t1029 * par.k14;
-  const Real t1159 = t1029 * par.k28;
-  const Real t1160 = t1158 + t1159;
-  const Real t1161 = t1157 - t1160;
-  const Real t1162 = t1078 + t1161;
-  const Real t1163 = t1066 + t1162;
-  const Real t1164 = t913 * par.m_B;
-  const Real t1165 = t923 * par.m_B;
-  const Real t1166 = t1164 + t1165;
-  const Real t1167 = t1034 * par.k16;
-  const Real t1168 = par.k62 * t1034;
-  const Real t1169 = t1167 + t1168;
-  const Real t1170 = par.k17 * t915;
-  const Real t1171 = t1169 - t1170;
-  const Real t1172 = t1166 + t1171;
-  const Real t1173 = t1027 * par.k2;
-  const Real t1174 = t988 * par.k1;
-  const Real t1175 = t1173 + t1174;
-  const Real t1176 = t1172 + t1175;
-  const Real t1177 = t1176 + t1064;
-  const Real t1178 = t1177 * t56;
-  const Real t1179 = t13 * t1177;
-  const Real t1180 = t1178 + t1179;
-  const Real t1181 = t1163 - t1180;
-  const Real t1182 = sum_error(t1066, t1162);
-  const Real t1183 = sum_error(t1074, t1077);
-  const Real t1184 = par.k62 * t913;
-  const Real t1185 = t923 * par.k16;
-  const Real t1186 = t1184 + t1185;
-  const Real t1187 = product_error(par.k16, t913);
-  const Real t1188 = t1186 + t1187;
-  const Real t1189 = -t1076;
-  const Real t1190 = sum_error(t1075, t1189);
-  const Real t1191 = t1188 + t1190;
-  const Real t1192 = t1183 + t1191;
-  const Real t1193 = sum_error(t1078, t1161);
-  const Real t1194 = t1192 + t1193;
-  const Real t1195 = t1182 + t1194;
-  const Real t1196 = t1181 + t1195;
-  const Real t1197 = t1059 + t1196;
-  const Real t1198 = par.k17 * t955;
-  const Real t1199 = t878 * par.k15;
-  const Real t1200 = par.k32 * t938;
-  const Real t1201 = t1199 - t1200;
-  const Real t1202 = t563 * t524;
-  const Real t1203 = t1202 - nu_dot[0];
-  const Real t1204 = par.k3 * t1203;
-  const Real t1205 = t1201 - t1204;
-  const Real t1206 = t1198 + t1205;
-  const Real t1207 = t1025 * c_r_p_1_;
-  const Real t1208 = s_r_p_1_ * t998;
-  const Real t1209 = t1207 + t1208;
-  const Real t1210 = t1209 * par.k14;
-  const Real t1211 = t1209 * par.k28;
-  const Real t1212 = t1210 + t1211;
-  const Real t1213 = t1010 * par.k7;
-  const Real t1214 = t1011 * par.k39;
-  const Real t1215 = t1213 - t1214;
-  const Real t1216 = par.k5 * t1006;
-  const Real t1217 = t1215 + t1216;
-  const Real t1218 = par.k11 * t1017;
-  const Real t1219 = t1217 + t1218;
-  const Real t1220 = t1143 * par.k2;
-  const Real t1221 = par.k1 * t1139;
-  const Real t1222 = t1220 + t1221;
-  const Real t1223 = t1019 * par.k13;
-  const Real t1224 = t1222 + t1223;
-  const Real t1225 = t1219 + t1224;
-  const Real t1226 = par.k2 * t1225;
-  const Real t1227 = t1155 * c_r_p_1_;
-  const Real t1228 = s_r_p_1_ * t1105;
-  const Real t1229 = t1227 - t1228;
-  const Real t1230 = par.k1 * t1229;
-  const Real t1231 = t1226 - t1230;
-  const Real t1232 = t1212 + t1231;
-  const Real t1233 = t1206 + t1232;
-  const Real t1234 = t563 * s_r_p_0_;
-  const Real t1235 = t179 + t1234;
-  const Real t1236 = t580 * t1235;
-  const Real t1237 = par.k35 * t1236;
-  const Real t1238 = t878 * c_r_p_0_;
-  const Real t1239 = t1238 + t200;
-  const Real t1240 = nu[2] * t1235;
-  const Real t1241 = t1239 + t1240;
-  const Real t1242 = par.I_Rxx * t1241;
-  const Real t1243 = t1237 + t1242;
-  const Real t1244 = t1243 * c_r_p_0_;
-  const Real t1245 = t878 * s_r_p_0_;
-  const Real t1246 = t199 - t1245;
-  const Real t1247 = t563 * c_r_p_0_;
-  const Real t1248 = t180 - t1247;
-  const Real t1249 = t1248 * nu[2];
-  const Real t1250 = t1246 - t1249;
-  const Real t1251 = t1250 * par.I_Rxx;
-  const Real t1252 = t580 * t1248;
-  const Real t1253 = t1252 * par.k36;
-  const Real t1254 = t1251 + t1253;
-  const Real t1255 = t1254 * s_r_p_0_;
-  const Real t1256 = t1244 - t1255;
-  const Real t1257 = t1233 + t1256;
-  const Real t1258 = t955 * par.m_B;
-  const Real t1259 = t1203 * par.k16;
-  const Real t1260 = t1203 * par.k62;
-  const Real t1261 = t1259 + t1260;
-  const Real t1262 = t939 * par.k17;
-  const Real t1263 = t1261 + t1262;
-  const Real t1264 = t1258 + t1263;
-  const Real t1265 = t1209 + t1264;
-  const Real t1266 = t1203 * par.r_R;
-  const Real t1267 = t955 - t1266;
-  const Real t1268 = t1267 * par.m_R;
-  const Real t1269 = t1265 + t1268;
-  const Real t1270 = t1269 * t43;
-  const Real t1271 = sum_error(t1268, t1265);
-  const Real t1272 = sum_error(t1258, t1263);
-  const Real t1273 = product_error(t955, par.m_B);
-  const Real t1274 = t1272 + t1273;
-  const Real t1275 = sum_error(t1209, t1264);
-  const Real t1276 = t1274 + t1275;
-  const Real t1277 = t1271 + t1276;
-  const Real t1278 = t43 * t1277;
-  const Real t1279 = t1270 + t1278;
-  const Real t1280 = t1257 - t1279;
-  const Real t1281 = t1280 * t272;
-  const Real t1282 = t1280 * t261;
-  const Real t1283 = t1281 + t1282;
-  const Real t1284 = t1283 * t251;
-  const Real t1285 = t1197 - t1284;
-  const Real t1286 = t1285 * t277;
-  const Real t1287 = t228 * t1286;
-  const Real t1288 = t1100 + t1287;
-  const Real t1289 = t1288 * t400;
-  const Real t1290 = t1289 * t323;
-  const Real t1291 = -t1290;
-  const Real t1292 = sum_error(t1286, t1291);
-  const Real t1293 = product_error(t277, t1285);
-  const Real t1294 = -t1284;
-  const Real t1295 = sum_error(t1197, t1294);
-  const Real t1296 = t1283 * t358;
-  const Real t1297 = product_error(t251, t1283);
-  const Real t1298 = t1296 + t1297;
-  const Real t1299 = t1295 - t1298;
-  const Real t1300 = t277 * t1299;
-  const Real t1301 = t1285 * t383;
-  const Real t1302 = t1300 + t1301;
-  const Real t1303 = t1293 + t1302;
-  const Real t1304 = product_error(t1289, t323);
-  const Real t1305 = product_error(t400, t1288);
-  const Real t1306 = t1288 * t412;
-  const Real t1307 = product_error(t228, t1286);
-  const Real t1308 = t226 * t1286;
-  const Real t1309 = t1303 * t228;
-  const Real t1310 = t1308 + t1309;
-  const Real t1311 = t1307 + t1310;
-  const Real t1312 = sum_error(t1287, t1100);
-  const Real t1313 = t1311 + t1312;
-  const Real t1314 = t1313 * t400;
-  const Real t1315 = t1306 + t1314;
-  const Real t1316 = t1305 + t1315;
-  const Real t1317 = t1316 * t323;
-  const Real t1318 = t1289 * t386;
-  const Real t1319 = t1317 + t1318;
-  const Real t1320 = t1304 + t1319;
-  const Real t1321 = t1303 - t1320;
-  const Real t1322 = t1292 + t1321;
-  const Real t1323 = t38 * t1322;
-  const Real t1324 = t1286 - t1290;
-  const Real t1325 = t38 * t1324;
-  const Real t1326 = t1323 + t1325;
-  const Real t1327 = t1048 - t1326;
-  const Real t1328 = t1327 + t1056;
-  const Real t1329 = t1324 * t274;
-  const Real t1330 = -t1329;
-  const Real t1331 = sum_error(t1283, t1330);
-  const Real t1332 = t274 * t1322;
-  const Real t1333 = product_error(t274, t1324);
-  const Real t1334 = t1332 + t1333;
-  const Real t1335 = t1331 - t1334;
-  const Real t1336 = product_error(t311, t1289);
-  const Real t1337 = t1289 * t338;
-  const Real t1338 = t1316 * t311;
-  const Real t1339 = t1337 + t1338;
-  const Real t1340 = t1336 + t1339;
-  const Real t1341 = t1335 - t1340;
-  const Real t1342 = t1283 - t1329;
-  const Real t1343 = t311 * t1289;
-  const Real t1344 = t1342 - t1343;
-  const Real t1345 = t1341 + t1344;
-  const Real t1346 = t1345 * t46;
-  const Real t1347 = t1328 - t1346;
-  const Real t1348 = t1289 * t69;
-  const Real t1349 = t1316 * t69;
-  const Real t1350 = t1348 + t1349;
-  const Real t1351 = t1347 - t1350;
-  const Real t1352 = t1316 + t1289;
-  const Real t1353 = t1324 * t46;
-  const Real t1354 = t46 * t1322;
-  const Real t1355 = t1353 + t1354;
-  const Real t1356 = sum_error(t1355, t1269);
-  const Real t1357 = t1356 + t1277;
-  const Real t1358 = t1269 + t1355;
-  const Real t1359 = c_r_p_1_ * t1345;
-  const Real t1360 = -t1359;
-  const Real t1361 = sum_error(t1358, t1360);
-  const Real t1362 = t1357 + t1361;
-  const Real t1363 = t1358 - t1359;
-  const Real t1364 = t34 * t1289;
-  const Real t1365 = t1316 * t34;
-  const Real t1366 = t1364 + t1365;
-  const Real t1367 = t1363 - t1366;
-  const Real t1368 = t1362 + t1367;
-  const Real t1369 = t1324 + t1322;
-  const Real t1370 = t34 * t1345;
-  const Real t1371 = t69 * t1322;
-  const Real t1372 = t1324 * t69;
-  const Real t1373 = t1371 + t1372;
-  const Real t1374 = t1177 - t1373;
-  const Real t1375 = t1370 + t1374;
-  const Real t1376 = t1316 * t32;
-  const Real t1377 = t1289 * t63;
-  const Real t1378 = t1376 + t1377;
-  const Real t1379 = t1289 * t32;
-  const Real t1380 = t1378 + t1379;
-  const Real t1381 = t1375 - t1380;
+  const Real t848 = t807 + t847;
+  const Real t849 = t842 + t848;
+  const Real t850 = t849 * t101;
+  const Real t851 = t839 - t850;
+  const Real t852 = t109 * t851;
+  const Real t853 = t852 * t118;
+  const Real t854 = t781 - t853;
+  const Real t855 = product_error(t854, t130);
+  const Real t856 = -t853;
+  const Real t857 = sum_error(t781, t856);
+  const Real t858 = product_error(t118, t852);
+  const Real t859 = t857 - t858;
+  const Real t860 = t859 * t130;
+  const Real t861 = t855 + t860;
+  const Real t862 = t854 * t130;
+  const Real t863 = t25 * t861;
+  const Real t864 = t25 * t862;
+  const Real t865 = t863 + t864;
+  const Real t866 = t740 + t865;
+  const Real t867 = t866 * t201;
+  const Real t868 = t193 * t867;
+  const Real t869 = t867 * t131;
+  const Real t870 = t868 + t869;
+  const Real t871 = t862 - t870;
+  const Real t872 = t861 + t871;
+  const Real t873 = t31 * t872;
+  const Real t874 = t671 - t873;
+  const Real t875 = t110 * t872;
+  const Real t876 = t852 - t875;
+  const Real t877 = t867 * t121;
+  const Real t878 = t876 - t877;
+  const Real t879 = t878 * t45;
+  const Real t880 = t874 - t879;
+  const Real t881 = t867 * t34;
+  const Real t882 = t880 - t881;
+  const Real t883 = t45 * t872;
+  const Real t884 = t849 + t883;
+  const Real t885 = t878 * c_r_p_1_;
+  const Real t886 = t884 - t885;
+  const Real t887 = t867 * t59;
+  const Real t888 = t886 - t887;
+  const Real t889 = t93 * t872;
+  const Real t890 = t778 - t889;
+  const Real t891 = t878 * t59;
+  const Real t892 = t890 + t891;
+  const Real t893 = t867 * t90;
+  const Real t894 = t892 - t893;
 
-  lambda[0] = t1381;
-  lambda[1] = t1368;
-  lambda[2] = t1351;
-  lambda[3] = t1352;
-  lambda[4] = t1345;
-  lambda[5] = t1369;
+  lambda[0] = t894;
+  lambda[1] = t888;
+  lambda[2] = t882;
+  lambda[3] = t867;
+  lambda[4] = t878;
+  lambda[5] = t872;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.
@@ -10682,11 +7353,11 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t97 = t64 * t12;
   const Real t98 = t38 * t16;
   const Real t99 = t97 + t98;
-  const Real t100 = par.k14 * R[6];
+  const Real t100 = par.k13 * R[6];
   const Real t101 = p[2] + t100;
   const Real t102 = t99 + t101;
   const Real t103 = -t102;
-  const Real t104 = par.k14 * R[7];
+  const Real t104 = par.k13 * R[7];
   const Real t105 = par.k2 * R[7];
   const Real t106 = c_r_p_1_ * t105;
   const Real t107 = s_r_p_1_ * R[6];
@@ -10740,7 +7411,7 @@ inline void position_conditions(const Prepared<Real>& par,
   const Real t155 = R[6] * t154;
   const Real t156 = t152 + t155;
   const Real t157 = -t156;
-  const Real t158 = R[8] * par.k14;
+  const Real t158 = R[8] * par.k13;
   const Real t159 = par.k1 * t3;
   const Real t160 = c_r_p_1_ * t10;
   const Real t161 = t160 * par.k2;
@@ -10895,11 +7566,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t24 = t22 + t23;
   const Real t25 = t24 * par.k2;
   const Real t26 = t21 + t25;
-  const Real t27 = eta[5] * par.k14;
+  const Real t27 = eta[5] * par.k13;
   const Real t28 = eta[1] + t27;
   const Real t29 = r_p_dot[0] + eta[4];
   const Real t30 = par.k2 * eta[0];
-  const Real t31 = par.k14 * eta[4];
+  const Real t31 = par.k13 * eta[4];
   const Real t32 = eta[2] - t31;
   const Real t33 = par.k1 * t32;
   const Real t34 = t30 - t33;
@@ -10937,8 +7608,8 @@ inline void energies(const Prepared<Real>& par,
   const Real t62 = t60 + t61;
 
   // front_wheel: twist
-  const Real t63 = t20 * par.k13;
-  const Real t64 = t24 * par.k12;
+  const Real t63 = t20 * par.k12;
+  const Real t64 = t24 * par.k11;
   const Real t65 = t63 + t64;
   const Real t66 = t56 + t65;
   const Real t67 = t26 * c_r_p_2_;
@@ -10947,10 +7618,10 @@ inline void energies(const Prepared<Real>& par,
   const Real t70 = c_r_p_2_ * t37;
   const Real t71 = t26 * s_r_p_2_;
   const Real t72 = t70 + t71;
-  const Real t73 = t15 * par.k12;
+  const Real t73 = t15 * par.k11;
   const Real t74 = t59 - t73;
   const Real t75 = par.k2 * t74;
-  const Real t76 = t15 * par.k13;
+  const Real t76 = t15 * par.k12;
   const Real t77 = t62 - t76;
   const Real t78 = par.k1 * t77;
   const Real t79 = t75 + t78;
@@ -10965,7 +7636,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t88 = t86 + t87;
 
   // conditions on the position
-  const Real t89 = par.k14 * R[6];
+  const Real t89 = par.k13 * R[6];
   const Real t90 = p[2] + t89;
 
   // rear_wheel: pose
@@ -10973,26 +7644,26 @@ inline void energies(const Prepared<Real>& par,
   const Real t92 = p[2] - t91;
 
   // front_wheel: pose
-  const Real t93 = t9 * par.k13;
-  const Real t94 = t3 * par.k12;
+  const Real t93 = t9 * par.k12;
+  const Real t94 = t3 * par.k11;
   const Real t95 = t93 - t94;
   const Real t96 = t95 + t90;
 
   // frame: energy
-  const Real t97 = R[6] * par.k17;
-  const Real t98 = R[8] * par.k16;
+  const Real t97 = R[6] * par.k16;
+  const Real t98 = R[8] * par.k15;
   const Real t99 = t97 + t98;
   const Real t100 = p[2] * par.m_B;
   const Real t101 = t99 + t100;
   const Real t102 = par.g * t101;
   const Real t103 = eta[5] * par.k3;
-  const Real t104 = par.k10 * eta[3];
+  const Real t104 = par.k9 * eta[3];
   const Real t105 = t103 + t104;
   const Real t106 = eta[3] * t105;
   const Real t107 = par.k4 * eta[4];
   const Real t108 = eta[4] * t107;
   const Real t109 = t106 + t108;
-  const Real t110 = eta[5] * par.k15;
+  const Real t110 = eta[5] * par.k14;
   const Real t111 = par.k3 * eta[3];
   const Real t112 = t110 + t111;
   const Real t113 = eta[5] * t112;
@@ -11003,14 +7674,14 @@ inline void energies(const Prepared<Real>& par,
   const Real t118 = eta[2] * eta[2];
   const Real t119 = t117 + t118;
   const Real t120 = t119 * par.m_B;
-  const Real t121 = par.k16 * eta[4];
+  const Real t121 = par.k15 * eta[4];
   const Real t122 = t121 * eta[0];
-  const Real t123 = eta[5] * par.k17;
-  const Real t124 = eta[3] * par.k16;
+  const Real t123 = eta[5] * par.k16;
+  const Real t124 = eta[3] * par.k15;
   const Real t125 = t123 - t124;
   const Real t126 = eta[1] * t125;
   const Real t127 = t122 + t126;
-  const Real t128 = eta[4] * par.k17;
+  const Real t128 = eta[4] * par.k16;
   const Real t129 = eta[2] * t128;
   const Real t130 = t127 - t129;
   const Real t131 = t130 * constant<Real>(2.0L);
@@ -11042,21 +7713,21 @@ inline void energies(const Prepared<Real>& par,
 
   // fork: energy
   const Real t155 = par.m_H * t90;
-  const Real t156 = par.k9 * t3;
-  const Real t157 = par.k11 * t9;
+  const Real t156 = par.k8 * t3;
+  const Real t157 = par.k10 * t9;
   const Real t158 = t156 + t157;
   const Real t159 = t155 + t158;
   const Real t160 = par.g * t159;
   const Real t161 = t137 + t160;
-  const Real t162 = t20 * par.k7;
+  const Real t162 = t20 * par.k6;
   const Real t163 = par.k5 * t24;
   const Real t164 = t162 + t163;
   const Real t165 = t20 * t164;
-  const Real t166 = t24 * par.k18;
+  const Real t166 = t24 * par.k17;
   const Real t167 = t20 * par.k5;
   const Real t168 = t166 + t167;
   const Real t169 = t24 * t168;
-  const Real t170 = par.k8 * t15;
+  const Real t170 = par.k7 * t15;
   const Real t171 = t15 * t170;
   const Real t172 = t169 + t171;
   const Real t173 = t165 + t172;
@@ -11066,14 +7737,14 @@ inline void energies(const Prepared<Real>& par,
   const Real t177 = t175 + t176;
   const Real t178 = t174 + t177;
   const Real t179 = t178 * par.m_H;
-  const Real t180 = t20 * par.k11;
-  const Real t181 = par.k9 * t24;
+  const Real t180 = t20 * par.k10;
+  const Real t181 = par.k8 * t24;
   const Real t182 = t180 - t181;
   const Real t183 = t56 * t182;
-  const Real t184 = par.k9 * t15;
+  const Real t184 = par.k8 * t15;
   const Real t185 = t59 * t184;
   const Real t186 = t183 + t185;
-  const Real t187 = t15 * par.k11;
+  const Real t187 = t15 * par.k10;
   const Real t188 = t187 * t62;
   const Real t189 = t186 - t188;
   const Real t190 = t189 * constant<Real>(2.0L);
@@ -11169,7 +7840,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t15 = c_r_p_1_ * R[7];
   const Real t16 = s_r_p_1_ * t7;
   const Real t17 = t15 - t16;
-  const Real t18 = par.k14 * R[6];
+  const Real t18 = par.k13 * R[6];
   const Real t19 = p[2] + t18;
 
   // rear_wheel: pose
@@ -11202,7 +7873,7 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t44 = par.k1 * R[3];
   const Real t45 = par.k2 * R[5];
   const Real t46 = t44 + t45;
-  const Real t47 = par.k14 * R[0];
+  const Real t47 = par.k13 * R[0];
   const Real t48 = p[0] + t47;
   const Real t49 = R[4] * s_r_p_1_;
   const Real t50 = par.k2 * R[3];
@@ -11222,15 +7893,15 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t64 = R[4] * c_r_p_1_;
   const Real t65 = t52 * s_r_p_1_;
   const Real t66 = t64 - t65;
-  const Real t67 = R[3] * par.k14;
+  const Real t67 = R[3] * par.k13;
   const Real t68 = p[1] + t67;
   const Real t69 = par.k1 * R[0];
   const Real t70 = par.k2 * R[2];
   const Real t71 = t69 + t70;
 
   // front_wheel: pose
-  const Real t72 = t63 * par.k13;
-  const Real t73 = par.k12 * t71;
+  const Real t72 = t63 * par.k12;
+  const Real t73 = par.k11 * t71;
   const Real t74 = t72 - t73;
   const Real t75 = t48 + t74;
   const Real t76 = t54 * par.k2;
@@ -11246,8 +7917,8 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t86 = t4 - t11;
   const Real t87 = t86 * s_r_p_2_;
   const Real t88 = t85 - t87;
-  const Real t89 = t54 * par.k13;
-  const Real t90 = t46 * par.k12;
+  const Real t89 = t54 * par.k12;
+  const Real t90 = t46 * par.k11;
   const Real t91 = t89 - t90;
   const Real t92 = t91 + t68;
   const Real t93 = t78 * c_r_p_2_;
@@ -11265,8 +7936,8 @@ inline void body_poses(const Prepared<Real>& par,
   const Real t105 = t86 * c_r_p_2_;
   const Real t106 = t14 * s_r_p_2_;
   const Real t107 = t105 + t106;
-  const Real t108 = t10 * par.k13;
-  const Real t109 = t3 * par.k12;
+  const Real t108 = t10 * par.k12;
+  const Real t109 = t3 * par.k11;
   const Real t110 = t108 - t109;
   const Real t111 = t110 + t19;
   const Real t112 = t102 * c_r_p_2_;

@@ -109,7 +109,7 @@ void Deriver::trace() {
     if (auto stable = in_stable_form(tape_, route, parameter_nodes_)) steps.push_back(std::move(*stable));
     for (const AfterPass& step : run_passes(tape_, roots_of(route.outputs), parameter_nodes_))
       steps.push_back({step.pass, with_roots(route.outputs, step.roots), step.operations});
-    const MeasuredStates at{states_of(t.atlas, t.chart, measured_states), {}, tolerated_ulps};
+    const MeasuredStates at{states_of(t.atlas, t.chart, measured_states), {}, {}};
     for (Candidate& c : t.candidates) c.error = {};
     measure(tape_, t.candidates, at);
     measure(tape_, steps, at);

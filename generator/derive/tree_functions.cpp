@@ -169,9 +169,9 @@ class TreeDeriver {
         passes.push_back({stage.name, std::move(outputs), operations});
       }
       passes.insert(passes.end(), kept.passes.begin(), kept.passes.end());
-      measure(tape_, passes, {states(), {}, tolerated_ulps});
+      measure(tape_, passes, {states(), {}, {}});
       for (Candidate& c : kept.candidates) c.error = {};
-      measure(tape_, kept.candidates, {states(), {}, tolerated_ulps});
+      measure(tape_, kept.candidates, {states(), {}, {}});
       for (const Candidate& c : passes) result_->trace.push_back({f.name, c.name, c.operations, c.error});
       for (std::size_t i = 0; i < kept.candidates.size(); ++i)
         result_->candidates[kept.first_report + i].error = kept.candidates[i].error;

@@ -5,6 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -22,41 +25,24 @@ constexpr std::array names = {std::pair{OptimiseFor::accuracy, std::string_view(
 /// Errors that the choice of the states may have turned round: within half an ulp or a quarter of the error.
 bool is_as_small(double error, double least) { return error <= std::max(least + 0.5, 1.25 * least); }
 
-/// How much more the worst of all states shows than the worst of so few as are measured, typically: an
-/// estimate of how much more again the worst of 1e5 will.
-double growth(const std::vector<double>& errors) {
-  std::vector<double> worst;  // of each group
-  for (std::size_t i = 0; i < errors.size(); i += measured_states) {
-    const auto end =
-        errors.begin() + static_cast<std::ptrdiff_t>(std::min(errors.size(), i + measured_states));
-    worst.push_back(*std::max_element(errors.begin() + static_cast<std::ptrdiff_t>(i), end));
-  }
-  std::ranges::sort(worst);
-  return worst.back() / worst[worst.size() / 2];
+/// So many states that estimates take half a second or so.
+int count_for(std::size_t steps, int most) {
+  constexpr std::size_t most_steps = 100'000'000;
+  return static_cast<int>(
+      std::clamp<std::size_t>(most_steps / steps, measured_states, static_cast<std::size_t>(most)));
 }
 
-/// The random states again, those of more where most is to be expected of a program, and what is allowed at
-/// each.
-/// @return nothing where not even there much is to be expected
-std::optional<MeasuredStates> with_hard_states(const Tape& tape, const std::vector<OutputBlock>& program,
-                                               const StateSource& states) {
-  constexpr std::size_t most_steps = 100'000'000;  // half a second or so
-  const std::size_t steps =
-      std::max<std::size_t>(1, program.size() * tape.reachable(roots_of(program)).size());
-  const std::size_t count = std::clamp<std::size_t>(most_steps / steps, measured_states, estimated_states);
-  const std::vector<std::vector<double>> many = states(static_cast<int>(count));
-  const std::vector<double> errors = expected_errors(tape, program, many);
-  if (errors.empty() || *std::ranges::max_element(errors) <= tolerated_ulps / 2) return std::nullopt;
+/// The random states again, and those of more where most is to be expected of a program.
+States with_hard_states(const States& many, const std::vector<double>& errors) {
   std::vector<std::size_t> order(many.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   const auto random = std::min<std::ptrdiff_t>(measured_states, std::ssize(order));
   std::stable_sort(order.begin() + random, order.end(),
                    [&](std::size_t a, std::size_t b) { return errors[a] > errors[b]; });
   order.resize(std::min<std::size_t>(order.size(), measured_states + hard_states));
-  MeasuredStates at{{}, {}, std::clamp(allowed_ulps / growth(errors), least_tolerated, tolerated_ulps)};
-  for (const std::size_t s : order) at.states.push_back(many[s]);
-  at.allowance = rounding_shares(tape, program, at.states).allowance;
-  return at;
+  States result;
+  for (const std::size_t s : order) result.push_back(many[s]);
+  return result;
 }
 
 }  // namespace
@@ -86,6 +72,47 @@ std::vector<OutputBlock> with_roots(std::vector<OutputBlock> outputs, const std:
   return outputs;
 }
 
+double Candidate::worst_to_expect() const {
+  if (!outlook) return error.excess * allowed_ulps / tolerated_ulps;
+  return outlook->growth * std::max(error.excess, outlook->largest);
+}
+
+EstimatedStates::EstimatedStates(StateSource source, std::size_t steps)
+    : source_(std::move(source)),
+      steps_(std::max<std::size_t>(1, steps)),
+      few_(source_(count_for(steps_, estimated_states))) {}
+
+std::vector<Outlook> EstimatedStates::outlooks(
+    const std::function<std::vector<std::vector<double>>(const States&)>& errors) const {
+  constexpr double open = 2;  // a growth that was guessed from few may be off by so much
+  std::vector<Outlook> result = outlooks_of(errors(few_));
+  const int count = count_for(steps_, many_estimated_states);
+  const bool is_open = std::ranges::any_of(result, [](const Outlook& o) {
+    return o.largest <= allowed_ulps && o.worst() <= open * allowed_ulps && o.worst() * open >= allowed_ulps;
+  });
+  if (!is_open || count <= static_cast<int>(few_.size())) return result;
+  if (many_.empty()) many_ = source_(count);
+  return outlooks_of(errors(many_));
+}
+
+std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
+  constexpr double random_states = 1e5, most = allowed_ulps / 2;  // beyond it no program would be good enough
+  std::vector<Outlook> result;
+  for (std::vector<double>& of_program : errors) {
+    Outlook& outlook = result.emplace_back();
+    std::ranges::sort(of_program, std::greater<>());
+    const std::size_t tail = std::max<std::size_t>(1, of_program.size() / 32);
+    if (of_program.size() <= tail || !(of_program[tail] > 0)) continue;
+    // the tail falls like a power of the number of states (Hill 1975)
+    double exponent = 0;
+    for (std::size_t i = 0; i < tail; ++i)
+      exponent += std::log(of_program[i] / of_program[tail]) / static_cast<double>(tail);
+    const double states = random_states / static_cast<double>(of_program.size());
+    outlook = {of_program[0], std::min(std::pow(states, exponent), most)};
+  }
+  return result;
+}
+
 void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at) {
   std::vector<std::vector<OutputBlock>> programs;
   std::vector<Candidate*> measured;
@@ -96,7 +123,15 @@ void measure(const Tape& tape, std::vector<Candidate>& candidates, const Measure
   }
   if (measured.empty()) return;
   const std::vector<RoundingError> errors = rounding_errors(tape, programs, at.states, at.allowance);
-  for (std::size_t i = 0; i < measured.size(); ++i) measured[i]->error = errors[i];
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    measured[i]->error = errors[i];
+    if (!measured[i]->outlook && !at.estimated.empty() && measured[i]->error.excess <= allowed_ulps)
+      measured[i]->outlook = at.estimated
+                                 .outlooks([&](const States& random) {
+                                   return first_order_errors(tape, measured[i]->outputs, random);
+                                 })
+                                 .front();
+  }
 }
 
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
@@ -105,51 +140,56 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
   const auto shortest = [&](const auto& acceptable) {
     std::size_t best = candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (acceptable(candidates[i].error) &&
+      if (acceptable(candidates[i]) &&
           (best == candidates.size() || candidates[i].operations < candidates[best].operations))
         best = i;
     }
     return best;
   };
-  const std::size_t fast = shortest([](const RoundingError&) { return true; });
+  const std::size_t fast = shortest([](const Candidate&) { return true; });
   if (mode == OptimiseFor::nothing) return 0;
   if (mode == OptimiseFor::speed) return fast;
-  MeasuredStates at{states(measured_states), {}, tolerated_ulps};
+  MeasuredStates at{states(measured_states), {}, {}};
   bool is_fine = false;
   if (mode == OptimiseFor::balanced) {
     // the worst of all is seldom more than twice the worst of so many
     const auto few = static_cast<std::ptrdiff_t>(std::min<std::size_t>(at.states.size(), 8));
     std::vector<Candidate> one = {candidates[fast]};
-    measure(tape, one, {{at.states.begin(), at.states.begin() + few}, {}, tolerated_ulps});
+    measure(tape, one, {{at.states.begin(), at.states.begin() + few}, {}, {}});
     if (!one[0].error.is_measured()) return fast;
     is_fine = one[0].error.worst <= tolerated_ulps / 2;
     if (is_fine && estimates == Estimates::none) return fast;
   }
   if (estimates == Estimates::hard_states) {
-    if (auto with_hard = with_hard_states(tape, candidates[fast].outputs, states)) {
-      at = std::move(*with_hard);
+    const std::vector<OutputBlock>& program = candidates[fast].outputs;
+    EstimatedStates random(states, program.size() * tape.reachable(roots_of(program)).size());
+    const std::vector<double> errors = first_order_errors(tape, program, random.few()).front();
+    if (!errors.empty() && *std::ranges::max_element(errors) > tolerated_ulps / 2) {
+      at = {with_hard_states(random.few(), errors), {}, std::move(random)};
+      at.allowance = rounding_shares(tape, program, at.states).allowance;
       std::vector<Candidate> one = {candidates[fast]};
       if (is_fine) measure(tape, one, at);
-      is_fine = is_fine && one[0].error.excess <= at.tolerated;
+      is_fine = is_fine && one[0].worst_to_expect() <= allowed_ulps;
     }
     if (is_fine) return fast;
   }
   more(at);
   measure(tape, candidates, at);
-  std::vector<double> worst, excess;
-  for (const Candidate& c : candidates) {
-    if (!c.error.is_measured()) continue;
-    worst.push_back(c.error.worst);
-    excess.push_back(c.error.excess);
-  }
-  if (worst.empty()) return fast;
+  if (std::ranges::none_of(candidates, [](const Candidate& c) { return c.error.is_measured(); })) return fast;
+  const auto least = [&](const auto& of) {
+    double result = std::numeric_limits<double>::infinity();
+    for (const Candidate& c : candidates) {
+      if (c.error.is_measured()) result = std::min(result, of(c));
+    }
+    return result;
+  };
   if (mode == OptimiseFor::accuracy) {
-    const double least = *std::ranges::min_element(worst);
-    return shortest([&](const RoundingError& e) { return is_as_small(e.worst, least); });
+    const double worst = least([](const Candidate& c) { return c.error.worst; });
+    return shortest([&](const Candidate& c) { return is_as_small(c.error.worst, worst); });
   }
-  const double least = *std::ranges::min_element(excess);
-  const double bound = least <= at.tolerated ? at.tolerated : tolerated_growth * least;
-  return shortest([&](const RoundingError& e) { return e.excess <= bound; });
+  const double reached = least([](const Candidate& c) { return c.worst_to_expect(); });
+  const double bound = reached <= allowed_ulps ? allowed_ulps : tolerated_growth * reached;
+  return shortest([&](const Candidate& c) { return c.worst_to_expect() <= bound; });
 }
 
 }  // namespace anholon

@@ -5,6 +5,7 @@
 // loses the fewest digits, or the shortest of those that lose none to speak of.
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,16 +21,17 @@ std::string_view name(OptimiseFor mode);
 /// @throws std::invalid_argument for any other name
 OptimiseFor optimise_for(std::string_view name);
 
-/// Random states at which they are estimated, and how many of these, where the most is to be expected, are
-/// measured as well: what nearly vanishes does so seldom.
-inline constexpr int estimated_states = 2048, hard_states = 16;
+/// Random states at which errors are estimated to first order, and how many of these, those with the largest,
+/// are measured as well: what nearly vanishes does so seldom.
+inline constexpr int estimated_states = 2048, hard_states = 32;
+/// So many where those leave open whether a program is good enough.
+inline constexpr int many_estimated_states = 8192;
 
 /// Balanced: ulps that the worst of the measured states may show without further question. Generated code is
 /// to stay below 50 ulps at 1e5 states; the worst of so many is seldom more than three times the worst of 32.
 inline constexpr double tolerated_ulps = 16;
-/// What verify allows, and the least that is asked for where the worst states are far worse than others, as
-/// they will be again among 1e5.
-inline constexpr double allowed_ulps = 50, least_tolerated = 2;
+/// What is to be expected at most at the worst of 1e5 states, as verify has it.
+inline constexpr double allowed_ulps = 50;
 /// Balanced, where no candidate is within that: this many times the least error that any candidate shows;
 /// single digits are chance.
 inline constexpr double tolerated_growth = 4;
@@ -37,29 +39,64 @@ inline constexpr double tolerated_growth = 4;
 /// Whether estimates at more states (estimated_states) add to what is measured at a few.
 enum class Estimates { none, hard_states };
 
+using States = std::vector<std::vector<double>>;
+/// The first so many of a series of random states, as rounding_errors takes them; asked for where something
+/// is measured.
+using StateSource = std::function<States(int count)>;
+
+/// What estimates say of states that are not measured.
+struct Outlook {
+  double largest = 0;  // at any of them
+  double growth = 1;   // how much more the worst of 1e5 states may show
+  [[nodiscard]] double worst() const { return growth * largest; }
+};
+
 struct Candidate {
   std::string name;
   std::vector<OutputBlock> outputs;
   int operations = 0;
   std::size_t route = 0;  // the candidate, as derived, that it was made from
   RoundingError error{};
+  std::optional<Outlook> outlook{};
+
+  /// About how many ulps, in units of what is allowed there, it loses at the worst of 1e5 states.
+  [[nodiscard]] double worst_to_expect() const;
 };
 
 /// All entries of all blocks, and the blocks with other entries.
 std::vector<NodeId> roots_of(const std::vector<OutputBlock>& outputs);
 std::vector<OutputBlock> with_roots(std::vector<OutputBlock> outputs, const std::vector<NodeId>& roots);
 
-/// The first so many of a series of random states, as rounding_errors takes them; asked for where something
-/// is measured.
-using StateSource = std::function<std::vector<std::vector<double>>(int count)>;
+/// Random states at which errors are estimated, few or many.
+class EstimatedStates {
+ public:
+  EstimatedStates() = default;
+  /// @param steps  operations that an estimate takes at a state
+  EstimatedStates(StateSource source, std::size_t steps);
+
+  [[nodiscard]] bool empty() const { return few_.empty(); }
+  [[nodiscard]] const States& few() const { return few_; }
+  /// @param errors  estimates them at states, for several programs
+  [[nodiscard]] std::vector<Outlook> outlooks(
+      const std::function<std::vector<std::vector<double>>(const States&)>& errors) const;
+
+ private:
+  StateSource source_;
+  std::size_t steps_ = 1;
+  States few_;
+  mutable States many_;  // once they are needed
+};
 
 /// States at which candidates are measured, and what is allowed there (rounding_errors).
 struct MeasuredStates {
-  std::vector<std::vector<double>> states, allowance;
-  double tolerated = tolerated_ulps;  // excess
+  States states, allowance;
+  EstimatedStates estimated;
 };
-/// Measures the candidates that are not yet.
+/// Measures the candidates that are not yet, and estimates what further states bring where these show little.
 void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at);
+
+/// From the errors of each program at each of many random states.
+std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors);
 
 /// @param candidates  at least one; errors are filled in where they were measured
 /// @param more  adds candidates; called where accuracy is wanted, or balance and the shortest one loses

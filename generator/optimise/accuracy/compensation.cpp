@@ -55,6 +55,10 @@ Expr rounding_error_of(Op op, const Expr& a, const Expr& b) {
 
 }  // namespace
 
+bool has_known_error(Op op) {
+  return op == Op::constant || op == Op::add || op == Op::sub || op == Op::mul || op == Op::div;
+}
+
 std::optional<std::vector<NodeId>> compensated(Tape& tape, const std::vector<NodeId>& roots,
                                                const std::vector<double>& shares, double tolerated) {
   std::unordered_map<NodeId, Pair> pairs;

@@ -20,4 +20,7 @@ namespace anholon {
 std::optional<std::vector<NodeId>> compensated(Tape& tape, const std::vector<NodeId>& roots,
                                                const std::vector<double>& shares, double tolerated);
 
+/// Whether what such an operation loses can be computed: then nothing of it is left where it is compensated.
+bool has_known_error(Op op);
+
 }  // namespace anholon

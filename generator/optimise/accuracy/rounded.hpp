@@ -30,36 +30,70 @@ struct Rounded {
   friend Rounded sqrt(Rounded a) { return Rounded(std::sqrt(a.x)); }
   friend Rounded abs(Rounded a) { return Rounded(std::abs(a.x)); }
   friend Rounded sign(Rounded a) { return Rounded(a.x > 0 ? 1 : a.x < 0 ? -1 : 0); }
-  friend Rounded sin(Rounded a) { return remembered(Op::sin, a); }
-  friend Rounded cos(Rounded a) { return remembered(Op::cos, a); }
-  friend Rounded tan(Rounded a) { return from_exact(Op::tan, a); }
-  friend Rounded asin(Rounded a) { return from_exact(Op::asin, a); }
-  friend Rounded acos(Rounded a) { return from_exact(Op::acos, a); }
-  friend Rounded atan2(Rounded a, Rounded b) { return from_exact(Op::atan2, a, b); }
-  friend Rounded exp(Rounded a) { return from_exact(Op::exp, a); }
-  friend Rounded log(Rounded a) { return from_exact(Op::log, a); }
-  friend Rounded tanh(Rounded a) { return from_exact(Op::tanh, a); }
+  friend Rounded sin(Rounded a) { return Rounded(remembered(Op::sin, a).rounded); }
+  friend Rounded cos(Rounded a) { return Rounded(remembered(Op::cos, a).rounded); }
+  friend Rounded tan(Rounded a) { return Rounded(from_exact(Op::tan, a).rounded); }
+  friend Rounded asin(Rounded a) { return Rounded(from_exact(Op::asin, a).rounded); }
+  friend Rounded acos(Rounded a) { return Rounded(from_exact(Op::acos, a).rounded); }
+  friend Rounded atan2(Rounded a, Rounded b) { return Rounded(from_exact(Op::atan2, a, b).rounded); }
+  friend Rounded exp(Rounded a) { return Rounded(from_exact(Op::exp, a).rounded); }
+  friend Rounded log(Rounded a) { return Rounded(from_exact(Op::log, a).rounded); }
+  friend Rounded tanh(Rounded a) { return Rounded(from_exact(Op::tanh, a).rounded); }
   friend Rounded sum_error(Rounded a, Rounded b) { return Rounded(sum_error(a.x, b.x)); }
   friend Rounded product_error(Rounded a, Rounded b) { return Rounded(product_error(a.x, b.x)); }
   friend Rounded quotient_error(Rounded a, Rounded b) { return Rounded(quotient_error(a.x, b.x)); }
 
+  /// What y = op(a, b) lacks of the exact value.
+  friend double rounding_error(Op op, Rounded y, Rounded a, Rounded b) {
+    switch (op) {
+      case Op::add:
+        return sum_error(a.x, b.x);
+      case Op::sub:
+        return sum_error(a.x, -b.x);
+      case Op::mul:
+        return product_error(a.x, b.x);
+      case Op::div:
+        return quotient_error(a.x, b.x);
+      case Op::sqrt:
+        return std::fma(-y.x, y.x, a.x) / (2 * y.x);
+      case Op::sin:
+      case Op::cos:
+        return remembered(op, a).rest;
+      case Op::neg:
+      case Op::abs:
+      case Op::sign:
+      case Op::sum_error:  // what the errors of errors bring is of second order
+      case Op::product_error:
+      case Op::quotient_error:
+        return 0;
+      default:
+        return from_exact(op, a, b).rest;
+    }
+  }
+
  private:
+  struct Parts {
+    double rounded, rest;
+  };
   /// The same few angles come in every function of a program.
-  static Rounded remembered(Op op, Rounded a) {
+  static Parts remembered(Op op, Rounded a) {
     constexpr std::size_t most = 1 << 20;
-    thread_local std::unordered_map<std::uint64_t, double> sines, cosines;
+    thread_local std::unordered_map<std::uint64_t, Parts> sines, cosines;
     auto& known = op == Op::sin ? sines : cosines;
     if (known.size() > most) known.clear();
     const auto [place, is_new] = known.try_emplace(std::bit_cast<std::uint64_t>(a.x));
-    if (is_new) place->second = from_exact(op, a).x;
-    return Rounded(place->second);
+    if (is_new) place->second = from_exact(op, a);
+    return place->second;
   }
-  static Rounded from_exact(Op op, Rounded a, Rounded b = Rounded()) {
-    if (!std::isfinite(a.x) || !std::isfinite(b.x)) return Rounded(std::numeric_limits<double>::quiet_NaN());
+  static Parts from_exact(Op op, Rounded a, Rounded b = Rounded()) {
+    constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(a.x) || !std::isfinite(b.x)) return {nan, nan};
     try {
-      return Rounded(apply(op, Exact::from_double(a.x), Exact::from_double(b.x)).to_double());
+      const Exact y = apply(op, Exact::from_double(a.x), Exact::from_double(b.x));
+      const double rounded = y.to_double();
+      return {rounded, (y - Exact::from_double(rounded)).to_double()};
     } catch (const std::domain_error&) {
-      return Rounded(std::numeric_limits<double>::quiet_NaN());
+      return {nan, nan};
     }
   }
 };

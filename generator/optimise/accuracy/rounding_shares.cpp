@@ -6,89 +6,134 @@
 #include <limits>
 
 #include "optimise/accuracy/choice.hpp"
+#include "optimise/accuracy/compensation.hpp"
 #include "optimise/accuracy/natural_scale.hpp"
 #include "optimise/accuracy/rounded.hpp"
-#include "reduce/samples.hpp"
 #include "tape/derivative.hpp"
 
 namespace anholon {
 namespace {
 
-/// The operations that some outputs need, with their values and derivatives at one state.
+/// The operations that some outputs need, with their values, derivatives and errors at one state.
 class Evaluation {
  public:
   Evaluation(const Tape& tape, const std::vector<NodeId>& roots)
-      : tape_(&tape), nodes_(tape.reachable(roots)), slot_(tape.size(), 0) {
+      : nodes_(tape.reachable(roots)), slot_(tape.size(), 0), steps_(nodes_.size()) {
     const WorkingDigits precision(rounded_digits);
-    for (const NodeId id : nodes_) {
-      slot_[id] = static_cast<std::uint32_t>(values_.size());
-      values_.emplace_back(tape.is_constant(id) ? tape.value(id).to_double() : 0.0);
+    for (std::size_t i = 0; i < nodes_.size(); ++i) {
+      const Node& n = tape.node(nodes_[i]);
+      slot_[nodes_[i]] = static_cast<std::uint32_t>(i);
+      Step& step = steps_[i];
+      step.op = n.op;
+      step.arity = info(n.op).arity;
+      step.a = step.arity > 0 ? slot_[n.a] : n.a;  // of an input: which
+      step.b = step.arity > 1 ? slot_[n.b] : 0;
+      if (n.op != Op::constant) continue;
+      step.value = tape.value(nodes_[i]).to_double();
+      step.lost = (tape.value(nodes_[i]) - Exact::from_double(step.value)).to_double();
     }
-    partial_.resize(nodes_.size());
     adjoint_.resize(nodes_.size());
   }
 
-  [[nodiscard]] double value(NodeId id) const { return values_[slot_[id]].x; }
+  [[nodiscard]] double value(NodeId id) const { return steps_[slot_[id]].value; }
   [[nodiscard]] const std::vector<NodeId>& nodes() const { return nodes_; }
 
   void run(const std::vector<double>& inputs) {
     const WorkingDigits precision(rounded_digits);
-    for (std::size_t i = 0; i < nodes_.size(); ++i) {
-      const Node& n = tape_->node(nodes_[i]);
-      if (n.op == Op::input) values_[i] = Rounded(inputs[n.a]);
-      const int arity = info(n.op).arity;
-      if (arity == 0) continue;
-      const Rounded a = values_[slot_[n.a]], b = arity == 2 ? values_[slot_[n.b]] : Rounded(0);
-      const Rounded y = values_[i] = apply(n.op, a, b);
-      partial_[i] = {tangent(n.op, y, a, b, Rounded(1), Rounded(0)).x,
-                     arity == 2 ? tangent(n.op, y, a, b, Rounded(0), Rounded(1)).x : 0.0};
+    for (Step& s : steps_) {
+      if (s.arity == 0) {
+        if (s.op == Op::input) s.value = inputs[s.a];
+        continue;
+      }
+      const double a = steps_[s.a].value, b = s.arity == 2 ? steps_[s.b].value : 0.0;
+      switch (s.op) {  // what most operations are, without the detour through Rounded
+        case Op::add:
+          s.set(a + b, sum_error(a, b), 1, 1);
+          break;
+        case Op::sub:
+          s.set(a - b, sum_error(a, -b), 1, -1);
+          break;
+        case Op::mul:
+          s.set(a * b, product_error(a, b), b, a);
+          break;
+        default: {
+          const Rounded ra(a), rb(b), y = apply(s.op, ra, rb);
+          s.set(y.x, rounding_error(s.op, y, ra, rb), tangent(s.op, y, ra, rb, Rounded(1), Rounded(0)).x,
+                s.arity == 2 ? tangent(s.op, y, ra, rb, Rounded(0), Rounded(1)).x : 0.0);
+        }
+      }
     }
   }
 
-  /// Calls visit(node, derivative with respect to it) for all nodes that a sum, weights times roots, depends
-  /// on.
-  template <class Visit>
-  void derivatives_of(const std::vector<std::pair<NodeId, double>>& sum, const Visit& visit) {
-    std::ranges::fill(adjoint_, 0.0);
-    std::size_t last = 0;
-    for (const auto& [root, weight] : sum) {
-      adjoint_[slot_[root]] += weight;
-      last = std::max<std::size_t>(last, slot_[root]);
+  /// Errors of all nodes to first order, from what each operation lost in `run`: in one go for several
+  /// programs.
+  /// @param kept  for each node, of how many programs, the first ones, it is not compensated
+  void carry_errors(const std::vector<std::uint8_t>& kept, std::size_t programs) {
+    errors_.resize(steps_.size() * programs);
+    for (std::size_t i = 0; i < steps_.size(); ++i) {
+      const Step& s = steps_[i];
+      double* const error = &errors_[i * programs];
+      for (std::size_t k = 0; k < programs; ++k) error[k] = k < kept[i] ? s.lost : 0.0;
+      if (s.arity >= 1) add(error, s.by_a, &errors_[s.a * programs], programs);
+      if (s.arity == 2) add(error, s.by_b, &errors_[s.b * programs], programs);
     }
-    for (std::size_t i = last + 1; i-- > 0;) {
+  }
+  [[nodiscard]] double error(NodeId id, std::size_t program, std::size_t programs) const {
+    return errors_[slot_[id] * programs + program];
+  }
+
+  /// Calls visit(node, derivative with respect to it) for all nodes that an output depends on.
+  template <class Visit>
+  void derivatives_of(NodeId output, const Visit& visit) {
+    std::ranges::fill(adjoint_, 0.0);
+    adjoint_[slot_[output]] = 1;
+    for (std::size_t i = slot_[output] + std::size_t{1}; i-- > 0;) {
       if (adjoint_[i] == 0) continue;
       visit(nodes_[i], adjoint_[i]);
-      const Node& n = tape_->node(nodes_[i]);
-      const int arity = info(n.op).arity;
-      if (arity >= 1) adjoint_[slot_[n.a]] += adjoint_[i] * partial_[i].first;
-      if (arity == 2) adjoint_[slot_[n.b]] += adjoint_[i] * partial_[i].second;
+      const Step& s = steps_[i];
+      if (s.arity >= 1) adjoint_[s.a] += adjoint_[i] * s.by_a;
+      if (s.arity == 2) adjoint_[s.b] += adjoint_[i] * s.by_b;
     }
   }
 
  private:
-  const Tape* tape_;
+  struct Step {
+    Op op;
+    int arity;
+    std::uint32_t a, b;
+    double value = 0, lost = 0, by_a = 0, by_b = 0;
+    void set(double y, double error, double derivative_by_a, double derivative_by_b) {
+      value = y, lost = error, by_a = derivative_by_a, by_b = derivative_by_b;
+    }
+  };
+  static void add(double* to, double factor, const double* from, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) to[k] += factor * from[k];
+  }
+
   std::vector<NodeId> nodes_;
   std::vector<std::uint32_t> slot_;
-  std::vector<Rounded> values_;
-  std::vector<std::pair<double, double>> partial_;
-  std::vector<double> adjoint_;
+  std::vector<Step> steps_;
+  std::vector<double> adjoint_, errors_;
 };
 
-/// The natural scale of each block at each state.
-std::vector<std::vector<double>> scales_of(Evaluation& evaluation, const std::vector<OutputBlock>& outputs,
-                                           const std::vector<std::vector<double>>& states,
-                                           std::size_t random) {
-  std::vector<std::vector<double>> scales(outputs.size());
-  for (const std::vector<double>& state : states) {
-    evaluation.run(state);
-    for (std::size_t b = 0; b < outputs.size(); ++b) {
-      double largest = 0;
-      for (const NodeId id : outputs[b].nodes) largest = std::max(largest, std::abs(evaluation.value(id)));
-      scales[b].push_back(largest);
-    }
+double largest_of(const Evaluation& evaluation, const OutputBlock& block) {
+  double largest = 0;
+  for (const NodeId id : block.nodes) largest = std::max(largest, std::abs(evaluation.value(id)));
+  return largest;
+}
+
+/// What one ulp of every input changes in a block, in ulps of its scale.
+double largest_kappa(Evaluation& evaluation, const Tape& tape, const OutputBlock& block, double scale) {
+  double kappa = 0;
+  for (const NodeId root : block.nodes) {
+    double of_inputs = 0;
+    evaluation.derivatives_of(root, [&](NodeId id, double derivative) {
+      const double change = std::abs(derivative * evaluation.value(id)) / scale;
+      if (tape.node(id).op == Op::input && std::isfinite(change)) of_inputs += change;
+    });
+    kappa = std::max(kappa, of_inputs);
   }
-  for (std::vector<double>& of_block : scales) of_block = natural_scales(of_block, random);
-  return scales;
+  return kappa;
 }
 
 double allowance_of(double kappa) { return std::max(1.0, kappa / 5); }
@@ -98,7 +143,12 @@ double allowance_of(double kappa) { return std::max(1.0, kappa / 5); }
 RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>& outputs,
                                const std::vector<std::vector<double>>& states) {
   Evaluation evaluation(tape, roots_of(outputs));
-  const auto scales = scales_of(evaluation, outputs, states, measured_states);
+  std::vector<std::vector<double>> scales(outputs.size());
+  for (const std::vector<double>& state : states) {
+    evaluation.run(state);
+    for (std::size_t b = 0; b < outputs.size(); ++b) scales[b].push_back(largest_of(evaluation, outputs[b]));
+  }
+  for (std::vector<double>& of_block : scales) of_block = natural_scales(of_block, measured_states);
   RoundingShares result{std::vector(tape.size(), 0.0), {}};
   std::vector<double> at_state(tape.size(), 0.0);
   for (std::size_t s = 0; s < states.size(); ++s) {
@@ -108,7 +158,7 @@ RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>&
       double kappa = 0;
       for (const NodeId root : outputs[b].nodes) {
         double of_inputs = 0;
-        evaluation.derivatives_of({{root, 1.0}}, [&](NodeId id, double derivative) {
+        evaluation.derivatives_of(root, [&](NodeId id, double derivative) {
           const double change = std::abs(derivative * evaluation.value(id)) / scales[b][s];
           if (!std::isfinite(change)) return;
           if (tape.node(id).op == Op::input) {
@@ -129,31 +179,56 @@ RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>&
   return result;
 }
 
-std::vector<double> expected_errors(const Tape& tape, const std::vector<OutputBlock>& outputs,
-                                    const std::vector<std::vector<double>>& states) {
+std::vector<std::vector<double>> first_order_errors(const Tape& tape, const std::vector<OutputBlock>& outputs,
+                                                    const std::vector<std::vector<double>>& states,
+                                                    const std::vector<double>& shares,
+                                                    const std::vector<double>& bounds) {
+  constexpr double unquestioned = 5;  // ulps; what the inputs excuse matters beyond it only
+  const std::size_t programs = bounds.size();
   Evaluation evaluation(tape, roots_of(outputs));
-  const auto scales = scales_of(evaluation, outputs, states, states.size());
-  std::vector<double> result;
-  SampleSource signs;
-  for (std::size_t s = 0; s < states.size(); ++s) {
-    evaluation.run(states[s]);
-    double error = 0;
+  std::vector<std::uint8_t> kept;
+  for (const NodeId id : evaluation.nodes()) {
+    const bool is_certain = shares.empty() || !has_known_error(tape.node(id).op);
+    kept.push_back(
+        static_cast<std::uint8_t>(is_certain ? programs : std::ranges::find_if(bounds, [&](double b) {
+                                                            return shares[id] > b;
+                                                          }) - bounds.begin()));
+  }
+  // largest error and entry of each block at each state
+  std::vector<std::vector<std::vector<double>>> errors(programs,
+                                                       std::vector(outputs.size(), std::vector<double>()));
+  std::vector<std::vector<double>> scales(outputs.size());
+  for (const std::vector<double>& state : states) {
+    evaluation.run(state);
+    evaluation.carry_errors(kept, programs);
     for (std::size_t b = 0; b < outputs.size(); ++b) {
-      std::vector<std::pair<NodeId, double>> sum;
-      for (const NodeId id : outputs[b].nodes) sum.emplace_back(id, signs.uniform() < 0.5 ? -1.0 : 1.0);
-      double squares = 0, kappa = 0;
-      evaluation.derivatives_of(sum, [&](NodeId id, double derivative) {
-        const double change = std::abs(derivative * evaluation.value(id)) / scales[b][s];
-        if (!std::isfinite(change)) return;
-        if (tape.node(id).op == Op::input) {
-          kappa += change;
-        } else {
-          squares += change * change / 4;
+      scales[b].push_back(largest_of(evaluation, outputs[b]));
+      for (std::size_t i = 0; i < programs; ++i) {
+        double& largest = errors[i][b].emplace_back(0);
+        for (const NodeId id : outputs[b].nodes) {
+          const double error = std::abs(evaluation.error(id, i, programs));
+          if (std::isfinite(error)) largest = std::max(largest, error);
         }
-      });
-      error = std::max(error, std::sqrt(squares) / allowance_of(kappa));
+      }
     }
-    result.push_back(error);
+  }
+  for (std::vector<double>& of_block : scales) of_block = natural_scales(of_block, states.size());
+  std::vector<std::vector<double>> result(programs, std::vector(states.size(), 0.0));
+  for (std::size_t s = 0; s < states.size(); ++s) {
+    bool has_run = false;
+    for (std::size_t b = 0; b < outputs.size(); ++b) {
+      double allowance = 0;  // once it is needed
+      for (std::size_t i = 0; i < programs; ++i) {
+        double error = errors[i][b][s] / (scales[b][s] * std::numeric_limits<double>::epsilon());
+        if (error > unquestioned) {
+          if (!has_run) evaluation.run(states[s]), has_run = true;
+          if (allowance == 0)
+            allowance = allowance_of(largest_kappa(evaluation, tape, outputs[b], scales[b][s]));
+          error /= allowance;
+        }
+        result[i][s] = std::max(result[i][s], error);
+      }
+    }
   }
   return result;
 }

@@ -27,10 +27,15 @@ struct RoundingShares {
 RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>& outputs,
                                const std::vector<std::vector<double>>& states);
 
-/// About how many ulps of the scale and of the allowance a program loses at each state; the worst block
-/// counts. One sweep a block, over a random sum of its entries, stands for one an entry: enough to tell where
-/// to look.
-std::vector<double> expected_errors(const Tape& tape, const std::vector<OutputBlock>& outputs,
-                                    const std::vector<std::vector<double>>& states);
+/// What a program loses at each state to first order, in ulps of the scale and of the allowance there; the
+/// worst entry counts. What each operation loses there is known, and is carried to the outputs by
+/// derivatives.
+/// @param shares  of each node; empty: nothing is compensated
+/// @param bounds  operations whose share is beyond such a bound are taken to be compensated; in falling order
+/// @return for each bound the errors at each state
+std::vector<std::vector<double>> first_order_errors(const Tape& tape, const std::vector<OutputBlock>& outputs,
+                                                    const std::vector<std::vector<double>>& states,
+                                                    const std::vector<double>& shares = {},
+                                                    const std::vector<double>& bounds = {0});
 
 }  // namespace anholon

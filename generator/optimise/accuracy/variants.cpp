@@ -40,39 +40,54 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
 
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
                      OptimiseFor mode, const MeasuredStates& at, std::size_t derived) {
-  constexpr double root_of_two = 1.4142135623730951, least_share = 0.5;
+  constexpr double root_of_two = 1.4142135623730951, least_share = 0.35;
   constexpr std::size_t steps = 4;     // over which a bound falls to a quarter,
   constexpr double improvement = 1.5;  // and the error by this much, or the inputs' own rounding is reached
   measure(tape, candidates, at);
-  const double bound = mode == OptimiseFor::accuracy ? tolerated_ulps / 4 : at.tolerated;
-  const auto is_enough = [&](const RoundingError& e) { return e.excess <= bound; };
-  if (std::ranges::any_of(candidates, is_enough, &Candidate::error)) return;
-  std::vector<Candidate> plain(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(derived));
+  const auto is_enough = [&](const Candidate& c) {
+    return mode == OptimiseFor::accuracy ? c.error.excess <= tolerated_ulps / 4
+                                         : c.worst_to_expect() <= allowed_ulps;
+  };
+  if (std::ranges::any_of(candidates, is_enough)) return;
+  std::vector<double> bounds;
+  for (double bound = tolerated_ulps; bound > least_share; bound /= root_of_two) bounds.push_back(bound);
+  std::vector<Candidate> plain;
+  for (std::size_t i = 0; i < derived; ++i) {
+    const Candidate& c = candidates[i];
+    if (c.route == i || c.error.excess * improvement < candidates[c.route].error.excess) plain.push_back(c);
+  }
   std::ranges::stable_sort(plain, {}, &Candidate::operations);
   std::set<std::vector<NodeId>> seen;
-  int shortest = std::numeric_limits<int>::max();  // of those that are within the bound
+  int shortest = std::numeric_limits<int>::max();  // of those that are enough
   for (const Candidate& from : plain) {
     const std::vector<NodeId> roots = roots_of(from.outputs);
     if (!seen.insert(roots).second) continue;
     const std::vector<double> shares = rounding_shares(tape, from.outputs, at.states).of_node;
-    std::vector<double> errors = {from.error.excess};
-    for (double tolerated = bound; tolerated > least_share / root_of_two; tolerated /= root_of_two) {
-      const auto rest_kept = compensated(tape, roots, shares, tolerated);
-      if (!rest_kept || seen.contains(*rest_kept)) continue;
-      seen.insert(*rest_kept);
+    const auto errors_at = [&](const States& states) {
+      return first_order_errors(tape, from.outputs, states, shares, bounds);
+    };
+    const std::vector<Outlook> outlooks =
+        at.estimated.empty() ? outlooks_of(errors_at(at.states)) : at.estimated.outlooks(errors_at);
+    std::vector<double> worst = {from.worst_to_expect()};
+    for (std::size_t i = 0; i < bounds.size(); ++i) {
+      const bool is_promising = mode == OptimiseFor::accuracy || outlooks[i].worst() <= allowed_ulps;
+      if (!is_promising && i + 1 < bounds.size()) continue;
+      const auto rest_kept = compensated(tape, roots, shares, bounds[i]);
+      if (!rest_kept || !seen.insert(*rest_kept).second) continue;
       std::vector<Candidate> next = {{fmt::format("{}{}compensated beyond {:.2g} ulps", from.name,
-                                                  from.name.empty() ? "" : ", ", tolerated),
+                                                  from.name.empty() ? "" : ", ", bounds[i]),
                                       with_roots(from.outputs, *rest_kept),
                                       operations_per_call(tape, *rest_kept, parameters).total(), from.route}};
       if (next[0].operations >= shortest) break;
+      next[0].outlook = outlooks[i];
       measure(tape, next, at);
-      errors.push_back(next[0].error.excess);
+      worst.push_back(next[0].worst_to_expect());
       candidates.push_back(next[0]);
-      if (is_enough(next[0].error)) {
+      if (is_enough(next[0])) {
         shortest = next[0].operations;
         break;
       }
-      if (errors.size() > steps && !(errors.back() * improvement < errors[errors.size() - 1 - steps])) break;
+      if (worst.size() > steps && !(worst.back() * improvement < worst[worst.size() - 1 - steps])) break;
     }
   }
 }
