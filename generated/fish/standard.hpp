@@ -14,7 +14,7 @@
 //   free_dynamics             459 add, 575 mul, 7 neg, 6 sin, 6 cos, 16 other
 //   reduced_dynamics          374 add, 494 mul, 4 neg, 6 sin, 6 cos, 16 other
 //   split_dynamics            399 add, 529 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
-//   forward_dynamics          417 add, 571 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
+//   forward_dynamics          396 add, 526 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
 //   inverse_torques           179 add, 264 mul, 6 sin, 6 cos, 12 other
 //   torque_driven_kinematics  none
 //   torque_driven_velocities  none
@@ -4418,8 +4418,8 @@ inline void split_dynamics(const Prepared<Real>& par,
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: modes first
-/// operations: 417 add, 571 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
+/// route: projected recursion
+/// operations: 396 add, 526 mul, 4 div, 1 neg, 6 sin, 6 cos, 16 other
 /// @param[in]  par         made by prepare()
 /// @param[in]  r_p         (1) rad or m: e1
 /// @param[in]  r_a         (3) rad or m: r1, r2, r3
@@ -4576,1152 +4576,1044 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fin_section_2: joint force
   const Real t88 = t87 * t2;
-  const Real t89 = t29 * t88;
-  const Real t90 = t87 * t3;
-  const Real t91 = constant<Real>(0.710077701790478711739L) * t90;
-  const Real t92 = t89 + t91;
-  const Real t93 = t83 + t92;
+  const Real t89 = t85 - t88;
+  const Real t90 = t29 * t88;
+  const Real t91 = t87 * t3;
+  const Real t92 = constant<Real>(0.710077701790478711739L) * t91;
+  const Real t93 = t90 + t92;
+  const Real t94 = t83 + t93;
+  const Real t95 = t91 + t84;
+  const Real t96 = t28 * t88;
+  const Real t97 = t31 * t91;
+  const Real t98 = t96 + t97;
+  const Real t99 = t80 + t98;
 
   // fin_section_1: joint force
-  const Real t94 = t9 * t86;
-  const Real t95 = constant<Real>(0.0709020735931204697442L) * t94;
-  const Real t96 = t86 * t8;
-  const Real t97 = t96 * t25;
-  const Real t98 = t95 + t97;
-  const Real t99 = t93 + t98;
+  const Real t100 = t86 * t8;
+  const Real t101 = t100 * t24;
+  const Real t102 = t9 * t86;
+  const Real t103 = t102 * t27;
+  const Real t104 = t101 + t103;
+  const Real t105 = t104 + t99;
+  const Real t106 = constant<Real>(0.0709020735931204697442L) * t102;
+  const Real t107 = t100 * t25;
+  const Real t108 = t106 + t107;
+  const Real t109 = t94 + t108;
+  const Real t110 = t102 + t95;
+
+  // fin: joint force
+  const Real t111 = t75 + t110;
+  const Real t112 = t110 * par.l3;
+  const Real t113 = t105 + t112;
+  const Real t114 = t77 + t113;
+  const Real t115 = t100 - t89;
+  const Real t116 = t72 + t115;
+
+  // peduncle: joint force
+  const Real t117 = t111 * s_r_a_2_;
+  const Real t118 = t116 * c_r_a_2_;
+  const Real t119 = t117 + t118;
+  const Real t120 = t119 + t66;
+  const Real t121 = t116 * s_r_a_2_;
+  const Real t122 = t111 * c_r_a_2_;
+  const Real t123 = t121 - t122;
+  const Real t124 = t123 - t68;
+  const Real t125 = par.l2 * t123;
+  const Real t126 = t114 - t125;
+  const Real t127 = t126 + t70;
+
+  // rear: joint force
+  const Real t128 = c_r_a_1_ * t120;
+  const Real t129 = t124 * s_r_a_1_;
+  const Real t130 = t128 - t129;
+  const Real t131 = t130 + t58;
+  const Real t132 = c_r_a_1_ * t124;
+  const Real t133 = t120 * s_r_a_1_;
+  const Real t134 = t132 + t133;
+  const Real t135 = t134 - t63;
+  const Real t136 = t134 * par.l1;
+  const Real t137 = t127 - t136;
+  const Real t138 = t61 + t137;
+
+  // trunk: joint force
+  const Real t139 = t135 * c_r_a_0_;
+  const Real t140 = t131 * s_r_a_0_;
+  const Real t141 = t139 + t140;
+  const Real t142 = par.k8 * t141;
+  const Real t143 = t138 - t142;
+  const Real t144 = t131 * c_r_a_0_;
+  const Real t145 = s_r_a_0_ * t135;
+  const Real t146 = t144 - t145;
+  const Real t147 = t146 + par.k54;
 
   // trunk: wrench
-  const Real t100 = par.k2 * c_r_a_0_;
+  const Real t148 = par.k2 * c_r_a_0_;
 
   // trunk: wrench of the fluid
-  const Real t101 = c_r_a_0_ * par.k49;
-  const Real t102 = t101 + t100;
-  const Real t103 = par.k12 * c_r_a_0_;
-  const Real t104 = t58 + t103;
+  const Real t149 = c_r_a_0_ * par.k49;
+  const Real t150 = t149 + t148;
+  const Real t151 = par.k12 * c_r_a_0_;
+  const Real t152 = t58 + t151;
 
   // rear: wrench
-  const Real t105 = par.k30 * t34;
+  const Real t153 = par.k30 * t34;
 
   // rear: wrench of the fluid
-  const Real t106 = t34 * par.k43;
-  const Real t107 = t105 + t106;
-  const Real t108 = t34 * par.k53;
-  const Real t109 = t108 + t66;
+  const Real t154 = t34 * par.k43;
+  const Real t155 = t153 + t154;
+  const Real t156 = t34 * par.k53;
+  const Real t157 = t156 + t66;
 
   // peduncle: wrench
-  const Real t110 = t43 * par.k37;
+  const Real t158 = t43 * par.k37;
 
   // peduncle: wrench of the fluid
-  const Real t111 = par.k31 * t43;
-  const Real t112 = t111 + t72;
-  const Real t113 = par.k29 * t43;
-  const Real t114 = t110 + t113;
+  const Real t159 = par.k31 * t43;
+  const Real t160 = t159 + t72;
+  const Real t161 = par.k29 * t43;
+  const Real t162 = t158 + t161;
 
   // fin: wrench
-  const Real t115 = par.k41 * t44;
-  const Real t116 = t16 * t40;
-  const Real t117 = t115 + t116;
-  const Real t118 = t10 * t40;
-  const Real t119 = t19 * t44;
-  const Real t120 = t118 + t119;
+  const Real t163 = par.k41 * t44;
+  const Real t164 = t16 * t40;
+  const Real t165 = t163 + t164;
+  const Real t166 = t10 * t40;
+  const Real t167 = t19 * t44;
+  const Real t168 = t166 + t167;
 
   // fin_section_1: wrench of the fluid
-  const Real t121 = par.k4 * t47;
+  const Real t169 = par.k4 * t47;
 
   // fin_section_2: wrench of the fluid
-  const Real t122 = par.k4 * t56;
+  const Real t170 = par.k4 * t56;
 
   // fin_section_2: joint force
-  const Real t123 = t122 * t3;
-  const Real t124 = constant<Real>(0.710077701790478711739L) * t123;
-  const Real t125 = t122 * t2;
-  const Real t126 = t125 * t29;
-  const Real t127 = t124 + t126;
-  const Real t128 = t117 + t127;
+  const Real t171 = t170 * t3;
+  const Real t172 = t171 + t85;
+  const Real t173 = t170 * t2;
+  const Real t174 = t173 * t28;
+  const Real t175 = t31 * t171;
+  const Real t176 = t174 + t175;
+  const Real t177 = t176 + t168;
+  const Real t178 = constant<Real>(0.710077701790478711739L) * t171;
+  const Real t179 = t173 * t29;
+  const Real t180 = t178 + t179;
+  const Real t181 = t165 + t180;
+  const Real t182 = t173 + t84;
 
   // fin_section_1: joint force
-  const Real t129 = t121 * t9;
-  const Real t130 = constant<Real>(0.0709020735931204697442L) * t129;
-  const Real t131 = t121 * t8;
-  const Real t132 = t25 * t131;
-  const Real t133 = t130 + t132;
-  const Real t134 = t133 + t128;
+  const Real t183 = t169 * t9;
+  const Real t184 = t172 + t183;
+  const Real t185 = t169 * t8;
+  const Real t186 = t24 * t185;
+  const Real t187 = t183 * t27;
+  const Real t188 = t186 + t187;
+  const Real t189 = t188 + t177;
+  const Real t190 = constant<Real>(0.0709020735931204697442L) * t183;
+  const Real t191 = t25 * t185;
+  const Real t192 = t190 + t191;
+  const Real t193 = t192 + t181;
+  const Real t194 = t185 + t182;
+
+  // fin: joint force
+  const Real t195 = t73 + t194;
+  const Real t196 = t184 * par.l3;
+  const Real t197 = t189 + t196;
+  const Real t198 = t197 - t162;
+  const Real t199 = t160 - t184;
+
+  // peduncle: joint force
+  const Real t200 = t195 * c_r_a_2_;
+  const Real t201 = t199 * s_r_a_2_;
+  const Real t202 = t200 - t201;
+  const Real t203 = t64 + t202;
+  const Real t204 = t199 * c_r_a_2_;
+  const Real t205 = t195 * s_r_a_2_;
+  const Real t206 = t204 + t205;
+  const Real t207 = t206 + t157;
+  const Real t208 = par.l2 * t206;
+  const Real t209 = t198 - t208;
+  const Real t210 = t209 - t155;
+
+  // rear: joint force
+  const Real t211 = c_r_a_1_ * t207;
+  const Real t212 = t203 * s_r_a_1_;
+  const Real t213 = t211 + t212;
+  const Real t214 = par.l1 * t213;
+  const Real t215 = t210 - t214;
+  const Real t216 = t215 - t150;
+  const Real t217 = t213 + t152;
+  const Real t218 = t203 * c_r_a_1_;
+  const Real t219 = t207 * s_r_a_1_;
+  const Real t220 = t218 - t219;
+  const Real t221 = t57 + t220;
+
+  // trunk: joint force
+  const Real t222 = t217 * c_r_a_0_;
+  const Real t223 = s_r_a_0_ * t221;
+  const Real t224 = t222 + t223;
+  const Real t225 = par.k55 + t224;
+  const Real t226 = par.k8 * t224;
+  const Real t227 = t216 - t226;
 
   // trunk: acceleration
-  const Real t135 = par.k8 * c_r_a_0_;
-  const Real t136 = par.k8 * s_r_a_0_;
+  const Real t228 = par.k8 * c_r_a_0_;
+  const Real t229 = par.k8 * s_r_a_0_;
 
   // rear: acceleration
-  const Real t137 = t136 * s_r_a_1_;
-  const Real t138 = t135 + par.l1;
-  const Real t139 = c_r_a_1_ * t138;
-  const Real t140 = t137 - t139;
-  const Real t141 = c_r_a_1_ * t136;
-  const Real t142 = t138 * s_r_a_1_;
-  const Real t143 = t141 + t142;
+  const Real t230 = t229 * s_r_a_1_;
+  const Real t231 = t228 + par.l1;
+  const Real t232 = c_r_a_1_ * t231;
+  const Real t233 = t230 - t232;
+  const Real t234 = c_r_a_1_ * t229;
+  const Real t235 = t231 * s_r_a_1_;
+  const Real t236 = t234 + t235;
 
   // peduncle: acceleration
-  const Real t144 = t140 - par.l2;
-  const Real t145 = t144 * c_r_a_2_;
-  const Real t146 = t143 * s_r_a_2_;
-  const Real t147 = t145 + t146;
-  const Real t148 = t144 * s_r_a_2_;
-  const Real t149 = t143 * c_r_a_2_;
-  const Real t150 = t148 - t149;
+  const Real t237 = t233 - par.l2;
+  const Real t238 = t237 * c_r_a_2_;
+  const Real t239 = t236 * s_r_a_2_;
+  const Real t240 = t238 + t239;
+  const Real t241 = t237 * s_r_a_2_;
+  const Real t242 = t236 * c_r_a_2_;
+  const Real t243 = t241 - t242;
 
   // fin: acceleration
-  const Real t151 = par.l3 - t147;
-  const Real t152 = t149 - t148;
+  const Real t244 = par.l3 - t240;
+  const Real t245 = t242 - t241;
 
   // fin_section_1: acceleration
-  const Real t153 = t151 + t27;
-  const Real t154 = t153 * t9;
-  const Real t155 = t152 - t24;
-  const Real t156 = t155 * t8;
-  const Real t157 = t154 - t156;
+  const Real t246 = t244 + t27;
+  const Real t247 = t246 * t9;
+  const Real t248 = t245 - t24;
+  const Real t249 = t248 * t8;
+  const Real t250 = t247 - t249;
 
   // fin_section_2: acceleration
-  const Real t158 = t151 + t31;
-  const Real t159 = t158 * t3;
-  const Real t160 = t152 - t28;
-  const Real t161 = t160 * t2;
-  const Real t162 = t159 - t161;
+  const Real t251 = t244 + t31;
+  const Real t252 = t251 * t3;
+  const Real t253 = t245 - t28;
+  const Real t254 = t253 * t2;
+  const Real t255 = t252 - t254;
 
   // trunk: wrench
-  const Real t163 = t136 * par.k1;
-  const Real t164 = par.k2 * t135;
-  const Real t165 = t164 + par.k42;
-  const Real t166 = t135 * par.k1;
-  const Real t167 = par.k2 + t166;
+  const Real t256 = t229 * par.k1;
+  const Real t257 = par.k2 * t228;
+  const Real t258 = t257 + par.k42;
+  const Real t259 = t228 * par.k1;
+  const Real t260 = par.k2 + t259;
 
   // trunk: wrench of the fluid
-  const Real t168 = t135 * par.k49;
-  const Real t169 = t168 + par.k40;
-  const Real t170 = t165 + t169;
-  const Real t171 = t135 * par.k12;
-  const Real t172 = t171 + par.k49;
-  const Real t173 = t172 + t167;
+  const Real t261 = t228 * par.k49;
+  const Real t262 = t261 + par.k40;
+  const Real t263 = t258 + t262;
+  const Real t264 = t228 * par.k12;
+  const Real t265 = t264 + par.k49;
+  const Real t266 = t265 + t260;
 
   // rear: wrench
-  const Real t174 = t140 * par.k22;
-  const Real t175 = t174 - par.k30;
-  const Real t176 = t140 * par.k30;
-  const Real t177 = par.k23 - t176;
-  const Real t178 = par.k22 * t143;
+  const Real t267 = t233 * par.k22;
+  const Real t268 = t267 - par.k30;
+  const Real t269 = t233 * par.k30;
+  const Real t270 = par.k23 - t269;
+  const Real t271 = par.k22 * t236;
 
   // rear: wrench of the fluid
-  const Real t179 = t140 * par.k53;
-  const Real t180 = t179 - par.k43;
-  const Real t181 = t175 + t180;
-  const Real t182 = t140 * par.k43;
-  const Real t183 = par.k36 - t182;
-  const Real t184 = t177 + t183;
+  const Real t272 = t233 * par.k53;
+  const Real t273 = t272 - par.k43;
+  const Real t274 = t268 + t273;
+  const Real t275 = t233 * par.k43;
+  const Real t276 = par.k36 - t275;
+  const Real t277 = t270 + t276;
 
   // peduncle: wrench
-  const Real t185 = t147 * par.k37;
-  const Real t186 = par.k19 - t185;
-  const Real t187 = par.k18 * t147;
-  const Real t188 = t187 - par.k37;
-  const Real t189 = par.k18 * t150;
+  const Real t278 = t240 * par.k37;
+  const Real t279 = par.k19 - t278;
+  const Real t280 = par.k18 * t240;
+  const Real t281 = t280 - par.k37;
+  const Real t282 = par.k18 * t243;
 
   // peduncle: wrench of the fluid
-  const Real t190 = par.k31 * t147;
-  const Real t191 = t190 - par.k29;
-  const Real t192 = t191 + t188;
-  const Real t193 = par.k29 * t147;
-  const Real t194 = par.k45 - t193;
-  const Real t195 = t186 + t194;
+  const Real t283 = par.k31 * t240;
+  const Real t284 = t283 - par.k29;
+  const Real t285 = t284 + t281;
+  const Real t286 = par.k29 * t240;
+  const Real t287 = par.k45 - t286;
+  const Real t288 = t279 + t287;
 
   // fin: wrench
-  const Real t196 = t151 * t19;
-  const Real t197 = t10 * t152;
-  const Real t198 = t196 - t197;
-  const Real t199 = t15 + t198;
-  const Real t200 = par.k6 * t152;
-  const Real t201 = t200 - t10;
-  const Real t202 = t151 * par.k41;
-  const Real t203 = t16 * t152;
-  const Real t204 = t202 - t203;
-  const Real t205 = par.k47 + t204;
-  const Real t206 = t151 * par.k6;
-  const Real t207 = t206 + t19;
+  const Real t289 = t244 * t19;
+  const Real t290 = t10 * t245;
+  const Real t291 = t289 - t290;
+  const Real t292 = t15 + t291;
+  const Real t293 = par.k6 * t245;
+  const Real t294 = t293 - t10;
+  const Real t295 = t244 * par.k41;
+  const Real t296 = t16 * t245;
+  const Real t297 = t295 - t296;
+  const Real t298 = par.k47 + t297;
+  const Real t299 = t244 * par.k6;
+  const Real t300 = t299 + t19;
 
   // fin_section_1: wrench of the fluid
-  const Real t208 = par.k4 * t157;
+  const Real t301 = par.k4 * t250;
 
   // fin_section_2: wrench of the fluid
-  const Real t209 = par.k4 * t162;
+  const Real t302 = par.k4 * t255;
 
   // fin_section_2: joint force
-  const Real t210 = t209 * t3;
-  const Real t211 = constant<Real>(0.710077701790478711739L) * t210;
-  const Real t212 = t209 * t2;
-  const Real t213 = t29 * t212;
-  const Real t214 = t211 + t213;
-  const Real t215 = t214 + t205;
+  const Real t303 = t302 * t3;
+  const Real t304 = t303 + t300;
+  const Real t305 = constant<Real>(0.710077701790478711739L) * t303;
+  const Real t306 = t302 * t2;
+  const Real t307 = t29 * t306;
+  const Real t308 = t305 + t307;
+  const Real t309 = t308 + t298;
+  const Real t310 = t303 * t31;
+  const Real t311 = t28 * t306;
+  const Real t312 = t310 + t311;
+  const Real t313 = t292 + t312;
+  const Real t314 = t294 - t306;
 
   // fin_section_1: joint force
-  const Real t216 = t208 * t9;
-  const Real t217 = constant<Real>(0.0709020735931204697442L) * t216;
-  const Real t218 = t208 * t8;
-  const Real t219 = t218 * t25;
-  const Real t220 = t217 + t219;
-  const Real t221 = t215 + t220;
+  const Real t315 = t301 * t9;
+  const Real t316 = t304 + t315;
+  const Real t317 = constant<Real>(0.0709020735931204697442L) * t315;
+  const Real t318 = t301 * t8;
+  const Real t319 = t318 * t25;
+  const Real t320 = t317 + t319;
+  const Real t321 = t309 + t320;
+  const Real t322 = t318 * t24;
+  const Real t323 = t27 * t315;
+  const Real t324 = t322 + t323;
+  const Real t325 = t324 + t313;
+
+  // fin: joint force
+  const Real t326 = t285 - t316;
+  const Real t327 = t316 * par.l3;
+  const Real t328 = t327 + t325;
+  const Real t329 = t328 + t288;
+  const Real t330 = t318 - t314;
+  const Real t331 = t330 + t282;
+
+  // peduncle: joint force
+  const Real t332 = t331 * c_r_a_2_;
+  const Real t333 = t326 * s_r_a_2_;
+  const Real t334 = t332 - t333;
+  const Real t335 = t334 - t271;
+  const Real t336 = t326 * c_r_a_2_;
+  const Real t337 = t331 * s_r_a_2_;
+  const Real t338 = t336 + t337;
+  const Real t339 = par.l2 * t338;
+  const Real t340 = t329 - t339;
+  const Real t341 = t340 + t277;
+  const Real t342 = t274 + t338;
+
+  // rear: joint force
+  const Real t343 = c_r_a_1_ * t335;
+  const Real t344 = s_r_a_1_ * t342;
+  const Real t345 = t343 - t344;
+  const Real t346 = t345 - t256;
+  const Real t347 = t335 * s_r_a_1_;
+  const Real t348 = c_r_a_1_ * t342;
+  const Real t349 = t347 + t348;
+  const Real t350 = t349 - t266;
+  const Real t351 = par.l1 * t349;
+  const Real t352 = t341 - t351;
+  const Real t353 = t263 + t352;
+
+  // trunk: joint force
+  const Real t354 = t346 * s_r_a_0_;
+  const Real t355 = t350 * c_r_a_0_;
+  const Real t356 = t354 + t355;
+  const Real t357 = par.k8 * t356;
+  const Real t358 = t353 - t357;
+  const Real t359 = t358 + par.k56;
 
   // fin_section_1: acceleration
-  const Real t222 = t25 * t8;
-  const Real t223 = constant<Real>(0.0709020735931204697442L) * t9;
-  const Real t224 = t222 + t223;
+  const Real t360 = t25 * t8;
+  const Real t361 = constant<Real>(0.0709020735931204697442L) * t9;
+  const Real t362 = t360 + t361;
 
   // fin_section_2: acceleration
-  const Real t225 = t29 * t2;
-  const Real t226 = constant<Real>(0.710077701790478711739L) * t3;
-  const Real t227 = t225 + t226;
+  const Real t363 = t29 * t2;
+  const Real t364 = constant<Real>(0.710077701790478711739L) * t3;
+  const Real t365 = t363 + t364;
 
   // fin_section_1: wrench of the fluid
-  const Real t228 = par.k4 * t224;
+  const Real t366 = par.k4 * t362;
 
   // fin_section_2: wrench of the fluid
-  const Real t229 = par.k4 * t227;
+  const Real t367 = par.k4 * t365;
 
   // fin_section_2: joint force
-  const Real t230 = t229 * t3;
-  const Real t231 = constant<Real>(0.710077701790478711739L) * t230;
-  const Real t232 = t229 * t2;
-  const Real t233 = t29 * t232;
-  const Real t234 = t231 + t233;
-  const Real t235 = par.k44 + t234;
+  const Real t368 = t367 * t3;
+  const Real t369 = constant<Real>(0.710077701790478711739L) * t368;
+  const Real t370 = t367 * t2;
+  const Real t371 = t29 * t370;
+  const Real t372 = t369 + t371;
+  const Real t373 = par.k44 + t372;
 
   // fin_section_1: joint force
-  const Real t236 = t9 * t228;
-  const Real t237 = constant<Real>(0.0709020735931204697442L) * t236;
-  const Real t238 = t228 * t8;
-  const Real t239 = t238 * t25;
-  const Real t240 = t237 + t239;
-  const Real t241 = t240 + t235;
+  const Real t374 = t9 * t366;
+  const Real t375 = constant<Real>(0.0709020735931204697442L) * t374;
+  const Real t376 = t366 * t8;
+  const Real t377 = t376 * t25;
+  const Real t378 = t375 + t377;
+  const Real t379 = t378 + t373;
 
   // springs, dampers and generalised forces
-  const Real t242 = r_p[0] * constant<Real>(2.0L);
-  const Real t243 = t242 * par.k72;
+  const Real t380 = r_p[0] * constant<Real>(2.0L);
+  const Real t381 = t380 * par.k72;
 
   // trunk: twist
-  const Real t244 = r_a_dot[0] + nu[2];
-  const Real t245 = par.k8 * nu[2];
-  const Real t246 = nu[1] - t245;
-  const Real t247 = c_r_a_0_ * t246;
-  const Real t248 = s_r_a_0_ * nu[0];
-  const Real t249 = t247 - t248;
-  const Real t250 = s_r_a_0_ * t246;
-  const Real t251 = c_r_a_0_ * nu[0];
-  const Real t252 = t250 + t251;
+  const Real t382 = r_a_dot[0] + nu[2];
+  const Real t383 = par.k8 * nu[2];
+  const Real t384 = nu[1] - t383;
+  const Real t385 = c_r_a_0_ * t384;
+  const Real t386 = s_r_a_0_ * nu[0];
+  const Real t387 = t385 - t386;
+  const Real t388 = s_r_a_0_ * t384;
+  const Real t389 = c_r_a_0_ * nu[0];
+  const Real t390 = t388 + t389;
 
   // rear: twist
-  const Real t253 = t244 * par.l1;
-  const Real t254 = t249 - t253;
-  const Real t255 = c_r_a_1_ * t254;
-  const Real t256 = s_r_a_1_ * t252;
-  const Real t257 = t255 - t256;
-  const Real t258 = t244 + r_a_dot[1];
-  const Real t259 = t254 * s_r_a_1_;
-  const Real t260 = c_r_a_1_ * t252;
-  const Real t261 = t259 + t260;
+  const Real t391 = t382 * par.l1;
+  const Real t392 = t387 - t391;
+  const Real t393 = c_r_a_1_ * t392;
+  const Real t394 = s_r_a_1_ * t390;
+  const Real t395 = t393 - t394;
+  const Real t396 = t382 + r_a_dot[1];
+  const Real t397 = t392 * s_r_a_1_;
+  const Real t398 = c_r_a_1_ * t390;
+  const Real t399 = t397 + t398;
 
   // peduncle: twist
-  const Real t262 = c_r_a_2_ * t261;
-  const Real t263 = par.l2 * t258;
-  const Real t264 = t257 - t263;
-  const Real t265 = t264 * s_r_a_2_;
-  const Real t266 = t262 + t265;
-  const Real t267 = t258 + r_a_dot[2];
-  const Real t268 = t264 * c_r_a_2_;
-  const Real t269 = t261 * s_r_a_2_;
-  const Real t270 = t268 - t269;
+  const Real t400 = c_r_a_2_ * t399;
+  const Real t401 = par.l2 * t396;
+  const Real t402 = t395 - t401;
+  const Real t403 = t402 * s_r_a_2_;
+  const Real t404 = t400 + t403;
+  const Real t405 = t396 + r_a_dot[2];
+  const Real t406 = t402 * c_r_a_2_;
+  const Real t407 = t399 * s_r_a_2_;
+  const Real t408 = t406 - t407;
 
   // fin: twist
-  const Real t271 = t267 * par.l3;
-  const Real t272 = t271 - t270;
+  const Real t409 = t405 * par.l3;
+  const Real t410 = t409 - t408;
 
   // fin_tip: twist
-  const Real t273 = t23 * t267;
-  const Real t274 = t273 + t272;
-  const Real t275 = nu[3] + t274;
-  const Real t276 = t275 * t5;
-  const Real t277 = r_p[0] * t267;
-  const Real t278 = t266 + t277;
-  const Real t279 = t20 * nu[3];
-  const Real t280 = t278 + t279;
-  const Real t281 = t280 * t6;
-  const Real t282 = t276 - t281;
-  const Real t283 = t280 * t5;
-  const Real t284 = t6 * t275;
-  const Real t285 = t283 + t284;
+  const Real t411 = t23 * t405;
+  const Real t412 = t411 + t410;
+  const Real t413 = nu[3] + t412;
+  const Real t414 = t413 * t5;
+  const Real t415 = r_p[0] * t405;
+  const Real t416 = t404 + t415;
+  const Real t417 = t20 * nu[3];
+  const Real t418 = t416 + t417;
+  const Real t419 = t418 * t6;
+  const Real t420 = t414 - t419;
+  const Real t421 = t418 * t5;
+  const Real t422 = t6 * t413;
+  const Real t423 = t421 + t422;
 
   // fin_section_1: twist
-  const Real t286 = constant<Real>(0.0709020735931204697442L) * nu[3];
-  const Real t287 = t267 * t27;
-  const Real t288 = t287 + t272;
-  const Real t289 = t286 + t288;
-  const Real t290 = t289 * t8;
-  const Real t291 = t267 * t24;
-  const Real t292 = t266 + t291;
-  const Real t293 = t25 * nu[3];
-  const Real t294 = t292 + t293;
-  const Real t295 = t9 * t294;
-  const Real t296 = t290 - t295;
-  const Real t297 = par.k5 * nu[3];
-  const Real t298 = t297 + t267;
-  const Real t299 = t8 * t294;
-  const Real t300 = t289 * t9;
-  const Real t301 = t299 + t300;
+  const Real t424 = constant<Real>(0.0709020735931204697442L) * nu[3];
+  const Real t425 = t405 * t27;
+  const Real t426 = t425 + t410;
+  const Real t427 = t424 + t426;
+  const Real t428 = t427 * t8;
+  const Real t429 = t405 * t24;
+  const Real t430 = t404 + t429;
+  const Real t431 = t25 * nu[3];
+  const Real t432 = t430 + t431;
+  const Real t433 = t9 * t432;
+  const Real t434 = t428 - t433;
+  const Real t435 = par.k5 * nu[3];
+  const Real t436 = t435 + t405;
+  const Real t437 = t8 * t432;
+  const Real t438 = t427 * t9;
+  const Real t439 = t437 + t438;
 
   // fin_section_2: twist
-  const Real t302 = constant<Real>(0.710077701790478711739L) * nu[3];
-  const Real t303 = t31 * t267;
-  const Real t304 = t303 + t272;
-  const Real t305 = t302 + t304;
-  const Real t306 = t305 * t3;
-  const Real t307 = t28 * t267;
-  const Real t308 = t307 + t266;
-  const Real t309 = t29 * nu[3];
-  const Real t310 = t308 + t309;
-  const Real t311 = t310 * t2;
-  const Real t312 = t306 + t311;
-  const Real t313 = t305 * t2;
-  const Real t314 = t310 * t3;
-  const Real t315 = t313 - t314;
-  const Real t316 = par.k16 * nu[3];
-  const Real t317 = t316 + t267;
+  const Real t440 = constant<Real>(0.710077701790478711739L) * nu[3];
+  const Real t441 = t31 * t405;
+  const Real t442 = t441 + t410;
+  const Real t443 = t440 + t442;
+  const Real t444 = t443 * t3;
+  const Real t445 = t28 * t405;
+  const Real t446 = t445 + t404;
+  const Real t447 = t29 * nu[3];
+  const Real t448 = t446 + t447;
+  const Real t449 = t448 * t2;
+  const Real t450 = t444 + t449;
+  const Real t451 = t443 * t2;
+  const Real t452 = t448 * t3;
+  const Real t453 = t451 - t452;
+  const Real t454 = par.k16 * nu[3];
+  const Real t455 = t454 + t405;
 
   // head: acceleration
-  const Real t318 = nu[2] * nu[2];
-  const Real t319 = nu[1] * nu[2];
-  const Real t320 = nu[0] * nu[2];
+  const Real t456 = nu[2] * nu[2];
+  const Real t457 = nu[1] * nu[2];
+  const Real t458 = nu[0] * nu[2];
 
   // trunk: acceleration
-  const Real t321 = t320 * c_r_a_0_;
-  const Real t322 = par.k8 * t318;
-  const Real t323 = t322 - t319;
-  const Real t324 = s_r_a_0_ * t323;
-  const Real t325 = t321 - t324;
-  const Real t326 = s_r_a_0_ * t320;
-  const Real t327 = t323 * c_r_a_0_;
-  const Real t328 = t326 + t327;
-  const Real t329 = t244 * t244;
+  const Real t459 = t458 * c_r_a_0_;
+  const Real t460 = par.k8 * t456;
+  const Real t461 = t460 - t457;
+  const Real t462 = s_r_a_0_ * t461;
+  const Real t463 = t459 - t462;
+  const Real t464 = s_r_a_0_ * t458;
+  const Real t465 = t461 * c_r_a_0_;
+  const Real t466 = t464 + t465;
+  const Real t467 = t382 * t382;
 
   // rear: acceleration
-  const Real t330 = par.l1 * r_a_ddot[0];
-  const Real t331 = t325 - t330;
-  const Real t332 = c_r_a_1_ * t331;
-  const Real t333 = par.l1 * t329;
-  const Real t334 = t328 + t333;
-  const Real t335 = t334 * s_r_a_1_;
-  const Real t336 = t332 - t335;
-  const Real t337 = c_r_a_1_ * t334;
-  const Real t338 = s_r_a_1_ * t331;
-  const Real t339 = t337 + t338;
-  const Real t340 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t341 = t258 * t258;
+  const Real t468 = par.l1 * r_a_ddot[0];
+  const Real t469 = t463 - t468;
+  const Real t470 = c_r_a_1_ * t469;
+  const Real t471 = par.l1 * t467;
+  const Real t472 = t466 + t471;
+  const Real t473 = t472 * s_r_a_1_;
+  const Real t474 = t470 - t473;
+  const Real t475 = c_r_a_1_ * t472;
+  const Real t476 = s_r_a_1_ * t469;
+  const Real t477 = t475 + t476;
+  const Real t478 = r_a_ddot[1] + r_a_ddot[0];
+  const Real t479 = t396 * t396;
 
   // peduncle: acceleration
-  const Real t342 = r_a_ddot[2] + t340;
-  const Real t343 = t267 * t267;
-  const Real t344 = par.l2 * t341;
-  const Real t345 = t344 + t339;
-  const Real t346 = t345 * c_r_a_2_;
-  const Real t347 = par.l2 * t340;
-  const Real t348 = t336 - t347;
-  const Real t349 = t348 * s_r_a_2_;
-  const Real t350 = t346 + t349;
-  const Real t351 = t348 * c_r_a_2_;
-  const Real t352 = t345 * s_r_a_2_;
-  const Real t353 = t351 - t352;
+  const Real t480 = r_a_ddot[2] + t478;
+  const Real t481 = t405 * t405;
+  const Real t482 = par.l2 * t479;
+  const Real t483 = t482 + t477;
+  const Real t484 = t483 * c_r_a_2_;
+  const Real t485 = par.l2 * t478;
+  const Real t486 = t474 - t485;
+  const Real t487 = t486 * s_r_a_2_;
+  const Real t488 = t484 + t487;
+  const Real t489 = t486 * c_r_a_2_;
+  const Real t490 = t483 * s_r_a_2_;
+  const Real t491 = t489 - t490;
 
   // fin: acceleration
-  const Real t354 = t343 * par.l3;
-  const Real t355 = t354 + t350;
-  const Real t356 = t342 * par.l3;
-  const Real t357 = t356 - t353;
+  const Real t492 = t481 * par.l3;
+  const Real t493 = t492 + t488;
+  const Real t494 = t480 * par.l3;
+  const Real t495 = t494 - t491;
 
   // fin_tip: acceleration
-  const Real t358 = nu[3] * nu[3];
+  const Real t496 = nu[3] * nu[3];
 
   // fin_section_1: acceleration
-  const Real t359 = par.k9 * t358;
-  const Real t360 = t342 * t24;
-  const Real t361 = t343 * t27;
-  const Real t362 = t360 + t361;
-  const Real t363 = t362 + t355;
-  const Real t364 = t267 * t286;
-  const Real t365 = constant<Real>(2.0L) * t364;
-  const Real t366 = t363 + t365;
-  const Real t367 = t359 + t366;
-  const Real t368 = t367 * t8;
-  const Real t369 = t342 * t27;
-  const Real t370 = t343 * t24;
-  const Real t371 = t369 - t370;
-  const Real t372 = t371 + t357;
-  const Real t373 = t293 * t267;
-  const Real t374 = t373 * constant<Real>(2.0L);
-  const Real t375 = t372 - t374;
-  const Real t376 = t9 * t375;
-  const Real t377 = t368 + t376;
+  const Real t497 = par.k9 * t496;
+  const Real t498 = t480 * t24;
+  const Real t499 = t481 * t27;
+  const Real t500 = t498 + t499;
+  const Real t501 = t500 + t493;
+  const Real t502 = t405 * t424;
+  const Real t503 = constant<Real>(2.0L) * t502;
+  const Real t504 = t501 + t503;
+  const Real t505 = t497 + t504;
+  const Real t506 = t505 * t8;
+  const Real t507 = t480 * t27;
+  const Real t508 = t481 * t24;
+  const Real t509 = t507 - t508;
+  const Real t510 = t509 + t495;
+  const Real t511 = t431 * t405;
+  const Real t512 = t511 * constant<Real>(2.0L);
+  const Real t513 = t510 - t512;
+  const Real t514 = t9 * t513;
+  const Real t515 = t506 + t514;
 
   // fin_section_2: acceleration
-  const Real t378 = t342 * t31;
-  const Real t379 = t28 * t343;
-  const Real t380 = t378 - t379;
-  const Real t381 = t380 + t357;
-  const Real t382 = t267 * t309;
-  const Real t383 = t382 * constant<Real>(2.0L);
-  const Real t384 = t381 - t383;
-  const Real t385 = t384 * t3;
-  const Real t386 = t358 * par.k52;
-  const Real t387 = t302 * t267;
-  const Real t388 = t387 * constant<Real>(2.0L);
-  const Real t389 = t31 * t343;
-  const Real t390 = t28 * t342;
-  const Real t391 = t389 + t390;
-  const Real t392 = t391 + t355;
-  const Real t393 = t388 + t392;
-  const Real t394 = t386 + t393;
-  const Real t395 = t394 * t2;
-  const Real t396 = t385 + t395;
+  const Real t516 = t480 * t31;
+  const Real t517 = t28 * t481;
+  const Real t518 = t516 - t517;
+  const Real t519 = t518 + t495;
+  const Real t520 = t405 * t447;
+  const Real t521 = t520 * constant<Real>(2.0L);
+  const Real t522 = t519 - t521;
+  const Real t523 = t522 * t3;
+  const Real t524 = t496 * par.k52;
+  const Real t525 = t440 * t405;
+  const Real t526 = t525 * constant<Real>(2.0L);
+  const Real t527 = t31 * t481;
+  const Real t528 = t28 * t480;
+  const Real t529 = t527 + t528;
+  const Real t530 = t529 + t493;
+  const Real t531 = t526 + t530;
+  const Real t532 = t524 + t531;
+  const Real t533 = t532 * t2;
+  const Real t534 = t523 + t533;
 
   // head: wrench
-  const Real t397 = par.k50 * t319;
-  const Real t398 = par.k50 * t320;
+  const Real t535 = par.k50 * t457;
+  const Real t536 = par.k50 * t458;
 
   // head: wrench of the fluid
-  const Real t399 = par.k15 * nu[1];
-  const Real t400 = t399 * nu[2];
-  const Real t401 = t397 + t400;
-  const Real t402 = par.m_x * nu[0];
-  const Real t403 = t402 * nu[2];
-  const Real t404 = t403 + t398;
-  const Real t405 = t399 * nu[0];
-  const Real t406 = t402 * nu[1];
-  const Real t407 = t405 - t406;
+  const Real t537 = par.k15 * nu[1];
+  const Real t538 = t537 * nu[2];
+  const Real t539 = t535 + t538;
+  const Real t540 = par.m_x * nu[0];
+  const Real t541 = t540 * nu[2];
+  const Real t542 = t541 + t536;
+  const Real t543 = t537 * nu[0];
+  const Real t544 = t540 * nu[1];
+  const Real t545 = t543 - t544;
 
   // trunk: wrench
-  const Real t408 = t325 * par.k1;
-  const Real t409 = par.k2 * r_a_ddot[0];
-  const Real t410 = t408 - t409;
-  const Real t411 = t328 * par.k1;
-  const Real t412 = par.k2 * t329;
-  const Real t413 = t411 + t412;
-  const Real t414 = par.k42 * r_a_ddot[0];
-  const Real t415 = par.k2 * t325;
-  const Real t416 = t414 - t415;
+  const Real t546 = t463 * par.k1;
+  const Real t547 = par.k2 * r_a_ddot[0];
+  const Real t548 = t546 - t547;
+  const Real t549 = t466 * par.k1;
+  const Real t550 = par.k2 * t467;
+  const Real t551 = t549 + t550;
+  const Real t552 = par.k42 * r_a_ddot[0];
+  const Real t553 = par.k2 * t463;
+  const Real t554 = t552 - t553;
 
   // trunk: wrench of the fluid
-  const Real t417 = t244 * t252;
-  const Real t418 = t325 - t417;
-  const Real t419 = par.k12 * t418;
-  const Real t420 = par.k49 * r_a_ddot[0];
-  const Real t421 = t419 - t420;
-  const Real t422 = t410 + t421;
-  const Real t423 = par.k12 * t249;
-  const Real t424 = t244 * par.k49;
-  const Real t425 = t423 - t424;
-  const Real t426 = t425 * t252;
-  const Real t427 = par.k40 * r_a_ddot[0];
-  const Real t428 = t418 * par.k49;
-  const Real t429 = t427 - t428;
-  const Real t430 = t426 + t429;
-  const Real t431 = t430 + t416;
-  const Real t432 = t425 * t244;
-  const Real t433 = t413 - t432;
+  const Real t555 = t382 * t390;
+  const Real t556 = t463 - t555;
+  const Real t557 = par.k12 * t556;
+  const Real t558 = par.k49 * r_a_ddot[0];
+  const Real t559 = t557 - t558;
+  const Real t560 = t548 + t559;
+  const Real t561 = par.k12 * t387;
+  const Real t562 = t382 * par.k49;
+  const Real t563 = t561 - t562;
+  const Real t564 = t563 * t390;
+  const Real t565 = par.k40 * r_a_ddot[0];
+  const Real t566 = t556 * par.k49;
+  const Real t567 = t565 - t566;
+  const Real t568 = t564 + t567;
+  const Real t569 = t568 + t554;
+  const Real t570 = t563 * t382;
+  const Real t571 = t551 - t570;
 
   // rear: wrench
-  const Real t434 = t336 * par.k22;
-  const Real t435 = par.k30 * t340;
-  const Real t436 = t434 - t435;
-  const Real t437 = par.k22 * t339;
-  const Real t438 = par.k30 * t341;
-  const Real t439 = t437 + t438;
-  const Real t440 = par.k23 * t340;
-  const Real t441 = t336 * par.k30;
-  const Real t442 = t440 - t441;
+  const Real t572 = t474 * par.k22;
+  const Real t573 = par.k30 * t478;
+  const Real t574 = t572 - t573;
+  const Real t575 = par.k22 * t477;
+  const Real t576 = par.k30 * t479;
+  const Real t577 = t575 + t576;
+  const Real t578 = par.k23 * t478;
+  const Real t579 = t474 * par.k30;
+  const Real t580 = t578 - t579;
 
   // rear: wrench of the fluid
-  const Real t443 = t257 * par.k53;
-  const Real t444 = t258 * par.k43;
-  const Real t445 = t443 - t444;
-  const Real t446 = t261 * t445;
-  const Real t447 = par.k36 * t340;
-  const Real t448 = t258 * t261;
-  const Real t449 = t336 - t448;
-  const Real t450 = par.k43 * t449;
-  const Real t451 = t447 - t450;
-  const Real t452 = t446 + t451;
-  const Real t453 = t452 + t442;
-  const Real t454 = t449 * par.k53;
-  const Real t455 = par.k43 * t340;
-  const Real t456 = t454 - t455;
-  const Real t457 = t436 + t456;
-  const Real t458 = t258 * t445;
-  const Real t459 = t439 - t458;
+  const Real t581 = t395 * par.k53;
+  const Real t582 = t396 * par.k43;
+  const Real t583 = t581 - t582;
+  const Real t584 = t399 * t583;
+  const Real t585 = par.k36 * t478;
+  const Real t586 = t396 * t399;
+  const Real t587 = t474 - t586;
+  const Real t588 = par.k43 * t587;
+  const Real t589 = t585 - t588;
+  const Real t590 = t584 + t589;
+  const Real t591 = t590 + t580;
+  const Real t592 = t587 * par.k53;
+  const Real t593 = par.k43 * t478;
+  const Real t594 = t592 - t593;
+  const Real t595 = t574 + t594;
+  const Real t596 = t396 * t583;
+  const Real t597 = t577 - t596;
 
   // peduncle: wrench
-  const Real t460 = par.k18 * t353;
-  const Real t461 = t342 * par.k37;
-  const Real t462 = t460 - t461;
-  const Real t463 = par.k19 * t342;
-  const Real t464 = par.k37 * t353;
-  const Real t465 = t463 - t464;
-  const Real t466 = t343 * par.k37;
-  const Real t467 = par.k18 * t350;
-  const Real t468 = t466 + t467;
+  const Real t598 = par.k18 * t491;
+  const Real t599 = t480 * par.k37;
+  const Real t600 = t598 - t599;
+  const Real t601 = par.k19 * t480;
+  const Real t602 = par.k37 * t491;
+  const Real t603 = t601 - t602;
+  const Real t604 = t481 * par.k37;
+  const Real t605 = par.k18 * t488;
+  const Real t606 = t604 + t605;
 
   // peduncle: wrench of the fluid
-  const Real t469 = t342 * par.k45;
-  const Real t470 = t266 * t267;
-  const Real t471 = t353 - t470;
-  const Real t472 = par.k29 * t471;
-  const Real t473 = t469 - t472;
-  const Real t474 = par.k31 * t270;
-  const Real t475 = par.k29 * t267;
-  const Real t476 = t474 - t475;
-  const Real t477 = t266 * t476;
-  const Real t478 = t473 + t477;
-  const Real t479 = t478 + t465;
-  const Real t480 = par.k31 * t471;
-  const Real t481 = t342 * par.k29;
-  const Real t482 = t480 - t481;
-  const Real t483 = t462 + t482;
-  const Real t484 = t476 * t267;
-  const Real t485 = t468 - t484;
+  const Real t607 = t480 * par.k45;
+  const Real t608 = t404 * t405;
+  const Real t609 = t491 - t608;
+  const Real t610 = par.k29 * t609;
+  const Real t611 = t607 - t610;
+  const Real t612 = par.k31 * t408;
+  const Real t613 = par.k29 * t405;
+  const Real t614 = t612 - t613;
+  const Real t615 = t404 * t614;
+  const Real t616 = t611 + t615;
+  const Real t617 = t616 + t603;
+  const Real t618 = par.k31 * t609;
+  const Real t619 = t480 * par.k29;
+  const Real t620 = t618 - t619;
+  const Real t621 = t600 + t620;
+  const Real t622 = t614 * t405;
+  const Real t623 = t606 - t622;
 
   // fin: wrench
-  const Real t486 = t342 * t19;
-  const Real t487 = t10 * t343;
-  const Real t488 = t486 - t487;
-  const Real t489 = par.k6 * t357;
-  const Real t490 = t488 + t489;
-  const Real t491 = t16 * nu[3];
-  const Real t492 = t491 * t267;
-  const Real t493 = t492 * constant<Real>(2.0L);
-  const Real t494 = t490 - t493;
-  const Real t495 = nu[3] * par.k41;
-  const Real t496 = t495 * t267;
-  const Real t497 = t496 * constant<Real>(2.0L);
-  const Real t498 = par.k24 * t358;
-  const Real t499 = t497 + t498;
-  const Real t500 = t355 * par.k6;
-  const Real t501 = t10 * t342;
-  const Real t502 = t343 * t19;
-  const Real t503 = t501 + t502;
-  const Real t504 = t500 + t503;
-  const Real t505 = t499 + t504;
-  const Real t506 = t16 * t355;
-  const Real t507 = par.k41 * t357;
-  const Real t508 = t506 + t507;
-  const Real t509 = t12 * t343;
-  const Real t510 = t508 + t509;
-  const Real t511 = t342 * par.k47;
-  const Real t512 = t510 + t511;
-  const Real t513 = t343 * t11;
-  const Real t514 = t512 - t513;
-  const Real t515 = nu[3] * t11;
-  const Real t516 = t12 * nu[3];
-  const Real t517 = t515 - t516;
-  const Real t518 = t267 * t517;
-  const Real t519 = constant<Real>(2.0L) * t518;
-  const Real t520 = t19 * t357;
-  const Real t521 = t10 * t355;
-  const Real t522 = t520 + t521;
-  const Real t523 = t342 * t15;
-  const Real t524 = t522 + t523;
-  const Real t525 = t519 + t524;
+  const Real t624 = t480 * t19;
+  const Real t625 = t10 * t481;
+  const Real t626 = t624 - t625;
+  const Real t627 = par.k6 * t495;
+  const Real t628 = t626 + t627;
+  const Real t629 = t16 * nu[3];
+  const Real t630 = t629 * t405;
+  const Real t631 = t630 * constant<Real>(2.0L);
+  const Real t632 = t628 - t631;
+  const Real t633 = nu[3] * par.k41;
+  const Real t634 = t633 * t405;
+  const Real t635 = t634 * constant<Real>(2.0L);
+  const Real t636 = par.k24 * t496;
+  const Real t637 = t635 + t636;
+  const Real t638 = t493 * par.k6;
+  const Real t639 = t10 * t480;
+  const Real t640 = t481 * t19;
+  const Real t641 = t639 + t640;
+  const Real t642 = t638 + t641;
+  const Real t643 = t637 + t642;
+  const Real t644 = t16 * t493;
+  const Real t645 = par.k41 * t495;
+  const Real t646 = t644 + t645;
+  const Real t647 = t12 * t481;
+  const Real t648 = t646 + t647;
+  const Real t649 = t480 * par.k47;
+  const Real t650 = t648 + t649;
+  const Real t651 = t481 * t11;
+  const Real t652 = t650 - t651;
+  const Real t653 = nu[3] * t11;
+  const Real t654 = t12 * nu[3];
+  const Real t655 = t653 - t654;
+  const Real t656 = t405 * t655;
+  const Real t657 = constant<Real>(2.0L) * t656;
+  const Real t658 = t19 * t495;
+  const Real t659 = t10 * t493;
+  const Real t660 = t658 + t659;
+  const Real t661 = t480 * t15;
+  const Real t662 = t660 + t661;
+  const Real t663 = t657 + t662;
 
   // fin_section_1: wrench of the fluid
-  const Real t526 = par.k4 * t301;
-  const Real t527 = t296 * t526;
-  const Real t528 = t296 * t298;
-  const Real t529 = t377 - t528;
-  const Real t530 = par.k4 * t529;
-  const Real t531 = t298 * t526;
+  const Real t664 = par.k4 * t439;
+  const Real t665 = t434 * t664;
+  const Real t666 = t434 * t436;
+  const Real t667 = t515 - t666;
+  const Real t668 = par.k4 * t667;
+  const Real t669 = t436 * t664;
 
   // fin_section_2: wrench of the fluid
-  const Real t532 = par.k4 * t312;
-  const Real t533 = t315 * t532;
-  const Real t534 = t532 * t317;
-  const Real t535 = t315 * t317;
-  const Real t536 = t396 - t535;
-  const Real t537 = par.k4 * t536;
+  const Real t670 = par.k4 * t450;
+  const Real t671 = t453 * t670;
+  const Real t672 = t670 * t455;
+  const Real t673 = t453 * t455;
+  const Real t674 = t534 - t673;
+  const Real t675 = par.k4 * t674;
 
   // applied wrenches
-  const Real t538 = abs(t312);
-  const Real t539 = par.k62 * t538;
-  const Real t540 = par.k3 * t539;
-  const Real t541 = t540 * t312;
-  const Real t542 = t541 + t537;
-  const Real t543 = par.k20 * nu[2];
-  const Real t544 = t543 + nu[1];
-  const Real t545 = abs(t544);
-  const Real t546 = t545 * par.k71;
-  const Real t547 = par.k14 * t546;
-  const Real t548 = t544 * t547;
-  const Real t549 = nu[1] - t543;
-  const Real t550 = abs(t549);
-  const Real t551 = t550 * par.k71;
-  const Real t552 = par.k14 * t551;
-  const Real t553 = t549 * t552;
-  const Real t554 = t553 + t404;
-  const Real t555 = t548 + t554;
-  const Real t556 = abs(t296);
-  const Real t557 = t556 * par.k68;
-  const Real t558 = par.k3 * t557;
-  const Real t559 = t296 * t558;
-  const Real t560 = t559 - t531;
-  const Real t561 = t285 * t285;
-  const Real t562 = par.m_w * t561;
-  const Real t563 = constant<Real>(0.5L) * t562;
-  const Real t564 = abs(t266);
-  const Real t565 = par.k63 * t564;
-  const Real t566 = par.k27 * t565;
-  const Real t567 = t266 * t566;
-  const Real t568 = t567 + t485;
-  const Real t569 = t568 + t567;
-  const Real t570 = par.k35 * t258;
-  const Real t571 = t257 - t570;
-  const Real t572 = abs(t571);
-  const Real t573 = par.k65 * t572;
-  const Real t574 = par.k34 * t573;
-  const Real t575 = t574 * t571;
-  const Real t576 = par.k35 * t575;
-  const Real t577 = t453 - t576;
-  const Real t578 = t258 * par.k33;
-  const Real t579 = t257 - t578;
-  const Real t580 = abs(t579);
-  const Real t581 = t580 * par.k65;
-  const Real t582 = t581 * par.k34;
-  const Real t583 = t579 * t582;
-  const Real t584 = par.k33 * t583;
-  const Real t585 = t577 - t584;
-  const Real t586 = par.k28 * t267;
-  const Real t587 = t270 - t586;
-  const Real t588 = abs(t587);
-  const Real t589 = t588 * par.k66;
-  const Real t590 = par.k27 * t589;
-  const Real t591 = t587 * t590;
-  const Real t592 = t591 + t483;
-  const Real t593 = par.k26 * t267;
-  const Real t594 = t270 - t593;
-  const Real t595 = abs(t594);
-  const Real t596 = par.k66 * t595;
-  const Real t597 = t596 * par.k27;
-  const Real t598 = t597 * t594;
-  const Real t599 = t592 + t598;
-  const Real t600 = t244 * par.k38;
-  const Real t601 = t249 - t600;
-  const Real t602 = abs(t601);
-  const Real t603 = t602 * par.k69;
-  const Real t604 = par.k11 * t603;
-  const Real t605 = t604 * t601;
-  const Real t606 = t605 + t422;
-  const Real t607 = t244 * par.k39;
-  const Real t608 = t249 - t607;
-  const Real t609 = abs(t608);
-  const Real t610 = t609 * par.k69;
-  const Real t611 = par.k11 * t610;
-  const Real t612 = t608 * t611;
-  const Real t613 = t606 + t612;
-  const Real t614 = t548 * par.k20;
-  const Real t615 = par.k20 * t553;
-  const Real t616 = t407 - t615;
-  const Real t617 = t614 + t616;
-  const Real t618 = t575 + t457;
-  const Real t619 = t618 + t583;
-  const Real t620 = abs(t261);
-  const Real t621 = par.k67 * t620;
-  const Real t622 = t621 * par.k34;
-  const Real t623 = t622 * t261;
-  const Real t624 = t623 + t459;
-  const Real t625 = t623 + t624;
-  const Real t626 = abs(t315);
-  const Real t627 = par.k68 * t626;
-  const Real t628 = par.k3 * t627;
-  const Real t629 = t315 * t628;
-  const Real t630 = t629 - t534;
-  const Real t631 = par.k28 * t591;
-  const Real t632 = t479 - t631;
-  const Real t633 = par.k26 * t598;
-  const Real t634 = t632 - t633;
-  const Real t635 = abs(t252);
-  const Real t636 = par.k70 * t635;
-  const Real t637 = par.k11 * t636;
-  const Real t638 = t637 * t252;
-  const Real t639 = t638 + t433;
-  const Real t640 = t638 + t639;
-  const Real t641 = abs(t301);
-  const Real t642 = par.k62 * t641;
-  const Real t643 = par.k3 * t642;
-  const Real t644 = t301 * t643;
-  const Real t645 = t530 + t644;
-  const Real t646 = t282 * t285;
-  const Real t647 = t646 * par.m_w;
-  const Real t648 = abs(nu[0]);
-  const Real t649 = par.k64 * t648;
-  const Real t650 = par.k14 * t649;
-  const Real t651 = t650 * nu[0];
-  const Real t652 = t651 - t401;
-  const Real t653 = t652 + t651;
-  const Real t654 = t605 * par.k38;
-  const Real t655 = t431 - t654;
-  const Real t656 = t612 * par.k39;
-  const Real t657 = t655 - t656;
+  const Real t676 = abs(t450);
+  const Real t677 = par.k62 * t676;
+  const Real t678 = par.k3 * t677;
+  const Real t679 = t678 * t450;
+  const Real t680 = t679 + t675;
+  const Real t681 = par.k20 * nu[2];
+  const Real t682 = t681 + nu[1];
+  const Real t683 = abs(t682);
+  const Real t684 = t683 * par.k71;
+  const Real t685 = par.k14 * t684;
+  const Real t686 = t682 * t685;
+  const Real t687 = nu[1] - t681;
+  const Real t688 = abs(t687);
+  const Real t689 = t688 * par.k71;
+  const Real t690 = par.k14 * t689;
+  const Real t691 = t687 * t690;
+  const Real t692 = t691 + t542;
+  const Real t693 = t686 + t692;
+  const Real t694 = abs(t434);
+  const Real t695 = t694 * par.k68;
+  const Real t696 = par.k3 * t695;
+  const Real t697 = t434 * t696;
+  const Real t698 = t697 - t669;
+  const Real t699 = t423 * t423;
+  const Real t700 = par.m_w * t699;
+  const Real t701 = constant<Real>(0.5L) * t700;
+  const Real t702 = abs(t404);
+  const Real t703 = par.k63 * t702;
+  const Real t704 = par.k27 * t703;
+  const Real t705 = t404 * t704;
+  const Real t706 = t705 + t623;
+  const Real t707 = t706 + t705;
+  const Real t708 = par.k35 * t396;
+  const Real t709 = t395 - t708;
+  const Real t710 = abs(t709);
+  const Real t711 = par.k65 * t710;
+  const Real t712 = par.k34 * t711;
+  const Real t713 = t712 * t709;
+  const Real t714 = par.k35 * t713;
+  const Real t715 = t591 - t714;
+  const Real t716 = t396 * par.k33;
+  const Real t717 = t395 - t716;
+  const Real t718 = abs(t717);
+  const Real t719 = t718 * par.k65;
+  const Real t720 = t719 * par.k34;
+  const Real t721 = t717 * t720;
+  const Real t722 = par.k33 * t721;
+  const Real t723 = t715 - t722;
+  const Real t724 = par.k28 * t405;
+  const Real t725 = t408 - t724;
+  const Real t726 = abs(t725);
+  const Real t727 = t726 * par.k66;
+  const Real t728 = par.k27 * t727;
+  const Real t729 = t725 * t728;
+  const Real t730 = t729 + t621;
+  const Real t731 = par.k26 * t405;
+  const Real t732 = t408 - t731;
+  const Real t733 = abs(t732);
+  const Real t734 = par.k66 * t733;
+  const Real t735 = t734 * par.k27;
+  const Real t736 = t735 * t732;
+  const Real t737 = t730 + t736;
+  const Real t738 = t382 * par.k38;
+  const Real t739 = t387 - t738;
+  const Real t740 = abs(t739);
+  const Real t741 = t740 * par.k69;
+  const Real t742 = par.k11 * t741;
+  const Real t743 = t742 * t739;
+  const Real t744 = t743 + t560;
+  const Real t745 = t382 * par.k39;
+  const Real t746 = t387 - t745;
+  const Real t747 = abs(t746);
+  const Real t748 = t747 * par.k69;
+  const Real t749 = par.k11 * t748;
+  const Real t750 = t746 * t749;
+  const Real t751 = t744 + t750;
+  const Real t752 = t686 * par.k20;
+  const Real t753 = par.k20 * t691;
+  const Real t754 = t545 - t753;
+  const Real t755 = t752 + t754;
+  const Real t756 = t713 + t595;
+  const Real t757 = t756 + t721;
+  const Real t758 = abs(t399);
+  const Real t759 = par.k67 * t758;
+  const Real t760 = t759 * par.k34;
+  const Real t761 = t760 * t399;
+  const Real t762 = t761 + t597;
+  const Real t763 = t761 + t762;
+  const Real t764 = abs(t453);
+  const Real t765 = par.k68 * t764;
+  const Real t766 = par.k3 * t765;
+  const Real t767 = t453 * t766;
+  const Real t768 = t767 - t672;
+  const Real t769 = par.k28 * t729;
+  const Real t770 = t617 - t769;
+  const Real t771 = par.k26 * t736;
+  const Real t772 = t770 - t771;
+  const Real t773 = abs(t390);
+  const Real t774 = par.k70 * t773;
+  const Real t775 = par.k11 * t774;
+  const Real t776 = t775 * t390;
+  const Real t777 = t776 + t571;
+  const Real t778 = t776 + t777;
+  const Real t779 = abs(t439);
+  const Real t780 = par.k62 * t779;
+  const Real t781 = par.k3 * t780;
+  const Real t782 = t439 * t781;
+  const Real t783 = t668 + t782;
+  const Real t784 = t420 * t423;
+  const Real t785 = t784 * par.m_w;
+  const Real t786 = abs(nu[0]);
+  const Real t787 = par.k64 * t786;
+  const Real t788 = par.k14 * t787;
+  const Real t789 = t788 * nu[0];
+  const Real t790 = t789 - t539;
+  const Real t791 = t790 + t789;
+  const Real t792 = t743 * par.k38;
+  const Real t793 = t569 - t792;
+  const Real t794 = t750 * par.k39;
+  const Real t795 = t793 - t794;
 
   // fin_section_2: joint force
-  const Real t658 = t542 * t3;
-  const Real t659 = t630 * t2;
-  const Real t660 = t658 + t659;
-  const Real t661 = t494 + t660;
-  const Real t662 = constant<Real>(0.710077701790478711739L) * t660;
-  const Real t663 = t630 * t3;
-  const Real t664 = t542 * t2;
-  const Real t665 = t663 - t664;
-  const Real t666 = t29 * t665;
-  const Real t667 = t662 - t666;
-  const Real t668 = par.k16 * t533;
-  const Real t669 = t667 + t668;
-  const Real t670 = t514 + t669;
-  const Real t671 = t665 - t505;
-  const Real t672 = t660 * t31;
-  const Real t673 = t28 * t665;
-  const Real t674 = t672 - t673;
-  const Real t675 = t533 + t674;
-  const Real t676 = t675 + t525;
+  const Real t796 = t680 * t3;
+  const Real t797 = t768 * t2;
+  const Real t798 = t796 + t797;
+  const Real t799 = t632 + t798;
+  const Real t800 = constant<Real>(0.710077701790478711739L) * t798;
+  const Real t801 = t768 * t3;
+  const Real t802 = t680 * t2;
+  const Real t803 = t801 - t802;
+  const Real t804 = t29 * t803;
+  const Real t805 = t800 - t804;
+  const Real t806 = par.k16 * t671;
+  const Real t807 = t805 + t806;
+  const Real t808 = t652 + t807;
+  const Real t809 = t803 - t643;
+  const Real t810 = t798 * t31;
+  const Real t811 = t28 * t803;
+  const Real t812 = t810 - t811;
+  const Real t813 = t671 + t812;
+  const Real t814 = t813 + t663;
 
   // fin_section_1: joint force
-  const Real t677 = t560 * t8;
-  const Real t678 = t9 * t645;
-  const Real t679 = t677 + t678;
-  const Real t680 = t27 * t679;
-  const Real t681 = t560 * t9;
-  const Real t682 = t8 * t645;
-  const Real t683 = t681 - t682;
-  const Real t684 = t683 * t24;
-  const Real t685 = t680 - t684;
-  const Real t686 = t685 + t527;
-  const Real t687 = t686 + t676;
-  const Real t688 = t661 + t679;
-  const Real t689 = t683 + t671;
-  const Real t690 = par.k5 * t527;
-  const Real t691 = constant<Real>(0.0709020735931204697442L) * t679;
-  const Real t692 = t25 * t683;
-  const Real t693 = t691 - t692;
-  const Real t694 = t690 + t693;
-  const Real t695 = t694 + t670;
+  const Real t815 = t698 * t8;
+  const Real t816 = t9 * t783;
+  const Real t817 = t815 + t816;
+  const Real t818 = t27 * t817;
+  const Real t819 = t698 * t9;
+  const Real t820 = t8 * t783;
+  const Real t821 = t819 - t820;
+  const Real t822 = t821 * t24;
+  const Real t823 = t818 - t822;
+  const Real t824 = t823 + t665;
+  const Real t825 = t824 + t814;
+  const Real t826 = t799 + t817;
+  const Real t827 = t821 + t809;
+  const Real t828 = par.k5 * t665;
+  const Real t829 = constant<Real>(0.0709020735931204697442L) * t817;
+  const Real t830 = t25 * t821;
+  const Real t831 = t829 - t830;
+  const Real t832 = t828 + t831;
+  const Real t833 = t832 + t808;
 
   // fin_tip: joint force
-  const Real t696 = t563 * t5;
-  const Real t697 = t6 * t647;
-  const Real t698 = t696 - t697;
-  const Real t699 = t698 * t23;
-  const Real t700 = t563 * t6;
-  const Real t701 = t5 * t647;
-  const Real t702 = t700 + t701;
-  const Real t703 = t702 * r_p[0];
-  const Real t704 = t699 - t703;
-  const Real t705 = t687 + t704;
-  const Real t706 = t20 * t702;
-  const Real t707 = t698 - t706;
-  const Real t708 = t707 + t695;
-  const Real t709 = t698 + t688;
-  const Real t710 = t689 + t702;
+  const Real t834 = t701 * t5;
+  const Real t835 = t6 * t785;
+  const Real t836 = t834 - t835;
+  const Real t837 = t836 * t23;
+  const Real t838 = t701 * t6;
+  const Real t839 = t5 * t785;
+  const Real t840 = t838 + t839;
+  const Real t841 = t840 * r_p[0];
+  const Real t842 = t837 - t841;
+  const Real t843 = t825 + t842;
+  const Real t844 = t20 * t840;
+  const Real t845 = t836 - t844;
+  const Real t846 = t845 + t833;
+  const Real t847 = t836 + t826;
+  const Real t848 = t827 + t840;
 
   // fin: joint force
-  const Real t711 = t569 - t710;
-  const Real t712 = t599 - t709;
-  const Real t713 = t709 * par.l3;
-  const Real t714 = t705 + t713;
-  const Real t715 = t714 + t634;
+  const Real t849 = t707 - t848;
+  const Real t850 = t737 - t847;
+  const Real t851 = t847 * par.l3;
+  const Real t852 = t843 + t851;
+  const Real t853 = t852 + t772;
 
   // peduncle: joint force
-  const Real t716 = t711 * c_r_a_2_;
-  const Real t717 = t712 * s_r_a_2_;
-  const Real t718 = t716 - t717;
-  const Real t719 = t718 + t625;
-  const Real t720 = t711 * s_r_a_2_;
-  const Real t721 = t712 * c_r_a_2_;
-  const Real t722 = t720 + t721;
-  const Real t723 = par.l2 * t722;
-  const Real t724 = t715 - t723;
-  const Real t725 = t585 + t724;
-  const Real t726 = t619 + t722;
+  const Real t854 = t849 * c_r_a_2_;
+  const Real t855 = t850 * s_r_a_2_;
+  const Real t856 = t854 - t855;
+  const Real t857 = t856 + t763;
+  const Real t858 = t849 * s_r_a_2_;
+  const Real t859 = t850 * c_r_a_2_;
+  const Real t860 = t858 + t859;
+  const Real t861 = par.l2 * t860;
+  const Real t862 = t853 - t861;
+  const Real t863 = t723 + t862;
+  const Real t864 = t757 + t860;
 
   // rear: joint force
-  const Real t727 = t726 * c_r_a_1_;
-  const Real t728 = t719 * s_r_a_1_;
-  const Real t729 = t727 + t728;
-  const Real t730 = t729 + t613;
-  const Real t731 = t719 * c_r_a_1_;
-  const Real t732 = t726 * s_r_a_1_;
-  const Real t733 = t731 - t732;
-  const Real t734 = t640 + t733;
-  const Real t735 = t729 * par.l1;
-  const Real t736 = t725 - t735;
-  const Real t737 = t736 + t657;
+  const Real t865 = t864 * c_r_a_1_;
+  const Real t866 = t857 * s_r_a_1_;
+  const Real t867 = t865 + t866;
+  const Real t868 = t867 + t751;
+  const Real t869 = t857 * c_r_a_1_;
+  const Real t870 = t864 * s_r_a_1_;
+  const Real t871 = t869 - t870;
+  const Real t872 = t778 + t871;
+  const Real t873 = t867 * par.l1;
+  const Real t874 = t863 - t873;
+  const Real t875 = t874 + t795;
 
   // trunk: joint force
-  const Real t738 = t730 * c_r_a_0_;
-  const Real t739 = t734 * s_r_a_0_;
-  const Real t740 = t738 + t739;
-  const Real t741 = t555 + t740;
-  const Real t742 = par.k8 * t740;
-  const Real t743 = t737 - t742;
-  const Real t744 = t617 + t743;
-  const Real t745 = t734 * c_r_a_0_;
-  const Real t746 = t730 * s_r_a_0_;
-  const Real t747 = t745 - t746;
-  const Real t748 = t747 + t653;
+  const Real t876 = t868 * c_r_a_0_;
+  const Real t877 = t872 * s_r_a_0_;
+  const Real t878 = t876 + t877;
+  const Real t879 = t693 + t878;
+  const Real t880 = par.k8 * t878;
+  const Real t881 = t875 - t880;
+  const Real t882 = t755 + t881;
+  const Real t883 = t872 * c_r_a_0_;
+  const Real t884 = t868 * s_r_a_0_;
+  const Real t885 = t883 - t884;
+  const Real t886 = t885 + t791;
 
   // springs, dampers and generalised forces
-  const Real t749 = nu[3] * constant<Real>(2.0L);
-  const Real t750 = par.k73 * t749;
-  const Real t751 = t243 + t750;
-  const Real t752 = t708 + t751;
+  const Real t887 = nu[3] * constant<Real>(2.0L);
+  const Real t888 = par.k73 * t887;
+  const Real t889 = t381 + t888;
+  const Real t890 = t846 + t889;
 
-  // modified blocks
-  const Real t753 = constant<Real>(1.0L) / t241;
-  const Real t754 = t753 * t99;
-  const Real t755 = t753 * t221;
-  const Real t756 = t753 * t752;
-  const Real t757 = t753 * t134;
+  // reduced accelerations
+  const Real t891 = constant<Real>(1.0L) / t147;
+  const Real t892 = t109 * t891;
+  const Real t893 = t109 * t892;
+  const Real t894 = t379 - t893;
+  const Real t895 = t891 * t141;
+  const Real t896 = t895 * t141;
+  const Real t897 = t225 - t896;
+  const Real t898 = constant<Real>(1.0L) / t897;
+  const Real t899 = t109 * t895;
+  const Real t900 = t193 - t899;
+  const Real t901 = t898 * t900;
+  const Real t902 = t901 * t900;
+  const Real t903 = t894 - t902;
+  const Real t904 = t143 * t891;
+  const Real t905 = t109 * t904;
+  const Real t906 = t321 - t905;
+  const Real t907 = t143 * t895;
+  const Real t908 = t227 - t907;
+  const Real t909 = t898 * t908;
+  const Real t910 = t909 * t900;
+  const Real t911 = t906 - t910;
+  const Real t912 = t143 * t904;
+  const Real t913 = t359 - t912;
+  const Real t914 = t909 * t908;
+  const Real t915 = t913 - t914;
+  const Real t916 = constant<Real>(1.0L) / t915;
+  const Real t917 = t911 * t916;
+  const Real t918 = t917 * t911;
+  const Real t919 = t903 - t918;
+  const Real t920 = constant<Real>(1.0L) / t919;
+  const Real t921 = t886 * t892;
+  const Real t922 = t921 - t890;
+  const Real t923 = t886 * t895;
+  const Real t924 = t923 - t879;
+  const Real t925 = t901 * t924;
+  const Real t926 = t922 - t925;
+  const Real t927 = t886 * t904;
+  const Real t928 = t927 - t882;
+  const Real t929 = t909 * t924;
+  const Real t930 = t928 - t929;
+  const Real t931 = t917 * t930;
+  const Real t932 = t926 - t931;
+  const Real t933 = t920 * t932;
+  const Real t934 = t933 * t892;
+  const Real t935 = t930 * t916;
+  const Real t936 = t933 * t917;
+  const Real t937 = t935 - t936;
+  const Real t938 = t937 * t904;
+  const Real t939 = t898 * t924;
+  const Real t940 = t937 * t909;
+  const Real t941 = t939 - t940;
+  const Real t942 = t933 * t901;
+  const Real t943 = t941 - t942;
+  const Real t944 = t895 * t943;
+  const Real t945 = t891 * t886;
+  const Real t946 = t944 + t945;
+  const Real t947 = t938 + t946;
+  const Real t948 = t934 + t947;
+  const Real t949 = -t948;
 
-  // fin_section_1: acceleration
-  const Real t758 = t754 * constant<Real>(0.0709020735931204697442L);
-  const Real t759 = t40 - t758;
-  const Real t760 = t9 * t759;
-  const Real t761 = t754 * t25;
-  const Real t762 = t761 + t44;
-  const Real t763 = t762 * t8;
-  const Real t764 = t760 - t763;
-
-  // fin_section_2: acceleration
-  const Real t765 = t754 * constant<Real>(0.710077701790478711739L);
-  const Real t766 = t40 - t765;
-  const Real t767 = t766 * t3;
-  const Real t768 = t754 * t29;
-  const Real t769 = t768 + t44;
-  const Real t770 = t769 * t2;
-  const Real t771 = t767 - t770;
-
-  // fin: wrench
-  const Real t772 = t754 * par.k41;
-  const Real t773 = t84 - t772;
-  const Real t774 = t754 * t16;
-  const Real t775 = t774 + t85;
-  const Real t776 = t754 * par.k47;
-  const Real t777 = t80 - t776;
-
-  // fin_section_1: wrench of the fluid
-  const Real t778 = par.k4 * t764;
-
-  // fin_section_2: wrench of the fluid
-  const Real t779 = par.k4 * t771;
-
-  // fin_section_2: joint force
-  const Real t780 = t779 * t3;
-  const Real t781 = t780 * t31;
-  const Real t782 = t779 * t2;
-  const Real t783 = t782 * t28;
-  const Real t784 = t781 + t783;
-  const Real t785 = t784 + t777;
-  const Real t786 = t775 - t782;
-  const Real t787 = t780 + t773;
-
-  // fin_section_1: joint force
-  const Real t788 = t778 * t8;
-  const Real t789 = t788 * t24;
-  const Real t790 = t9 * t778;
-  const Real t791 = t790 * t27;
-  const Real t792 = t789 + t791;
-  const Real t793 = t792 + t785;
-  const Real t794 = t790 + t787;
-
-  // fin: joint force
-  const Real t795 = t75 + t794;
-  const Real t796 = t788 - t786;
-  const Real t797 = t796 + t72;
-  const Real t798 = par.l3 * t794;
-  const Real t799 = t793 + t798;
-  const Real t800 = t77 + t799;
-
-  // peduncle: joint force
-  const Real t801 = t797 * s_r_a_2_;
-  const Real t802 = t795 * c_r_a_2_;
-  const Real t803 = t801 - t802;
-  const Real t804 = par.l2 * t803;
-  const Real t805 = t800 - t804;
-  const Real t806 = t805 + t70;
-  const Real t807 = t797 * c_r_a_2_;
-  const Real t808 = t795 * s_r_a_2_;
-  const Real t809 = t807 + t808;
-  const Real t810 = t809 + t66;
-  const Real t811 = t803 - t68;
-
-  // rear: joint force
-  const Real t812 = c_r_a_1_ * t811;
-  const Real t813 = t810 * s_r_a_1_;
-  const Real t814 = t812 + t813;
-  const Real t815 = t814 - t63;
-  const Real t816 = par.l1 * t814;
-  const Real t817 = t806 - t816;
-  const Real t818 = t61 + t817;
-  const Real t819 = c_r_a_1_ * t810;
-  const Real t820 = t811 * s_r_a_1_;
-  const Real t821 = t819 - t820;
-  const Real t822 = t58 + t821;
-
-  // trunk: joint force
-  const Real t823 = c_r_a_0_ * t822;
-  const Real t824 = t815 * s_r_a_0_;
-  const Real t825 = t823 - t824;
-  const Real t826 = t825 + par.k54;
-  const Real t827 = t815 * c_r_a_0_;
-  const Real t828 = s_r_a_0_ * t822;
-  const Real t829 = t827 + t828;
-  const Real t830 = par.k8 * t829;
-  const Real t831 = t818 - t830;
-  const Real t832 = t754 * t752;
-  const Real t833 = t832 - t748;
-
-  // fin_section_1: acceleration
-  const Real t834 = constant<Real>(0.0709020735931204697442L) * t757;
-  const Real t835 = t44 - t834;
-  const Real t836 = t835 * t9;
-  const Real t837 = t25 * t757;
-  const Real t838 = t837 - t40;
-  const Real t839 = t838 * t8;
-  const Real t840 = t836 - t839;
-
-  // fin_section_2: acceleration
-  const Real t841 = constant<Real>(0.710077701790478711739L) * t757;
-  const Real t842 = t44 - t841;
-  const Real t843 = t842 * t3;
-  const Real t844 = t29 * t757;
-  const Real t845 = t844 - t40;
-  const Real t846 = t845 * t2;
-  const Real t847 = t843 - t846;
-
-  // fin: wrench
-  const Real t848 = par.k47 * t757;
-  const Real t849 = t120 - t848;
-  const Real t850 = t16 * t757;
-  const Real t851 = t850 - t84;
-  const Real t852 = par.k41 * t757;
-  const Real t853 = t85 - t852;
-
-  // fin_section_1: wrench of the fluid
-  const Real t854 = par.k4 * t840;
-
-  // fin_section_2: wrench of the fluid
-  const Real t855 = par.k4 * t847;
-
-  // fin_section_2: joint force
-  const Real t856 = t855 * t3;
-  const Real t857 = t853 + t856;
-  const Real t858 = t31 * t856;
-  const Real t859 = t855 * t2;
-  const Real t860 = t28 * t859;
-  const Real t861 = t858 + t860;
-  const Real t862 = t849 + t861;
-  const Real t863 = t851 - t859;
-
-  // fin_section_1: joint force
-  const Real t864 = t854 * t8;
-  const Real t865 = t864 * t24;
-  const Real t866 = t854 * t9;
-  const Real t867 = t866 * t27;
-  const Real t868 = t865 + t867;
-  const Real t869 = t868 + t862;
-  const Real t870 = t866 + t857;
-
-  // fin: joint force
-  const Real t871 = t864 - t863;
-  const Real t872 = t871 + t73;
-  const Real t873 = t112 - t870;
-  const Real t874 = t870 * par.l3;
-  const Real t875 = t869 + t874;
-  const Real t876 = t875 - t114;
-
-  // peduncle: joint force
-  const Real t877 = t873 * c_r_a_2_;
-  const Real t878 = t872 * s_r_a_2_;
-  const Real t879 = t877 + t878;
-  const Real t880 = par.l2 * t879;
-  const Real t881 = t876 - t880;
-  const Real t882 = t881 - t107;
-  const Real t883 = t872 * c_r_a_2_;
-  const Real t884 = t873 * s_r_a_2_;
-  const Real t885 = t883 - t884;
-  const Real t886 = t64 + t885;
-  const Real t887 = t879 + t109;
-
-  // rear: joint force
-  const Real t888 = c_r_a_1_ * t886;
-  const Real t889 = t887 * s_r_a_1_;
-  const Real t890 = t888 - t889;
-  const Real t891 = t57 + t890;
-  const Real t892 = c_r_a_1_ * t887;
-  const Real t893 = t886 * s_r_a_1_;
-  const Real t894 = t892 + t893;
-  const Real t895 = t894 + t104;
-  const Real t896 = par.l1 * t894;
-  const Real t897 = t882 - t896;
-  const Real t898 = t897 - t102;
-
-  // trunk: joint force
-  const Real t899 = t891 * s_r_a_0_;
-  const Real t900 = t895 * c_r_a_0_;
-  const Real t901 = t899 + t900;
-  const Real t902 = par.k8 * t901;
-  const Real t903 = t898 - t902;
-  const Real t904 = t901 + par.k55;
-  const Real t905 = t752 * t757;
-  const Real t906 = t905 - t741;
-
-  // fin_section_1: acceleration
-  const Real t907 = t755 * constant<Real>(0.0709020735931204697442L);
-  const Real t908 = t153 - t907;
-  const Real t909 = t9 * t908;
-  const Real t910 = t755 * t25;
-  const Real t911 = t910 + t155;
-  const Real t912 = t911 * t8;
-  const Real t913 = t909 - t912;
-
-  // fin_section_2: acceleration
-  const Real t914 = constant<Real>(0.710077701790478711739L) * t755;
-  const Real t915 = t158 - t914;
-  const Real t916 = t915 * t3;
-  const Real t917 = t29 * t755;
-  const Real t918 = t160 + t917;
-  const Real t919 = t918 * t2;
-  const Real t920 = t916 - t919;
-
-  // fin: wrench
-  const Real t921 = t755 * par.k47;
-  const Real t922 = t199 - t921;
-  const Real t923 = t16 * t755;
-  const Real t924 = t201 + t923;
-  const Real t925 = t755 * par.k41;
-  const Real t926 = t207 - t925;
-
-  // fin_section_1: wrench of the fluid
-  const Real t927 = par.k4 * t913;
-
-  // fin_section_2: wrench of the fluid
-  const Real t928 = par.k4 * t920;
-
-  // fin_section_2: joint force
-  const Real t929 = t928 * t2;
-  const Real t930 = t28 * t929;
-  const Real t931 = t928 * t3;
-  const Real t932 = t931 * t31;
-  const Real t933 = t930 + t932;
-  const Real t934 = t933 + t922;
-  const Real t935 = t931 + t926;
-  const Real t936 = t924 - t929;
-
-  // fin_section_1: joint force
-  const Real t937 = t9 * t927;
-  const Real t938 = t937 * t27;
-  const Real t939 = t927 * t8;
-  const Real t940 = t939 * t24;
-  const Real t941 = t938 + t940;
-  const Real t942 = t941 + t934;
-  const Real t943 = t935 + t937;
-
-  // fin: joint force
-  const Real t944 = t192 - t943;
-  const Real t945 = par.l3 * t943;
-  const Real t946 = t942 + t945;
-  const Real t947 = t195 + t946;
-  const Real t948 = t939 - t936;
-  const Real t949 = t948 + t189;
-
-  // peduncle: joint force
-  const Real t950 = t949 * s_r_a_2_;
-  const Real t951 = t944 * c_r_a_2_;
-  const Real t952 = t950 + t951;
-  const Real t953 = t181 + t952;
-  const Real t954 = par.l2 * t952;
-  const Real t955 = t947 - t954;
-  const Real t956 = t955 + t184;
-  const Real t957 = t949 * c_r_a_2_;
-  const Real t958 = t944 * s_r_a_2_;
-  const Real t959 = t957 - t958;
-  const Real t960 = t959 - t178;
-
-  // rear: joint force
-  const Real t961 = c_r_a_1_ * t953;
-  const Real t962 = t960 * s_r_a_1_;
-  const Real t963 = t961 + t962;
-  const Real t964 = t963 * par.l1;
-  const Real t965 = t956 - t964;
-  const Real t966 = t170 + t965;
-  const Real t967 = t963 - t173;
-  const Real t968 = c_r_a_1_ * t960;
-  const Real t969 = t953 * s_r_a_1_;
-  const Real t970 = t968 - t969;
-  const Real t971 = t970 - t163;
-
-  // trunk: joint force
-  const Real t972 = t755 * t752;
-  const Real t973 = t972 - t744;
-  const Real t974 = constant<Real>(1.0L) / t826;
-  const Real t975 = t831 * t974;
-  const Real t976 = t975 * t833;
-  const Real t977 = t973 - t976;
-  const Real t978 = t829 * t974;
-  const Real t979 = t978 * t833;
-  const Real t980 = t906 - t979;
-  const Real t981 = t829 * t978;
-  const Real t982 = t904 - t981;
-  const Real t983 = constant<Real>(1.0L) / t982;
-  const Real t984 = t831 * t978;
-  const Real t985 = t903 - t984;
-  const Real t986 = t983 * t985;
-  const Real t987 = t980 * t986;
-  const Real t988 = t977 - t987;
-  const Real t989 = s_r_a_0_ * t971;
-  const Real t990 = t967 * c_r_a_0_;
-  const Real t991 = t989 + t990;
-  const Real t992 = par.k8 * t991;
-  const Real t993 = t966 - t992;
-  const Real t994 = t993 + par.k56;
-  const Real t995 = t831 * t975;
-  const Real t996 = t994 - t995;
-  const Real t997 = t986 * t985;
-  const Real t998 = t996 - t997;
-  const Real t999 = constant<Real>(1.0L) / t998;
-  const Real t1000 = t988 * t999;
-  const Real t1001 = t755 * t1000;
-  const Real t1002 = t974 * t833;
-  const Real t1003 = t980 * t983;
-  const Real t1004 = t986 * t1000;
-  const Real t1005 = t1003 - t1004;
-  const Real t1006 = t978 * t1005;
-  const Real t1007 = t1002 - t1006;
-  const Real t1008 = t1000 * t975;
-  const Real t1009 = t1007 - t1008;
-  const Real t1010 = t754 * t1009;
-  const Real t1011 = t1010 + t756;
-  const Real t1012 = t1005 * t757;
-  const Real t1013 = t1011 + t1012;
-  const Real t1014 = t1001 + t1013;
-  const Real t1015 = -t1014;
-
-  nu_dot_out[0] = t1009;
-  nu_dot_out[1] = t1005;
-  nu_dot_out[2] = t1000;
-  nu_dot_out[3] = t1015;
-  eta_dot[0] = t1009;
-  eta_dot[1] = t1005;
-  eta_dot[2] = t1000;
-  r_p_ddot[0] = t1015;
+  nu_dot_out[0] = t949;
+  nu_dot_out[1] = t943;
+  nu_dot_out[2] = t937;
+  nu_dot_out[3] = t933;
+  eta_dot[0] = t949;
+  eta_dot[1] = t943;
+  eta_dot[2] = t937;
+  r_p_ddot[0] = t933;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).

@@ -12,9 +12,9 @@
 //   kinematics                        10 add, 25 mul, 1 div, 4 neg, 4 sin, 4 cos
 //   constraints                       20 add, 43 mul, 6 neg, 4 sin, 4 cos
 //   free_dynamics                     26 add, 50 mul, 4 neg, 4 sin, 4 cos
-//   forward_dynamics                  39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
+//   forward_dynamics                  40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
 //   inverse_torques                   70 add, 125 mul, 2 div, 4 sin, 4 cos
-//   multipliers                       127 add, 150 mul, 6 div, 1 neg, 4 sin, 4 cos
+//   multipliers                       318 add, 242 mul, 6 div, 3 neg, 4 sin, 4 cos
 //   torque_driven_kinematics          15 add, 30 mul, 2 div, 4 neg, 4 sin, 4 cos
 //   torque_driven_velocities          none
 //   torque_driven_dynamics            104 add, 163 mul, 4 div, 1 neg, 4 sin, 4 cos
@@ -613,8 +613,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: projected recursion, stable forms
-/// operations: 39 add, 75 mul, 2 div, 1 neg, 6 sin, 4 cos
+/// route: projected recursion
+/// operations: 40 add, 79 mul, 2 div, 1 neg, 4 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a       (2) rad or m: left, right
@@ -639,136 +639,139 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real c_r_a_0_ = cos(r_a[0]);
   const Real s_r_a_1_ = sin(r_a[1]);
   const Real c_r_a_1_ = cos(r_a[1]);
-  const Real t1 = r_a[0] - r_a[1];
-  const Real t2 = sin(t1);
-  const Real t3 = r_a[1] - r_a[0];
-  const Real t4 = sin(t3);
 
   // kernel
-  const Real t5 = s_r_a_0_ * s_r_a_1_;
-  const Real t6 = c_r_a_1_ * c_r_a_0_;
-  const Real t7 = t5 + t6;
-  const Real t8 = c_r_p_1_ * t7;
-  const Real t9 = s_r_p_1_ * t7;
-  const Real t10 = s_r_p_0_ * t7;
-  const Real t11 = s_r_p_1_ * par.l_1;
-  const Real t12 = s_r_p_0_ * par.l_1;
+  const Real t1 = s_r_p_1_ * par.l_1;
+  const Real t2 = s_r_a_0_ * s_r_a_1_;
+  const Real t3 = c_r_a_1_ * c_r_a_0_;
+  const Real t4 = t2 + t3;
+  const Real t5 = s_r_p_1_ * t4;
+  const Real t6 = s_r_a_1_ * c_r_a_0_;
+  const Real t7 = c_r_a_1_ * s_r_a_0_;
+  const Real t8 = t6 - t7;
+  const Real t9 = c_r_p_1_ * t8;
+  const Real t10 = t5 + t9;
+  const Real t11 = c_r_p_0_ * t10;
+  const Real t12 = c_r_p_1_ * t4;
+  const Real t13 = s_r_p_1_ * t8;
+  const Real t14 = t12 - t13;
+  const Real t15 = s_r_p_0_ * t14;
+  const Real t16 = t11 - t15;
+  const Real t17 = t16 * par.l_2;
+  const Real t18 = constant<Real>(1.0L) / t17;
+  const Real t19 = t1 * t18;
+  const Real t20 = r_a_dot[1] * t19;
+  const Real t21 = par.l_1 * t10;
+  const Real t22 = t21 + t17;
+  const Real t23 = t22 * t18;
+  const Real t24 = r_a_dot[0] * t23;
+  const Real t25 = t20 - t24;
+  const Real t26 = c_r_p_0_ * t8;
+  const Real t27 = s_r_p_0_ * t4;
+  const Real t28 = t26 - t27;
+  const Real t29 = par.l_1 * t28;
+  const Real t30 = t29 + t17;
+  const Real t31 = t30 * t18;
+  const Real t32 = t31 * r_a_dot[1];
+  const Real t33 = s_r_p_0_ * par.l_1;
+  const Real t34 = t18 * t33;
+  const Real t35 = r_a_dot[0] * t34;
+  const Real t36 = t32 + t35;
 
   // joint angles
-  const Real t13 = r_a_dot[0] * c_r_a_0_;
-  const Real t14 = c_r_a_1_ * r_a_dot[1];
-  const Real t15 = s_r_a_1_ * r_a_dot[1];
-  const Real t16 = r_a_dot[0] * s_r_a_0_;
+  const Real t37 = r_a_dot[0] * c_r_a_0_;
+  const Real t38 = c_r_a_1_ * r_a_dot[1];
+  const Real t39 = s_r_a_1_ * r_a_dot[1];
+  const Real t40 = r_a_dot[0] * s_r_a_0_;
+
+  // joint angles
+  const Real t41 = s_r_p_0_ * t25;
+  const Real t42 = t25 * c_r_p_0_;
+  const Real t43 = t36 * c_r_p_1_;
+  const Real t44 = s_r_p_1_ * t36;
 
   // drift of the kernel
-  const Real t17 = c_r_a_0_ * t14;
-  const Real t18 = s_r_a_1_ * t16;
-  const Real t19 = t17 - t18;
-  const Real t20 = c_r_a_1_ * t13;
-  const Real t21 = s_r_a_0_ * t15;
-  const Real t22 = t20 - t21;
-  const Real t23 = t19 - t22;
-  const Real t24 = s_r_p_1_ * t23;
-  const Real t25 = c_r_p_1_ * t23;
-  const Real t26 = c_r_p_0_ * t23;
+  const Real t45 = t42 * par.l_1;
+  const Real t46 = t18 * t45;
+  const Real t47 = t8 * t44;
+  const Real t48 = c_r_a_0_ * t38;
+  const Real t49 = s_r_a_1_ * t40;
+  const Real t50 = t48 - t49;
+  const Real t51 = c_r_a_1_ * t37;
+  const Real t52 = s_r_a_0_ * t39;
+  const Real t53 = t51 - t52;
+  const Real t54 = t50 - t53;
+  const Real t55 = c_r_p_1_ * t54;
+  const Real t56 = t47 + t55;
+  const Real t57 = s_r_a_0_ * t38;
+  const Real t58 = s_r_a_1_ * t37;
+  const Real t59 = t57 + t58;
+  const Real t60 = c_r_a_1_ * t40;
+  const Real t61 = c_r_a_0_ * t39;
+  const Real t62 = t60 + t61;
+  const Real t63 = t59 - t62;
+  const Real t64 = s_r_p_1_ * t63;
+  const Real t65 = t43 * t4;
+  const Real t66 = t64 - t65;
+  const Real t67 = t56 + t66;
+  const Real t68 = c_r_p_0_ * t67;
+  const Real t69 = t41 * t10;
+  const Real t70 = t68 - t69;
+  const Real t71 = t42 * t14;
+  const Real t72 = t44 * t4;
+  const Real t73 = t63 * c_r_p_1_;
+  const Real t74 = t72 + t73;
+  const Real t75 = s_r_p_1_ * t54;
+  const Real t76 = t43 * t8;
+  const Real t77 = t75 - t76;
+  const Real t78 = t74 - t77;
+  const Real t79 = s_r_p_0_ * t78;
+  const Real t80 = t71 + t79;
+  const Real t81 = t70 - t80;
+  const Real t82 = par.l_2 * t81;
+  const Real t83 = t82 * t18;
+  const Real t84 = t83 / t17;
+  const Real t85 = t84 * t33;
+  const Real t86 = t46 - t85;
+  const Real t87 = r_a_dot[0] * t86;
+  const Real t88 = c_r_p_0_ * t54;
+  const Real t89 = t41 * t8;
+  const Real t90 = t88 - t89;
+  const Real t91 = t42 * t4;
+  const Real t92 = s_r_p_0_ * t63;
+  const Real t93 = t91 + t92;
+  const Real t94 = t90 - t93;
+  const Real t95 = t94 * par.l_1;
+  const Real t96 = t82 + t95;
+  const Real t97 = t96 * t18;
+  const Real t98 = t30 * t84;
+  const Real t99 = t97 - t98;
+  const Real t100 = t99 * r_a_dot[1];
+  const Real t101 = t87 + t100;
+  const Real t102 = t31 * r_a_ddot[1];
+  const Real t103 = r_a_ddot[0] * t34;
+  const Real t104 = t102 + t103;
+  const Real t105 = t101 + t104;
+  const Real t106 = -t105;
+  const Real t107 = r_a_ddot[1] * t19;
+  const Real t108 = r_a_ddot[0] * t23;
+  const Real t109 = t107 - t108;
+  const Real t110 = t84 * t1;
+  const Real t111 = t43 * par.l_1;
+  const Real t112 = t18 * t111;
+  const Real t113 = t110 + t112;
+  const Real t114 = r_a_dot[1] * t113;
+  const Real t115 = t67 * par.l_1;
+  const Real t116 = t82 + t115;
+  const Real t117 = t116 * t18;
+  const Real t118 = t84 * t22;
+  const Real t119 = t117 - t118;
+  const Real t120 = r_a_dot[0] * t119;
+  const Real t121 = t114 + t120;
+  const Real t122 = t109 - t121;
 
-  // passive accelerations
-  const Real t27 = c_r_p_1_ * t4;
-  const Real t28 = t9 + t27;
-  const Real t29 = t28 * c_r_p_0_;
-  const Real t30 = s_r_p_1_ * t4;
-  const Real t31 = t8 - t30;
-  const Real t32 = s_r_p_0_ * t31;
-  const Real t33 = t29 - t32;
-  const Real t34 = t33 * par.l_2;
-  const Real t35 = constant<Real>(1.0L) / t34;
-  const Real t36 = t35 * t11;
-  const Real t37 = r_a_dot[1] * t36;
-  const Real t38 = t28 * par.l_1;
-  const Real t39 = t38 + t34;
-  const Real t40 = t35 * t39;
-  const Real t41 = r_a_dot[0] * t40;
-  const Real t42 = t37 - t41;
-  const Real t43 = c_r_p_0_ * t42;
-  const Real t44 = par.l_1 * t43;
-  const Real t45 = t35 * t44;
-  const Real t46 = t35 * t12;
-  const Real t47 = t46 * r_a_dot[0];
-  const Real t48 = c_r_p_0_ * t4;
-  const Real t49 = t48 - t10;
-  const Real t50 = t49 * par.l_1;
-  const Real t51 = t50 + t34;
-  const Real t52 = t35 * t51;
-  const Real t53 = r_a_dot[1] * t52;
-  const Real t54 = t47 + t53;
-  const Real t55 = s_r_p_1_ * t54;
-  const Real t56 = t55 * t4;
-  const Real t57 = t25 + t56;
-  const Real t58 = r_a_dot[1] * t2;
-  const Real t59 = r_a_dot[0] * t4;
-  const Real t60 = t58 + t59;
-  const Real t61 = s_r_p_1_ * t60;
-  const Real t62 = c_r_p_1_ * t54;
-  const Real t63 = t62 * t7;
-  const Real t64 = t61 - t63;
-  const Real t65 = t57 + t64;
-  const Real t66 = c_r_p_0_ * t65;
-  const Real t67 = s_r_p_0_ * t42;
-  const Real t68 = t28 * t67;
-  const Real t69 = t66 - t68;
-  const Real t70 = c_r_p_1_ * t60;
-  const Real t71 = t55 * t7;
-  const Real t72 = t70 + t71;
-  const Real t73 = t62 * t4;
-  const Real t74 = t24 - t73;
-  const Real t75 = t72 - t74;
-  const Real t76 = t75 * s_r_p_0_;
-  const Real t77 = t31 * t43;
-  const Real t78 = t76 + t77;
-  const Real t79 = t69 - t78;
-  const Real t80 = t79 * par.l_2;
-  const Real t81 = t80 * t35;
-  const Real t82 = t81 / t34;
-  const Real t83 = t82 * t12;
-  const Real t84 = t45 - t83;
-  const Real t85 = t84 * r_a_dot[0];
-  const Real t86 = t67 * t4;
-  const Real t87 = t26 - t86;
-  const Real t88 = t43 * t7;
-  const Real t89 = s_r_p_0_ * t60;
-  const Real t90 = t88 + t89;
-  const Real t91 = t87 - t90;
-  const Real t92 = par.l_1 * t91;
-  const Real t93 = t80 + t92;
-  const Real t94 = t35 * t93;
-  const Real t95 = t82 * t51;
-  const Real t96 = t94 - t95;
-  const Real t97 = r_a_dot[1] * t96;
-  const Real t98 = t85 + t97;
-  const Real t99 = t46 * r_a_ddot[0];
-  const Real t100 = r_a_ddot[1] * t52;
-  const Real t101 = t99 + t100;
-  const Real t102 = t98 + t101;
-  const Real t103 = -t102;
-  const Real t104 = r_a_ddot[1] * t36;
-  const Real t105 = r_a_ddot[0] * t40;
-  const Real t106 = t104 - t105;
-  const Real t107 = t65 * par.l_1;
-  const Real t108 = t80 + t107;
-  const Real t109 = t35 * t108;
-  const Real t110 = t82 * t39;
-  const Real t111 = t109 - t110;
-  const Real t112 = t111 * r_a_dot[0];
-  const Real t113 = par.l_1 * t62;
-  const Real t114 = t113 * t35;
-  const Real t115 = t82 * t11;
-  const Real t116 = t114 + t115;
-  const Real t117 = t116 * r_a_dot[1];
-  const Real t118 = t112 + t117;
-  const Real t119 = t106 - t118;
-
-  r_p_ddot[0] = t119;
-  r_p_ddot[1] = t103;
+  r_p_ddot[0] = t122;
+  r_p_ddot[1] = t106;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
@@ -1043,8 +1046,8 @@ inline void inverse_torques(const Prepared<Real>& par,
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, compensated beyond 16 ulps
-/// operations: 127 add, 150 mul, 6 div, 1 neg, 4 sin, 4 cos
+/// route: projected recursion, compensated beyond 2.8 ulps
+/// operations: 318 add, 242 mul, 6 div, 3 neg, 4 sin, 4 cos
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_p       (2) rad or m: left_elbow, right_elbow
 /// @param[in]  r_a       (2) rad or m: left, right
@@ -1098,208 +1101,279 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t20 = t12 * t19;
   const Real t21 = t20 - t16;
   const Real t22 = constant<Real>(1.0L) / t21;
-  const Real t23 = s_r_p_1_ * par.l_1;
-  const Real t24 = s_r_a_0_ * s_r_a_1_;
-  const Real t25 = c_r_a_1_ * c_r_a_0_;
-  const Real t26 = t24 + t25;
-  const Real t27 = s_r_p_1_ * t26;
-  const Real t28 = s_r_a_1_ * c_r_a_0_;
-  const Real t29 = c_r_a_1_ * s_r_a_0_;
-  const Real t30 = t28 - t29;
-  const Real t31 = c_r_p_1_ * t30;
-  const Real t32 = t27 + t31;
-  const Real t33 = c_r_p_0_ * t32;
-  const Real t34 = c_r_p_1_ * t26;
-  const Real t35 = s_r_p_1_ * t30;
-  const Real t36 = t34 - t35;
-  const Real t37 = s_r_p_0_ * t36;
-  const Real t38 = t33 - t37;
-  const Real t39 = t38 * par.l_2;
-  const Real t40 = constant<Real>(1.0L) / t39;
-  const Real t41 = t23 * t40;
-  const Real t42 = r_a_dot[1] * t41;
-  const Real t43 = par.l_1 * t32;
-  const Real t44 = t43 + t39;
-  const Real t45 = t44 * t40;
-  const Real t46 = r_a_dot[0] * t45;
-  const Real t47 = t42 - t46;
-  const Real t48 = c_r_p_0_ * t30;
-  const Real t49 = s_r_p_0_ * t26;
-  const Real t50 = t48 - t49;
-  const Real t51 = par.l_1 * t50;
-  const Real t52 = t51 + t39;
-  const Real t53 = t52 * t40;
-  const Real t54 = t53 * r_a_dot[1];
-  const Real t55 = s_r_p_0_ * par.l_1;
-  const Real t56 = t40 * t55;
-  const Real t57 = r_a_dot[0] * t56;
-  const Real t58 = t54 + t57;
+  const Real t23 = s_r_a_0_ * s_r_a_1_;
+  const Real t24 = c_r_a_1_ * c_r_a_0_;
+  const Real t25 = t23 + t24;
+  const Real t26 = c_r_p_1_ * t25;
+  const Real t27 = s_r_a_1_ * c_r_a_0_;
+  const Real t28 = c_r_a_1_ * s_r_a_0_;
+  const Real t29 = t27 - t28;
+  const Real t30 = s_r_p_1_ * t29;
+  const Real t31 = t26 - t30;
+  const Real t32 = s_r_p_0_ * t31;
+  const Real t33 = s_r_p_1_ * t25;
+  const Real t34 = c_r_p_1_ * t29;
+  const Real t35 = t33 + t34;
+  const Real t36 = par.l_1 * t35;
+  const Real t37 = s_r_p_1_ * par.l_1;
+  const Real t38 = c_r_p_0_ * t29;
+  const Real t39 = s_r_p_0_ * t25;
+  const Real t40 = t38 - t39;
+  const Real t41 = par.l_1 * t40;
+  const Real t42 = c_r_p_0_ * t35;
+  const Real t43 = s_r_p_0_ * par.l_1;
 
   // joint angles
-  const Real t59 = r_a_dot[1] * r_a_dot[1];
-  const Real t60 = r_a_dot[0] * c_r_a_0_;
-  const Real t61 = r_a_dot[0] * r_a_dot[0];
-  const Real t62 = c_r_a_1_ * r_a_dot[1];
-  const Real t63 = s_r_a_1_ * r_a_dot[1];
-  const Real t64 = r_a_dot[0] * s_r_a_0_;
+  const Real t44 = r_a_dot[1] * r_a_dot[1];
+  const Real t45 = r_a_dot[0] * c_r_a_0_;
+  const Real t46 = r_a_dot[0] * r_a_dot[0];
+  const Real t47 = c_r_a_1_ * r_a_dot[1];
+  const Real t48 = s_r_a_1_ * r_a_dot[1];
+  const Real t49 = r_a_dot[0] * s_r_a_0_;
 
   // left_crank: acceleration
-  const Real t65 = par.g * c_r_a_0_;
-  const Real t66 = par.g * s_r_a_0_;
+  const Real t50 = par.g * c_r_a_0_;
+  const Real t51 = par.g * s_r_a_0_;
 
   // left_rod: acceleration
-  const Real t67 = par.l_1 * t61;
-  const Real t68 = t66 - t67;
-  const Real t69 = s_r_p_0_ * t68;
+  const Real t52 = par.l_1 * t46;
+  const Real t53 = t51 - t52;
+  const Real t54 = s_r_p_0_ * t53;
 
   // right_crank: acceleration
-  const Real t70 = par.g * s_r_a_1_;
-  const Real t71 = c_r_a_1_ * par.g;
+  const Real t55 = par.g * s_r_a_1_;
+  const Real t56 = c_r_a_1_ * par.g;
 
   // right_rod: acceleration
-  const Real t72 = t59 * par.l_1;
-  const Real t73 = t70 - t72;
-  const Real t74 = s_r_p_1_ * t73;
-
-  // joint angles
-  const Real t75 = s_r_p_0_ * t47;
-  const Real t76 = t47 * c_r_p_0_;
-  const Real t77 = t58 * c_r_p_1_;
-  const Real t78 = s_r_p_1_ * t58;
+  const Real t57 = t44 * par.l_1;
+  const Real t58 = t55 - t57;
+  const Real t59 = s_r_p_1_ * t58;
 
   // drift of the kernel
-  const Real t79 = t76 * par.l_1;
-  const Real t80 = t40 * t79;
-  const Real t81 = t30 * t78;
-  const Real t82 = c_r_a_0_ * t62;
-  const Real t83 = s_r_a_1_ * t64;
-  const Real t84 = t82 - t83;
-  const Real t85 = c_r_a_1_ * t60;
-  const Real t86 = s_r_a_0_ * t63;
-  const Real t87 = t85 - t86;
-  const Real t88 = t84 - t87;
-  const Real t89 = c_r_p_1_ * t88;
-  const Real t90 = t81 + t89;
-  const Real t91 = s_r_a_0_ * t62;
-  const Real t92 = s_r_a_1_ * t60;
-  const Real t93 = t91 + t92;
-  const Real t94 = c_r_a_1_ * t64;
-  const Real t95 = c_r_a_0_ * t63;
-  const Real t96 = t94 + t95;
-  const Real t97 = t93 - t96;
-  const Real t98 = s_r_p_1_ * t97;
-  const Real t99 = t77 * t26;
-  const Real t100 = t98 - t99;
-  const Real t101 = t90 + t100;
-  const Real t102 = c_r_p_0_ * t101;
-  const Real t103 = t75 * t32;
-  const Real t104 = t102 - t103;
-  const Real t105 = t76 * t36;
-  const Real t106 = t78 * t26;
-  const Real t107 = t97 * c_r_p_1_;
-  const Real t108 = t106 + t107;
-  const Real t109 = s_r_p_1_ * t88;
-  const Real t110 = t77 * t30;
-  const Real t111 = t109 - t110;
-  const Real t112 = t108 - t111;
-  const Real t113 = s_r_p_0_ * t112;
-  const Real t114 = t105 + t113;
-  const Real t115 = t104 - t114;
-  const Real t116 = par.l_2 * t115;
-  const Real t117 = t116 * t40;
-  const Real t118 = t117 / t39;
-  const Real t119 = t118 * t55;
-  const Real t120 = t80 - t119;
-  const Real t121 = r_a_dot[0] * t120;
-  const Real t122 = c_r_p_0_ * t88;
-  const Real t123 = t75 * t30;
-  const Real t124 = t122 - t123;
-  const Real t125 = t76 * t26;
-  const Real t126 = s_r_p_0_ * t97;
-  const Real t127 = t125 + t126;
-  const Real t128 = t124 - t127;
-  const Real t129 = t128 * par.l_1;
-  const Real t130 = t116 + t129;
-  const Real t131 = t130 * t40;
-  const Real t132 = t52 * t118;
-  const Real t133 = t131 - t132;
-  const Real t134 = t133 * r_a_dot[1];
-  const Real t135 = t121 + t134;
-  const Real t136 = t53 * r_a_ddot[1];
-  const Real t137 = r_a_ddot[0] * t56;
-  const Real t138 = t136 + t137;
-  const Real t139 = t135 + t138;
-  const Real t140 = r_a_ddot[1] * t41;
-  const Real t141 = r_a_ddot[0] * t45;
-  const Real t142 = t140 - t141;
-  const Real t143 = t118 * t23;
-  const Real t144 = t77 * par.l_1;
-  const Real t145 = t40 * t144;
-  const Real t146 = t143 + t145;
-  const Real t147 = r_a_dot[1] * t146;
-  const Real t148 = t101 * par.l_1;
-  const Real t149 = t116 + t148;
-  const Real t150 = t149 * t40;
-  const Real t151 = t118 * t44;
-  const Real t152 = t150 - t151;
-  const Real t153 = r_a_dot[0] * t152;
-  const Real t154 = t147 + t153;
-  const Real t155 = t142 - t154;
+  const Real t60 = c_r_a_0_ * t47;
+  const Real t61 = s_r_a_1_ * t49;
+  const Real t62 = t60 - t61;
+  const Real t63 = c_r_a_1_ * t45;
+  const Real t64 = s_r_a_0_ * t48;
+  const Real t65 = t63 - t64;
+  const Real t66 = t62 - t65;
+  const Real t67 = s_r_p_1_ * t66;
+  const Real t68 = s_r_a_0_ * t47;
+  const Real t69 = s_r_a_1_ * t45;
+  const Real t70 = t68 + t69;
+  const Real t71 = c_r_a_1_ * t49;
+  const Real t72 = c_r_a_0_ * t48;
+  const Real t73 = t71 + t72;
+  const Real t74 = t70 - t73;
+  const Real t75 = s_r_p_0_ * t74;
+  const Real t76 = t74 * c_r_p_1_;
+  const Real t77 = c_r_p_1_ * t66;
+  const Real t78 = s_r_p_1_ * t74;
+  const Real t79 = c_r_p_0_ * t66;
 
   // left_rod: acceleration
-  const Real t156 = r_a_ddot[0] * par.l_1;
-  const Real t157 = t65 + t156;
-  const Real t158 = c_r_p_0_ * t157;
-  const Real t159 = t158 - t69;
-  const Real t160 = r_a_ddot[0] + t155;
+  const Real t80 = r_a_ddot[0] * par.l_1;
+  const Real t81 = t50 + t80;
+  const Real t82 = c_r_p_0_ * t81;
+  const Real t83 = t82 - t54;
 
   // right_rod: acceleration
-  const Real t161 = r_a_ddot[1] - t139;
-  const Real t162 = r_a_ddot[1] * par.l_1;
-  const Real t163 = t71 + t162;
-  const Real t164 = t163 * c_r_p_1_;
-  const Real t165 = t164 - t74;
+  const Real t84 = r_a_ddot[1] * par.l_1;
+  const Real t85 = t56 + t84;
+  const Real t86 = t85 * c_r_p_1_;
+  const Real t87 = t86 - t59;
 
   // left_rod: wrench
-  const Real t166 = t159 * par.k3;
-  const Real t167 = t160 * par.k4;
-  const Real t168 = t166 + t167;
+  const Real t88 = t83 * par.k3;
 
   // right_rod: wrench
-  const Real t169 = par.k3 * t165;
-  const Real t170 = t161 * par.k4;
-  const Real t171 = t169 + t170;
+  const Real t89 = par.k3 * t87;
 
   // multipliers
-  const Real t172 = t168 * t18;
-  const Real t173 = t12 * t172;
-  const Real t174 = t171 + t173;
-  const Real t175 = t22 * t174;
-  const Real t176 = product_error(t22, t174);
-  const Real t177 = quotient_error(constant<Real>(1.0L), t21);
-  const Real t178 = product_error(t12, t19);
-  const Real t179 = sum_error(t20, t17);
-  const Real t180 = t178 + t179;
-  const Real t181 = t22 * t180;
-  const Real t182 = t181 / t21;
-  const Real t183 = t177 - t182;
-  const Real t184 = t183 * t174;
-  const Real t185 = product_error(t12, t172);
-  const Real t186 = sum_error(t171, t173);
-  const Real t187 = t185 + t186;
-  const Real t188 = t22 * t187;
-  const Real t189 = t184 + t188;
-  const Real t190 = t176 + t189;
-  const Real t191 = t175 + t190;
-  const Real t192 = product_error(t175, t19);
-  const Real t193 = t19 * t190;
-  const Real t194 = t192 + t193;
-  const Real t195 = t175 * t19;
-  const Real t196 = t195 - t172;
-  const Real t197 = t194 + t196;
+  const Real t90 = product_error(s_r_p_1_, t25);
+  const Real t91 = sum_error(t33, t34);
+  const Real t92 = t90 + t91;
+  const Real t93 = c_r_p_0_ * t92;
+  const Real t94 = t93 + t42;
+  const Real t95 = t94 - t32;
+  const Real t96 = par.l_2 * t95;
+  const Real t97 = constant<Real>(1.0L) / t96;
+  const Real t98 = product_error(t97, t43);
+  const Real t99 = product_error(s_r_p_0_, par.l_1);
+  const Real t100 = t99 * t97;
+  const Real t101 = t98 + t100;
+  const Real t102 = r_a_ddot[0] * t101;
+  const Real t103 = t43 * t97;
+  const Real t104 = t103 * r_a_ddot[0];
+  const Real t105 = t102 + t104;
+  const Real t106 = t41 + t96;
+  const Real t107 = t106 * t97;
+  const Real t108 = t107 * r_a_ddot[1];
+  const Real t109 = t105 + t108;
+  const Real t110 = t37 * t97;
+  const Real t111 = t110 * r_a_dot[1];
+  const Real t112 = t36 + t96;
+  const Real t113 = t112 * t97;
+  const Real t114 = r_a_dot[0] * t113;
+  const Real t115 = t111 - t114;
+  const Real t116 = c_r_p_0_ * t115;
+  const Real t117 = -t114;
+  const Real t118 = sum_error(t111, t117);
+  const Real t119 = product_error(r_a_dot[0], t113);
+  const Real t120 = product_error(t112, t97);
+  const Real t121 = sum_error(t36, t96);
+  const Real t122 = product_error(par.l_1, t35);
+  const Real t123 = t92 * par.l_1;
+  const Real t124 = t122 + t123;
+  const Real t125 = t121 + t124;
+  const Real t126 = t125 * t97;
+  const Real t127 = t120 + t126;
+  const Real t128 = t127 * r_a_dot[0];
+  const Real t129 = t119 + t128;
+  const Real t130 = t118 - t129;
+  const Real t131 = c_r_p_0_ * t130;
+  const Real t132 = t116 + t131;
+  const Real t133 = t132 * par.l_1;
+  const Real t134 = t133 * t97;
+  const Real t135 = r_a_dot[0] * t103;
+  const Real t136 = t107 * r_a_dot[1];
+  const Real t137 = t135 + t136;
+  const Real t138 = s_r_p_1_ * t137;
+  const Real t139 = t138 * t29;
+  const Real t140 = product_error(s_r_p_1_, t137);
+  const Real t141 = sum_error(t136, t135);
+  const Real t142 = product_error(r_a_dot[0], t103);
+  const Real t143 = r_a_dot[0] * t101;
+  const Real t144 = t142 + t143;
+  const Real t145 = t141 + t144;
+  const Real t146 = s_r_p_1_ * t145;
+  const Real t147 = t140 + t146;
+  const Real t148 = t147 * t29;
+  const Real t149 = t139 + t148;
+  const Real t150 = t149 + t77;
+  const Real t151 = c_r_p_1_ * t137;
+  const Real t152 = c_r_p_1_ * t145;
+  const Real t153 = t151 + t152;
+  const Real t154 = t153 * t25;
+  const Real t155 = t78 - t154;
+  const Real t156 = t150 + t155;
+  const Real t157 = c_r_p_0_ * t156;
+  const Real t158 = s_r_p_0_ * t115;
+  const Real t159 = t158 * t35;
+  const Real t160 = t157 - t159;
+  const Real t161 = t132 * t31;
+  const Real t162 = t138 * t25;
+  const Real t163 = t162 + t76;
+  const Real t164 = t153 * t29;
+  const Real t165 = t67 - t164;
+  const Real t166 = t163 - t165;
+  const Real t167 = s_r_p_0_ * t166;
+  const Real t168 = t161 + t167;
+  const Real t169 = t160 - t168;
+  const Real t170 = -t159;
+  const Real t171 = sum_error(t157, t170);
+  const Real t172 = product_error(t158, t35);
+  const Real t173 = product_error(s_r_p_0_, t115);
+  const Real t174 = s_r_p_0_ * t130;
+  const Real t175 = t173 + t174;
+  const Real t176 = t175 * t35;
+  const Real t177 = t158 * t92;
+  const Real t178 = t176 + t177;
+  const Real t179 = t172 + t178;
+  const Real t180 = t171 - t179;
+  const Real t181 = product_error(s_r_p_0_, t166);
+  const Real t182 = t164 - t67;
+  const Real t183 = sum_error(t163, t182);
+  const Real t184 = t147 * t25;
+  const Real t185 = product_error(t138, t25);
+  const Real t186 = t184 + t185;
+  const Real t187 = sum_error(t162, t76);
+  const Real t188 = t186 + t187;
+  const Real t189 = t183 + t188;
+  const Real t190 = s_r_p_0_ * t189;
+  const Real t191 = t181 + t190;
+  const Real t192 = sum_error(t161, t167);
+  const Real t193 = t191 + t192;
+  const Real t194 = t180 - t193;
+  const Real t195 = t169 + t194;
+  const Real t196 = par.l_2 * t195;
+  const Real t197 = t196 * t97;
+  const Real t198 = t197 / t96;
+  const Real t199 = t198 * t43;
+  const Real t200 = t198 * t99;
+  const Real t201 = t199 + t200;
+  const Real t202 = t134 - t201;
+  const Real t203 = r_a_dot[0] * t202;
+  const Real t204 = t158 * t29;
+  const Real t205 = t175 * t29;
+  const Real t206 = t204 + t205;
+  const Real t207 = t79 - t206;
+  const Real t208 = t132 * t25;
+  const Real t209 = t208 + t75;
+  const Real t210 = t207 - t209;
+  const Real t211 = par.l_1 * t210;
+  const Real t212 = t211 + t196;
+  const Real t213 = t212 * t97;
+  const Real t214 = t106 * t198;
+  const Real t215 = t213 - t214;
+  const Real t216 = r_a_dot[1] * t215;
+  const Real t217 = t203 + t216;
+  const Real t218 = t109 + t217;
+  const Real t219 = r_a_ddot[1] - t218;
+  const Real t220 = par.k4 * t219;
+  const Real t221 = t220 + t89;
+  const Real t222 = t110 * r_a_ddot[1];
+  const Real t223 = t127 * r_a_ddot[0];
+  const Real t224 = r_a_ddot[0] * t113;
+  const Real t225 = t223 + t224;
+  const Real t226 = t222 - t225;
+  const Real t227 = t156 * par.l_1;
+  const Real t228 = t227 + t196;
+  const Real t229 = t228 * t97;
+  const Real t230 = t112 * t198;
+  const Real t231 = t125 * t198;
+  const Real t232 = t230 + t231;
+  const Real t233 = t229 - t232;
+  const Real t234 = r_a_dot[0] * t233;
+  const Real t235 = t198 * t37;
+  const Real t236 = t153 * par.l_1;
+  const Real t237 = t236 * t97;
+  const Real t238 = t235 + t237;
+  const Real t239 = t238 * r_a_dot[1];
+  const Real t240 = t234 + t239;
+  const Real t241 = t226 - t240;
+  const Real t242 = r_a_ddot[0] + t241;
+  const Real t243 = t242 * par.k4;
+  const Real t244 = t88 + t243;
+  const Real t245 = t244 * t18;
+  const Real t246 = t12 * t245;
+  const Real t247 = sum_error(t221, t246);
+  const Real t248 = product_error(t12, t245);
+  const Real t249 = t247 + t248;
+  const Real t250 = t22 * t249;
+  const Real t251 = quotient_error(constant<Real>(1.0L), t21);
+  const Real t252 = product_error(t12, t19);
+  const Real t253 = sum_error(t20, t17);
+  const Real t254 = t252 + t253;
+  const Real t255 = t22 * t254;
+  const Real t256 = t255 / t21;
+  const Real t257 = t251 - t256;
+  const Real t258 = t221 + t246;
+  const Real t259 = t257 * t258;
+  const Real t260 = t250 + t259;
+  const Real t261 = product_error(t22, t258);
+  const Real t262 = t260 + t261;
+  const Real t263 = t22 * t258;
+  const Real t264 = t262 + t263;
+  const Real t265 = t263 * t19;
+  const Real t266 = t265 - t245;
+  const Real t267 = product_error(t263, t19);
+  const Real t268 = t262 * t19;
+  const Real t269 = t267 + t268;
+  const Real t270 = t266 + t269;
 
-  lambda[0] = t197;
-  lambda[1] = t191;
+  lambda[0] = t270;
+  lambda[1] = t264;
 }
 
 /// All velocities from the reduced ones, active joints free.

@@ -18,10 +18,10 @@
 //   inverse_torques           1 add, 1 mul
 //   torque_driven_kinematics  none
 //   torque_driven_velocities  none
-//   torque_driven_dynamics    205 add, 244 mul, 6 div, 2 neg, 1 sin, 1 cos
+//   torque_driven_dynamics    213 add, 267 mul, 8 div, 2 neg, 1 sin, 1 cos
 //   energies                  49 add, 80 mul
 //   body_poses                12 add, 15 mul, 6 neg, 1 sin, 1 cos
-//   prepare                   21 add, 60 mul, 8 div, 2 neg, once per set of parameters
+//   prepare                   18 add, 56 mul, 8 div, 2 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -205,24 +205,17 @@ struct Prepared {
   Real k49;  // k2 * k48
   Real k50;  // k17 - k49 * k2 * 2
   Real k51;  // 1 / k8
-  Real k52;  // k15 * k51
-  Real k53;  // k15 * k52
-  Real k54;  // k53 * 2
-  Real k55;  // k48 * k18
-  Real k56;  // k2 * k55
-  Real k57;  // k18 * k55 * 2
-  Real k58;  // k49 * k6
-  Real k59;  // d * (k1 - k49 * k2)
-  Real k60;  // k1 - k49 * k2 + m_b + k1 - k49 * k2
-  Real k61;  // k6 * k55
-  Real k62;  // 1 / (L * L * L)
-  Real k63;  // d * (L + d)
-  Real k64;  // 0.61685 * GJ * L
-  Real k65;  // L * L * 0.333333
+  Real k52;  // k15 * k15 * k51 * 2
+  Real k53;  // k48 * k18
+  Real k54;  // k18 * k53 * 2
+  Real k55;  // 1 / (L * L * L)
+  Real k56;  // d * (L + d)
+  Real k57;  // 0.61685 * GJ * L
+  Real k58;  // L * L * 0.333333
 };
 
 /// To be called once per set of parameter values.
-/// operations: 21 add, 60 mul, 8 div, 2 neg
+/// operations: 18 add, 56 mul, 8 div, 2 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -321,29 +314,14 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t76 = t20 * t75;
   const Real t77 = t76 * constant<Real>(2.0L);
   const Real t78 = t69 * t25;
-  const Real t79 = t2 * t78;
-  const Real t80 = t25 * t78;
-  const Real t81 = t80 * constant<Real>(2.0L);
-
-  // left_array: wrench
-  const Real t82 = t1 - t71;
-  const Real t83 = t70 * t8;
-
-  // right_array: joint force
-  const Real t84 = par.d * t82;
-  const Real t85 = par.m_b + t82;
-
-  // left_array: joint force
-  const Real t86 = t82 + t85;
-
-  // left_array: wrench
-  const Real t87 = t8 * t78;
+  const Real t79 = t25 * t78;
+  const Real t80 = t79 * constant<Real>(2.0L);
 
   // right_array: energy
-  const Real t88 = constant<Real>(1.0L) / t36;
-  const Real t89 = par.d * t28;
-  const Real t90 = t45 * par.L;
-  const Real t91 = t35 * constant<Real>(0.333333333333333333333L);
+  const Real t81 = constant<Real>(1.0L) / t36;
+  const Real t82 = par.d * t28;
+  const Real t83 = t45 * par.L;
+  const Real t84 = t35 * constant<Real>(0.333333333333333333333L);
 
   result.m_b = par.m_b;
   result.J_x = par.J_x;
@@ -406,20 +384,13 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k49 = t70;
   result.k50 = t73;
   result.k51 = t74;
-  result.k52 = t75;
-  result.k53 = t76;
-  result.k54 = t77;
-  result.k55 = t78;
-  result.k56 = t79;
-  result.k57 = t81;
-  result.k58 = t83;
-  result.k59 = t84;
-  result.k60 = t86;
-  result.k61 = t87;
-  result.k62 = t88;
-  result.k63 = t89;
-  result.k64 = t90;
-  result.k65 = t91;
+  result.k52 = t77;
+  result.k53 = t78;
+  result.k54 = t80;
+  result.k55 = t81;
+  result.k56 = t82;
+  result.k57 = t83;
+  result.k58 = t84;
   return result;
 }
 
@@ -1994,7 +1965,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t386 = t384 + t385;
   const Real t387 = t380 * t386;
   const Real t388 = t370 - t387;
-  const Real t389 = t56 - par.k57;
+  const Real t389 = t56 - par.k54;
   const Real t390 = t352 * t358;
   const Real t391 = t389 - t390;
   const Real t392 = t380 * t379;
@@ -2020,7 +1991,7 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t412 = par.k49 * t4;
   const Real t413 = par.k49 * t17;
   const Real t414 = t412 - t413;
-  const Real t415 = t63 - par.k54;
+  const Real t415 = t63 - par.k52;
   const Real t416 = t415 - t339;
   const Real t417 = constant<Real>(1.0L) / t416;
   const Real t418 = t338 - t345;
@@ -2037,8 +2008,8 @@ inline void split_dynamics(const Prepared<Real>& par,
   const Real t429 = t428 * par.k15;
   const Real t430 = t429 + t316;
   const Real t431 = -t430;
-  const Real t432 = t4 * par.k55;
-  const Real t433 = t17 * par.k55;
+  const Real t432 = t4 * par.k53;
+  const Real t433 = t17 * par.k53;
   const Real t434 = t432 + t433;
   const Real t435 = t434 - t41;
   const Real t436 = -t364;
@@ -2900,8 +2871,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: modes first
-/// operations: 205 add, 244 mul, 6 div, 2 neg, 1 sin, 1 cos
+/// route: projected recursion
+/// operations: 213 add, 267 mul, 8 div, 2 neg, 1 sin, 1 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (4) rad or m: b_l, t_l, b_r, t_r
 /// @param[in]  r_a           (1) rad or m: w
@@ -2990,536 +2961,529 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
 
   // left_array: joint force
   const Real t44 = t7 + par.k16;
+  const Real t45 = t44 + t43;
 
   // left_array: wrench
-  const Real t45 = t7 * par.d;
-  const Real t46 = t45 + t11;
+  const Real t46 = t7 * par.d;
+  const Real t47 = t46 + t11;
 
   // right_array: wrench
-  const Real t47 = t20 * par.d;
-  const Real t48 = t47 + t30;
-
-  // left_array: joint force
-  const Real t49 = par.d * t44;
+  const Real t48 = t20 * par.d;
+  const Real t49 = t48 + t30;
 
   // right_array: joint force
-  const Real t50 = t16 * par.d;
-  const Real t51 = t50 + t24;
+  const Real t50 = par.d * t43;
+  const Real t51 = t49 - t50;
+  const Real t52 = par.J_x + t51;
 
   // left_array: joint force
-  const Real t52 = par.d * t15;
-  const Real t53 = t52 + t12;
-  const Real t54 = t51 - t53;
+  const Real t53 = par.d * t44;
+  const Real t54 = t53 + t47;
+  const Real t55 = t52 + t54;
+
+  // wheel: joint force
+  const Real t56 = t55 + par.J_w;
+
+  // right_array: joint force
+  const Real t57 = t23 + par.J_y;
+  const Real t58 = t16 * par.d;
+  const Real t59 = t58 + t24;
+
+  // left_array: joint force
+  const Real t60 = par.d * t15;
+  const Real t61 = t60 + t12;
+  const Real t62 = t59 - t61;
+  const Real t63 = t57 + t14;
 
   // left_array: wrench
-  const Real t55 = t3 + t45;
+  const Real t64 = t3 + t46;
 
   // right_array: wrench
-  const Real t56 = t47 + t27;
+  const Real t65 = t48 + t27;
 
   // right_array: joint force
-  const Real t57 = par.d * t38;
-  const Real t58 = t56 + t57;
-  const Real t59 = t58 + par.J_z;
+  const Real t66 = par.d * t38;
+  const Real t67 = t65 + t66;
+  const Real t68 = t67 + par.J_z;
 
   // left_array: joint force
-  const Real t60 = t49 + t55;
-  const Real t61 = t60 + t59;
+  const Real t69 = t53 + t64;
+  const Real t70 = t69 + t68;
 
   // springs, dampers and generalised forces
-  const Real t62 = r_p[1] * constant<Real>(2.0L);
-  const Real t63 = t62 * par.k41;
-  const Real t64 = r_p[2] * constant<Real>(2.0L);
-  const Real t65 = par.k27 * t64;
-  const Real t66 = r_p[0] * constant<Real>(2.0L);
-  const Real t67 = t66 * par.k27;
-  const Real t68 = r_p[3] * constant<Real>(2.0L);
-  const Real t69 = t68 * par.k41;
+  const Real t71 = r_p[1] * constant<Real>(2.0L);
+  const Real t72 = t71 * par.k41;
+  const Real t73 = r_p[2] * constant<Real>(2.0L);
+  const Real t74 = par.k27 * t73;
+  const Real t75 = r_p[0] * constant<Real>(2.0L);
+  const Real t76 = t75 * par.k27;
+  const Real t77 = r_p[3] * constant<Real>(2.0L);
+  const Real t78 = t77 * par.k41;
 
   // reduced accelerations
-  const Real t70 = t41 * par.k45;
-  const Real t71 = t40 * t70;
-  const Real t72 = t54 - t71;
-  const Real t73 = t40 * par.k45;
-  const Real t74 = t40 * t73;
-  const Real t75 = t61 - t74;
-  const Real t76 = t70 * t41;
-
-  // modified blocks
-  const Real t77 = par.k48 * t4;
-  const Real t78 = t4 * t77;
-  const Real t79 = t17 * par.k48;
-  const Real t80 = t17 * t79;
-  const Real t81 = par.k2 * t77;
-  const Real t82 = par.k2 * t79;
-  const Real t83 = t81 - t82;
+  const Real t79 = t17 * par.k45;
+  const Real t80 = t79 * t17;
+  const Real t81 = par.k5 - t80;
+  const Real t82 = t81 - par.k47;
+  const Real t83 = t41 * par.k45;
+  const Real t84 = t83 * t41;
+  const Real t85 = t56 - t84;
+  const Real t86 = t45 * par.k45;
+  const Real t87 = t45 * t86;
+  const Real t88 = t85 - t87;
+  const Real t89 = constant<Real>(1.0L) / t88;
+  const Real t90 = t83 * t17;
+  const Real t91 = t90 - par.k18;
+  const Real t92 = par.k2 * t86;
+  const Real t93 = t91 - t92;
+  const Real t94 = t89 * t93;
+  const Real t95 = t94 * t93;
+  const Real t96 = t82 - t95;
+  const Real t97 = t4 * par.k45;
+  const Real t98 = t4 * t97;
+  const Real t99 = par.k5 - t98;
+  const Real t100 = t99 - par.k47;
+  const Real t101 = t83 * t4;
+  const Real t102 = par.k18 - t101;
+  const Real t103 = t102 - t92;
+  const Real t104 = t103 * t89;
+  const Real t105 = t103 * t104;
+  const Real t106 = t100 - t105;
+  const Real t107 = constant<Real>(1.0L) / t106;
+  const Real t108 = t17 * t97;
+  const Real t109 = t108 - par.k47;
+  const Real t110 = t104 * t93;
+  const Real t111 = t109 - t110;
+  const Real t112 = t107 * t111;
+  const Real t113 = t112 * t111;
+  const Real t114 = t96 - t113;
+  const Real t115 = constant<Real>(1.0L) / t114;
+  const Real t116 = t63 - t84;
+  const Real t117 = constant<Real>(1.0L) / t116;
+  const Real t118 = par.k15 * t117;
+  const Real t119 = t118 * par.k15;
+  const Real t120 = par.k8 - t119;
+  const Real t121 = t40 * par.k45;
+  const Real t122 = t40 * t121;
+  const Real t123 = t70 - t122;
+  const Real t124 = t40 * t83;
+  const Real t125 = t62 - t124;
+  const Real t126 = t125 * t117;
+  const Real t127 = t125 * t126;
+  const Real t128 = t123 - t127;
+  const Real t129 = constant<Real>(1.0L) / t128;
+  const Real t130 = par.k15 * t126;
+  const Real t131 = t129 * t130;
+  const Real t132 = t131 * t130;
+  const Real t133 = t120 - t132;
+  const Real t134 = t119 + t132;
+  const Real t135 = constant<Real>(1.0L) / t133;
+  const Real t136 = t134 * t135;
+  const Real t137 = t134 * t136;
+  const Real t138 = t133 - t137;
+  const Real t139 = constant<Real>(1.0L) / t138;
 
   // wheel: twist
-  const Real t84 = w[3] + w[10];
-  const Real t85 = c_r_a_0_ * w[5];
-  const Real t86 = s_r_a_0_ * w[4];
-  const Real t87 = t85 - t86;
-  const Real t88 = c_r_a_0_ * w[4];
-  const Real t89 = s_r_a_0_ * w[5];
-  const Real t90 = t88 + t89;
+  const Real t140 = w[3] + w[10];
+  const Real t141 = c_r_a_0_ * w[5];
+  const Real t142 = s_r_a_0_ * w[4];
+  const Real t143 = t141 - t142;
+  const Real t144 = c_r_a_0_ * w[4];
+  const Real t145 = s_r_a_0_ * w[5];
+  const Real t146 = t144 + t145;
 
   // bus: acceleration
-  const Real t91 = w[3] * w[3];
-  const Real t92 = w[5] * w[5];
-  const Real t93 = t91 + t92;
-  const Real t94 = w[5] * w[0];
-  const Real t95 = w[3] * w[2];
-  const Real t96 = t94 - t95;
-  const Real t97 = w[5] * w[4];
-  const Real t98 = w[3] * w[5];
-  const Real t99 = w[4] * w[4];
-  const Real t100 = t99 + t91;
-  const Real t101 = w[4] * w[2];
-  const Real t102 = w[1] * w[5];
-  const Real t103 = t101 - t102;
-  const Real t104 = w[3] * w[4];
-  const Real t105 = w[1] * w[3];
-  const Real t106 = w[4] * w[0];
-  const Real t107 = t105 - t106;
+  const Real t147 = w[3] * w[3];
+  const Real t148 = w[5] * w[5];
+  const Real t149 = t147 + t148;
+  const Real t150 = w[5] * w[0];
+  const Real t151 = w[3] * w[2];
+  const Real t152 = t150 - t151;
+  const Real t153 = w[5] * w[4];
+  const Real t154 = w[3] * w[5];
+  const Real t155 = w[4] * w[4];
+  const Real t156 = t155 + t147;
+  const Real t157 = w[4] * w[2];
+  const Real t158 = w[1] * w[5];
+  const Real t159 = t157 - t158;
+  const Real t160 = w[3] * w[4];
+  const Real t161 = w[1] * w[3];
+  const Real t162 = w[4] * w[0];
+  const Real t163 = t161 - t162;
 
   // wheel: acceleration
-  const Real t108 = t84 * t90;
-  const Real t109 = t84 * t87;
+  const Real t164 = t140 * t146;
+  const Real t165 = t140 * t143;
 
   // left_array: acceleration
-  const Real t110 = par.d * t104;
-  const Real t111 = t103 + t110;
-  const Real t112 = t93 * par.d;
-  const Real t113 = t96 - t112;
-  const Real t114 = t97 * par.d;
-  const Real t115 = t114 + t107;
+  const Real t166 = par.d * t160;
+  const Real t167 = t159 + t166;
+  const Real t168 = t149 * par.d;
+  const Real t169 = t152 - t168;
+  const Real t170 = t153 * par.d;
+  const Real t171 = t170 + t163;
 
   // right_array: acceleration
-  const Real t116 = t103 - t110;
-  const Real t117 = t96 + t112;
-  const Real t118 = t107 - t114;
+  const Real t172 = t159 - t166;
+  const Real t173 = t152 + t168;
+  const Real t174 = t163 - t170;
 
   // bus: wrench
-  const Real t119 = par.k14 * t104;
-  const Real t120 = par.k12 * t97;
-  const Real t121 = par.m_b * t103;
-  const Real t122 = par.m_b * t96;
-  const Real t123 = par.m_b * t107;
-  const Real t124 = t98 * par.k13;
+  const Real t175 = par.k14 * t160;
+  const Real t176 = par.k12 * t153;
+  const Real t177 = par.m_b * t159;
+  const Real t178 = par.m_b * t152;
+  const Real t179 = par.m_b * t163;
+  const Real t180 = t154 * par.k13;
 
   // wheel: wrench
-  const Real t125 = t108 * par.J_w;
-  const Real t126 = t109 * par.J_w;
+  const Real t181 = t164 * par.J_w;
+  const Real t182 = t165 * par.J_w;
 
   // left_array: wrench
-  const Real t127 = par.k11 * w[7];
-  const Real t128 = t127 * w[5];
-  const Real t129 = w[6] * t8;
-  const Real t130 = w[6] * t1;
-  const Real t131 = t129 - t130;
-  const Real t132 = w[3] * t131;
-  const Real t133 = t128 - t132;
-  const Real t134 = t133 * constant<Real>(2.0L);
-  const Real t135 = t113 * t15;
-  const Real t136 = t7 * t115;
-  const Real t137 = t135 - t136;
-  const Real t138 = t32 * t97;
-  const Real t139 = t92 - t99;
-  const Real t140 = t12 * t139;
-  const Real t141 = t138 - t140;
-  const Real t142 = t137 + t141;
-  const Real t143 = t134 + t142;
-  const Real t144 = par.k1 * t115;
-  const Real t145 = t7 * t97;
-  const Real t146 = t100 * t15;
-  const Real t147 = t145 - t146;
-  const Real t148 = t144 + t147;
-  const Real t149 = w[6] * t4;
-  const Real t150 = w[3] * t149;
-  const Real t151 = t150 * constant<Real>(2.0L);
-  const Real t152 = t148 - t151;
-  const Real t153 = w[5] * t131;
-  const Real t154 = t129 * w[5];
-  const Real t155 = w[6] * par.k6;
-  const Real t156 = t155 * w[4];
-  const Real t157 = w[3] * t127;
-  const Real t158 = t156 - t157;
-  const Real t159 = t154 + t158;
-  const Real t160 = t153 - t159;
-  const Real t161 = t160 * constant<Real>(2.0L);
-  const Real t162 = t31 * t104;
-  const Real t163 = t12 * t98;
-  const Real t164 = t162 + t163;
-  const Real t165 = t111 * t7;
-  const Real t166 = t164 + t165;
-  const Real t167 = t161 - t166;
-  const Real t168 = t111 * t15;
-  const Real t169 = t12 * t104;
-  const Real t170 = t98 * t33;
-  const Real t171 = t169 - t170;
-  const Real t172 = t168 + t171;
-  const Real t173 = w[4] * t131;
-  const Real t174 = t130 * w[4];
-  const Real t175 = t173 + t174;
-  const Real t176 = constant<Real>(2.0L) * t175;
-  const Real t177 = t172 + t176;
-  const Real t178 = t97 * par.k6;
-  const Real t179 = t93 * t1;
-  const Real t180 = par.k2 * t115;
-  const Real t181 = t113 * t4;
-  const Real t182 = t180 - t181;
-  const Real t183 = t179 + t182;
-  const Real t184 = t178 + t183;
-  const Real t185 = t8 * t100;
-  const Real t186 = t184 - t185;
-  const Real t187 = w[6] * par.k2;
-  const Real t188 = t187 * w[4];
-  const Real t189 = w[5] * t149;
-  const Real t190 = t188 + t189;
-  const Real t191 = t190 * constant<Real>(2.0L);
-  const Real t192 = t7 * t104;
-  const Real t193 = t98 * t15;
-  const Real t194 = t192 + t193;
-  const Real t195 = t111 * par.k1;
-  const Real t196 = t194 + t195;
-  const Real t197 = t191 + t196;
-  const Real t198 = par.k1 * t113;
-  const Real t199 = t97 * t15;
-  const Real t200 = t93 * t7;
-  const Real t201 = t199 - t200;
-  const Real t202 = t198 + t201;
-  const Real t203 = t187 * w[3];
-  const Real t204 = t203 * constant<Real>(2.0L);
-  const Real t205 = w[6] * w[6];
-  const Real t206 = t205 * par.k10;
-  const Real t207 = t204 + t206;
-  const Real t208 = t202 - t207;
+  const Real t183 = par.k11 * w[7];
+  const Real t184 = t183 * w[5];
+  const Real t185 = w[6] * t8;
+  const Real t186 = w[6] * t1;
+  const Real t187 = t185 - t186;
+  const Real t188 = w[3] * t187;
+  const Real t189 = t184 - t188;
+  const Real t190 = t189 * constant<Real>(2.0L);
+  const Real t191 = t169 * t15;
+  const Real t192 = t7 * t171;
+  const Real t193 = t191 - t192;
+  const Real t194 = t32 * t153;
+  const Real t195 = t148 - t155;
+  const Real t196 = t12 * t195;
+  const Real t197 = t194 - t196;
+  const Real t198 = t193 + t197;
+  const Real t199 = t190 + t198;
+  const Real t200 = par.k1 * t171;
+  const Real t201 = t7 * t153;
+  const Real t202 = t156 * t15;
+  const Real t203 = t201 - t202;
+  const Real t204 = t200 + t203;
+  const Real t205 = w[6] * t4;
+  const Real t206 = w[3] * t205;
+  const Real t207 = t206 * constant<Real>(2.0L);
+  const Real t208 = t204 - t207;
+  const Real t209 = w[5] * t187;
+  const Real t210 = t185 * w[5];
+  const Real t211 = w[6] * par.k6;
+  const Real t212 = t211 * w[4];
+  const Real t213 = w[3] * t183;
+  const Real t214 = t212 - t213;
+  const Real t215 = t210 + t214;
+  const Real t216 = t209 - t215;
+  const Real t217 = t216 * constant<Real>(2.0L);
+  const Real t218 = t31 * t160;
+  const Real t219 = t12 * t154;
+  const Real t220 = t218 + t219;
+  const Real t221 = t167 * t7;
+  const Real t222 = t220 + t221;
+  const Real t223 = t217 - t222;
+  const Real t224 = t167 * t15;
+  const Real t225 = t12 * t160;
+  const Real t226 = t154 * t33;
+  const Real t227 = t225 - t226;
+  const Real t228 = t224 + t227;
+  const Real t229 = w[4] * t187;
+  const Real t230 = t186 * w[4];
+  const Real t231 = t229 + t230;
+  const Real t232 = constant<Real>(2.0L) * t231;
+  const Real t233 = t228 + t232;
+  const Real t234 = t153 * par.k6;
+  const Real t235 = t149 * t1;
+  const Real t236 = par.k2 * t171;
+  const Real t237 = t169 * t4;
+  const Real t238 = t236 - t237;
+  const Real t239 = t235 + t238;
+  const Real t240 = t234 + t239;
+  const Real t241 = t8 * t156;
+  const Real t242 = t240 - t241;
+  const Real t243 = w[6] * par.k2;
+  const Real t244 = t243 * w[4];
+  const Real t245 = w[5] * t205;
+  const Real t246 = t244 + t245;
+  const Real t247 = t246 * constant<Real>(2.0L);
+  const Real t248 = t7 * t160;
+  const Real t249 = t154 * t15;
+  const Real t250 = t248 + t249;
+  const Real t251 = t167 * par.k1;
+  const Real t252 = t250 + t251;
+  const Real t253 = t247 + t252;
+  const Real t254 = par.k1 * t169;
+  const Real t255 = t153 * t15;
+  const Real t256 = t149 * t7;
+  const Real t257 = t255 - t256;
+  const Real t258 = t254 + t257;
+  const Real t259 = t243 * w[3];
+  const Real t260 = t259 * constant<Real>(2.0L);
+  const Real t261 = w[6] * w[6];
+  const Real t262 = t261 * par.k10;
+  const Real t263 = t260 + t262;
+  const Real t264 = t258 - t263;
 
   // right_array: wrench
-  const Real t209 = w[9] * par.k11;
-  const Real t210 = t209 * w[5];
-  const Real t211 = t21 * w[8];
-  const Real t212 = w[8] * t25;
-  const Real t213 = t211 - t212;
-  const Real t214 = w[3] * t213;
-  const Real t215 = t210 + t214;
-  const Real t216 = constant<Real>(2.0L) * t215;
-  const Real t217 = t20 * t118;
-  const Real t218 = t16 * t117;
-  const Real t219 = t217 + t218;
-  const Real t220 = t139 * t24;
-  const Real t221 = t97 * t35;
-  const Real t222 = t220 + t221;
-  const Real t223 = t219 + t222;
-  const Real t224 = t216 - t223;
-  const Real t225 = par.k1 * t118;
-  const Real t226 = t16 * t100;
-  const Real t227 = t97 * t20;
-  const Real t228 = t226 + t227;
-  const Real t229 = t225 - t228;
-  const Real t230 = t17 * w[8];
-  const Real t231 = w[3] * t230;
-  const Real t232 = t231 * constant<Real>(2.0L);
-  const Real t233 = t229 + t232;
-  const Real t234 = par.k2 * w[8];
-  const Real t235 = t234 * w[4];
-  const Real t236 = t230 * w[5];
-  const Real t237 = t235 - t236;
-  const Real t238 = t237 * constant<Real>(2.0L);
-  const Real t239 = t16 * t98;
-  const Real t240 = t20 * t104;
-  const Real t241 = t239 - t240;
-  const Real t242 = t116 * par.k1;
-  const Real t243 = t241 + t242;
-  const Real t244 = t238 + t243;
-  const Real t245 = t98 * t36;
-  const Real t246 = t24 * t104;
-  const Real t247 = t245 + t246;
-  const Real t248 = t16 * t116;
-  const Real t249 = t247 - t248;
-  const Real t250 = t17 * t117;
-  const Real t251 = par.k2 * t118;
-  const Real t252 = t250 + t251;
-  const Real t253 = t93 * t25;
-  const Real t254 = t252 + t253;
-  const Real t255 = t254 - t178;
-  const Real t256 = t100 * t21;
-  const Real t257 = t255 - t256;
-  const Real t258 = par.k1 * t117;
-  const Real t259 = t93 * t20;
-  const Real t260 = t16 * t97;
-  const Real t261 = t259 + t260;
-  const Real t262 = t258 + t261;
-  const Real t263 = t212 * w[4];
-  const Real t264 = w[4] * t213;
-  const Real t265 = t263 + t264;
-  const Real t266 = t265 * constant<Real>(2.0L);
-  const Real t267 = w[5] * t213;
-  const Real t268 = t209 * w[3];
-  const Real t269 = par.k6 * w[8];
-  const Real t270 = w[4] * t269;
-  const Real t271 = t268 - t270;
-  const Real t272 = w[5] * t211;
-  const Real t273 = t271 + t272;
-  const Real t274 = t267 - t273;
-  const Real t275 = t274 * constant<Real>(2.0L);
-  const Real t276 = t116 * t20;
-  const Real t277 = t98 * t24;
-  const Real t278 = t104 * t37;
-  const Real t279 = t277 - t278;
-  const Real t280 = t276 + t279;
-  const Real t281 = t275 + t280;
-  const Real t282 = t234 * w[3];
-  const Real t283 = t282 * constant<Real>(2.0L);
-  const Real t284 = w[8] * w[8];
-  const Real t285 = t284 * par.k10;
-  const Real t286 = t283 - t285;
+  const Real t265 = w[9] * par.k11;
+  const Real t266 = t265 * w[5];
+  const Real t267 = t21 * w[8];
+  const Real t268 = w[8] * t25;
+  const Real t269 = t267 - t268;
+  const Real t270 = w[3] * t269;
+  const Real t271 = t266 + t270;
+  const Real t272 = constant<Real>(2.0L) * t271;
+  const Real t273 = t20 * t174;
+  const Real t274 = t16 * t173;
+  const Real t275 = t273 + t274;
+  const Real t276 = t195 * t24;
+  const Real t277 = t153 * t35;
+  const Real t278 = t276 + t277;
+  const Real t279 = t275 + t278;
+  const Real t280 = t272 - t279;
+  const Real t281 = par.k1 * t174;
+  const Real t282 = t16 * t156;
+  const Real t283 = t153 * t20;
+  const Real t284 = t282 + t283;
+  const Real t285 = t281 - t284;
+  const Real t286 = t17 * w[8];
+  const Real t287 = w[3] * t286;
+  const Real t288 = t287 * constant<Real>(2.0L);
+  const Real t289 = t285 + t288;
+  const Real t290 = par.k2 * w[8];
+  const Real t291 = t290 * w[4];
+  const Real t292 = t286 * w[5];
+  const Real t293 = t291 - t292;
+  const Real t294 = t293 * constant<Real>(2.0L);
+  const Real t295 = t16 * t154;
+  const Real t296 = t20 * t160;
+  const Real t297 = t295 - t296;
+  const Real t298 = t172 * par.k1;
+  const Real t299 = t297 + t298;
+  const Real t300 = t294 + t299;
+  const Real t301 = t154 * t36;
+  const Real t302 = t24 * t160;
+  const Real t303 = t301 + t302;
+  const Real t304 = t16 * t172;
+  const Real t305 = t303 - t304;
+  const Real t306 = t17 * t173;
+  const Real t307 = par.k2 * t174;
+  const Real t308 = t306 + t307;
+  const Real t309 = t149 * t25;
+  const Real t310 = t308 + t309;
+  const Real t311 = t310 - t234;
+  const Real t312 = t156 * t21;
+  const Real t313 = t311 - t312;
+  const Real t314 = par.k1 * t173;
+  const Real t315 = t149 * t20;
+  const Real t316 = t16 * t153;
+  const Real t317 = t315 + t316;
+  const Real t318 = t314 + t317;
+  const Real t319 = t268 * w[4];
+  const Real t320 = w[4] * t269;
+  const Real t321 = t319 + t320;
+  const Real t322 = t321 * constant<Real>(2.0L);
+  const Real t323 = w[5] * t269;
+  const Real t324 = t265 * w[3];
+  const Real t325 = par.k6 * w[8];
+  const Real t326 = w[4] * t325;
+  const Real t327 = t324 - t326;
+  const Real t328 = w[5] * t267;
+  const Real t329 = t327 + t328;
+  const Real t330 = t323 - t329;
+  const Real t331 = t330 * constant<Real>(2.0L);
+  const Real t332 = t172 * t20;
+  const Real t333 = t154 * t24;
+  const Real t334 = t160 * t37;
+  const Real t335 = t333 - t334;
+  const Real t336 = t332 + t335;
+  const Real t337 = t331 + t336;
+  const Real t338 = t290 * w[3];
+  const Real t339 = t338 * constant<Real>(2.0L);
+  const Real t340 = w[8] * w[8];
+  const Real t341 = t340 * par.k10;
+  const Real t342 = t339 - t341;
 
   // right_array: joint force
-  const Real t287 = t244 * par.d;
-  const Real t288 = t287 + t281;
-  const Real t289 = t119 + t288;
-  const Real t290 = t244 + t121;
-  const Real t291 = t262 - t286;
-  const Real t292 = t291 + t122;
-  const Real t293 = t233 * par.d;
-  const Real t294 = t224 - t293;
-  const Real t295 = t294 + t120;
-  const Real t296 = t266 - t249;
-  const Real t297 = t296 + t124;
-  const Real t298 = t233 + t123;
+  const Real t343 = t300 * par.d;
+  const Real t344 = t343 + t337;
+  const Real t345 = t175 + t344;
+  const Real t346 = t300 + t177;
+  const Real t347 = t318 - t342;
+  const Real t348 = t347 + t178;
+  const Real t349 = t289 * par.d;
+  const Real t350 = t280 - t349;
+  const Real t351 = t350 + t176;
+  const Real t352 = t322 - t305;
+  const Real t353 = t352 + t180;
+  const Real t354 = t289 + t179;
 
   // left_array: joint force
-  const Real t299 = t177 + t297;
-  const Real t300 = t152 + t298;
-  const Real t301 = par.d * t197;
-  const Real t302 = t167 - t301;
-  const Real t303 = t302 + t289;
-  const Real t304 = t290 + t197;
-  const Real t305 = t152 * par.d;
-  const Real t306 = t305 - t143;
-  const Real t307 = t306 + t295;
-  const Real t308 = t292 + t208;
+  const Real t355 = t233 + t353;
+  const Real t356 = t208 + t354;
+  const Real t357 = par.d * t253;
+  const Real t358 = t223 - t357;
+  const Real t359 = t358 + t345;
+  const Real t360 = t346 + t253;
+  const Real t361 = t208 * par.d;
+  const Real t362 = t361 - t199;
+  const Real t363 = t362 + t351;
+  const Real t364 = t348 + t264;
 
   // wheel: joint force
-  const Real t309 = t126 * c_r_a_0_;
-  const Real t310 = s_r_a_0_ * t125;
-  const Real t311 = t309 + t310;
-  const Real t312 = t299 + t311;
-  const Real t313 = s_r_a_0_ * t126;
-  const Real t314 = t125 * c_r_a_0_;
-  const Real t315 = t313 - t314;
-  const Real t316 = t303 + t315;
+  const Real t365 = t182 * c_r_a_0_;
+  const Real t366 = s_r_a_0_ * t181;
+  const Real t367 = t365 + t366;
+  const Real t368 = t355 + t367;
+  const Real t369 = s_r_a_0_ * t182;
+  const Real t370 = t181 * c_r_a_0_;
+  const Real t371 = t369 - t370;
+  const Real t372 = t359 + t371;
 
   // springs, dampers and generalised forces
-  const Real t317 = constant<Real>(2.0L) * w[7];
-  const Real t318 = t317 * par.k42;
-  const Real t319 = t63 + t318;
-  const Real t320 = w[9] * constant<Real>(2.0L);
-  const Real t321 = t320 * par.k42;
-  const Real t322 = t321 + t69;
-  const Real t323 = w[8] * constant<Real>(2.0L);
-  const Real t324 = par.k28 * t323;
-  const Real t325 = t324 + t65;
-  const Real t326 = t325 + t257;
-  const Real t327 = w[6] * constant<Real>(2.0L);
-  const Real t328 = t327 * par.k28;
-  const Real t329 = t328 + t67;
-  const Real t330 = t329 + t186;
+  const Real t373 = constant<Real>(2.0L) * w[7];
+  const Real t374 = t373 * par.k42;
+  const Real t375 = t72 + t374;
+  const Real t376 = w[9] * constant<Real>(2.0L);
+  const Real t377 = t376 * par.k42;
+  const Real t378 = t377 + t78;
+  const Real t379 = w[8] * constant<Real>(2.0L);
+  const Real t380 = par.k28 * t379;
+  const Real t381 = t380 + t74;
+  const Real t382 = t381 + t313;
+  const Real t383 = w[6] * constant<Real>(2.0L);
+  const Real t384 = t383 * par.k28;
+  const Real t385 = t384 + t76;
+  const Real t386 = t385 + t242;
 
   // reduced accelerations
-  const Real t331 = t70 * t304;
-  const Real t332 = t73 * t304;
-  const Real t333 = t332 - t316;
-  const Real t334 = t304 * par.k45;
-
-  // wheel: joint force
-  const Real t335 = t319 * par.k51;
-  const Real t336 = par.k48 * t326;
-  const Real t337 = par.k48 * t330;
-  const Real t338 = t322 * par.k51;
-
-  // left_array: wrench
-  const Real t339 = par.k1 - t78;
-  const Real t340 = par.k6 * t77;
-
-  // right_array: wrench
-  const Real t341 = par.k6 * t79;
-  const Real t342 = t341 - t16;
-
-  // right_array: joint force
-  const Real t343 = par.k1 - t80;
-  const Real t344 = t343 + par.m_b;
-  const Real t345 = t82 * par.d;
-  const Real t346 = t342 + t345;
-
-  // left_array: joint force
-  const Real t347 = t340 - t15;
-  const Real t348 = t81 * par.d;
-  const Real t349 = t347 + t348;
-  const Real t350 = t349 + t346;
-  const Real t351 = t344 + t339;
-
-  // wheel: joint force
-  const Real t352 = t326 * t79;
-  const Real t353 = t330 * t77;
-  const Real t354 = t308 + t353;
-  const Real t355 = t352 - t354;
-
-  // left_array: wrench
-  const Real t356 = par.k58 + t34;
-
-  // right_array: wrench
-  const Real t357 = t42 + par.k58;
-
-  // right_array: joint force
-  const Real t358 = t357 - par.k59;
-
-  // left_array: joint force
-  const Real t359 = par.k59 - t356;
-  const Real t360 = t359 + t358;
-
-  // wheel: joint force
-  const Real t361 = par.k49 * t330;
-  const Real t362 = t361 - t300;
-  const Real t363 = par.k49 * t326;
-  const Real t364 = t362 + t363;
-
-  // left_array: wrench
-  const Real t365 = t44 - par.k56;
-
-  // right_array: wrench
-  const Real t366 = t43 + par.k56;
-  const Real t367 = t48 - par.k61;
-
-  // right_array: joint force
-  const Real t368 = t366 * par.d;
-  const Real t369 = t367 - t368;
-  const Real t370 = par.J_x + t369;
-
-  // left_array: joint force
-  const Real t371 = t46 - par.k61;
-  const Real t372 = par.d * t365;
-  const Real t373 = t371 + t372;
-  const Real t374 = t370 + t373;
-
-  // wheel: joint force
-  const Real t375 = t374 + par.J_w;
-  const Real t376 = t330 * par.k55;
-  const Real t377 = t376 - t307;
-  const Real t378 = t326 * par.k55;
-  const Real t379 = t377 - t378;
-
-  // left_array: wrench
-  const Real t380 = t14 - par.k53;
-
-  // right_array: joint force
-  const Real t381 = t23 - par.k53;
-  const Real t382 = t381 + par.J_y;
-
-  // left_array: joint force
-  const Real t383 = t380 + t382;
-
-  // wheel: joint force
-  const Real t384 = t319 * par.k52;
-  const Real t385 = t384 - t312;
-  const Real t386 = t322 * par.k52;
-  const Real t387 = t385 - t386;
-
-  // wheel: joint force
-  const Real t388 = constant<Real>(1.0L) / t351;
-  const Real t389 = t388 * t355;
-  const Real t390 = t388 * t83;
-  const Real t391 = t390 * t355;
-  const Real t392 = t364 - t391;
-  const Real t393 = t390 * t83;
-  const Real t394 = par.k60 - t393;
-  const Real t395 = constant<Real>(1.0L) / t394;
-  const Real t396 = t392 * t395;
-  const Real t397 = t388 * t350;
-  const Real t398 = t397 * t350;
-  const Real t399 = t375 - t398;
-  const Real t400 = t390 * t350;
-  const Real t401 = t360 - t400;
-  const Real t402 = t401 * t395;
-  const Real t403 = t401 * t402;
-  const Real t404 = t399 - t403;
-  const Real t405 = constant<Real>(1.0L) / t404;
-  const Real t406 = t397 * t355;
-  const Real t407 = t379 - t406;
-  const Real t408 = t392 * t402;
-  const Real t409 = t407 - t408;
-  const Real t410 = t405 * t409;
-  const Real t411 = t405 * par.J_w;
-  const Real t412 = t409 * t411;
-  const Real t413 = tau_a[0] - t412;
-  const Real t414 = t411 * par.J_w;
-  const Real t415 = par.J_w - t414;
-  const Real t416 = constant<Real>(1.0L) / t415;
-  const Real t417 = t413 * t416;
-  const Real t418 = t417 * t411;
-  const Real t419 = t410 - t418;
-  const Real t420 = t419 * t402;
-  const Real t421 = t396 - t420;
-  const Real t422 = t390 * t421;
-  const Real t423 = t389 - t422;
-  const Real t424 = t419 * t397;
-  const Real t425 = t423 - t424;
-  const Real t426 = t425 * t77;
-  const Real t427 = t426 - t337;
-  const Real t428 = par.k49 * t421;
-  const Real t429 = t427 - t428;
-  const Real t430 = t419 * par.k55;
-  const Real t431 = t429 - t430;
-  const Real t432 = t331 + t387;
-  const Real t433 = t383 - t76;
-  const Real t434 = constant<Real>(1.0L) / t433;
-  const Real t435 = t432 * t434;
-  const Real t436 = t72 * t434;
-  const Real t437 = t432 * t436;
-  const Real t438 = t333 - t437;
-  const Real t439 = t72 * t436;
-  const Real t440 = t75 - t439;
-  const Real t441 = constant<Real>(1.0L) / t440;
-  const Real t442 = t438 * t441;
-  const Real t443 = t436 * t442;
-  const Real t444 = t435 - t443;
-  const Real t445 = t444 * par.k52;
-  const Real t446 = t335 + t445;
+  const Real t387 = t356 * par.k46;
+  const Real t388 = t97 * t364;
+  const Real t389 = t388 + t386;
+  const Real t390 = t387 - t389;
+  const Real t391 = t356 * t86;
+  const Real t392 = t83 * t364;
+  const Real t393 = t392 + t363;
+  const Real t394 = t391 - t393;
+  const Real t395 = t104 * t394;
+  const Real t396 = t390 - t395;
+  const Real t397 = t107 * t396;
+  const Real t398 = t79 * t364;
+  const Real t399 = t398 - t382;
+  const Real t400 = t399 + t387;
+  const Real t401 = t94 * t394;
+  const Real t402 = t400 - t401;
+  const Real t403 = t396 * t112;
+  const Real t404 = t402 - t403;
+  const Real t405 = t404 * t115;
+  const Real t406 = t104 * par.J_w;
+  const Real t407 = t107 * t406;
+  const Real t408 = t396 * t407;
+  const Real t409 = t89 * par.J_w;
+  const Real t410 = t409 * t394;
+  const Real t411 = tau_a[0] - t410;
+  const Real t412 = t408 + t411;
+  const Real t413 = t112 * t406;
+  const Real t414 = t94 * par.J_w;
+  const Real t415 = t413 - t414;
+  const Real t416 = t115 * t415;
+  const Real t417 = t404 * t416;
+  const Real t418 = t412 - t417;
+  const Real t419 = t409 * par.J_w;
+  const Real t420 = par.J_w - t419;
+  const Real t421 = t407 * t406;
+  const Real t422 = t420 - t421;
+  const Real t423 = t415 * t416;
+  const Real t424 = t422 - t423;
+  const Real t425 = constant<Real>(1.0L) / t424;
+  const Real t426 = t418 * t425;
+  const Real t427 = t426 * t416;
+  const Real t428 = t405 - t427;
+  const Real t429 = t428 * t112;
+  const Real t430 = t397 - t429;
+  const Real t431 = t426 * t407;
+  const Real t432 = t430 + t431;
+  const Real t433 = par.k46 * t432;
+  const Real t434 = t356 * par.k45;
+  const Real t435 = t394 * t89;
+  const Real t436 = t104 * t432;
+  const Real t437 = t435 - t436;
+  const Real t438 = t94 * t428;
+  const Real t439 = t437 - t438;
+  const Real t440 = t426 * t409;
+  const Real t441 = t439 - t440;
+  const Real t442 = t441 * t86;
+  const Real t443 = t434 + t442;
+  const Real t444 = t433 + t443;
+  const Real t445 = t428 * par.k46;
+  const Real t446 = t444 + t445;
   const Real t447 = -t446;
-  const Real t448 = t445 - t338;
-  const Real t449 = t73 * t442;
-  const Real t450 = t70 * t444;
-  const Real t451 = t450 + t334;
-  const Real t452 = t449 + t451;
-  const Real t453 = -t452;
-  const Real t454 = t79 * t425;
-  const Real t455 = t336 + t454;
-  const Real t456 = t455 + t428;
-  const Real t457 = t430 - t456;
+  const Real t448 = t83 * t360;
+  const Real t449 = t448 - t368;
+  const Real t450 = t449 * t118;
+  const Real t451 = t450 - t378;
+  const Real t452 = t121 * t360;
+  const Real t453 = t452 - t372;
+  const Real t454 = t449 * t126;
+  const Real t455 = t453 - t454;
+  const Real t456 = t455 * t131;
+  const Real t457 = t451 - t456;
+  const Real t458 = t375 + t450;
+  const Real t459 = t456 - t458;
+  const Real t460 = t136 * t459;
+  const Real t461 = t457 - t460;
+  const Real t462 = t139 * t461;
+  const Real t463 = t118 * t462;
+  const Real t464 = t449 * t117;
+  const Real t465 = t129 * t455;
+  const Real t466 = t459 * t135;
+  const Real t467 = t136 * t462;
+  const Real t468 = t466 - t467;
+  const Real t469 = t131 * t468;
+  const Real t470 = t465 + t469;
+  const Real t471 = t131 * t462;
+  const Real t472 = t470 - t471;
+  const Real t473 = t472 * t126;
+  const Real t474 = t464 - t473;
+  const Real t475 = t118 * t468;
+  const Real t476 = t474 - t475;
+  const Real t477 = t463 + t476;
+  const Real t478 = t83 * t477;
+  const Real t479 = t360 * par.k45;
+  const Real t480 = t478 + t479;
+  const Real t481 = t121 * t472;
+  const Real t482 = t480 + t481;
+  const Real t483 = -t482;
+  const Real t484 = t83 * t441;
+  const Real t485 = t364 * par.k45;
+  const Real t486 = t484 - t485;
+  const Real t487 = t97 * t432;
+  const Real t488 = t486 + t487;
+  const Real t489 = t79 * t428;
+  const Real t490 = t488 - t489;
 
-  w_dot[0] = t453;
-  w_dot[1] = t425;
-  w_dot[2] = t421;
-  w_dot[3] = t419;
-  w_dot[4] = t444;
-  w_dot[5] = t442;
-  w_dot[6] = t431;
-  w_dot[7] = t447;
-  w_dot[8] = t457;
-  w_dot[9] = t448;
-  w_dot[10] = t417;
-  eta_dot[0] = t453;
-  eta_dot[1] = t425;
-  eta_dot[2] = t421;
-  eta_dot[3] = t419;
-  eta_dot[4] = t444;
-  eta_dot[5] = t442;
-  r_p_ddot[0] = t431;
-  r_p_ddot[1] = t447;
-  r_p_ddot[2] = t457;
-  r_p_ddot[3] = t448;
-  r_a_ddot_out[0] = t417;
+  w_dot[0] = t483;
+  w_dot[1] = t490;
+  w_dot[2] = t447;
+  w_dot[3] = t441;
+  w_dot[4] = t477;
+  w_dot[5] = t472;
+  w_dot[6] = t432;
+  w_dot[7] = t468;
+  w_dot[8] = t428;
+  w_dot[9] = t462;
+  w_dot[10] = t426;
+  eta_dot[0] = t483;
+  eta_dot[1] = t490;
+  eta_dot[2] = t447;
+  eta_dot[3] = t441;
+  eta_dot[4] = t477;
+  eta_dot[5] = t472;
+  r_p_ddot[0] = t432;
+  r_p_ddot[1] = t468;
+  r_p_ddot[2] = t428;
+  r_p_ddot[3] = t462;
+  r_a_ddot_out[0] = t426;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;
@@ -3600,22 +3564,22 @@ inline void energies(const Prepared<Real>& par,
 
   // right_array: energy
   const Real t36 = t11 + t13;
-  const Real t37 = par.k64 * t36;
+  const Real t37 = par.k57 * t36;
   const Real t38 = par.L * t37;
   const Real t39 = t10 + t12;
   const Real t40 = par.k24 * t39;
   const Real t41 = t38 + t40;
   const Real t42 = t41 * par.eta;
   const Real t43 = t42 * constant<Real>(2.0L);
-  const Real t44 = par.k62 * t43;
+  const Real t44 = par.k55 * t43;
   const Real t45 = r_p[1] * r_p[1];
   const Real t46 = r_p[3] * r_p[3];
   const Real t47 = t45 + t46;
-  const Real t48 = t47 * par.k64;
+  const Real t48 = t47 * par.k57;
   const Real t49 = t48 * par.L;
   const Real t50 = par.k24 * t22;
   const Real t51 = t49 + t50;
-  const Real t52 = par.k62 * t51;
+  const Real t52 = par.k55 * t51;
   const Real t53 = eta[5] * par.k37;
   const Real t54 = eta[5] * t53;
   const Real t55 = r_a_dot[0] * r_a_dot[0];
@@ -3639,11 +3603,11 @@ inline void energies(const Prepared<Real>& par,
   const Real t73 = t64 + t72;
   const Real t74 = constant<Real>(0.0241670467635319879004L) * r_p[2];
   const Real t75 = t74 * r_p[2];
-  const Real t76 = par.k65 - t75;
+  const Real t76 = par.k58 - t75;
   const Real t77 = r_p[0] * constant<Real>(0.0241670467635319879004L);
   const Real t78 = t77 * r_p[0];
   const Real t79 = t76 - t78;
-  const Real t80 = par.k63 + t79;
+  const Real t80 = par.k56 + t79;
   const Real t81 = t80 * eta[3];
   const Real t82 = par.d * t25;
   const Real t83 = t28 * eta[1];
@@ -3668,8 +3632,8 @@ inline void energies(const Prepared<Real>& par,
   const Real t102 = eta[4] * t101;
   const Real t103 = t94 + t102;
   const Real t104 = constant<Real>(0.1491670467635319879L) * t22;
-  const Real t105 = par.k65 - t104;
-  const Real t106 = par.k63 + t105;
+  const Real t105 = par.k58 - t104;
+  const Real t106 = par.k56 + t105;
   const Real t107 = eta[5] * t106;
   const Real t108 = eta[4] * t27;
   const Real t109 = par.k33 * t108;

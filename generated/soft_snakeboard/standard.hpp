@@ -20,11 +20,11 @@
 //   multipliers                41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
 //   torque_driven_kinematics   3 mul, 2 neg, 1 sin, 1 cos
 //   torque_driven_velocities   2 add, 5 mul, 1 div, 1 sin, 1 cos
-//   torque_driven_dynamics     222 add, 212 mul, 2 div, 4 neg, 2 sin, 2 cos
+//   torque_driven_dynamics     226 add, 216 mul, 2 div, 4 neg, 2 sin, 2 cos
 //   torque_driven_multipliers  41 add, 81 mul, 1 div, 1 neg, 2 sin, 2 cos
 //   energies                   27 add, 47 mul, 1 div, 1 sin, 1 cos
 //   body_poses                 12 add, 10 mul, 3 neg, 3 sin, 3 cos
-//   prepare                    35 add, 44 mul, 4 div, once per set of parameters
+//   prepare                    59 add, 62 mul, 4 div, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -233,15 +233,17 @@ struct Prepared {
   Real k22;  // 0.666667 * (3 * l * l - L * L)
   Real k23;  // J_h + k8 + J_p
   Real k24;  // 1 / k8
-  Real k25;  // k18 * k5
-  Real k26;  // k5 * k25
-  Real k27;  // product_error(k18, k5)
-  Real k28;  // product_error(k5, k25) + k27 * k5
-  Real k29;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
+  Real k25;  // L * k1 * 0.284413
+  Real k26;  // k18 * k25
+  Real k27;  // product_error(L, k1 * 0.284413) + (product_error(0.284413, k1) - k1 * 2.48957e-17) * L
+  Real k28;  // product_error(k18, k25) + k18 * k27
+  Real k29;  // product_error(k25, k26) + k28 * k25 + k26 * k27
+  Real k30;  // k26 * k25
+  Real k31;  // m_a * l * l + J_a + 0.5 * (J_p + J_h)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 35 add, 44 mul, 4 div
+/// operations: 59 add, 62 mul, 4 div
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -307,21 +309,29 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   // reduced accelerations
   const Real t45 = constant<Real>(1.0L) / t13;
 
-  // rear_axle: joint force
-  const Real t46 = t33 * t7;
-
-  // beam_3: wrench
-  const Real t47 = t7 * t46;
-
   // accelerations
-  const Real t48 = product_error(t7, t46);
-  const Real t49 = product_error(t33, t7);
-  const Real t50 = t49 * t7;
-  const Real t51 = t48 + t50;
+  const Real t46 = t1 * constant<Real>(0.284412871854955395801L);
+  const Real t47 = par.L * t46;
+  const Real t48 = t33 * t47;
+  const Real t49 = product_error(t47, t48);
+  const Real t50 = product_error(t33, t47);
+  const Real t51 = product_error(par.L, t46);
+  const Real t52 = product_error(constant<Real>(0.284412871854955395801L), t1);
+  const Real t53 = t1 * constant<Real>(2.48957335801000535869e-17L);
+  const Real t54 = t52 - t53;
+  const Real t55 = t54 * par.L;
+  const Real t56 = t51 + t55;
+  const Real t57 = t33 * t56;
+  const Real t58 = t50 + t57;
+  const Real t59 = t58 * t47;
+  const Real t60 = t48 * t56;
+  const Real t61 = t59 + t60;
+  const Real t62 = t49 + t61;
+  const Real t63 = t48 * t47;
 
   // beam_4: energy
-  const Real t52 = constant<Real>(0.5L) * t24;
-  const Real t53 = t22 + t52;
+  const Real t64 = constant<Real>(0.5L) * t24;
+  const Real t65 = t22 + t64;
 
   result.m_p = par.m_p;
   result.J_p = par.J_p;
@@ -356,11 +366,13 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k22 = t42;
   result.k23 = t44;
   result.k24 = t45;
-  result.k25 = t46;
-  result.k26 = t47;
-  result.k27 = t49;
-  result.k28 = t51;
-  result.k29 = t53;
+  result.k25 = t47;
+  result.k26 = t48;
+  result.k27 = t56;
+  result.k28 = t58;
+  result.k29 = t62;
+  result.k30 = t63;
+  result.k31 = t65;
   return result;
 }
 
@@ -2035,8 +2047,8 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: modes first, compensated beyond 16 ulps
-/// operations: 222 add, 212 mul, 2 div, 4 neg, 2 sin, 2 cos
+/// route: modes first, compensated beyond 8 ulps
+/// operations: 226 add, 216 mul, 2 div, 4 neg, 2 sin, 2 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  r_p           (2) rad or m: re3, re4
 /// @param[in]  r_a           (2) rad or m: r1, r3
@@ -2122,386 +2134,378 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t30 = s_r_a_0_ * par.J_h;
 
   // beam_3: wrench
-  const Real t31 = s_r_a_0_ * par.k5;
-  const Real t32 = -t31;
-  const Real t33 = t22 * t4;
-  const Real t34 = par.k3 * t23;
-  const Real t35 = t33 + t34;
-  const Real t36 = t3 * s_r_a_0_;
-  const Real t37 = t35 + t36;
-  const Real t38 = par.k1 * t23;
-  const Real t39 = par.k3 * s_r_a_0_;
-  const Real t40 = t38 + t39;
-  const Real t41 = par.k1 * t22;
-  const Real t42 = s_r_a_0_ * t4;
-  const Real t43 = t41 + t42;
-  const Real t44 = par.k2 * t23;
-  const Real t45 = t31 + t44;
+  const Real t31 = par.k2 * t23;
+  const Real t32 = t22 * t4;
+  const Real t33 = par.k3 * t23;
+  const Real t34 = t32 + t33;
+  const Real t35 = t3 * s_r_a_0_;
+  const Real t36 = t34 + t35;
+  const Real t37 = par.k1 * t23;
+  const Real t38 = par.k3 * s_r_a_0_;
+  const Real t39 = t37 + t38;
+  const Real t40 = par.k1 * t22;
+  const Real t41 = s_r_a_0_ * t4;
+  const Real t42 = t40 + t41;
 
   // beam_4: wrench
-  const Real t46 = t44 - t31;
-  const Real t47 = t38 - t39;
-  const Real t48 = s_r_a_0_ * t8;
-  const Real t49 = -t48;
-  const Real t50 = t5 * s_r_a_0_;
-  const Real t51 = t5 * t22;
-  const Real t52 = t51 + t34;
-  const Real t53 = t52 - t48;
+  const Real t43 = t37 - t38;
+  const Real t44 = s_r_a_0_ * t8;
+  const Real t45 = -t44;
+  const Real t46 = t5 * s_r_a_0_;
+  const Real t47 = t5 * t22;
+  const Real t48 = t47 + t33;
+  const Real t49 = t48 - t44;
 
   // beam_4: joint force
-  const Real t54 = t41 - t50;
+  const Real t50 = t40 - t46;
 
   // beam_3: joint force
-  const Real t55 = t54 + t43;
+  const Real t51 = t50 + t42;
 
   // hub: joint force
-  const Real t56 = t55 * c_r_a_1_;
+  const Real t52 = t51 * c_r_a_1_;
 
   // front_axle: joint force
-  const Real t57 = t28 * c_r_a_0_;
-  const Real t58 = s_r_a_0_ * t29;
-  const Real t59 = t57 + t58;
-  const Real t60 = t29 * c_r_a_0_;
-  const Real t61 = s_r_a_0_ * t28;
-  const Real t62 = t60 - t61;
-  const Real t63 = par.l * t62;
-  const Real t64 = t63 - t26;
+  const Real t53 = t28 * c_r_a_0_;
+  const Real t54 = s_r_a_0_ * t29;
+  const Real t55 = t53 + t54;
+  const Real t56 = t29 * c_r_a_0_;
+  const Real t57 = s_r_a_0_ * t28;
+  const Real t58 = t56 - t57;
+  const Real t59 = par.l * t58;
+  const Real t60 = t59 - t26;
 
   // rear_axle: joint force
-  const Real t65 = t27 * c_r_a_0_;
-  const Real t66 = t61 + t65;
-  const Real t67 = t66 * par.l;
-  const Real t68 = t26 + t67;
-  const Real t69 = t27 * s_r_a_0_;
-  const Real t70 = t57 - t69;
-
-  // modified blocks
-  const Real t71 = par.k18 * t45;
-  const Real t72 = t46 * par.k18;
+  const Real t61 = t27 * c_r_a_0_;
+  const Real t62 = t57 + t61;
+  const Real t63 = t62 * par.l;
+  const Real t64 = t26 + t63;
+  const Real t65 = t27 * s_r_a_0_;
+  const Real t66 = t53 - t65;
 
   // kernel
-  const Real t73 = t10 * w[0];
-  const Real t74 = s_r_a_0_ * w[0];
+  const Real t67 = t10 * w[0];
+  const Real t68 = s_r_a_0_ * w[0];
 
   // hub: twist
-  const Real t75 = w[4] - t74;
+  const Real t69 = w[4] - t68;
 
   // platform: acceleration
-  const Real t76 = t74 * t74;
-  const Real t77 = t73 * t74;
+  const Real t70 = t68 * t68;
+  const Real t71 = t67 * t68;
 
   // rear_axle: acceleration
-  const Real t78 = t76 * par.l;
+  const Real t72 = t70 * par.l;
 
   // hub: acceleration
-  const Real t79 = t75 * t75;
-  const Real t80 = t77 * c_r_a_1_;
-  const Real t81 = s_r_a_1_ * t77;
+  const Real t73 = t69 * t69;
+  const Real t74 = t71 * c_r_a_1_;
+  const Real t75 = s_r_a_1_ * t71;
 
   // drift of the kernel
-  const Real t82 = w[3] * c_r_a_0_;
-  const Real t83 = t82 * w[0];
-  const Real t84 = w[3] * s_r_a_0_;
-  const Real t85 = t84 * par.l;
-  const Real t86 = w[0] * t85;
+  const Real t76 = w[3] * c_r_a_0_;
+  const Real t77 = t76 * w[0];
+  const Real t78 = w[3] * s_r_a_0_;
+  const Real t79 = t78 * par.l;
+  const Real t80 = w[0] * t79;
 
   // rear_axle: acceleration
-  const Real t87 = t83 * par.l;
-  const Real t88 = t87 - t77;
-  const Real t89 = t88 * c_r_a_0_;
-  const Real t90 = t78 - t86;
-  const Real t91 = s_r_a_0_ * t90;
-  const Real t92 = t89 - t91;
-  const Real t93 = t90 * c_r_a_0_;
-  const Real t94 = s_r_a_0_ * t88;
-  const Real t95 = t93 + t94;
+  const Real t81 = t77 * par.l;
+  const Real t82 = t81 - t71;
+  const Real t83 = t82 * c_r_a_0_;
+  const Real t84 = t72 - t80;
+  const Real t85 = s_r_a_0_ * t84;
+  const Real t86 = t83 - t85;
+  const Real t87 = t84 * c_r_a_0_;
+  const Real t88 = s_r_a_0_ * t82;
+  const Real t89 = t87 + t88;
 
   // front_axle: acceleration
-  const Real t96 = t87 + t77;
-  const Real t97 = t96 * s_r_a_0_;
-  const Real t98 = t86 + t78;
-  const Real t99 = t98 * c_r_a_0_;
-  const Real t100 = t97 - t99;
-  const Real t101 = t98 * s_r_a_0_;
-  const Real t102 = t96 * c_r_a_0_;
-  const Real t103 = t101 + t102;
+  const Real t90 = t81 + t71;
+  const Real t91 = t90 * s_r_a_0_;
+  const Real t92 = t80 + t72;
+  const Real t93 = t92 * c_r_a_0_;
+  const Real t94 = t91 - t93;
+  const Real t95 = t92 * s_r_a_0_;
+  const Real t96 = t90 * c_r_a_0_;
+  const Real t97 = t95 + t96;
 
   // hub: acceleration
-  const Real t104 = s_r_a_1_ * t86;
-  const Real t105 = t104 - t80;
-  const Real t106 = t86 * c_r_a_1_;
-  const Real t107 = t106 + t81;
+  const Real t98 = s_r_a_1_ * t80;
+  const Real t99 = t98 - t74;
+  const Real t100 = t80 * c_r_a_1_;
+  const Real t101 = t100 + t75;
 
   // beam_4: acceleration
-  const Real t108 = t80 - t104;
+  const Real t102 = t74 - t98;
 
   // platform: wrench
-  const Real t109 = t83 * par.J_p;
-  const Real t110 = par.m_p * t86;
+  const Real t103 = t77 * par.J_p;
+  const Real t104 = par.m_p * t80;
 
   // rear_axle: wrench
-  const Real t111 = t95 * par.m_a;
-  const Real t112 = t92 * par.m_a;
-  const Real t113 = t83 * par.J_a;
+  const Real t105 = t89 * par.m_a;
+  const Real t106 = t86 * par.m_a;
+  const Real t107 = t77 * par.J_a;
 
   // front_axle: wrench
-  const Real t114 = t100 * par.m_a;
-  const Real t115 = t103 * par.m_a;
+  const Real t108 = t94 * par.m_a;
+  const Real t109 = t97 * par.m_a;
 
   // hub: wrench
-  const Real t116 = t83 * par.J_h;
+  const Real t110 = t77 * par.J_h;
 
   // beam_3: wrench
-  const Real t117 = par.k2 * t105;
-  const Real t118 = t83 * par.k5;
-  const Real t119 = t117 - t118;
-  const Real t120 = t79 * t1;
-  const Real t121 = t119 - t120;
-  const Real t122 = t83 * t4;
-  const Real t123 = par.k3 * t79;
-  const Real t124 = t122 - t123;
-  const Real t125 = par.k1 * t107;
-  const Real t126 = t124 - t125;
-  const Real t127 = par.k2 * w[1];
-  const Real t128 = t127 * t75;
-  const Real t129 = constant<Real>(2.0L) * t128;
-  const Real t130 = t126 - t129;
-  const Real t131 = par.k1 * t105;
-  const Real t132 = t83 * par.k3;
-  const Real t133 = t79 * t4;
-  const Real t134 = t132 + t133;
-  const Real t135 = t131 - t134;
-  const Real t136 = w[1] * t1;
-  const Real t137 = t136 * t75;
-  const Real t138 = t137 * constant<Real>(2.0L);
-  const Real t139 = t4 * t107;
-  const Real t140 = par.k3 * t105;
-  const Real t141 = t139 + t140;
-  const Real t142 = t3 * t83;
-  const Real t143 = t141 - t142;
-  const Real t144 = t138 + t143;
+  const Real t111 = t77 * t4;
+  const Real t112 = par.k3 * t73;
+  const Real t113 = t111 - t112;
+  const Real t114 = par.k1 * t101;
+  const Real t115 = t113 - t114;
+  const Real t116 = par.k2 * w[1];
+  const Real t117 = t116 * t69;
+  const Real t118 = constant<Real>(2.0L) * t117;
+  const Real t119 = t115 - t118;
+  const Real t120 = t73 * t1;
+  const Real t121 = par.k1 * t99;
+  const Real t122 = t77 * par.k3;
+  const Real t123 = t73 * t4;
+  const Real t124 = t122 + t123;
+  const Real t125 = t121 - t124;
+  const Real t126 = w[1] * t1;
+  const Real t127 = t126 * t69;
+  const Real t128 = t127 * constant<Real>(2.0L);
+  const Real t129 = t4 * t101;
+  const Real t130 = par.k3 * t99;
+  const Real t131 = t129 + t130;
+  const Real t132 = t3 * t77;
+  const Real t133 = t131 - t132;
+  const Real t134 = t128 + t133;
+  const Real t135 = par.k2 * t99;
 
   // beam_4: wrench
-  const Real t145 = t6 * w[2];
-  const Real t146 = t145 * t75;
-  const Real t147 = t146 * constant<Real>(2.0L);
-  const Real t148 = par.k3 * t108;
-  const Real t149 = t5 * t107;
-  const Real t150 = t148 - t149;
-  const Real t151 = t83 * t8;
-  const Real t152 = t150 - t151;
-  const Real t153 = t147 + t152;
-  const Real t154 = par.k2 * t108;
-  const Real t155 = t154 - t118;
-  const Real t156 = t6 * t79;
-  const Real t157 = t155 - t156;
-  const Real t158 = t5 * t83;
-  const Real t159 = t158 - t123;
-  const Real t160 = t125 + t159;
-  const Real t161 = par.k1 * t108;
-  const Real t162 = t5 * t79;
-  const Real t163 = t162 + t132;
-  const Real t164 = w[2] * par.k2;
-  const Real t165 = t164 * t75;
-  const Real t166 = t165 * constant<Real>(2.0L);
+  const Real t136 = par.k2 * t102;
+  const Real t137 = t6 * t73;
+  const Real t138 = t6 * w[2];
+  const Real t139 = t138 * t69;
+  const Real t140 = t139 * constant<Real>(2.0L);
+  const Real t141 = par.k3 * t102;
+  const Real t142 = t5 * t101;
+  const Real t143 = t141 - t142;
+  const Real t144 = t77 * t8;
+  const Real t145 = t143 - t144;
+  const Real t146 = t140 + t145;
+  const Real t147 = t5 * t77;
+  const Real t148 = t147 - t112;
+  const Real t149 = t114 + t148;
+  const Real t150 = par.k1 * t102;
+  const Real t151 = t5 * t73;
+  const Real t152 = t151 + t122;
+  const Real t153 = w[2] * par.k2;
+  const Real t154 = t153 * t69;
+  const Real t155 = t154 * constant<Real>(2.0L);
 
   // beam_4: joint force
-  const Real t167 = t166 - t160;
-  const Real t168 = t163 - t161;
-  const Real t169 = t153 - t116;
+  const Real t156 = t155 - t149;
+  const Real t157 = t152 - t150;
+  const Real t158 = t146 - t110;
 
   // beam_3: joint force
-  const Real t170 = t144 + t169;
-  const Real t171 = t167 + t130;
-  const Real t172 = t135 + t168;
+  const Real t159 = t134 + t158;
+  const Real t160 = t156 + t119;
+  const Real t161 = t125 + t157;
 
   // hub: joint force
-  const Real t173 = t170 - t109;
-  const Real t174 = t171 * c_r_a_1_;
-  const Real t175 = s_r_a_1_ * t172;
-  const Real t176 = t174 - t175;
-  const Real t177 = t176 - t110;
+  const Real t162 = t159 - t103;
+  const Real t163 = t160 * c_r_a_1_;
+  const Real t164 = s_r_a_1_ * t161;
+  const Real t165 = t163 - t164;
+  const Real t166 = t165 - t104;
 
   // front_axle: joint force
-  const Real t178 = t114 * c_r_a_0_;
-  const Real t179 = s_r_a_0_ * t115;
-  const Real t180 = t178 - t179;
-  const Real t181 = t180 + t177;
-  const Real t182 = s_r_a_0_ * t114;
-  const Real t183 = t115 * c_r_a_0_;
-  const Real t184 = t182 + t183;
-  const Real t185 = t184 * par.l;
-  const Real t186 = t185 + t113;
-  const Real t187 = t173 - t186;
+  const Real t167 = t108 * c_r_a_0_;
+  const Real t168 = s_r_a_0_ * t109;
+  const Real t169 = t167 - t168;
+  const Real t170 = t169 + t166;
+  const Real t171 = s_r_a_0_ * t108;
+  const Real t172 = t109 * c_r_a_0_;
+  const Real t173 = t171 + t172;
+  const Real t174 = t173 * par.l;
+  const Real t175 = t174 + t107;
+  const Real t176 = t162 - t175;
 
   // rear_axle: joint force
-  const Real t188 = t111 * s_r_a_0_;
-  const Real t189 = t112 * c_r_a_0_;
-  const Real t190 = t188 + t189;
-  const Real t191 = par.l * t190;
-  const Real t192 = t113 + t191;
-  const Real t193 = t111 * c_r_a_0_;
-  const Real t194 = t112 * s_r_a_0_;
-  const Real t195 = t193 - t194;
-  const Real t196 = t195 + t181;
+  const Real t177 = t105 * s_r_a_0_;
+  const Real t178 = t106 * c_r_a_0_;
+  const Real t179 = t177 + t178;
+  const Real t180 = par.l * t179;
+  const Real t181 = t107 + t180;
+  const Real t182 = t105 * c_r_a_0_;
+  const Real t183 = t106 * s_r_a_0_;
+  const Real t184 = t182 - t183;
+  const Real t185 = t184 + t170;
 
   // springs, dampers and generalised forces
-  const Real t197 = w[2] * constant<Real>(2.0L);
-  const Real t198 = par.c_e * t197;
-  const Real t199 = constant<Real>(0.5L) * t198;
-  const Real t200 = t12 + t199;
-  const Real t201 = t157 + t200;
-  const Real t202 = constant<Real>(2.0L) * w[1];
-  const Real t203 = par.c_e * t202;
-  const Real t204 = t203 * constant<Real>(0.5L);
-  const Real t205 = t14 + t204;
-  const Real t206 = t205 + t121;
+  const Real t186 = constant<Real>(2.0L) * w[1];
+  const Real t187 = par.c_e * t186;
+  const Real t188 = t187 * constant<Real>(0.5L);
+  const Real t189 = t14 + t188;
+  const Real t190 = w[2] * constant<Real>(2.0L);
+  const Real t191 = par.c_e * t190;
+  const Real t192 = constant<Real>(0.5L) * t191;
+  const Real t193 = t12 + t192;
 
   // reduced forces
-  const Real t207 = t10 * t196;
-  const Real t208 = t192 - t187;
-  const Real t209 = t208 * s_r_a_0_;
-  const Real t210 = t207 + t209;
-  const Real t211 = tau_a[1] - t170;
+  const Real t194 = t10 * t185;
+  const Real t195 = t181 - t176;
+  const Real t196 = t195 * s_r_a_0_;
+  const Real t197 = t194 + t196;
+  const Real t198 = tau_a[1] - t159;
 
   // reduced accelerations
-  const Real t212 = tau_a[0] * par.k24;
-
-  // rear_axle: joint force
-  const Real t213 = par.k18 * t201;
-  const Real t214 = par.k18 * t206;
-
-  // beam_3: wrench
-  const Real t215 = par.k2 * t71;
-  const Real t216 = t71 * par.k5;
-  const Real t217 = t216 - t37;
-
-  // beam_4: wrench
-  const Real t218 = par.k5 * t72;
-  const Real t219 = t53 - t218;
-  const Real t220 = par.k2 * t72;
-
-  // rear_axle: joint force
-  const Real t221 = t72 * t201;
-  const Real t222 = t71 * t206;
-
-  // beam_3: wrench
-  const Real t223 = t3 - par.k26;
-
-  // beam_4: wrench
-  const Real t224 = t8 - par.k26;
-
-  // rear_axle: joint force
-  const Real t225 = par.k25 * t206;
-  const Real t226 = par.k25 * t201;
+  const Real t199 = tau_a[0] * par.k24;
 
   // accelerations
-  const Real t227 = par.k27 * t201;
-  const Real t228 = t227 + t226;
-  const Real t229 = par.k27 * t206;
-  const Real t230 = t225 + t229;
-  const Real t231 = t230 + t211;
-  const Real t232 = t228 + t231;
-  const Real t233 = product_error(t46, par.k18);
-  const Real t234 = sum_error(t44, t32);
-  const Real t235 = product_error(s_r_a_0_, par.k5);
-  const Real t236 = t234 - t235;
-  const Real t237 = par.k18 * t236;
-  const Real t238 = t233 + t237;
-  const Real t239 = t238 * t201;
-  const Real t240 = t239 + t221;
-  const Real t241 = sum_error(t31, t44);
-  const Real t242 = t241 + t235;
-  const Real t243 = par.k18 * t242;
-  const Real t244 = product_error(par.k18, t45);
-  const Real t245 = t243 + t244;
-  const Real t246 = t245 * t206;
-  const Real t247 = t246 + t222;
-  const Real t248 = t247 + t210;
-  const Real t249 = t240 - t248;
-  const Real t250 = t245 * par.k5;
-  const Real t251 = product_error(t71, par.k5);
-  const Real t252 = t250 + t251;
-  const Real t253 = product_error(t3, s_r_a_0_);
-  const Real t254 = sum_error(t35, t36);
-  const Real t255 = t253 + t254;
-  const Real t256 = t252 - t255;
-  const Real t257 = t256 + t217;
-  const Real t258 = sum_error(t52, t49);
-  const Real t259 = product_error(s_r_a_0_, t8);
-  const Real t260 = t258 - t259;
-  const Real t261 = t238 * par.k5;
-  const Real t262 = product_error(par.k5, t72);
-  const Real t263 = t261 + t262;
-  const Real t264 = t260 - t263;
-  const Real t265 = t219 + t264;
-  const Real t266 = t265 - t30;
-  const Real t267 = t257 + t266;
-  const Real t268 = par.k2 * t238;
-  const Real t269 = t268 + t220;
-  const Real t270 = t269 - t47;
-  const Real t271 = t245 * par.k2;
-  const Real t272 = t215 + t271;
-  const Real t273 = t272 - t40;
-  const Real t274 = t270 + t273;
-  const Real t275 = s_r_a_1_ * t274;
-  const Real t276 = t56 - t275;
-  const Real t277 = t24 + t276;
-  const Real t278 = t59 + t277;
-  const Real t279 = t278 + t70;
-  const Real t280 = t279 * t10;
-  const Real t281 = t267 - t25;
-  const Real t282 = t281 + t64;
-  const Real t283 = t282 - t68;
-  const Real t284 = t283 * s_r_a_0_;
-  const Real t285 = t280 - t284;
-  const Real t286 = constant<Real>(1.0L) / t285;
-  const Real t287 = t267 * t286;
-  const Real t288 = t249 * t287;
-  const Real t289 = t232 - t288;
-  const Real t290 = t223 - par.k28;
-  const Real t291 = t224 - par.k28;
-  const Real t292 = t291 + par.J_h;
-  const Real t293 = t290 + t292;
-  const Real t294 = t267 * t287;
-  const Real t295 = t293 - t294;
-  const Real t296 = constant<Real>(1.0L) / t295;
-  const Real t297 = t289 * t296;
-  const Real t298 = par.k27 * t297;
-  const Real t299 = t297 * par.k25;
+  const Real t200 = t77 * par.k25;
+  const Real t201 = t77 * par.k27;
+  const Real t202 = t200 + t201;
+  const Real t203 = t136 - t202;
+  const Real t204 = t203 - t137;
+  const Real t205 = t193 + t204;
+  const Real t206 = s_r_a_0_ * par.k25;
+  const Real t207 = t31 - t206;
+  const Real t208 = t207 * par.k18;
+  const Real t209 = t205 * t208;
+  const Real t210 = -t206;
+  const Real t211 = sum_error(t31, t210);
+  const Real t212 = product_error(s_r_a_0_, par.k25);
+  const Real t213 = s_r_a_0_ * par.k27;
+  const Real t214 = t212 + t213;
+  const Real t215 = t211 - t214;
+  const Real t216 = par.k18 * t215;
+  const Real t217 = product_error(t207, par.k18);
+  const Real t218 = t216 + t217;
+  const Real t219 = t205 * t218;
+  const Real t220 = t209 + t219;
+  const Real t221 = t206 + t31;
+  const Real t222 = t221 * par.k18;
+  const Real t223 = t135 - t202;
+  const Real t224 = t223 - t120;
+  const Real t225 = t189 + t224;
+  const Real t226 = t222 * t225;
+  const Real t227 = sum_error(t206, t31);
+  const Real t228 = t214 + t227;
+  const Real t229 = t228 * par.k18;
+  const Real t230 = product_error(par.k18, t221);
+  const Real t231 = t229 + t230;
+  const Real t232 = t231 * t225;
+  const Real t233 = t226 + t232;
+  const Real t234 = t197 + t233;
+  const Real t235 = t220 - t234;
+  const Real t236 = par.k2 * t208;
+  const Real t237 = par.k2 * t218;
+  const Real t238 = t236 + t237;
+  const Real t239 = t238 - t43;
+  const Real t240 = par.k2 * t231;
+  const Real t241 = par.k2 * t222;
+  const Real t242 = t240 + t241;
+  const Real t243 = t242 - t39;
+  const Real t244 = t239 + t243;
+  const Real t245 = s_r_a_1_ * t244;
+  const Real t246 = t52 - t245;
+  const Real t247 = t24 + t246;
+  const Real t248 = t247 + t55;
+  const Real t249 = t248 + t66;
+  const Real t250 = t249 * t10;
+  const Real t251 = sum_error(t48, t45);
+  const Real t252 = product_error(s_r_a_0_, t8);
+  const Real t253 = t251 - t252;
+  const Real t254 = product_error(par.k25, t208);
+  const Real t255 = par.k27 * t208;
+  const Real t256 = par.k25 * t218;
+  const Real t257 = t255 + t256;
+  const Real t258 = t254 + t257;
+  const Real t259 = t253 - t258;
+  const Real t260 = par.k25 * t208;
+  const Real t261 = t49 - t260;
+  const Real t262 = t259 + t261;
+  const Real t263 = t262 - t30;
+  const Real t264 = t222 * par.k27;
+  const Real t265 = t231 * par.k25;
+  const Real t266 = t264 + t265;
+  const Real t267 = product_error(t222, par.k25);
+  const Real t268 = t266 + t267;
+  const Real t269 = product_error(t3, s_r_a_0_);
+  const Real t270 = sum_error(t34, t35);
+  const Real t271 = t269 + t270;
+  const Real t272 = t268 - t271;
+  const Real t273 = t222 * par.k25;
+  const Real t274 = t273 - t36;
+  const Real t275 = t272 + t274;
+  const Real t276 = t263 + t275;
+  const Real t277 = t276 - t25;
+  const Real t278 = t277 + t60;
+  const Real t279 = t278 - t64;
+  const Real t280 = s_r_a_0_ * t279;
+  const Real t281 = t250 - t280;
+  const Real t282 = constant<Real>(1.0L) / t281;
+  const Real t283 = t235 * t282;
+  const Real t284 = t8 - par.k30;
+  const Real t285 = t284 - par.k29;
+  const Real t286 = par.J_h + t285;
+  const Real t287 = t3 - par.k30;
+  const Real t288 = t287 - par.k29;
+  const Real t289 = t286 + t288;
+  const Real t290 = t282 * t276;
+  const Real t291 = t290 * t276;
+  const Real t292 = t289 - t291;
+  const Real t293 = constant<Real>(1.0L) / t292;
+  const Real t294 = par.k26 * t225;
+  const Real t295 = par.k28 * t225;
+  const Real t296 = t294 + t295;
+  const Real t297 = t296 + t198;
+  const Real t298 = t205 * par.k28;
+  const Real t299 = t205 * par.k26;
   const Real t300 = t298 + t299;
-  const Real t301 = t249 * t286;
-  const Real t302 = t297 * t287;
+  const Real t301 = t297 + t300;
+  const Real t302 = t235 * t290;
   const Real t303 = t301 - t302;
-  const Real t304 = t72 * t303;
-  const Real t305 = t238 * t303;
-  const Real t306 = t304 + t305;
-  const Real t307 = t213 + t306;
-  const Real t308 = t300 + t307;
+  const Real t304 = t293 * t303;
+  const Real t305 = t304 * t290;
+  const Real t306 = t283 - t305;
+  const Real t307 = t306 * s_r_a_0_;
+  const Real t308 = t307 + t77;
   const Real t309 = -t308;
-  const Real t310 = t245 * t303;
-  const Real t311 = t71 * t303;
-  const Real t312 = t310 + t311;
-  const Real t313 = t312 - t214;
-  const Real t314 = t313 - t300;
-  const Real t315 = t10 * t303;
-  const Real t316 = t315 - t86;
-  const Real t317 = s_r_a_0_ * t303;
-  const Real t318 = t83 + t317;
-  const Real t319 = -t318;
+  const Real t310 = t306 * t10;
+  const Real t311 = t310 - t80;
+  const Real t312 = t205 * par.k18;
+  const Real t313 = t306 * t218;
+  const Real t314 = t306 * t208;
+  const Real t315 = t313 + t314;
+  const Real t316 = t312 + t315;
+  const Real t317 = t304 * par.k26;
+  const Real t318 = t304 * par.k28;
+  const Real t319 = t317 + t318;
+  const Real t320 = t316 + t319;
+  const Real t321 = -t320;
+  const Real t322 = t231 * t306;
+  const Real t323 = t306 * t222;
+  const Real t324 = t322 + t323;
+  const Real t325 = par.k18 * t225;
+  const Real t326 = t324 - t325;
+  const Real t327 = t326 - t319;
 
-  w_dot_out[0] = t303;
-  w_dot_out[1] = t314;
-  w_dot_out[2] = t309;
-  w_dot_out[3] = t212;
-  w_dot_out[4] = t297;
-  eta_dot[0] = t316;
+  w_dot_out[0] = t306;
+  w_dot_out[1] = t327;
+  w_dot_out[2] = t321;
+  w_dot_out[3] = t199;
+  w_dot_out[4] = t304;
+  eta_dot[0] = t311;
   eta_dot[1] = constant<Real>(0.0L);
-  eta_dot[2] = t319;
-  r_p_ddot[0] = t314;
-  r_p_ddot[1] = t309;
-  r_a_ddot_out[0] = t212;
-  r_a_ddot_out[1] = t297;
+  eta_dot[2] = t309;
+  r_p_ddot[0] = t327;
+  r_p_ddot[1] = t321;
+  r_a_ddot_out[0] = t199;
+  r_a_ddot_out[1] = t304;
 }
 
 /// Constraint forces with the torques given, least norm.
@@ -2796,7 +2800,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t67 = t66 + t22;
   const Real t68 = constant<Real>(0.5L) * t67;
   const Real t69 = t65 + t68;
-  const Real t70 = eta[2] * par.k29;
+  const Real t70 = eta[2] * par.k31;
   const Real t71 = r_a_dot[1] * par.J_h;
   const Real t72 = t70 + t71;
   const Real t73 = t72 * eta[2];

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <map>
 
 #include "check/evaluate_program.hpp"
 #include "describe/mechanise.hpp"
@@ -114,9 +115,11 @@ class Robot {
   ProgramCaller<Exact> call_;
 };
 
-DeriveRequest without_closed_forms(std::vector<std::string> functions = {}) {
+/// Any program will do.
+DeriveRequest shortest(std::vector<std::string> functions) {
   DeriveRequest request;
   request.closed_forms = false;
+  request.optimise = OptimiseFor::speed;
   request.functions = std::move(functions);
   return request;
 }
@@ -136,6 +139,12 @@ const std::vector<std::string> motion_functions = {"kinematics",
 
 constexpr int states_tried = 10;
 
+/// All identities of a model, which run in one process, share the program that is emitted for it.
+const Robot& shipped_robot(const std::string& name) {
+  static std::map<std::string, Robot> robots;
+  return robots.try_emplace(name, shipped(name), DeriveRequest{}).first->second;
+}
+
 class EveryModel : public testing::TestWithParam<std::string> {
  protected:
   const WorkingDigits digits{60};
@@ -144,7 +153,7 @@ class EveryModel : public testing::TestWithParam<std::string> {
 Values times(const Matrix<Exact>& G, const Values& v) { return G * v; }
 
 TEST_P(EveryModel, KeepsItsConstraintsWhateverNuIs) {
-  const Robot robot(shipped(GetParam()), {});
+  const Robot& robot = shipped_robot(GetParam());
   if (robot.partition().passive.empty()) GTEST_SKIP() << "the drives rule every velocity";
   std::vector<double> parameters;
   for (const Exact& p : robot.parameters()) parameters.push_back(p.to_double());
@@ -190,7 +199,7 @@ TEST_P(EveryModel, KeepsItsConstraintsWhateverNuIs) {
 }
 
 TEST_P(EveryModel, AcceleratesAsItsConstraintsAllow) {
-  const Robot robot(shipped(GetParam()), without_closed_forms());
+  const Robot& robot = shipped_robot(GetParam());
   SampleSource source(11);
   for (int i = 0; i < states_tried; ++i) {
     const EvaluationInput<Exact> input = robot.admissible(source);
@@ -207,7 +216,7 @@ TEST_P(EveryModel, AcceleratesAsItsConstraintsAllow) {
 // d(T + V)/dt = tau_a . r_a_dot - dissipation, by central differences of the energies along the motion with a
 // step of 1e-20: error 1e-40 of the third derivative, and 1e-60 / 1e-20 of rounding.
 TEST_P(EveryModel, GainsThePowerOfItsActuatorsAndLosesWhatItDissipates) {
-  const Robot robot(shipped(GetParam()), without_closed_forms());
+  const Robot& robot = shipped_robot(GetParam());
   if (!robot.model().forces.empty() || !robot.model().wrenches.empty())
     GTEST_SKIP() << "has forces without a potential";
   SampleSource source(13);
@@ -241,7 +250,7 @@ TEST_P(EveryModel, GainsThePowerOfItsActuatorsAndLosesWhatItDissipates) {
 // The torques that impose a motion, fed to the torque-driven model, give the motion back: for m = m° they are
 // the torques one started from; for m > m° they differ from them by the share that only loads the contacts.
 TEST_P(EveryModel, ReturnsItsMotionFromItsTorques) {
-  const Robot robot(shipped(GetParam()), without_closed_forms());
+  const Robot& robot = shipped_robot(GetParam());
   const RankAnalysis& ranks = robot.derivation().reduction.ranks;
   SampleSource source(17);
   for (int i = 0; i < states_tried; ++i) {
@@ -264,7 +273,7 @@ TEST_P(EveryModel, ReturnsItsMotionFromItsTorques) {
 }
 
 TEST_P(EveryModel, HasASymmetricPositiveDefiniteReducedMassMatrix) {
-  const Robot robot(shipped(GetParam()), {});
+  const Robot& robot = shipped_robot(GetParam());
   SampleSource source(19);
   for (int i = 0; i < states_tried; ++i) {
     const EvaluationInput<Exact> input = robot.admissible(source);
@@ -289,7 +298,7 @@ TEST_P(EveryModel, DoesNotKnowWhereTheWorldIsWithoutGravity) {
   model.gravity = {0, 0, 0};
   const GroupKind group = model.group;
   if (group == GroupKind::fixed) GTEST_SKIP() << "the base is fixed";
-  const Robot robot(std::move(model), without_closed_forms(motion_functions));
+  const Robot robot(std::move(model), shortest(motion_functions));
   SampleSource source(23);
   for (int i = 0; i < states_tried; ++i) {
     const EvaluationInput<Exact> here = robot.admissible(source);
@@ -318,7 +327,7 @@ TEST_P(EveryModel, DoesNotKnowWhereTheWorldIsWithoutGravity) {
 
 // Every choice of free velocities that the constraints admit gives the same motion and the same torques.
 TEST_P(EveryModel, MovesTheSameWhateverTheKernelBasis) {
-  const Robot usual(shipped(GetParam()), without_closed_forms(motion_functions));
+  const Robot usual(shipped(GetParam()), shortest(motion_functions));
   const int k = usual.derivation().reduction.kernel.H.cols();
   if (k == 0 || usual.model().rows.empty()) GTEST_SKIP() << "no kernel to choose";
   const std::vector<std::string> names = velocity_names(usual.model());
@@ -338,7 +347,7 @@ TEST_P(EveryModel, MovesTheSameWhateverTheKernelBasis) {
     SCOPED_TRACE(text);
     std::unique_ptr<Robot> other;
     try {
-      other = std::make_unique<Robot>(std::move(model), without_closed_forms(motion_functions));
+      other = std::make_unique<Robot>(std::move(model), shortest(motion_functions));
     } catch (const std::exception&) {
       continue;  // these velocities are not independent
     }

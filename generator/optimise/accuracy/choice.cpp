@@ -73,8 +73,8 @@ std::vector<OutputBlock> with_roots(std::vector<OutputBlock> outputs, const std:
 }
 
 double Candidate::worst_to_expect() const {
-  if (!outlook) return error.excess * allowed_ulps / tolerated_ulps;
-  return outlook->growth * std::max(error.excess, outlook->largest);
+  const Outlook o = outlook.value_or(Outlook{});
+  return o.growth * std::max(error.excess, o.largest);
 }
 
 EstimatedStates::EstimatedStates(StateSource source, std::size_t steps)
@@ -97,18 +97,21 @@ std::vector<Outlook> EstimatedStates::outlooks(
 
 std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
   constexpr double random_states = 1e5, most = allowed_ulps / 2;  // beyond it no program would be good enough
+  constexpr std::size_t least_tail = 8;                           // fewer say nothing
   std::vector<Outlook> result;
   for (std::vector<double>& of_program : errors) {
-    Outlook& outlook = result.emplace_back();
     std::ranges::sort(of_program, std::greater<>());
-    const std::size_t tail = std::max<std::size_t>(1, of_program.size() / 32);
-    if (of_program.size() <= tail || !(of_program[tail] > 0)) continue;
+    Outlook& outlook = result.emplace_back();
+    if (!of_program.empty()) outlook.largest = of_program[0];
+    const std::size_t tail = of_program.size() / 32;
+    if (tail < least_tail || !(of_program[tail] > 0)) continue;
+    outlook.spread = of_program[0] / of_program[tail];
     // the tail falls like a power of the number of states (Hill 1975)
     double exponent = 0;
     for (std::size_t i = 0; i < tail; ++i)
       exponent += std::log(of_program[i] / of_program[tail]) / static_cast<double>(tail);
     const double states = random_states / static_cast<double>(of_program.size());
-    outlook = {of_program[0], std::min(std::pow(states, exponent), most)};
+    outlook.growth = std::min(std::pow(states, exponent), most);
   }
   return result;
 }
@@ -164,14 +167,12 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
     const std::vector<OutputBlock>& program = candidates[fast].outputs;
     EstimatedStates random(states, program.size() * tape.reachable(roots_of(program)).size());
     const std::vector<double> errors = first_order_errors(tape, program, random.few()).front();
-    if (!errors.empty() && *std::ranges::max_element(errors) > tolerated_ulps / 2) {
-      at = {with_hard_states(random.few(), errors), {}, std::move(random)};
-      at.allowance = rounding_shares(tape, program, at.states).allowance;
-      std::vector<Candidate> one = {candidates[fast]};
-      if (is_fine) measure(tape, one, at);
-      is_fine = is_fine && one[0].worst_to_expect() <= allowed_ulps;
-    }
-    if (is_fine) return fast;
+    if (is_fine && (errors.empty() || *std::ranges::max_element(errors) <= tolerated_ulps / 2)) return fast;
+    at = {with_hard_states(random.few(), errors), {}, std::move(random)};
+    at.allowance = rounding_shares(tape, program, at.states).allowance;
+    std::vector<Candidate> one = {candidates[fast]};
+    if (mode == OptimiseFor::balanced) measure(tape, one, at);
+    if (one[0].error.is_measured() && one[0].worst_to_expect() <= allowed_ulps) return fast;
   }
   more(at);
   measure(tape, candidates, at);

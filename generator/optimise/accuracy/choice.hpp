@@ -47,7 +47,10 @@ using StateSource = std::function<States(int count)>;
 /// What estimates say of states that are not measured.
 struct Outlook {
   double largest = 0;  // at any of them
-  double growth = 1;   // how much more the worst of 1e5 states may show
+  // how much more the worst of 1e5 states may show: where there are none, as much as the worst of 32 leaves
+  // open
+  double growth = allowed_ulps / tolerated_ulps;
+  double spread = 1;  // the largest to what one state in 32 shows
   [[nodiscard]] double worst() const { return growth * largest; }
 };
 

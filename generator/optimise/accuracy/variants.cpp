@@ -40,7 +40,7 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
 
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
                      OptimiseFor mode, const MeasuredStates& at, std::size_t derived) {
-  constexpr double root_of_two = 1.4142135623730951, least_share = 0.35;
+  constexpr double root_of_two = 1.4142135623730951, least_share = 0.35, most_spread = 25;
   constexpr std::size_t steps = 4;     // over which a bound falls to a quarter,
   constexpr double improvement = 1.5;  // and the error by this much, or the inputs' own rounding is reached
   measure(tape, candidates, at);
@@ -49,7 +49,7 @@ void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::
                                          : c.worst_to_expect() <= allowed_ulps;
   };
   if (std::ranges::any_of(candidates, is_enough)) return;
-  std::vector<double> bounds;
+  std::vector<double> bounds = {std::numeric_limits<double>::infinity()};
   for (double bound = tolerated_ulps; bound > least_share; bound /= root_of_two) bounds.push_back(bound);
   std::vector<Candidate> plain;
   for (std::size_t i = 0; i < derived; ++i) {
@@ -68,9 +68,12 @@ void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::
     };
     const std::vector<Outlook> outlooks =
         at.estimated.empty() ? outlooks_of(errors_at(at.states)) : at.estimated.outlooks(errors_at);
+    // what one state in thousands shows may grow as much again where it was not seen yet
+    const double largest_share = allowed_ulps / std::min(outlooks[0].spread, most_spread);
     std::vector<double> worst = {from.worst_to_expect()};
-    for (std::size_t i = 0; i < bounds.size(); ++i) {
-      const bool is_promising = mode == OptimiseFor::accuracy || outlooks[i].worst() <= allowed_ulps;
+    for (std::size_t i = 1; i < bounds.size(); ++i) {
+      const bool is_promising = bounds[i] <= largest_share * root_of_two &&
+                                (mode == OptimiseFor::accuracy || outlooks[i].worst() <= allowed_ulps);
       if (!is_promising && i + 1 < bounds.size()) continue;
       const auto rest_kept = compensated(tape, roots, shares, bounds[i]);
       if (!rest_kept || !seen.insert(*rest_kept).second) continue;
