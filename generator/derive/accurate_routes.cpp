@@ -2,6 +2,7 @@
 // Accelerations where the mass matrix on the kernel's own basis is ill-conditioned. Derived only where the
 // plain routes lose digits.
 #include <algorithm>
+#include <stdexcept>
 
 #include "derive/deriver.hpp"
 
@@ -188,8 +189,11 @@ std::vector<Route> Deriver::accurate_routes(const Reduced& of, const std::string
   }
   if (const std::size_t modes = modal_columns(of).size(); modes > 0 && static_cast<int>(modes) < of.k())
     add("modes first", solved_modes_first(of, nu, r_a_dot, r_a_ddot, input_force));
-  if (const auto solution = solved_with_multipliers(of, nu, r_a_dot, r_a_ddot, input_force))
-    add("multipliers", *solution);
+  try {
+    if (const auto solution = solved_with_multipliers(of, nu, r_a_dot, r_a_ddot, input_force))
+      add("multipliers", *solution);
+  } catch (const std::domain_error&) {  // a pivot is zero for all parameters: a velocity without inertia
+  }
   return routes;
 }
 

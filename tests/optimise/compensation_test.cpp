@@ -6,6 +6,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
 #include <vector>
 
 #include "check/error_measure.hpp"
@@ -228,6 +231,21 @@ INSTANTIATE_TEST_SUITE_P(Models, AccurateRoutes,
                                            std::pair{"soft_snakeboard", "torque_driven_dynamics"},
                                            std::pair{"quadruped_stance", "torque_driven_dynamics"}),
                          [](const auto& info) { return std::string(info.param.first); });
+
+TEST(AccurateRoutes, DoWithoutTheMassMatrixWhereAVelocityHasNoInertia) {
+  std::ifstream file(std::string(ANHOLON_SOURCE_DIR) + "/models/trailer/trailer.toml");
+  std::string text{std::istreambuf_iterator<char>(file), {}};
+  const std::string inertia = R"(inertia = { mass = "m_t", com = ["-e", 0, 0], about_com = { zz = "J_t" } })";
+  ASSERT_NE(text.find(inertia), std::string::npos);
+  text.erase(text.find(inertia), inertia.size());
+  DeriveRequest request;
+  request.functions = {"torque_driven_dynamics"};
+  request.optimise = OptimiseFor::accuracy;  // asks for all routes
+  const Model model = read_model_text(text, "trailer.toml");
+  const auto derivation = derive(model, request);
+  for (const CandidateReport& c : derivation->candidates)
+    EXPECT_EQ(c.route.find("multipliers"), std::string::npos) << c.route;
+}
 
 }  // namespace
 }  // namespace anholon::compensation_test
