@@ -9,17 +9,17 @@
 //   kernel: pivoted basis, nu = (Omega_X, steer, rear_spin)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           564 add, 373 mul, 9 div, 24 neg, 2 sqrt, 1 sin, 1 cos
+//   kinematics           682 add, 420 mul, 9 div, 28 neg, 2 sqrt, 1 sin, 1 cos
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
-//   reduced_dynamics     986 add, 1078 mul, 11 div, 8 neg, 2 sqrt, 3 sin, 3 cos
-//   forward_dynamics     1526 add, 1337 mul, 16 div, 24 neg, 2 sqrt, 3 sin, 3 cos
-//   multipliers          766 add, 693 mul, 13 div, 11 neg, 2 sqrt, 3 sin, 3 cos
+//   reduced_dynamics     1166 add, 1169 mul, 13 div, 13 neg, 2 sqrt, 3 sin, 3 cos
+//   forward_dynamics     2030 add, 1583 mul, 22 div, 37 neg, 2 sqrt, 3 sin, 3 cos
+//   multipliers          972 add, 792 mul, 13 div, 16 neg, 2 sqrt, 3 sin, 3 cos
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
-//   prepare              79 add, 81 mul, 1 sin, 1 cos, once per set of parameters
+//   prepare              120 add, 107 mul, 1 neg, 1 sin, 1 cos, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -217,43 +217,47 @@ struct Prepared {
   Real k23;  // k1 * k13
   Real k24;  // k1 * k20
   Real k25;  // product_error(k1, k2)
-  Real k26;  // k4 - k9
-  Real k27;  // k14 - k4
-  Real k28;  // k9 - k14
-  Real k29;  // I_Ryy - I_Rxx
-  Real k30;  // I_Rxx - I_Ryy
-  Real k31;  // k6 - k7
-  Real k32;  // k17 - k6
-  Real k33;  // k7 - k17
-  Real k34;  // k1 * k10
-  Real k35;  // k1 * m_H
-  Real k36;  // I_Fxx - I_Fyy
-  Real k37;  // I_Fyy - I_Fxx
-  Real k38;  // m_R * r_R
-  Real k39;  // m_H * k2
-  Real k40;  // k2 * k10
-  Real k41;  // k1 * k12
-  Real k42;  // z_B * x_B * m_B - I_Bxz
-  Real k43;  // k1 * k6
-  Real k44;  // k5 * k1
-  Real k45;  // k38 * r_R
-  Real k46;  // m_H * k20
-  Real k47;  // k10 * k20
-  Real k48;  // k2 * k12
-  Real k49;  // k5 * k2
-  Real k50;  // k6 * k2
-  Real k51;  // m_F * k12 * k12
-  Real k52;  // product_error(z_B, m_B)
-  Real k53;  // z_B * z_B * m_B + (product_error(z_B, z_B)) * m_B + I_Bxx
-  Real k54;  // sum_error(z_B * z_B * m_B + (product_error(z_B, z_B)) * m_B, I_Bxx)
-  Real k55;  // k53 - k14 + k54
+  Real k26;  // k1 * (product_error(k2, k13)) + k24
+  Real k27;  // k2 * (product_error(k2, k13)) + k21
+  Real k28;  // product_error(k1, k13)
+  Real k29;  // k4 - k9
+  Real k30;  // k14 - k4
+  Real k31;  // k9 - k14
+  Real k32;  // I_Ryy - I_Rxx
+  Real k33;  // I_Rxx - I_Ryy
+  Real k34;  // k6 - k7
+  Real k35;  // k17 - k6
+  Real k36;  // k7 - k17
+  Real k37;  // k1 * k10
+  Real k38;  // k1 * m_H
+  Real k39;  // I_Fxx - I_Fyy
+  Real k40;  // I_Fyy - I_Fxx
+  Real k41;  // -k15
+  Real k42;  // m_R * r_R
+  Real k43;  // m_H * k2
+  Real k44;  // k2 * k10
+  Real k45;  // k1 * k12
+  Real k46;  // z_B * x_B * m_B - I_Bxz
+  Real k47;  // k1 * k6
+  Real k48;  // k5 * k1
+  Real k49;  // k42 * r_R
+  Real k50;  // m_H * k20
+  Real k51;  // k10 * k20
+  Real k52;  // k2 * k12
+  Real k53;  // k5 * k2
+  Real k54;  // k6 * k2
+  Real k55;  // m_F * k12 * k12
   Real k56;  // (z_B * z_B + x_B * x_B + product_error(z_B, z_B)) * m_B + I_Byy
-  Real k57;  // k14 - k56
-  Real k58;  // k56 - k53 - k54
+  Real k57;
+  Real k58;  // k56 - k9 - k57
+  Real k59;  // product_error(z_B, m_B)
+  Real k60;  // k57 + k31
+  Real k61;  // k14 - k56
+  Real k62;  // product_error(k1, k20)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 79 add, 81 mul, 1 sin, 1 cos
+/// operations: 120 add, 107 mul, 1 neg, 1 sin, 1 cos
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -337,79 +341,91 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
 
   // kernel
   const Real t70 = product_error(s_tilt, c_tilt);
+  const Real t71 = product_error(c_tilt, t55);
+  const Real t72 = s_tilt * t71;
+  const Real t73 = t72 + t69;
+  const Real t74 = c_tilt * t71;
+  const Real t75 = t74 + t66;
+  const Real t76 = product_error(s_tilt, t55);
 
   // frame: wrench
-  const Real t71 = t8 - t45;
-  const Real t72 = t57 - t8;
-  const Real t73 = t45 - t57;
+  const Real t77 = t8 - t45;
+  const Real t78 = t57 - t8;
+  const Real t79 = t45 - t57;
 
   // rear_wheel: wrench
-  const Real t74 = par.I_Ryy - par.I_Rxx;
-  const Real t75 = par.I_Rxx - par.I_Ryy;
+  const Real t80 = par.I_Ryy - par.I_Rxx;
+  const Real t81 = par.I_Rxx - par.I_Ryy;
 
   // fork: wrench
-  const Real t76 = t35 - t38;
-  const Real t77 = t62 - t35;
-  const Real t78 = t38 - t62;
-  const Real t79 = s_tilt * t48;
-  const Real t80 = s_tilt * par.m_H;
+  const Real t82 = t35 - t38;
+  const Real t83 = t62 - t35;
+  const Real t84 = t38 - t62;
+  const Real t85 = s_tilt * t48;
+  const Real t86 = s_tilt * par.m_H;
 
   // front_wheel: wrench
-  const Real t81 = par.I_Fxx - par.I_Fyy;
-  const Real t82 = par.I_Fyy - par.I_Fxx;
-
-  // rear_wheel: joint force
-  const Real t83 = par.m_R * par.r_R;
-
-  // fork: wrench
-  const Real t84 = par.m_H * c_tilt;
-  const Real t85 = c_tilt * t48;
-
-  // front_wheel: acceleration
-  const Real t86 = s_tilt * t54;
+  const Real t87 = par.I_Fxx - par.I_Fyy;
+  const Real t88 = par.I_Fyy - par.I_Fxx;
 
   // frame: wrench
-  const Real t87 = t2 - par.I_Bxz;
-
-  // fork: wrench
-  const Real t88 = s_tilt * t35;
-  const Real t89 = t28 * s_tilt;
+  const Real t89 = -t58;
 
   // rear_wheel: joint force
-  const Real t90 = t83 * par.r_R;
+  const Real t90 = par.m_R * par.r_R;
 
   // fork: wrench
-  const Real t91 = par.m_H * t65;
-  const Real t92 = t48 * t65;
+  const Real t91 = par.m_H * c_tilt;
+  const Real t92 = c_tilt * t48;
 
   // front_wheel: acceleration
-  const Real t93 = c_tilt * t54;
+  const Real t93 = s_tilt * t54;
+
+  // frame: wrench
+  const Real t94 = t2 - par.I_Bxz;
 
   // fork: wrench
-  const Real t94 = t28 * c_tilt;
-  const Real t95 = t35 * c_tilt;
+  const Real t95 = s_tilt * t35;
+  const Real t96 = t28 * s_tilt;
+
+  // rear_wheel: joint force
+  const Real t97 = t90 * par.r_R;
+
+  // fork: wrench
+  const Real t98 = par.m_H * t65;
+  const Real t99 = t48 * t65;
+
+  // front_wheel: acceleration
+  const Real t100 = c_tilt * t54;
+
+  // fork: wrench
+  const Real t101 = t28 * c_tilt;
+  const Real t102 = t35 * c_tilt;
 
   // front_wheel: wrench
-  const Real t96 = par.m_F * t54;
+  const Real t103 = par.m_F * t54;
 
   // front_wheel: joint force
-  const Real t97 = t96 * t54;
+  const Real t104 = t103 * t54;
 
-  // accelerations
-  const Real t98 = product_error(par.z_B, par.m_B);
-  const Real t99 = product_error(par.z_B, par.z_B);
-  const Real t100 = t99 * par.m_B;
-  const Real t101 = t44 + t100;
-  const Real t102 = t101 + par.I_Bxx;
-  const Real t103 = t102 - t57;
-  const Real t104 = sum_error(t101, par.I_Bxx);
-  const Real t105 = t103 + t104;
-  const Real t106 = t6 + t99;
+  // passive accelerations
+  const Real t105 = product_error(par.z_B, par.z_B);
+  const Real t106 = t6 + t105;
   const Real t107 = t106 * par.m_B;
   const Real t108 = t107 + par.I_Byy;
-  const Real t109 = t57 - t108;
-  const Real t110 = t108 - t102;
-  const Real t111 = t110 - t104;
+  const Real t109 = t108 - t45;
+  const Real t110 = sum_error(t44, par.I_Bxx);
+  const Real t111 = product_error(t4, par.m_B);
+  const Real t112 = t105 * par.m_B;
+  const Real t113 = t111 + t112;
+  const Real t114 = t110 + t113;
+  const Real t115 = t109 - t114;
+  const Real t116 = product_error(par.z_B, par.m_B);
+  const Real t117 = t114 + t79;
+  const Real t118 = t57 - t108;
+
+  // multipliers
+  const Real t119 = product_error(s_tilt, t65);
 
   result.g = par.g;
   result.c = par.c;
@@ -448,45 +464,49 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k23 = t68;
   result.k24 = t69;
   result.k25 = t70;
-  result.k26 = t71;
-  result.k27 = t72;
-  result.k28 = t73;
-  result.k29 = t74;
-  result.k30 = t75;
-  result.k31 = t76;
-  result.k32 = t77;
-  result.k33 = t78;
-  result.k34 = t79;
-  result.k35 = t80;
-  result.k36 = t81;
-  result.k37 = t82;
-  result.k38 = t83;
-  result.k39 = t84;
-  result.k40 = t85;
-  result.k41 = t86;
-  result.k42 = t87;
-  result.k43 = t88;
-  result.k44 = t89;
-  result.k45 = t90;
-  result.k46 = t91;
-  result.k47 = t92;
-  result.k48 = t93;
-  result.k49 = t94;
-  result.k50 = t95;
-  result.k51 = t97;
-  result.k52 = t98;
-  result.k53 = t102;
-  result.k54 = t104;
-  result.k55 = t105;
+  result.k26 = t73;
+  result.k27 = t75;
+  result.k28 = t76;
+  result.k29 = t77;
+  result.k30 = t78;
+  result.k31 = t79;
+  result.k32 = t80;
+  result.k33 = t81;
+  result.k34 = t82;
+  result.k35 = t83;
+  result.k36 = t84;
+  result.k37 = t85;
+  result.k38 = t86;
+  result.k39 = t87;
+  result.k40 = t88;
+  result.k41 = t89;
+  result.k42 = t90;
+  result.k43 = t91;
+  result.k44 = t92;
+  result.k45 = t93;
+  result.k46 = t94;
+  result.k47 = t95;
+  result.k48 = t96;
+  result.k49 = t97;
+  result.k50 = t98;
+  result.k51 = t99;
+  result.k52 = t100;
+  result.k53 = t101;
+  result.k54 = t102;
+  result.k55 = t104;
   result.k56 = t108;
-  result.k57 = t109;
-  result.k58 = t111;
+  result.k57 = t114;
+  result.k58 = t115;
+  result.k59 = t116;
+  result.k60 = t117;
+  result.k61 = t118;
+  result.k62 = t119;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
-/// route: kernel, compensated beyond 2 ulps
-/// operations: 564 add, 373 mul, 9 div, 24 neg, 2 sqrt, 1 sin, 1 cos
+/// route: kernel, compensated beyond 1 ulps
+/// operations: 682 add, 420 mul, 9 div, 28 neg, 2 sqrt, 1 sin, 1 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p          (3) rad or m: rear_spin, steer, front_spin
@@ -513,27 +533,27 @@ inline void kinematics(const Prepared<Real>& par,
   const Real c_r_p_1_ = cos(r_p[1]);
 
   // joint angles
-  const Real t1 = s_r_p_1_ * par.k1;
-  const Real t2 = par.c * t1;
-  const Real t3 = s_r_p_1_ * par.k13;
-  const Real t4 = par.k1 * t3;
-  const Real t5 = t2 - t4;
-  const Real t6 = R[6] * R[6];
-  const Real t7 = R[8] * R[8];
-  const Real t8 = t6 + t7;
-  const Real t9 = sqrt(t8);
-  const Real t10 = constant<Real>(1.0L) / t9;
-  const Real t11 = R[8] * t10;
-  const Real t12 = t11 * par.r_R;
-  const Real t13 = t12 - par.r_R;
-  const Real t14 = par.k1 * c_r_p_1_;
-  const Real t15 = t14 * par.k2;
-  const Real t16 = par.k22 - t15;
-  const Real t17 = c_r_p_1_ * par.k23;
-  const Real t18 = t17 * par.k2;
-  const Real t19 = t18 - par.k24;
-  const Real t20 = c_r_p_1_ * par.r_F;
-  const Real t21 = t19 - t20;
+  const Real t1 = c_r_p_1_ * par.k23;
+  const Real t2 = s_r_p_1_ * par.k2;
+  const Real t3 = t2 * par.r_F;
+  const Real t4 = s_r_p_1_ * par.k1;
+  const Real t5 = par.c * t4;
+  const Real t6 = t3 + t5;
+  const Real t7 = s_r_p_1_ * par.k13;
+  const Real t8 = par.k1 * t7;
+  const Real t9 = t5 - t8;
+  const Real t10 = c_r_p_1_ * par.c;
+  const Real t11 = R[6] * R[6];
+  const Real t12 = R[8] * R[8];
+  const Real t13 = t11 + t12;
+  const Real t14 = sqrt(t13);
+  const Real t15 = constant<Real>(1.0L) / t14;
+  const Real t16 = R[8] * t15;
+  const Real t17 = t16 * par.r_R;
+  const Real t18 = t17 - par.r_R;
+  const Real t19 = par.k1 * c_r_p_1_;
+  const Real t20 = t19 * par.k2;
+  const Real t21 = par.k22 - t20;
   const Real t22 = par.k2 * R[6];
   const Real t23 = R[8] * par.k1;
   const Real t24 = t22 - t23;
@@ -547,435 +567,475 @@ inline void kinematics(const Prepared<Real>& par,
   const Real t32 = t30 + t31;
   const Real t33 = t32 * par.k2;
   const Real t34 = t29 - t33;
-  const Real t35 = par.r_R - t12;
+  const Real t35 = par.r_R - t17;
   const Real t36 = c_r_p_1_ * par.k13;
   const Real t37 = c_r_p_1_ * par.k2;
   const Real t38 = par.k2 * t37;
   const Real t39 = par.k19 + t38;
   const Real t40 = par.r_F * t39;
-  const Real t41 = s_r_p_1_ * par.k2;
-  const Real t42 = t41 * par.c;
-  const Real t43 = c_r_p_1_ * par.c;
-  const Real t44 = t17 * par.k1;
-  const Real t45 = t44 + par.k21;
-  const Real t46 = t43 - t45;
-  const Real t47 = par.k1 * t32;
-  const Real t48 = par.k1 * t14;
-  const Real t49 = t10 * R[6];
-  const Real t50 = t49 * par.r_R;
-  const Real t51 = par.k2 * t3;
-  const Real t52 = par.r_F * t1;
-  const Real t53 = t51 - t52;
-  const Real t54 = t41 * par.r_F;
-  const Real t55 = t54 + t2;
-  const Real t56 = s_r_p_1_ * par.k23;
-  const Real t57 = t55 - t56;
-  const Real t58 = par.k1 * t37;
+  const Real t41 = t2 * par.c;
+  const Real t42 = par.k1 * t32;
+  const Real t43 = c_r_p_1_ * par.r_F;
+  const Real t44 = s_r_p_1_ * par.k23;
+  const Real t45 = par.k1 * t19;
+  const Real t46 = t15 * R[6];
+  const Real t47 = t46 * par.r_R;
+  const Real t48 = par.k2 * t7;
+  const Real t49 = par.r_F * t4;
+  const Real t50 = t48 - t49;
+  const Real t51 = par.k1 * t37;
 
   // kernel
-  const Real t59 = product_error(par.k1, t27);
-  const Real t60 = sum_error(t25, t26);
-  const Real t61 = product_error(c_r_p_1_, t24);
-  const Real t62 = -t23;
-  const Real t63 = sum_error(t22, t62);
-  const Real t64 = product_error(par.k2, R[6]);
-  const Real t65 = t63 + t64;
-  const Real t66 = t65 * c_r_p_1_;
-  const Real t67 = t61 + t66;
-  const Real t68 = t60 + t67;
-  const Real t69 = par.k1 * t68;
-  const Real t70 = t59 + t69;
-  const Real t71 = product_error(t32, par.k2);
-  const Real t72 = product_error(par.k1, R[6]);
-  const Real t73 = sum_error(t30, t31);
+  const Real t52 = product_error(par.k1, R[6]);
+  const Real t53 = sum_error(t30, t31);
+  const Real t54 = t52 + t53;
+  const Real t55 = par.k1 * t54;
+  const Real t56 = t55 + t42;
+  const Real t57 = sum_error(t25, t26);
+  const Real t58 = product_error(c_r_p_1_, t24);
+  const Real t59 = -t23;
+  const Real t60 = sum_error(t22, t59);
+  const Real t61 = product_error(par.k2, R[6]);
+  const Real t62 = t60 + t61;
+  const Real t63 = t62 * c_r_p_1_;
+  const Real t64 = t58 + t63;
+  const Real t65 = t57 + t64;
+  const Real t66 = par.k2 * t65;
+  const Real t67 = t28 + t66;
+  const Real t68 = t56 + t67;
+  const Real t69 = product_error(par.k1, t27);
+  const Real t70 = par.k1 * t65;
+  const Real t71 = t69 + t70;
+  const Real t72 = product_error(t32, par.k2);
+  const Real t73 = par.k2 * t54;
   const Real t74 = t72 + t73;
-  const Real t75 = par.k2 * t74;
-  const Real t76 = t71 + t75;
-  const Real t77 = t70 - t76;
-  const Real t78 = t34 + t77;
-  const Real t79 = t78 * t78;
-  const Real t80 = par.k1 * t74;
-  const Real t81 = t80 + t47;
-  const Real t82 = par.k2 * t68;
-  const Real t83 = t28 + t82;
-  const Real t84 = t81 + t83;
-  const Real t85 = t84 * t84;
-  const Real t86 = t79 + t85;
-  const Real t87 = sqrt(t86);
-  const Real t88 = constant<Real>(1.0L) / t87;
-  const Real t89 = t78 * t88;
-  const Real t90 = t89 * par.r_F;
-  const Real t91 = c_r_p_1_ * t90;
-  const Real t92 = t21 - t91;
-  const Real t93 = t13 * t39;
-  const Real t94 = sum_error(par.k19, t38);
-  const Real t95 = product_error(c_r_p_1_, par.k2);
-  const Real t96 = t95 * par.k2;
-  const Real t97 = product_error(par.k2, t37);
-  const Real t98 = t96 + t97;
-  const Real t99 = t94 + t98;
-  const Real t100 = t13 * t99;
-  const Real t101 = t93 + t100;
-  const Real t102 = t92 - t101;
-  const Real t103 = product_error(t14, par.k2);
-  const Real t104 = product_error(par.k1, c_r_p_1_);
-  const Real t105 = par.k2 * t104;
-  const Real t106 = t103 + t105;
-  const Real t107 = par.k25 - t106;
-  const Real t108 = t16 + t107;
-  const Real t109 = t108 * t50;
-  const Real t110 = t102 + t109;
-  const Real t111 = t1 * t50;
-  const Real t112 = t13 * t41;
-  const Real t113 = t41 * t90;
-  const Real t114 = t84 * t88;
-  const Real t115 = par.r_F * t114;
-  const Real t116 = t115 * t1;
-  const Real t117 = t113 - t116;
-  const Real t118 = t117 + t57;
-  const Real t119 = t112 + t118;
-  const Real t120 = t111 + t119;
-  const Real t121 = t90 * t1;
-  const Real t122 = t53 - t121;
-  const Real t123 = t41 * t50;
-  const Real t124 = t122 - t123;
-  const Real t125 = t108 * t90;
-  const Real t126 = par.k1 * t104;
-  const Real t127 = t126 + t48;
-  const Real t128 = par.k18 + t127;
-  const Real t129 = t115 * t128;
-  const Real t130 = t125 + t129;
-  const Real t131 = t108 * par.r_F;
-  const Real t132 = t128 * par.c;
+  const Real t75 = t71 - t74;
+  const Real t76 = t34 + t75;
+  const Real t77 = t76 * t76;
+  const Real t78 = t68 * t68;
+  const Real t79 = t77 + t78;
+  const Real t80 = sqrt(t79);
+  const Real t81 = constant<Real>(1.0L) / t80;
+  const Real t82 = t68 * t81;
+  const Real t83 = par.r_F * t82;
+  const Real t84 = product_error(t19, par.k2);
+  const Real t85 = product_error(par.k1, c_r_p_1_);
+  const Real t86 = par.k2 * t85;
+  const Real t87 = t84 + t86;
+  const Real t88 = par.k25 - t87;
+  const Real t89 = t21 + t88;
+  const Real t90 = t89 * t47;
+  const Real t91 = sum_error(par.k19, t38);
+  const Real t92 = product_error(c_r_p_1_, par.k2);
+  const Real t93 = t92 * par.k2;
+  const Real t94 = product_error(par.k2, t37);
+  const Real t95 = t93 + t94;
+  const Real t96 = t91 + t95;
+  const Real t97 = t17 * t96;
+  const Real t98 = t17 * t39;
+  const Real t99 = t97 + t98;
+  const Real t100 = t90 - t99;
+  const Real t101 = t76 * t81;
+  const Real t102 = t101 * par.r_F;
+  const Real t103 = t102 * t4;
+  const Real t104 = t50 - t103;
+  const Real t105 = t2 * t47;
+  const Real t106 = t104 - t105;
+  const Real t107 = t89 * t102;
+  const Real t108 = par.k1 * t85;
+  const Real t109 = t108 + t45;
+  const Real t110 = par.k18 + t109;
+  const Real t111 = t83 * t110;
+  const Real t112 = t107 + t111;
+  const Real t113 = t89 * par.r_F;
+  const Real t114 = t110 * par.c;
+  const Real t115 = t113 - t114;
+  const Real t116 = t115 + t36;
+  const Real t117 = t112 + t116;
+  const Real t118 = c_r_p_1_ * t47;
+  const Real t119 = t117 - t118;
+  const Real t120 = constant<Real>(1.0L) / t119;
+  const Real t121 = t106 * t120;
+  const Real t122 = t4 * t47;
+  const Real t123 = t2 * t17;
+  const Real t124 = t122 + t123;
+  const Real t125 = t121 * t124;
+  const Real t126 = t100 - t125;
+  const Real t127 = c_r_p_1_ * par.k28;
+  const Real t128 = t1 + t127;
+  const Real t129 = par.k1 * t128;
+  const Real t130 = t129 + par.k27;
+  const Real t131 = t10 - t130;
+  const Real t132 = t83 * c_r_p_1_;
   const Real t133 = t131 - t132;
-  const Real t134 = t133 + t36;
-  const Real t135 = t130 + t134;
-  const Real t136 = c_r_p_1_ * t50;
-  const Real t137 = t135 - t136;
-  const Real t138 = constant<Real>(1.0L) / t137;
-  const Real t139 = t124 * t138;
-  const Real t140 = t120 * t139;
-  const Real t141 = t110 - t140;
-  const Real t142 = t128 * t50;
-  const Real t143 = t115 * c_r_p_1_;
-  const Real t144 = t46 - t143;
-  const Real t145 = par.k1 * t95;
-  const Real t146 = t145 + t58;
-  const Real t147 = par.k22 - t146;
-  const Real t148 = t147 + par.k25;
-  const Real t149 = t13 * t148;
-  const Real t150 = t144 - t149;
-  const Real t151 = t142 + t150;
-  const Real t152 = t5 - t116;
-  const Real t153 = t111 + t152;
-  const Real t154 = t153 * t138;
-  const Real t155 = t154 * t120;
-  const Real t156 = t151 - t155;
-  const Real t157 = constant<Real>(1.0L) / t156;
-  const Real t158 = t141 * t157;
-  const Real t159 = t115 * par.k2;
-  const Real t160 = par.k1 * t90;
-  const Real t161 = t159 + t160;
-  const Real t162 = t161 + par.k12;
-  const Real t163 = t154 * t162;
-  const Real t164 = t158 * t163;
-  const Real t165 = t162 * t139;
-  const Real t166 = t164 - t165;
-  const Real t167 = t158 * t115;
-  const Real t168 = t167 - t90;
-  const Real t169 = constant<Real>(1.0L) / t168;
-  const Real t170 = t166 * t169;
-  const Real t171 = product_error(t170, t115);
-  const Real t172 = quotient_error(constant<Real>(1.0L), t168);
-  const Real t173 = -t90;
-  const Real t174 = sum_error(t167, t173);
-  const Real t175 = product_error(t141, t157);
-  const Real t176 = -t140;
-  const Real t177 = sum_error(t110, t176);
-  const Real t178 = product_error(t120, t139);
+  const Real t134 = par.k1 * t92;
+  const Real t135 = t134 + t51;
+  const Real t136 = par.k22 - t135;
+  const Real t137 = t136 + par.k25;
+  const Real t138 = t18 * t137;
+  const Real t139 = t133 - t138;
+  const Real t140 = t110 * t47;
+  const Real t141 = t139 + t140;
+  const Real t142 = t83 * t4;
+  const Real t143 = t9 - t142;
+  const Real t144 = t122 + t143;
+  const Real t145 = t144 * t120;
+  const Real t146 = t18 * t2;
+  const Real t147 = product_error(t2, par.r_F);
+  const Real t148 = t6 + t147;
+  const Real t149 = s_r_p_1_ * par.k28;
+  const Real t150 = t44 + t149;
+  const Real t151 = t148 - t150;
+  const Real t152 = t2 * t102;
+  const Real t153 = t152 - t142;
+  const Real t154 = t151 + t153;
+  const Real t155 = t146 + t154;
+  const Real t156 = t122 + t155;
+  const Real t157 = t145 * t156;
+  const Real t158 = t141 - t157;
+  const Real t159 = constant<Real>(1.0L) / t158;
+  const Real t160 = par.k2 * t128;
+  const Real t161 = t160 - par.k26;
+  const Real t162 = -t43;
+  const Real t163 = sum_error(t161, t162);
+  const Real t164 = product_error(c_r_p_1_, par.r_F);
+  const Real t165 = t163 - t164;
+  const Real t166 = t161 - t43;
+  const Real t167 = c_r_p_1_ * t102;
+  const Real t168 = -t167;
+  const Real t169 = sum_error(t166, t168);
+  const Real t170 = t165 + t169;
+  const Real t171 = t166 - t167;
+  const Real t172 = t18 * t39;
+  const Real t173 = t18 * t96;
+  const Real t174 = t172 + t173;
+  const Real t175 = t171 - t174;
+  const Real t176 = t170 + t175;
+  const Real t177 = t176 + t90;
+  const Real t178 = t156 * t121;
   const Real t179 = t177 - t178;
-  const Real t180 = t179 * t157;
-  const Real t181 = quotient_error(constant<Real>(1.0L), t156);
-  const Real t182 = -t155;
-  const Real t183 = sum_error(t151, t182);
-  const Real t184 = product_error(t154, t120);
-  const Real t185 = t183 - t184;
-  const Real t186 = t185 * t157;
-  const Real t187 = t186 / t156;
-  const Real t188 = t181 - t187;
-  const Real t189 = t141 * t188;
-  const Real t190 = t180 + t189;
-  const Real t191 = t175 + t190;
-  const Real t192 = t191 * t115;
-  const Real t193 = product_error(t115, t158);
-  const Real t194 = t192 + t193;
-  const Real t195 = t174 + t194;
-  const Real t196 = t195 * t169;
-  const Real t197 = t196 / t168;
-  const Real t198 = t172 - t197;
-  const Real t199 = t166 * t198;
-  const Real t200 = product_error(t163, t158);
-  const Real t201 = t191 * t163;
-  const Real t202 = product_error(t154, t162);
-  const Real t203 = t158 * t202;
-  const Real t204 = t201 + t203;
-  const Real t205 = t200 + t204;
-  const Real t206 = product_error(t162, t139);
+  const Real t180 = t159 * t179;
+  const Real t181 = t137 * t17;
+  const Real t182 = t140 - t181;
+  const Real t183 = t145 * t124;
+  const Real t184 = t182 - t183;
+  const Real t185 = t180 * t184;
+  const Real t186 = t126 - t185;
+  const Real t187 = t180 * t83;
+  const Real t188 = t187 - t102;
+  const Real t189 = constant<Real>(1.0L) / t188;
+  const Real t190 = t186 * t189;
+  const Real t191 = product_error(t83, t190);
+  const Real t192 = product_error(t186, t189);
+  const Real t193 = quotient_error(constant<Real>(1.0L), t188);
+  const Real t194 = product_error(t83, t180);
+  const Real t195 = quotient_error(constant<Real>(1.0L), t158);
+  const Real t196 = -t157;
+  const Real t197 = sum_error(t141, t196);
+  const Real t198 = product_error(t145, t156);
+  const Real t199 = t197 - t198;
+  const Real t200 = t159 * t199;
+  const Real t201 = t200 / t158;
+  const Real t202 = t195 - t201;
+  const Real t203 = t202 * t179;
+  const Real t204 = -t178;
+  const Real t205 = sum_error(t177, t204);
+  const Real t206 = product_error(t156, t121);
   const Real t207 = t205 - t206;
-  const Real t208 = -t165;
-  const Real t209 = sum_error(t164, t208);
-  const Real t210 = t207 + t209;
-  const Real t211 = t210 * t169;
-  const Real t212 = t199 + t211;
-  const Real t213 = product_error(t166, t169);
-  const Real t214 = t212 + t213;
-  const Real t215 = t214 * t115;
-  const Real t216 = t171 + t215;
-  const Real t217 = t216 - t202;
-  const Real t218 = t170 * t115;
-  const Real t219 = -t163;
-  const Real t220 = sum_error(t218, t219);
-  const Real t221 = t217 + t220;
-  const Real t222 = t221 * t157;
-  const Real t223 = t218 - t163;
-  const Real t224 = t223 * t188;
-  const Real t225 = t222 + t224;
-  const Real t226 = product_error(t223, t157);
-  const Real t227 = t225 + t226;
-  const Real t228 = t227 * t50;
-  const Real t229 = t223 * t157;
-  const Real t230 = t229 * t50;
-  const Real t231 = t228 + t230;
-  const Real t232 = -t231;
-  const Real t233 = par.r_F * t99;
-  const Real t234 = t40 + t233;
-  const Real t235 = t148 * par.c;
-  const Real t236 = t234 - t235;
-  const Real t237 = t90 * t99;
-  const Real t238 = t90 * t39;
-  const Real t239 = t237 + t238;
-  const Real t240 = t148 * t115;
-  const Real t241 = t239 + t240;
-  const Real t242 = t236 + t241;
-  const Real t243 = c_r_p_1_ * t35;
-  const Real t244 = t242 - t243;
-  const Real t245 = t41 * t115;
-  const Real t246 = t245 - t42;
-  const Real t247 = t35 * t1;
-  const Real t248 = t246 + t247;
-  const Real t249 = t154 * t244;
-  const Real t250 = t248 - t249;
-  const Real t251 = t54 + t113;
-  const Real t252 = t41 * t35;
-  const Real t253 = t251 - t252;
-  const Real t254 = t139 * t244;
-  const Real t255 = -t254;
-  const Real t256 = sum_error(t253, t255);
-  const Real t257 = product_error(t244, t139);
-  const Real t258 = t256 - t257;
-  const Real t259 = -t249;
-  const Real t260 = sum_error(t248, t259);
-  const Real t261 = product_error(t154, t244);
-  const Real t262 = t260 - t261;
-  const Real t263 = t158 * t262;
-  const Real t264 = t191 * t250;
-  const Real t265 = t263 + t264;
-  const Real t266 = product_error(t250, t158);
-  const Real t267 = t265 + t266;
-  const Real t268 = t258 - t267;
-  const Real t269 = t253 - t254;
-  const Real t270 = t158 * t250;
-  const Real t271 = t269 - t270;
-  const Real t272 = t268 + t271;
-  const Real t273 = t169 * t272;
-  const Real t274 = t198 * t272;
-  const Real t275 = t273 + t274;
-  const Real t276 = t115 * t275;
-  const Real t277 = t250 + t276;
-  const Real t278 = t277 * t157;
-  const Real t279 = t120 * t278;
-  const Real t280 = t244 - t279;
-  const Real t281 = product_error(t120, t278);
-  const Real t282 = product_error(t157, t277);
-  const Real t283 = t277 * t188;
-  const Real t284 = sum_error(t250, t276);
-  const Real t285 = t262 + t284;
-  const Real t286 = t285 * t157;
-  const Real t287 = t283 + t286;
-  const Real t288 = t282 + t287;
-  const Real t289 = t288 * t120;
-  const Real t290 = t281 + t289;
-  const Real t291 = t280 - t290;
-  const Real t292 = t291 * t138;
-  const Real t293 = -t292;
-  const Real t294 = t50 * t278;
-  const Real t295 = t288 * t50;
-  const Real t296 = t294 + t295;
-  const Real t297 = -t296;
-  const Real t298 = t288 + t278;
-  const Real t299 = -t298;
-  const Real t300 = t41 * t12;
-  const Real t301 = t111 + t300;
-  const Real t302 = t12 * t99;
-  const Real t303 = t12 * t39;
-  const Real t304 = t302 + t303;
-  const Real t305 = t109 - t304;
-  const Real t306 = t139 * t301;
-  const Real t307 = -t306;
-  const Real t308 = sum_error(t305, t307);
-  const Real t309 = product_error(t301, t139);
-  const Real t310 = t308 - t309;
-  const Real t311 = t148 * t12;
-  const Real t312 = t142 - t311;
-  const Real t313 = t154 * t301;
-  const Real t314 = t312 - t313;
-  const Real t315 = t191 * t314;
-  const Real t316 = -t313;
-  const Real t317 = sum_error(t312, t316);
-  const Real t318 = product_error(t154, t301);
-  const Real t319 = t317 - t318;
-  const Real t320 = t158 * t319;
-  const Real t321 = t315 + t320;
-  const Real t322 = product_error(t314, t158);
-  const Real t323 = t321 + t322;
-  const Real t324 = t310 - t323;
-  const Real t325 = t305 - t306;
-  const Real t326 = t158 * t314;
+  const Real t208 = t207 * t159;
+  const Real t209 = t203 + t208;
+  const Real t210 = product_error(t179, t159);
+  const Real t211 = t209 + t210;
+  const Real t212 = t83 * t211;
+  const Real t213 = t194 + t212;
+  const Real t214 = -t102;
+  const Real t215 = sum_error(t187, t214);
+  const Real t216 = t213 + t215;
+  const Real t217 = t216 * t189;
+  const Real t218 = t217 / t188;
+  const Real t219 = t193 - t218;
+  const Real t220 = t186 * t219;
+  const Real t221 = -t125;
+  const Real t222 = sum_error(t100, t221);
+  const Real t223 = product_error(t124, t121);
+  const Real t224 = t222 - t223;
+  const Real t225 = t211 * t184;
+  const Real t226 = -t183;
+  const Real t227 = sum_error(t182, t226);
+  const Real t228 = product_error(t145, t124);
+  const Real t229 = t227 - t228;
+  const Real t230 = t180 * t229;
+  const Real t231 = t225 + t230;
+  const Real t232 = product_error(t184, t180);
+  const Real t233 = t231 + t232;
+  const Real t234 = t224 - t233;
+  const Real t235 = -t185;
+  const Real t236 = sum_error(t126, t235);
+  const Real t237 = t234 + t236;
+  const Real t238 = t237 * t189;
+  const Real t239 = t220 + t238;
+  const Real t240 = t192 + t239;
+  const Real t241 = t83 * t240;
+  const Real t242 = t191 + t241;
+  const Real t243 = t242 + t229;
+  const Real t244 = t83 * t190;
+  const Real t245 = sum_error(t184, t244);
+  const Real t246 = t243 + t245;
+  const Real t247 = t246 * t159;
+  const Real t248 = t244 + t184;
+  const Real t249 = t202 * t248;
+  const Real t250 = t247 + t249;
+  const Real t251 = product_error(t248, t159);
+  const Real t252 = t250 + t251;
+  const Real t253 = t252 * nu[2];
+  const Real t254 = t159 * t248;
+  const Real t255 = nu[2] * t254;
+  const Real t256 = t253 + t255;
+  const Real t257 = t83 * par.k2;
+  const Real t258 = par.k1 * t102;
+  const Real t259 = t257 + t258;
+  const Real t260 = t259 + par.k12;
+  const Real t261 = t145 * t260;
+  const Real t262 = t180 * t261;
+  const Real t263 = t260 * t121;
+  const Real t264 = t262 - t263;
+  const Real t265 = t264 * t189;
+  const Real t266 = t265 * t83;
+  const Real t267 = t266 - t261;
+  const Real t268 = t267 * t159;
+  const Real t269 = t268 * nu[1];
+  const Real t270 = product_error(t265, t83);
+  const Real t271 = product_error(t264, t189);
+  const Real t272 = product_error(t261, t180);
+  const Real t273 = t261 * t211;
+  const Real t274 = product_error(t145, t260);
+  const Real t275 = t180 * t274;
+  const Real t276 = t273 + t275;
+  const Real t277 = t272 + t276;
+  const Real t278 = product_error(t260, t121);
+  const Real t279 = t277 - t278;
+  const Real t280 = -t263;
+  const Real t281 = sum_error(t262, t280);
+  const Real t282 = t279 + t281;
+  const Real t283 = t282 * t189;
+  const Real t284 = t264 * t219;
+  const Real t285 = t283 + t284;
+  const Real t286 = t271 + t285;
+  const Real t287 = t286 * t83;
+  const Real t288 = t270 + t287;
+  const Real t289 = t288 - t274;
+  const Real t290 = -t261;
+  const Real t291 = sum_error(t266, t290);
+  const Real t292 = t289 + t291;
+  const Real t293 = t292 * t159;
+  const Real t294 = t202 * t267;
+  const Real t295 = t293 + t294;
+  const Real t296 = product_error(t267, t159);
+  const Real t297 = t295 + t296;
+  const Real t298 = t297 * nu[1];
+  const Real t299 = t269 + t298;
+  const Real t300 = sum_error(t3, t152);
+  const Real t301 = t147 + t300;
+  const Real t302 = product_error(t2, t35);
+  const Real t303 = t301 - t302;
+  const Real t304 = t3 + t152;
+  const Real t305 = t2 * t35;
+  const Real t306 = t304 - t305;
+  const Real t307 = t303 + t306;
+  const Real t308 = t137 * par.c;
+  const Real t309 = t40 - t308;
+  const Real t310 = t102 * t96;
+  const Real t311 = t102 * t39;
+  const Real t312 = t310 + t311;
+  const Real t313 = t137 * t83;
+  const Real t314 = t312 + t313;
+  const Real t315 = t309 + t314;
+  const Real t316 = c_r_p_1_ * t35;
+  const Real t317 = t315 - t316;
+  const Real t318 = sum_error(t309, t314);
+  const Real t319 = product_error(par.r_F, t39);
+  const Real t320 = par.r_F * t96;
+  const Real t321 = t319 + t320;
+  const Real t322 = -t308;
+  const Real t323 = sum_error(t40, t322);
+  const Real t324 = t321 + t323;
+  const Real t325 = t318 + t324;
+  const Real t326 = product_error(c_r_p_1_, t35);
   const Real t327 = t325 - t326;
-  const Real t328 = t324 + t327;
-  const Real t329 = t328 * t169;
-  const Real t330 = t328 * t198;
-  const Real t331 = t329 + t330;
-  const Real t332 = t115 * t331;
-  const Real t333 = t332 + t314;
-  const Real t334 = t333 * t157;
-  const Real t335 = t120 * t334;
-  const Real t336 = t301 - t335;
-  const Real t337 = product_error(t334, t120);
-  const Real t338 = t333 * t188;
-  const Real t339 = sum_error(t314, t332);
-  const Real t340 = t339 + t319;
-  const Real t341 = t340 * t157;
-  const Real t342 = t338 + t341;
-  const Real t343 = product_error(t333, t157);
-  const Real t344 = t342 + t343;
-  const Real t345 = t344 * t120;
-  const Real t346 = t337 + t345;
-  const Real t347 = t336 - t346;
-  const Real t348 = t347 * t138;
-  const Real t349 = t348 * t50;
-  const Real t350 = t349 * nu[2];
-  const Real t351 = t292 * t50;
-  const Real t352 = t351 - t35;
-  const Real t353 = t352 * nu[0];
-  const Real t354 = t120 * t229;
-  const Real t355 = t162 - t354;
-  const Real t356 = t120 * t227;
-  const Real t357 = product_error(t229, t120);
-  const Real t358 = t356 + t357;
-  const Real t359 = t355 - t358;
-  const Real t360 = t359 * t138;
-  const Real t361 = t360 * t50;
-  const Real t362 = t361 * nu[1];
-  const Real t363 = t353 + t362;
-  const Real t364 = t350 + t363;
-  const Real t365 = t13 * t334;
-  const Real t366 = t344 * t13;
+  const Real t328 = t317 + t327;
+  const Real t329 = t328 * t121;
+  const Real t330 = t307 - t329;
+  const Real t331 = t2 * t83;
+  const Real t332 = t331 - t41;
+  const Real t333 = t35 * t4;
+  const Real t334 = t332 + t333;
+  const Real t335 = t145 * t328;
+  const Real t336 = t334 - t335;
+  const Real t337 = t180 * t336;
+  const Real t338 = t330 - t337;
+  const Real t339 = -t329;
+  const Real t340 = sum_error(t307, t339);
+  const Real t341 = product_error(t328, t121);
+  const Real t342 = t340 - t341;
+  const Real t343 = t211 * t336;
+  const Real t344 = -t335;
+  const Real t345 = sum_error(t334, t344);
+  const Real t346 = product_error(t145, t328);
+  const Real t347 = t345 - t346;
+  const Real t348 = t180 * t347;
+  const Real t349 = t343 + t348;
+  const Real t350 = product_error(t336, t180);
+  const Real t351 = t349 + t350;
+  const Real t352 = t342 - t351;
+  const Real t353 = t338 + t352;
+  const Real t354 = t353 * t189;
+  const Real t355 = t219 * t353;
+  const Real t356 = t354 + t355;
+  const Real t357 = t356 * t83;
+  const Real t358 = t357 + t336;
+  const Real t359 = t358 * t159;
+  const Real t360 = t359 * nu[0];
+  const Real t361 = t358 * t202;
+  const Real t362 = sum_error(t336, t357);
+  const Real t363 = t347 + t362;
+  const Real t364 = t363 * t159;
+  const Real t365 = t361 + t364;
+  const Real t366 = product_error(t159, t358);
   const Real t367 = t365 + t366;
-  const Real t368 = t367 - t12;
-  const Real t369 = t368 * nu[2];
-  const Real t370 = t13 * t278;
-  const Real t371 = t13 * t288;
-  const Real t372 = t370 + t371;
-  const Real t373 = t372 * nu[0];
-  const Real t374 = t13 * t229;
-  const Real t375 = t13 * t227;
-  const Real t376 = t374 + t375;
-  const Real t377 = t376 * nu[1];
-  const Real t378 = t373 + t377;
-  const Real t379 = t369 + t378;
-  const Real t380 = -t360;
-  const Real t381 = t344 * t50;
-  const Real t382 = t334 * t50;
-  const Real t383 = t381 + t382;
-  const Real t384 = t50 - t383;
-  const Real t385 = nu[2] * t384;
-  const Real t386 = t231 * nu[1];
-  const Real t387 = t296 * nu[0];
-  const Real t388 = t386 + t387;
-  const Real t389 = t385 - t388;
-  const Real t390 = -t275;
-  const Real t391 = -t348;
-  const Real t392 = t275 * nu[0];
-  const Real t393 = t170 * nu[1];
-  const Real t394 = t214 * nu[1];
-  const Real t395 = t393 + t394;
-  const Real t396 = t392 + t395;
-  const Real t397 = nu[2] * t331;
-  const Real t398 = t396 + t397;
-  const Real t399 = -t398;
-  const Real t400 = t360 * nu[1];
-  const Real t401 = t292 * nu[0];
-  const Real t402 = t400 + t401;
-  const Real t403 = t348 * nu[2];
-  const Real t404 = t402 + t403;
-  const Real t405 = -t404;
-  const Real t406 = t344 + t334;
-  const Real t407 = -t406;
-  const Real t408 = t334 * nu[2];
-  const Real t409 = t344 * nu[2];
-  const Real t410 = t408 + t409;
-  const Real t411 = t227 * nu[1];
-  const Real t412 = t229 * nu[1];
-  const Real t413 = t411 + t412;
-  const Real t414 = t278 * nu[0];
-  const Real t415 = t288 * nu[0];
+  const Real t368 = t367 * nu[0];
+  const Real t369 = t360 + t368;
+  const Real t370 = t299 + t369;
+  const Real t371 = t256 + t370;
+  const Real t372 = -t371;
+  const Real t373 = t265 + t286;
+  const Real t374 = -t373;
+  const Real t375 = t156 * t359;
+  const Real t376 = t328 - t375;
+  const Real t377 = t367 * t156;
+  const Real t378 = product_error(t156, t359);
+  const Real t379 = t377 + t378;
+  const Real t380 = t376 - t379;
+  const Real t381 = t380 * t120;
+  const Real t382 = t381 * t47;
+  const Real t383 = t382 - t35;
+  const Real t384 = t383 * nu[0];
+  const Real t385 = t156 * t268;
+  const Real t386 = t260 - t385;
+  const Real t387 = t156 * t297;
+  const Real t388 = product_error(t268, t156);
+  const Real t389 = t387 + t388;
+  const Real t390 = t386 - t389;
+  const Real t391 = t390 * t120;
+  const Real t392 = t47 * t391;
+  const Real t393 = t392 * nu[1];
+  const Real t394 = t384 + t393;
+  const Real t395 = t156 * t254;
+  const Real t396 = t124 - t395;
+  const Real t397 = product_error(t254, t156);
+  const Real t398 = t156 * t252;
+  const Real t399 = t397 + t398;
+  const Real t400 = t396 - t399;
+  const Real t401 = t120 * t400;
+  const Real t402 = t401 * t47;
+  const Real t403 = t402 * nu[2];
+  const Real t404 = t394 + t403;
+  const Real t405 = t18 * t254;
+  const Real t406 = t18 * t252;
+  const Real t407 = t405 + t406;
+  const Real t408 = t407 - t17;
+  const Real t409 = t408 * nu[2];
+  const Real t410 = t18 * t297;
+  const Real t411 = t18 * t268;
+  const Real t412 = t410 + t411;
+  const Real t413 = t412 * nu[1];
+  const Real t414 = t367 * t18;
+  const Real t415 = t18 * t359;
   const Real t416 = t414 + t415;
-  const Real t417 = t413 + t416;
-  const Real t418 = t410 + t417;
-  const Real t419 = -t418;
-  const Real t420 = t227 + t229;
+  const Real t417 = t416 * nu[0];
+  const Real t418 = t413 + t417;
+  const Real t419 = t409 + t418;
+  const Real t420 = t367 + t359;
   const Real t421 = -t420;
-  const Real t422 = -t331;
-  const Real t423 = t214 + t170;
-  const Real t424 = -t423;
+  const Real t422 = t47 * t254;
+  const Real t423 = t252 * t47;
+  const Real t424 = t422 + t423;
+  const Real t425 = t47 - t424;
+  const Real t426 = t425 * nu[2];
+  const Real t427 = t297 * t47;
+  const Real t428 = t47 * t268;
+  const Real t429 = t427 + t428;
+  const Real t430 = t429 * nu[1];
+  const Real t431 = t367 * t47;
+  const Real t432 = t359 * t47;
+  const Real t433 = t431 + t432;
+  const Real t434 = t433 * nu[0];
+  const Real t435 = t430 + t434;
+  const Real t436 = t426 - t435;
+  const Real t437 = t252 + t254;
+  const Real t438 = -t437;
+  const Real t439 = t297 + t268;
+  const Real t440 = -t439;
+  const Real t441 = t190 + t240;
+  const Real t442 = -t441;
+  const Real t443 = t381 * nu[0];
+  const Real t444 = nu[1] * t391;
+  const Real t445 = t443 + t444;
+  const Real t446 = t401 * nu[2];
+  const Real t447 = t445 + t446;
+  const Real t448 = -t447;
+  const Real t449 = -t433;
+  const Real t450 = -t429;
+  const Real t451 = -t381;
+  const Real t452 = -t391;
+  const Real t453 = -t356;
+  const Real t454 = -t401;
+  const Real t455 = t356 * nu[0];
+  const Real t456 = t265 * nu[1];
+  const Real t457 = t286 * nu[1];
+  const Real t458 = t456 + t457;
+  const Real t459 = t455 + t458;
+  const Real t460 = t190 * nu[2];
+  const Real t461 = t240 * nu[2];
+  const Real t462 = t460 + t461;
+  const Real t463 = t459 + t462;
+  const Real t464 = -t463;
 
-  eta_out[0] = t379;
-  eta_out[1] = t364;
-  eta_out[2] = t389;
+  eta_out[0] = t419;
+  eta_out[1] = t404;
+  eta_out[2] = t436;
   eta_out[3] = nu[0];
-  eta_out[4] = t419;
-  eta_out[5] = t405;
+  eta_out[4] = t372;
+  eta_out[5] = t448;
   r_p_dot_out[0] = nu[2];
   r_p_dot_out[1] = nu[1];
-  r_p_dot_out[2] = t399;
-  H[0] = t372;
-  H[1] = t376;
-  H[2] = t368;
-  H[3] = t352;
-  H[4] = t361;
-  H[5] = t349;
-  H[6] = t297;
-  H[7] = t232;
-  H[8] = t384;
+  r_p_dot_out[2] = t464;
+  H[0] = t416;
+  H[1] = t412;
+  H[2] = t408;
+  H[3] = t383;
+  H[4] = t392;
+  H[5] = t402;
+  H[6] = t449;
+  H[7] = t450;
+  H[8] = t425;
   H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
-  H[12] = t299;
-  H[13] = t421;
-  H[14] = t407;
-  H[15] = t293;
-  H[16] = t380;
-  H[17] = t391;
+  H[12] = t421;
+  H[13] = t440;
+  H[14] = t438;
+  H[15] = t451;
+  H[16] = t452;
+  H[17] = t454;
   H[18] = constant<Real>(0.0L);
   H[19] = constant<Real>(0.0L);
   H[20] = constant<Real>(1.0L);
   H[21] = constant<Real>(0.0L);
   H[22] = constant<Real>(1.0L);
   H[23] = constant<Real>(0.0L);
-  H[24] = t390;
-  H[25] = t424;
-  H[26] = t422;
+  H[24] = t453;
+  H[25] = t374;
+  H[26] = t442;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
@@ -1427,7 +1487,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t47 = t7 * par.k10;
   const Real t48 = par.k8 * t7;
   const Real t49 = par.k8 * t8;
-  const Real t50 = t49 - par.k34;
+  const Real t50 = t49 - par.k37;
   const Real t51 = par.m_H * t8;
 
   // front_wheel: wrench
@@ -1457,7 +1517,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t73 = par.k12 * t72;
   const Real t74 = t69 + t73;
   const Real t75 = t50 - t74;
-  const Real t76 = t72 + par.k35;
+  const Real t76 = t72 + par.k38;
   const Real t77 = t46 + t53;
   const Real t78 = t68 + t51;
 
@@ -1580,7 +1640,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t182 = t174 - t181;
 
   // rear_wheel: joint force
-  const Real t183 = par.k38 + t165;
+  const Real t183 = par.k42 + t165;
   const Real t184 = t158 + par.m_R;
 
   // front_wheel: acceleration
@@ -1595,7 +1655,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t191 = par.k8 * t14;
   const Real t192 = par.k10 * t14;
   const Real t193 = par.k8 * t1;
-  const Real t194 = par.k40 + t193;
+  const Real t194 = par.k44 + t193;
   const Real t195 = par.m_H * t1;
   const Real t196 = par.m_H * t14;
 
@@ -1614,7 +1674,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t206 = t204 - t205;
   const Real t207 = t206 * par.k2;
   const Real t208 = t203 + t207;
-  const Real t209 = par.k39 + t208;
+  const Real t209 = par.k43 + t208;
   const Real t210 = t202 * par.k2;
   const Real t211 = par.k1 * t206;
   const Real t212 = t210 - t211;
@@ -1677,7 +1737,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t263 = t262 * s_r_p_2_;
   const Real t264 = t259 + t263;
   const Real t265 = par.k11 * t8;
-  const Real t266 = par.k41 + t265;
+  const Real t266 = par.k45 + t265;
   const Real t267 = c_r_p_2_ * t262;
   const Real t268 = s_r_p_2_ * t258;
   const Real t269 = t267 - t268;
@@ -1687,11 +1747,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t271 = par.I_Rxx * c_r_p_0_;
 
   // fork: wrench
-  const Real t272 = par.k34 - t49;
+  const Real t272 = par.k37 - t49;
   const Real t273 = t8 * par.k17;
-  const Real t274 = t273 + par.k44;
+  const Real t274 = t273 + par.k48;
   const Real t275 = par.k5 * t8;
-  const Real t276 = par.k43 + t275;
+  const Real t276 = par.k47 + t275;
   const Real t277 = par.k7 * t7;
 
   // front_wheel: wrench
@@ -1776,7 +1836,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t350 = t270 * s_r_p_0_;
   const Real t351 = t271 * c_r_p_0_;
   const Real t352 = t350 + t351;
-  const Real t353 = par.k45 + t352;
+  const Real t353 = par.k49 + t352;
   const Real t354 = t329 + t353;
   const Real t355 = t270 * c_r_p_0_;
   const Real t356 = t271 * s_r_p_0_;
@@ -1821,12 +1881,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t387 = t127 + t386;
   const Real t388 = par.k7 * c_r_p_1_;
   const Real t389 = t4 * par.k8;
-  const Real t390 = t389 + par.k47;
+  const Real t390 = t389 + par.k51;
   const Real t391 = t388 + t390;
   const Real t392 = par.k8 * t13;
   const Real t393 = s_r_p_1_ * par.k17;
   const Real t394 = t392 + t393;
-  const Real t395 = par.k46 + t129;
+  const Real t395 = par.k50 + t129;
 
   // front_wheel: wrench
   const Real t396 = c_r_p_1_ * par.I_Fyy;
@@ -1911,7 +1971,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // front_wheel: acceleration
   const Real t469 = t1 * par.k11;
-  const Real t470 = par.k48 - t469;
+  const Real t470 = par.k52 - t469;
   const Real t471 = t11 + t470;
   const Real t472 = par.k11 * t14;
   const Real t473 = t12 - t472;
@@ -1931,14 +1991,14 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t487 = t1 * par.k17;
-  const Real t488 = par.k49 - t487;
+  const Real t488 = par.k53 - t487;
   const Real t489 = par.k8 * t11;
   const Real t490 = t488 - t489;
   const Real t491 = par.m_H * t12;
   const Real t492 = t191 + t491;
   const Real t493 = t11 * par.k10;
   const Real t494 = par.k5 * t1;
-  const Real t495 = par.k50 - t494;
+  const Real t495 = par.k54 - t494;
   const Real t496 = t493 + t495;
   const Real t497 = par.k7 * t14;
   const Real t498 = par.k8 * t12;
@@ -2032,7 +2092,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t572 = t570 - t571;
   const Real t573 = par.k2 * t572;
   const Real t574 = t569 + t573;
-  const Real t575 = par.k51 + t574;
+  const Real t575 = par.k55 + t574;
   const Real t576 = par.k6 + t575;
 
   // rear_wheel: twist
@@ -2173,7 +2233,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t699 = par.k15 * t611;
   const Real t700 = t698 - t699;
   const Real t701 = t697 + t700;
-  const Real t702 = par.k26 * t608;
+  const Real t702 = par.k29 * t608;
   const Real t703 = par.k3 * t609;
   const Real t704 = t702 - t703;
   const Real t705 = t604 * par.k16;
@@ -2188,7 +2248,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t714 = t712 - t713;
   const Real t715 = t605 - t610;
   const Real t716 = par.k3 * t715;
-  const Real t717 = t589 * par.k28;
+  const Real t717 = t589 * par.k31;
   const Real t718 = t716 + t717;
   const Real t719 = t714 + t718;
   const Real t720 = t604 * par.m_B;
@@ -2196,7 +2256,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t722 = par.k15 * t609;
   const Real t723 = t721 + t722;
   const Real t724 = t720 + t723;
-  const Real t725 = par.k27 * t609;
+  const Real t725 = par.k30 * t609;
   const Real t726 = par.k3 * t608;
   const Real t727 = t725 + t726;
   const Real t728 = t604 * par.k15;
@@ -2204,18 +2264,18 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // rear_wheel: wrench
   const Real t730 = t613 * par.I_Rxx;
-  const Real t731 = t612 * par.k29;
+  const Real t731 = t612 * par.k32;
   const Real t732 = t730 + t731;
   const Real t733 = t622 * par.m_R;
   const Real t734 = t615 * par.m_R;
   const Real t735 = t625 * par.m_R;
-  const Real t736 = par.k30 * t627;
+  const Real t736 = par.k33 * t627;
   const Real t737 = par.I_Rxx * t626;
   const Real t738 = t736 - t737;
 
   // fork: wrench
   const Real t739 = t629 * par.k17;
-  const Real t740 = t628 * par.k31;
+  const Real t740 = t628 * par.k34;
   const Real t741 = t739 + t740;
   const Real t742 = par.k5 * t646;
   const Real t743 = t741 + t742;
@@ -2241,13 +2301,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t763 = t761 - t762;
   const Real t764 = t657 - t648;
   const Real t765 = par.k5 * t764;
-  const Real t766 = t631 * par.k32;
+  const Real t766 = t631 * par.k35;
   const Real t767 = par.k7 * t632;
   const Real t768 = t766 - t767;
   const Real t769 = t765 + t768;
   const Real t770 = t763 + t769;
   const Real t771 = par.k10 * t656;
-  const Real t772 = t646 * par.k33;
+  const Real t772 = t646 * par.k36;
   const Real t773 = t630 * par.k5;
   const Real t774 = t772 - t773;
   const Real t775 = t771 + t774;
@@ -2255,12 +2315,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   // front_wheel: wrench
   const Real t776 = par.I_Fyy * t632;
   const Real t777 = t666 * par.I_Fxx;
-  const Real t778 = t659 * par.k36;
+  const Real t778 = t659 * par.k39;
   const Real t779 = t777 + t778;
   const Real t780 = t671 * par.m_F;
   const Real t781 = par.m_F * t691;
   const Real t782 = par.I_Fxx * t696;
-  const Real t783 = par.k37 * t667;
+  const Real t783 = par.k40 * t667;
   const Real t784 = t782 + t783;
   const Real t785 = par.m_F * t688;
 
@@ -2444,8 +2504,8 @@ inline void free_dynamics(const Prepared<Real>& par,
 }
 
 /// Reduced dynamics, eq. (23): M_r nu_dot = f_r, by (66)-(68).
-/// route: projected recursion, compensated beyond 2 ulps
-/// operations: 986 add, 1078 mul, 11 div, 8 neg, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, compensated beyond 1 ulps
+/// operations: 1166 add, 1169 mul, 13 div, 13 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par  made by prepare()
 /// @param[in]  R    (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p  (3) rad or m: rear_spin, steer, front_spin
@@ -2474,1866 +2534,2048 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real c_r_p_2_ = cos(r_p[2]);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
+  const Real t1 = R[8] * par.k1;
+
+  // kernel
+  const Real t2 = -t1;
+
+  // joint angles
+  const Real t3 = par.k2 * R[6];
+
+  // kernel
+  const Real t4 = sum_error(t3, t2);
+  const Real t5 = product_error(par.k2, R[6]);
   const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t20 * t16;
-  const Real t22 = t21 * par.r_F;
-  const Real t23 = par.k1 * c_r_p_1_;
-  const Real t24 = par.k1 * t23;
-  const Real t25 = par.k18 + t24;
-  const Real t26 = t25 * t22;
-  const Real t27 = t12 * t20;
-  const Real t28 = par.r_F * t27;
-  const Real t29 = t23 * par.k2;
-  const Real t30 = par.k22 - t29;
-  const Real t31 = t28 * t30;
-  const Real t32 = t26 + t31;
-  const Real t33 = t30 * par.r_F;
-  const Real t34 = t25 * par.c;
-  const Real t35 = t33 - t34;
-  const Real t36 = c_r_p_1_ * par.k13;
-  const Real t37 = t36 + t35;
-  const Real t38 = t32 + t37;
-  const Real t39 = R[6] * R[6];
-  const Real t40 = R[8] * R[8];
-  const Real t41 = t39 + t40;
-  const Real t42 = sqrt(t41);
-  const Real t43 = constant<Real>(1.0L) / t42;
-  const Real t44 = t43 * R[6];
-  const Real t45 = t44 * par.r_R;
-
-  // kernel
-  const Real t46 = c_r_p_1_ * t45;
-  const Real t47 = t38 - t46;
-  const Real t48 = constant<Real>(1.0L) / t47;
+  const Real t7 = t6 * c_r_p_1_;
 
   // joint angles
-  const Real t49 = s_r_p_1_ * par.k1;
-  const Real t50 = t22 * t49;
-  const Real t51 = par.c * t49;
-  const Real t52 = s_r_p_1_ * par.k13;
-  const Real t53 = par.k1 * t52;
-  const Real t54 = t51 - t53;
-  const Real t55 = t54 - t50;
+  const Real t8 = t3 - t1;
 
   // kernel
-  const Real t56 = t49 * t45;
-  const Real t57 = t56 + t55;
-  const Real t58 = t57 * t48;
+  const Real t9 = product_error(c_r_p_1_, t8);
+  const Real t10 = t9 + t7;
 
   // joint angles
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t28 * t59;
-  const Real t61 = t60 - t50;
-  const Real t62 = t59 * par.r_F;
-  const Real t63 = t62 + t51;
-  const Real t64 = s_r_p_1_ * par.k23;
-  const Real t65 = t63 - t64;
-  const Real t66 = t61 + t65;
-  const Real t67 = R[8] * t43;
-  const Real t68 = t67 * par.r_R;
-  const Real t69 = t68 - par.r_R;
+  const Real t11 = c_r_p_1_ * t8;
+  const Real t12 = s_r_p_1_ * R[7];
 
   // kernel
-  const Real t70 = t69 * t59;
-  const Real t71 = t70 + t66;
-  const Real t72 = t71 + t56;
-  const Real t73 = t58 * t72;
-
-  // passive accelerations
-  const Real t74 = -t73;
+  const Real t13 = sum_error(t11, t12);
+  const Real t14 = t13 + t10;
+  const Real t15 = par.k1 * t14;
 
   // joint angles
-  const Real t75 = t22 * c_r_p_1_;
-  const Real t76 = c_r_p_1_ * par.k23;
-  const Real t77 = t76 * par.k1;
-  const Real t78 = t77 + par.k21;
-  const Real t79 = c_r_p_1_ * par.c;
-  const Real t80 = t79 - t78;
-  const Real t81 = t80 - t75;
-  const Real t82 = c_r_p_1_ * par.k2;
-  const Real t83 = par.k1 * t82;
-  const Real t84 = par.k22 - t83;
+  const Real t16 = t11 + t12;
 
   // kernel
-  const Real t85 = t69 * t84;
-  const Real t86 = t81 - t85;
-  const Real t87 = t25 * t45;
-  const Real t88 = t87 + t86;
-
-  // passive accelerations
-  const Real t89 = sum_error(t88, t74);
-  const Real t90 = product_error(t58, t72);
-  const Real t91 = t89 - t90;
-
-  // kernel
-  const Real t92 = t88 - t73;
-  const Real t93 = constant<Real>(1.0L) / t92;
-
-  // passive accelerations
-  const Real t94 = t91 * t93;
-  const Real t95 = t94 / t92;
-  const Real t96 = quotient_error(constant<Real>(1.0L), t92);
-  const Real t97 = t96 - t95;
+  const Real t17 = product_error(par.k1, t16);
+  const Real t18 = t17 + t15;
 
   // joint angles
-  const Real t98 = t28 * t49;
-  const Real t99 = par.k2 * t52;
-  const Real t100 = par.r_F * t49;
-  const Real t101 = t99 - t100;
-  const Real t102 = t101 - t98;
+  const Real t19 = par.k1 * R[6];
+  const Real t20 = R[8] * par.k2;
 
   // kernel
-  const Real t103 = t59 * t45;
-  const Real t104 = t102 - t103;
-  const Real t105 = t48 * t104;
-  const Real t106 = t72 * t105;
+  const Real t21 = sum_error(t19, t20);
+  const Real t22 = product_error(par.k1, R[6]);
+  const Real t23 = t22 + t21;
+  const Real t24 = par.k2 * t23;
 
   // joint angles
-  const Real t107 = t28 * c_r_p_1_;
-  const Real t108 = t76 * par.k2;
-  const Real t109 = t108 - par.k24;
-  const Real t110 = c_r_p_1_ * par.r_F;
-  const Real t111 = t109 - t110;
-  const Real t112 = t111 - t107;
-  const Real t113 = par.k2 * t82;
-  const Real t114 = par.k19 + t113;
+  const Real t25 = t19 + t20;
 
   // kernel
-  const Real t115 = t69 * t114;
-  const Real t116 = t112 - t115;
-  const Real t117 = t30 * t45;
-  const Real t118 = t116 + t117;
-  const Real t119 = t118 - t106;
-
-  // passive accelerations
-  const Real t120 = t97 * t119;
-  const Real t121 = -t106;
-  const Real t122 = sum_error(t118, t121);
-  const Real t123 = product_error(t72, t105);
-  const Real t124 = t122 - t123;
-  const Real t125 = t124 * t93;
-  const Real t126 = t120 + t125;
-  const Real t127 = product_error(t119, t93);
-  const Real t128 = t127 + t126;
+  const Real t26 = product_error(t25, par.k2);
+  const Real t27 = t26 + t24;
+  const Real t28 = t18 - t27;
 
   // joint angles
-  const Real t129 = t22 * t84;
-  const Real t130 = t28 * t114;
-  const Real t131 = t129 + t130;
-  const Real t132 = par.r_F * t114;
-  const Real t133 = t84 * par.c;
-  const Real t134 = t132 - t133;
-  const Real t135 = t134 + t131;
-  const Real t136 = par.r_R - t68;
+  const Real t29 = par.k1 * t16;
+  const Real t30 = t25 * par.k2;
+  const Real t31 = t29 - t30;
 
   // kernel
-  const Real t137 = c_r_p_1_ * t136;
-  const Real t138 = t135 - t137;
-  const Real t139 = t58 * t138;
+  const Real t32 = t31 + t28;
+  const Real t33 = t32 * t32;
+  const Real t34 = par.k2 * t14;
 
   // joint angles
-  const Real t140 = t22 * t59;
-  const Real t141 = t59 * par.c;
-  const Real t142 = t140 - t141;
+  const Real t35 = par.k2 * t16;
 
   // kernel
-  const Real t143 = t136 * t49;
-  const Real t144 = t142 + t143;
-  const Real t145 = t144 - t139;
-
-  // passive accelerations
-  const Real t146 = t128 * t145;
-  const Real t147 = -t139;
-  const Real t148 = sum_error(t144, t147);
-  const Real t149 = product_error(t58, t138);
-  const Real t150 = t148 - t149;
-
-  // kernel
-  const Real t151 = t119 * t93;
-
-  // passive accelerations
-  const Real t152 = t150 * t151;
-  const Real t153 = t146 + t152;
-  const Real t154 = product_error(t145, t151);
-  const Real t155 = t153 + t154;
-
-  // kernel
-  const Real t156 = t138 * t105;
-
-  // passive accelerations
-  const Real t157 = -t156;
+  const Real t36 = t35 + t34;
+  const Real t37 = par.k1 * t23;
 
   // joint angles
-  const Real t158 = t62 + t60;
+  const Real t38 = par.k1 * t25;
 
   // kernel
-  const Real t159 = t59 * t136;
-  const Real t160 = t158 - t159;
-
-  // passive accelerations
-  const Real t161 = sum_error(t160, t157);
-  const Real t162 = product_error(t138, t105);
-  const Real t163 = t161 - t162;
-  const Real t164 = t163 - t155;
-
-  // kernel
-  const Real t165 = t145 * t151;
-  const Real t166 = t160 - t156;
-  const Real t167 = t166 - t165;
-
-  // passive accelerations
-  const Real t168 = t164 + t167;
-  const Real t169 = t128 * t22;
-
-  // kernel
-  const Real t170 = t22 * t151;
-
-  // passive accelerations
-  const Real t171 = t170 + t169;
-  const Real t172 = t171 - t28;
-  const Real t173 = constant<Real>(1.0L) / t172;
-  const Real t174 = t173 * t168;
-  const Real t175 = t22 * t174;
-  const Real t176 = sum_error(t145, t175);
-  const Real t177 = t150 + t176;
-  const Real t178 = t177 * t93;
-  const Real t179 = t145 + t175;
-  const Real t180 = t97 * t179;
-  const Real t181 = t180 + t178;
-  const Real t182 = product_error(t93, t179);
-  const Real t183 = t181 + t182;
-  const Real t184 = t183 * t72;
-  const Real t185 = t179 * t93;
-  const Real t186 = product_error(t72, t185);
-  const Real t187 = t184 + t186;
-  const Real t188 = t72 * t185;
-  const Real t189 = t138 - t188;
-  const Real t190 = t189 - t187;
-  const Real t191 = t48 * t190;
-  const Real t192 = t191 * nu[0];
+  const Real t39 = t37 + t38;
+  const Real t40 = t39 + t36;
+  const Real t41 = t40 * t40;
+  const Real t42 = t33 + t41;
+  const Real t43 = sqrt(t42);
+  const Real t44 = constant<Real>(1.0L) / t43;
+  const Real t45 = t32 * t44;
+  const Real t46 = t45 * par.r_F;
 
   // joint angles
-  const Real t193 = par.k1 * t28;
-  const Real t194 = t22 * par.k2;
-  const Real t195 = t193 + t194;
-  const Real t196 = t195 + par.k12;
+  const Real t47 = par.k1 * c_r_p_1_;
+  const Real t48 = t47 * par.k2;
+  const Real t49 = par.k22 - t48;
+
+  // passive accelerations
+  const Real t50 = t49 * t46;
 
   // kernel
-  const Real t197 = t58 * t196;
+  const Real t51 = t40 * t44;
+  const Real t52 = par.r_F * t51;
+
+  // joint angles
+  const Real t53 = par.k1 * t47;
+  const Real t54 = par.k18 + t53;
 
   // passive accelerations
-  const Real t198 = t128 * t197;
-  const Real t199 = product_error(t58, t196);
-  const Real t200 = t199 * t151;
-  const Real t201 = t200 + t198;
-  const Real t202 = product_error(t197, t151);
-  const Real t203 = t201 + t202;
-  const Real t204 = product_error(t196, t105);
-  const Real t205 = t203 - t204;
+  const Real t55 = t54 * t52;
+  const Real t56 = t50 + t55;
+
+  // joint angles
+  const Real t57 = t49 * par.r_F;
+  const Real t58 = t54 * par.c;
+  const Real t59 = t57 - t58;
+  const Real t60 = c_r_p_1_ * par.k13;
+  const Real t61 = t60 + t59;
+
+  // passive accelerations
+  const Real t62 = t56 + t61;
+
+  // joint angles
+  const Real t63 = R[6] * R[6];
+  const Real t64 = R[8] * R[8];
+  const Real t65 = t63 + t64;
+  const Real t66 = sqrt(t65);
+  const Real t67 = constant<Real>(1.0L) / t66;
+  const Real t68 = t67 * R[6];
+  const Real t69 = t68 * par.r_R;
 
   // kernel
-  const Real t206 = t197 * t151;
-  const Real t207 = t196 * t105;
-  const Real t208 = t206 - t207;
+  const Real t70 = c_r_p_1_ * t69;
 
   // passive accelerations
-  const Real t209 = t208 + t205;
-  const Real t210 = t173 * t209;
-  const Real t211 = t22 * t210;
+  const Real t71 = t62 - t70;
+  const Real t72 = constant<Real>(1.0L) / t71;
+
+  // joint angles
+  const Real t73 = s_r_p_1_ * par.k1;
 
   // kernel
-  const Real t212 = -t197;
+  const Real t74 = t52 * t73;
 
-  // passive accelerations
-  const Real t213 = sum_error(t211, t212);
-  const Real t214 = t213 - t199;
-  const Real t215 = t214 * t93;
-  const Real t216 = t211 - t197;
-  const Real t217 = t97 * t216;
-  const Real t218 = t215 + t217;
-  const Real t219 = product_error(t216, t93);
-  const Real t220 = t218 + t219;
-  const Real t221 = t72 * t220;
-  const Real t222 = t216 * t93;
-  const Real t223 = product_error(t222, t72);
-  const Real t224 = t223 + t221;
-  const Real t225 = t222 * t72;
-  const Real t226 = t196 - t225;
-  const Real t227 = t226 - t224;
-  const Real t228 = t227 * t48;
-  const Real t229 = t228 * nu[1];
-  const Real t230 = t192 + t229;
+  // joint angles
+  const Real t75 = par.c * t73;
+  const Real t76 = s_r_p_1_ * par.k13;
+  const Real t77 = par.k1 * t76;
+  const Real t78 = t75 - t77;
 
   // kernel
-  const Real t231 = t59 * t68;
-  const Real t232 = t56 + t231;
-  const Real t233 = t58 * t232;
-  const Real t234 = t84 * t68;
-  const Real t235 = t87 - t234;
-  const Real t236 = t235 - t233;
+  const Real t79 = t78 - t74;
+  const Real t80 = t73 * t69;
+  const Real t81 = t80 + t79;
 
   // passive accelerations
-  const Real t237 = t128 * t236;
-  const Real t238 = -t233;
-  const Real t239 = sum_error(t235, t238);
-  const Real t240 = product_error(t58, t232);
-  const Real t241 = t239 - t240;
-  const Real t242 = t241 * t151;
-  const Real t243 = t237 + t242;
-  const Real t244 = product_error(t236, t151);
-  const Real t245 = t244 + t243;
+  const Real t82 = t72 * t81;
+
+  // joint angles
+  const Real t83 = s_r_p_1_ * par.k2;
 
   // kernel
-  const Real t246 = t232 * t105;
+  const Real t84 = t83 * t46;
+  const Real t85 = t84 - t74;
+
+  // joint angles
+  const Real t86 = t83 * par.r_F;
+  const Real t87 = t86 + t75;
+  const Real t88 = s_r_p_1_ * par.k23;
+  const Real t89 = t87 - t88;
 
   // passive accelerations
-  const Real t247 = -t246;
+  const Real t90 = t85 + t89;
+
+  // joint angles
+  const Real t91 = R[8] * t67;
+  const Real t92 = t91 * par.r_R;
+  const Real t93 = t92 - par.r_R;
 
   // kernel
-  const Real t248 = t68 * t114;
-  const Real t249 = t117 - t248;
+  const Real t94 = t93 * t83;
 
   // passive accelerations
-  const Real t250 = sum_error(t249, t247);
-  const Real t251 = product_error(t232, t105);
-  const Real t252 = t250 - t251;
-  const Real t253 = t252 - t245;
+  const Real t95 = t94 + t90;
+  const Real t96 = t80 + t95;
+  const Real t97 = t82 * t96;
+  const Real t98 = -t97;
 
   // kernel
-  const Real t254 = t236 * t151;
-  const Real t255 = t249 - t246;
-  const Real t256 = t255 - t254;
-
-  // passive accelerations
-  const Real t257 = t253 + t256;
-  const Real t258 = t173 * t257;
-  const Real t259 = t22 * t258;
-  const Real t260 = sum_error(t236, t259);
-  const Real t261 = t241 + t260;
-  const Real t262 = t261 * t93;
-  const Real t263 = t236 + t259;
-  const Real t264 = t263 * t97;
-  const Real t265 = t262 + t264;
-  const Real t266 = product_error(t263, t93);
-  const Real t267 = t266 + t265;
-  const Real t268 = t72 * t267;
-  const Real t269 = t263 * t93;
-  const Real t270 = product_error(t269, t72);
-  const Real t271 = t268 + t270;
-  const Real t272 = t72 * t269;
-  const Real t273 = t232 - t272;
-  const Real t274 = t273 - t271;
-  const Real t275 = t274 * t48;
-  const Real t276 = t275 * nu[2];
-  const Real t277 = t230 + t276;
-  const Real t278 = t277 * R[7];
-  const Real t279 = nu[1] * t220;
-  const Real t280 = t222 * nu[1];
-  const Real t281 = t280 + t279;
-  const Real t282 = t183 * nu[0];
-  const Real t283 = t185 * nu[0];
-  const Real t284 = t282 + t283;
-  const Real t285 = t281 + t284;
-  const Real t286 = nu[2] * t267;
-  const Real t287 = t269 * nu[2];
-  const Real t288 = t287 + t286;
-  const Real t289 = t285 + t288;
-  const Real t290 = R[8] * t289;
-  const Real t291 = t290 - t278;
-  const Real t292 = t291 * par.k2;
-  const Real t293 = t289 * R[6];
+  const Real t99 = t52 * c_r_p_1_;
 
   // joint angles
-  const Real t294 = nu[0] * R[7];
+  const Real t100 = c_r_p_1_ * par.k23;
+  const Real t101 = t100 * par.k1;
 
   // passive accelerations
-  const Real t295 = t293 + t294;
-  const Real t296 = t295 * par.k1;
-  const Real t297 = t292 + t296;
-  const Real t298 = c_r_p_1_ * t297;
+  const Real t102 = t101 + par.k27;
 
   // joint angles
-  const Real t299 = s_r_p_1_ * nu[1];
-  const Real t300 = t299 * t3;
+  const Real t103 = c_r_p_1_ * par.c;
 
   // passive accelerations
-  const Real t301 = t298 - t300;
-  const Real t302 = t277 * R[6];
+  const Real t104 = t103 - t102;
+  const Real t105 = t104 - t99;
 
   // joint angles
-  const Real t303 = R[8] * nu[0];
+  const Real t106 = c_r_p_1_ * par.k2;
+  const Real t107 = par.k1 * t106;
+  const Real t108 = par.k22 - t107;
+
+  // kernel
+  const Real t109 = t93 * t108;
 
   // passive accelerations
-  const Real t304 = t303 + t302;
-  const Real t305 = s_r_p_1_ * t304;
+  const Real t110 = t105 - t109;
+
+  // kernel
+  const Real t111 = t54 * t69;
+
+  // passive accelerations
+  const Real t112 = t111 + t110;
+  const Real t113 = sum_error(t112, t98);
+  const Real t114 = product_error(t82, t96);
+  const Real t115 = t113 - t114;
+  const Real t116 = t112 - t97;
+  const Real t117 = constant<Real>(1.0L) / t116;
+  const Real t118 = t117 * t115;
+  const Real t119 = t118 / t116;
+  const Real t120 = quotient_error(constant<Real>(1.0L), t116);
+  const Real t121 = t120 - t119;
+
+  // kernel
+  const Real t122 = t46 * t73;
 
   // joint angles
-  const Real t306 = c_r_p_1_ * nu[1];
-  const Real t307 = t306 * R[7];
+  const Real t123 = par.k2 * t76;
+  const Real t124 = par.r_F * t73;
+  const Real t125 = t123 - t124;
+
+  // kernel
+  const Real t126 = t125 - t122;
+  const Real t127 = t83 * t69;
+  const Real t128 = t126 - t127;
 
   // passive accelerations
-  const Real t308 = t307 + t305;
-  const Real t309 = t308 + t301;
-  const Real t310 = par.k1 * t309;
-  const Real t311 = t291 * par.k1;
-  const Real t312 = t295 * par.k2;
-  const Real t313 = t311 - t312;
-  const Real t314 = t313 * par.k2;
-  const Real t315 = t310 - t314;
-  const Real t316 = t12 * t315;
-  const Real t317 = t316 * constant<Real>(2.0L);
-  const Real t318 = t309 * par.k2;
-  const Real t319 = par.k1 * t313;
-  const Real t320 = t318 + t319;
-  const Real t321 = t320 * t16;
-  const Real t322 = t321 * constant<Real>(2.0L);
-  const Real t323 = t317 + t322;
+  const Real t129 = t72 * t128;
+  const Real t130 = t129 * t96;
+
+  // kernel
+  const Real t131 = c_r_p_1_ * t46;
 
   // joint angles
-  const Real t324 = constant<Real>(2.0L) * t19;
+  const Real t132 = t100 * par.k2;
 
   // passive accelerations
-  const Real t325 = t323 / t324;
-  const Real t326 = t325 * t20;
-  const Real t327 = t326 / t19;
-  const Real t328 = t327 * t12;
-  const Real t329 = t315 * t20;
-  const Real t330 = t329 - t328;
-  const Real t331 = par.r_F * t330;
-  const Real t332 = par.k1 * t277;
+  const Real t133 = t132 - par.k26;
 
   // joint angles
-  const Real t333 = par.k2 * nu[0];
+  const Real t134 = c_r_p_1_ * par.r_F;
 
   // passive accelerations
-  const Real t334 = t333 + t332;
-  const Real t335 = t334 * c_r_p_1_;
-  const Real t336 = s_r_p_1_ * t289;
-  const Real t337 = t335 - t336;
-  const Real t338 = t337 * par.k2;
-  const Real t339 = t277 * par.k2;
+  const Real t135 = t133 - t134;
+  const Real t136 = t135 - t131;
 
   // joint angles
-  const Real t340 = par.k1 * nu[0];
+  const Real t137 = par.k2 * t106;
+  const Real t138 = par.k19 + t137;
+
+  // kernel
+  const Real t139 = t93 * t138;
 
   // passive accelerations
-  const Real t341 = t340 - t339;
-  const Real t342 = t341 + nu[1];
-  const Real t343 = t342 * par.k1;
-  const Real t344 = t343 + t338;
-  const Real t345 = t331 * t344;
-  const Real t346 = t334 * t299;
-  const Real t347 = t289 * t306;
-  const Real t348 = t347 + t346;
-  const Real t349 = t348 * par.k2;
-  const Real t350 = t349 * t28;
-  const Real t351 = t345 - t350;
-  const Real t352 = t327 * t16;
-  const Real t353 = t320 * t20;
-  const Real t354 = t353 - t352;
-  const Real t355 = par.r_F * t354;
-  const Real t356 = par.k1 * t337;
-  const Real t357 = t342 * par.k2;
-  const Real t358 = t357 - t356;
-  const Real t359 = t358 * t355;
-  const Real t360 = t348 * par.k1;
-  const Real t361 = t22 * t360;
-  const Real t362 = t359 + t361;
-  const Real t363 = t351 + t362;
-  const Real t364 = t349 * par.r_F;
-  const Real t365 = t360 * par.c;
-  const Real t366 = t364 + t365;
-  const Real t367 = t191 * t45;
-  const Real t368 = t367 - t136;
-  const Real t369 = t368 * nu[0];
-  const Real t370 = t228 * t45;
-  const Real t371 = t370 * nu[1];
-  const Real t372 = t369 + t371;
-  const Real t373 = t275 * t45;
-  const Real t374 = t373 * nu[2];
-  const Real t375 = t372 + t374;
-  const Real t376 = t277 * par.k13;
-  const Real t377 = t375 - t376;
-  const Real t378 = t299 * t377;
-  const Real t379 = t289 * par.k13;
-  const Real t380 = t45 * t267;
-  const Real t381 = t269 * t45;
-  const Real t382 = t380 + t381;
-  const Real t383 = t45 - t382;
-  const Real t384 = t383 * nu[2];
-  const Real t385 = t45 * t220;
-  const Real t386 = t222 * t45;
-  const Real t387 = t386 + t385;
-  const Real t388 = t387 * nu[1];
-  const Real t389 = t183 * t45;
-  const Real t390 = t185 * t45;
-  const Real t391 = t390 + t389;
-  const Real t392 = t391 * nu[0];
-  const Real t393 = t388 + t392;
-  const Real t394 = t384 - t393;
-  const Real t395 = t379 + t394;
-  const Real t396 = par.k1 * t395;
-  const Real t397 = t69 * t267;
-  const Real t398 = t69 * t269;
-  const Real t399 = t397 + t398;
-  const Real t400 = t399 - t68;
-  const Real t401 = t400 * nu[2];
-  const Real t402 = t183 * t69;
-  const Real t403 = t69 * t185;
-  const Real t404 = t403 + t402;
-  const Real t405 = t404 * nu[0];
-  const Real t406 = t69 * t220;
-  const Real t407 = t222 * t69;
-  const Real t408 = t406 + t407;
-  const Real t409 = t408 * nu[1];
-  const Real t410 = t405 + t409;
-  const Real t411 = t401 + t410;
-  const Real t412 = t411 * par.k2;
-  const Real t413 = t412 - t396;
-  const Real t414 = t306 * t413;
-  const Real t415 = t414 + t378;
-  const Real t416 = t366 + t415;
-  const Real t417 = t416 - t363;
-  const Real t418 = t291 * R[6];
-  const Real t419 = t418 * constant<Real>(2.0L);
-  const Real t420 = R[8] * t295;
-  const Real t421 = t420 * constant<Real>(2.0L);
-  const Real t422 = t419 - t421;
+  const Real t140 = t136 - t139;
+
+  // kernel
+  const Real t141 = t49 * t69;
+
+  // passive accelerations
+  const Real t142 = t140 + t141;
+  const Real t143 = t142 - t130;
+  const Real t144 = t143 * t121;
+  const Real t145 = -t130;
+  const Real t146 = sum_error(t142, t145);
+  const Real t147 = product_error(t96, t129);
+  const Real t148 = t146 - t147;
+  const Real t149 = t117 * t148;
+  const Real t150 = t149 + t144;
+  const Real t151 = product_error(t143, t117);
+  const Real t152 = t150 + t151;
+  const Real t153 = t52 * t152;
+  const Real t154 = t117 * t143;
+  const Real t155 = product_error(t52, t154);
+  const Real t156 = t153 + t155;
+  const Real t157 = t52 * t154;
+
+  // kernel
+  const Real t158 = -t46;
+
+  // passive accelerations
+  const Real t159 = sum_error(t157, t158);
+  const Real t160 = t156 + t159;
+  const Real t161 = t157 - t46;
+  const Real t162 = constant<Real>(1.0L) / t161;
+  const Real t163 = t160 * t162;
+  const Real t164 = t163 / t161;
+  const Real t165 = quotient_error(constant<Real>(1.0L), t161);
+  const Real t166 = t165 - t164;
+
+  // kernel
+  const Real t167 = t52 * par.k2;
+  const Real t168 = par.k1 * t46;
+  const Real t169 = t167 + t168;
+  const Real t170 = t169 + par.k12;
+
+  // passive accelerations
+  const Real t171 = t82 * t170;
+  const Real t172 = t171 * t154;
+  const Real t173 = t129 * t170;
+  const Real t174 = t172 - t173;
+  const Real t175 = t174 * t166;
+  const Real t176 = t171 * t152;
+  const Real t177 = product_error(t82, t170);
+  const Real t178 = t177 * t154;
+  const Real t179 = t178 + t176;
+  const Real t180 = product_error(t171, t154);
+  const Real t181 = t180 + t179;
+  const Real t182 = product_error(t170, t129);
+  const Real t183 = t181 - t182;
+  const Real t184 = -t173;
+  const Real t185 = sum_error(t172, t184);
+  const Real t186 = t183 + t185;
+  const Real t187 = t186 * t162;
+  const Real t188 = t187 + t175;
+  const Real t189 = product_error(t174, t162);
+  const Real t190 = t188 + t189;
+  const Real t191 = t52 * t190;
+  const Real t192 = t174 * t162;
+  const Real t193 = product_error(t192, t52);
+  const Real t194 = t191 + t193;
+  const Real t195 = t194 - t177;
+  const Real t196 = t52 * t192;
+  const Real t197 = -t171;
+  const Real t198 = sum_error(t196, t197);
+  const Real t199 = t198 + t195;
+  const Real t200 = t117 * t199;
+  const Real t201 = t196 - t171;
+  const Real t202 = t201 * t121;
+  const Real t203 = t200 + t202;
+  const Real t204 = product_error(t201, t117);
+  const Real t205 = t204 + t203;
+  const Real t206 = t205 * t96;
+  const Real t207 = t201 * t117;
+  const Real t208 = product_error(t207, t96);
+  const Real t209 = t206 + t208;
+  const Real t210 = t207 * t96;
+  const Real t211 = t170 - t210;
+  const Real t212 = t211 - t209;
+  const Real t213 = t72 * t212;
+  const Real t214 = t213 * nu[1];
+  const Real t215 = t52 * t108;
+
+  // kernel
+  const Real t216 = t46 * t138;
+
+  // passive accelerations
+  const Real t217 = t215 + t216;
 
   // joint angles
-  const Real t423 = constant<Real>(2.0L) * t42;
+  const Real t218 = par.r_F * t138;
+  const Real t219 = t108 * par.c;
+  const Real t220 = t218 - t219;
 
   // passive accelerations
-  const Real t424 = t422 / t423;
-  const Real t425 = t43 * t424;
-  const Real t426 = t425 / t42;
-  const Real t427 = R[8] * t426;
-  const Real t428 = t295 * t43;
-  const Real t429 = t428 + t427;
-  const Real t430 = par.r_R * t429;
-  const Real t431 = nu[2] - t289;
-  const Real t432 = t431 * t430;
-  const Real t433 = t59 * t432;
-  const Real t434 = t417 + t433;
-  const Real t435 = R[6] * t426;
-  const Real t436 = t291 * t43;
-  const Real t437 = t436 - t435;
-  const Real t438 = t437 * par.r_R;
-  const Real t439 = t438 * t277;
-  const Real t440 = t430 * nu[0];
-  const Real t441 = t439 - t440;
-  const Real t442 = t441 * c_r_p_1_;
-  const Real t443 = t434 - t442;
-  const Real t444 = t431 * t438;
-  const Real t445 = t49 * t444;
-  const Real t446 = t443 - t445;
-  const Real t447 = t446 * t58;
-  const Real t448 = s_r_p_1_ * t334;
-  const Real t449 = t289 * c_r_p_1_;
-  const Real t450 = t448 + t449;
-  const Real t451 = nu[0] * t174;
-  const Real t452 = t210 * nu[1];
-  const Real t453 = t451 + t452;
-  const Real t454 = t258 * nu[2];
-  const Real t455 = t453 + t454;
-  const Real t456 = t455 + t450;
-  const Real t457 = t456 * t355;
-  const Real t458 = t334 * t306;
-  const Real t459 = t289 * t299;
-  const Real t460 = t458 - t459;
-  const Real t461 = t460 * t22;
-  const Real t462 = t457 + t461;
-  const Real t463 = t377 * t306;
-  const Real t464 = t299 * t413;
-  const Real t465 = t463 - t464;
-  const Real t466 = par.k1 * t465;
-  const Real t467 = t460 * par.c;
-  const Real t468 = t467 + t466;
-  const Real t469 = t468 - t462;
-  const Real t470 = t432 * t84;
-  const Real t471 = t469 - t470;
-  const Real t472 = t441 * t49;
-  const Real t473 = t472 + t471;
-  const Real t474 = t25 * t444;
-  const Real t475 = t473 - t474;
-  const Real t476 = t475 - t447;
-  const Real t477 = t128 * t476;
-  const Real t478 = product_error(t476, t151);
-  const Real t479 = t477 + t478;
-  const Real t480 = t446 * t105;
-  const Real t481 = t331 * t456;
-  const Real t482 = t460 * t28;
-  const Real t483 = t481 + t482;
-  const Real t484 = par.k2 * t465;
-  const Real t485 = t460 * par.r_F;
-  const Real t486 = t485 + t484;
-  const Real t487 = t483 + t486;
-  const Real t488 = t432 * t114;
-  const Real t489 = t487 + t488;
-  const Real t490 = t441 * t59;
-  const Real t491 = t489 + t490;
-  const Real t492 = t30 * t444;
-  const Real t493 = t492 + t491;
-  const Real t494 = sum_error(t480, t493);
-  const Real t495 = product_error(t446, t105);
-  const Real t496 = t494 + t495;
-  const Real t497 = t479 + t496;
-  const Real t498 = t476 * t151;
-  const Real t499 = t493 + t480;
+  const Real t221 = t220 + t217;
+
+  // joint angles
+  const Real t222 = par.r_R - t92;
+
+  // kernel
+  const Real t223 = c_r_p_1_ * t222;
+
+  // passive accelerations
+  const Real t224 = t221 - t223;
+  const Real t225 = t82 * t224;
+
+  // kernel
+  const Real t226 = t83 * t52;
+
+  // joint angles
+  const Real t227 = t83 * par.c;
+
+  // kernel
+  const Real t228 = t226 - t227;
+  const Real t229 = t222 * t73;
+  const Real t230 = t228 + t229;
+
+  // passive accelerations
+  const Real t231 = t230 - t225;
+  const Real t232 = t231 * t152;
+  const Real t233 = -t225;
+  const Real t234 = sum_error(t230, t233);
+  const Real t235 = product_error(t82, t224);
+  const Real t236 = t234 - t235;
+  const Real t237 = t236 * t154;
+  const Real t238 = t232 + t237;
+  const Real t239 = product_error(t231, t154);
+  const Real t240 = t239 + t238;
+  const Real t241 = t224 * t129;
+  const Real t242 = -t241;
+
+  // kernel
+  const Real t243 = t86 + t84;
+  const Real t244 = t83 * t222;
+  const Real t245 = t243 - t244;
+
+  // passive accelerations
+  const Real t246 = sum_error(t245, t242);
+  const Real t247 = product_error(t224, t129);
+  const Real t248 = t246 - t247;
+  const Real t249 = t248 - t240;
+  const Real t250 = t231 * t154;
+  const Real t251 = t245 - t241;
+  const Real t252 = t251 - t250;
+  const Real t253 = t249 + t252;
+  const Real t254 = t253 * t166;
+  const Real t255 = t253 * t162;
+  const Real t256 = t255 + t254;
+  const Real t257 = t256 * t52;
+  const Real t258 = sum_error(t231, t257);
+  const Real t259 = t258 + t236;
+  const Real t260 = t117 * t259;
+  const Real t261 = t257 + t231;
+  const Real t262 = t121 * t261;
+  const Real t263 = t262 + t260;
+  const Real t264 = product_error(t117, t261);
+  const Real t265 = t263 + t264;
+  const Real t266 = t96 * t265;
+  const Real t267 = t117 * t261;
+  const Real t268 = product_error(t96, t267);
+  const Real t269 = t266 + t268;
+  const Real t270 = t96 * t267;
+  const Real t271 = t224 - t270;
+  const Real t272 = t271 - t269;
+  const Real t273 = t72 * t272;
+  const Real t274 = t273 * nu[0];
+  const Real t275 = t274 + t214;
+
+  // kernel
+  const Real t276 = t83 * t92;
+  const Real t277 = t80 + t276;
+
+  // passive accelerations
+  const Real t278 = t82 * t277;
+
+  // kernel
+  const Real t279 = t108 * t92;
+  const Real t280 = t111 - t279;
+
+  // passive accelerations
+  const Real t281 = t280 - t278;
+  const Real t282 = t152 * t281;
+  const Real t283 = -t278;
+  const Real t284 = sum_error(t280, t283);
+  const Real t285 = product_error(t82, t277);
+  const Real t286 = t284 - t285;
+  const Real t287 = t154 * t286;
+  const Real t288 = t287 + t282;
+  const Real t289 = product_error(t281, t154);
+  const Real t290 = t289 + t288;
+  const Real t291 = t129 * t277;
+  const Real t292 = -t291;
+
+  // kernel
+  const Real t293 = t92 * t138;
+  const Real t294 = t141 - t293;
+
+  // passive accelerations
+  const Real t295 = sum_error(t294, t292);
+  const Real t296 = product_error(t277, t129);
+  const Real t297 = t295 - t296;
+  const Real t298 = t297 - t290;
+  const Real t299 = t281 * t154;
+  const Real t300 = t294 - t291;
+  const Real t301 = t300 - t299;
+  const Real t302 = t301 + t298;
+  const Real t303 = t302 * t166;
+  const Real t304 = t302 * t162;
+  const Real t305 = t303 + t304;
+  const Real t306 = t52 * t305;
+  const Real t307 = sum_error(t281, t306);
+  const Real t308 = t307 + t286;
+  const Real t309 = t117 * t308;
+  const Real t310 = t306 + t281;
+  const Real t311 = t310 * t121;
+  const Real t312 = t311 + t309;
+  const Real t313 = product_error(t310, t117);
+  const Real t314 = t313 + t312;
+  const Real t315 = t314 * t96;
+  const Real t316 = t117 * t310;
+  const Real t317 = product_error(t316, t96);
+  const Real t318 = t317 + t315;
+  const Real t319 = t96 * t316;
+  const Real t320 = t277 - t319;
+  const Real t321 = t320 - t318;
+  const Real t322 = t72 * t321;
+  const Real t323 = t322 * nu[2];
+  const Real t324 = t275 + t323;
+  const Real t325 = R[7] * t324;
+  const Real t326 = t205 * nu[1];
+  const Real t327 = t207 * nu[1];
+  const Real t328 = t326 + t327;
+  const Real t329 = t265 * nu[0];
+  const Real t330 = nu[0] * t267;
+  const Real t331 = t330 + t329;
+  const Real t332 = t328 + t331;
+  const Real t333 = t314 * nu[2];
+  const Real t334 = t316 * nu[2];
+  const Real t335 = t333 + t334;
+  const Real t336 = t332 + t335;
+  const Real t337 = R[8] * t336;
+  const Real t338 = t337 - t325;
+  const Real t339 = par.k2 * t338;
+  const Real t340 = t336 * R[6];
+
+  // joint angles
+  const Real t341 = nu[0] * R[7];
+
+  // passive accelerations
+  const Real t342 = t341 + t340;
+  const Real t343 = par.k1 * t342;
+  const Real t344 = t339 + t343;
+  const Real t345 = t344 * c_r_p_1_;
+
+  // joint angles
+  const Real t346 = s_r_p_1_ * nu[1];
+
+  // passive accelerations
+  const Real t347 = t346 * t6;
+
+  // joint angles
+  const Real t348 = t346 * t8;
+
+  // passive accelerations
+  const Real t349 = t348 + t347;
+  const Real t350 = t345 - t349;
+  const Real t351 = R[6] * t324;
+
+  // joint angles
+  const Real t352 = R[8] * nu[0];
+
+  // passive accelerations
+  const Real t353 = t352 + t351;
+  const Real t354 = t353 * s_r_p_1_;
+
+  // joint angles
+  const Real t355 = c_r_p_1_ * nu[1];
+  const Real t356 = t355 * R[7];
+
+  // passive accelerations
+  const Real t357 = t354 + t356;
+  const Real t358 = t357 + t350;
+  const Real t359 = par.k2 * t358;
+  const Real t360 = par.k1 * t338;
+  const Real t361 = par.k2 * t342;
+  const Real t362 = t360 - t361;
+  const Real t363 = par.k1 * t362;
+  const Real t364 = t363 + t359;
+  const Real t365 = t364 * t40;
+  const Real t366 = t365 * constant<Real>(2.0L);
+  const Real t367 = par.k1 * t358;
+  const Real t368 = par.k2 * t362;
+  const Real t369 = t367 - t368;
+  const Real t370 = t32 * t369;
+  const Real t371 = t370 * constant<Real>(2.0L);
+  const Real t372 = t366 + t371;
+
+  // kernel
+  const Real t373 = t43 * constant<Real>(2.0L);
+
+  // passive accelerations
+  const Real t374 = t372 / t373;
+  const Real t375 = t374 * t44;
+  const Real t376 = t375 / t43;
+  const Real t377 = t32 * t376;
+  const Real t378 = t44 * t369;
+  const Real t379 = t378 - t377;
+  const Real t380 = t379 * par.r_F;
+  const Real t381 = par.k1 * t324;
+
+  // joint angles
+  const Real t382 = par.k2 * nu[0];
+
+  // passive accelerations
+  const Real t383 = t382 + t381;
+  const Real t384 = t383 * c_r_p_1_;
+  const Real t385 = s_r_p_1_ * t336;
+  const Real t386 = t384 - t385;
+  const Real t387 = t386 * par.k2;
+  const Real t388 = par.k2 * t324;
+
+  // joint angles
+  const Real t389 = par.k1 * nu[0];
+
+  // passive accelerations
+  const Real t390 = t389 - t388;
+  const Real t391 = t390 + nu[1];
+  const Real t392 = t391 * par.k1;
+  const Real t393 = t392 + t387;
+  const Real t394 = t393 * t380;
+  const Real t395 = t383 * t346;
+  const Real t396 = t355 * t336;
+  const Real t397 = t396 + t395;
+  const Real t398 = t397 * par.k2;
+  const Real t399 = t398 * t46;
+  const Real t400 = t394 - t399;
+  const Real t401 = t40 * t376;
+  const Real t402 = t364 * t44;
+  const Real t403 = t402 - t401;
+  const Real t404 = t403 * par.r_F;
+  const Real t405 = par.k1 * t386;
+  const Real t406 = t391 * par.k2;
+  const Real t407 = t406 - t405;
+  const Real t408 = t407 * t404;
+  const Real t409 = t397 * par.k1;
+  const Real t410 = t52 * t409;
+  const Real t411 = t408 + t410;
+  const Real t412 = t400 + t411;
+  const Real t413 = t398 * par.r_F;
+  const Real t414 = t409 * par.c;
+  const Real t415 = t413 + t414;
+  const Real t416 = t69 * t213;
+  const Real t417 = t416 * nu[1];
+  const Real t418 = t273 * t69;
+  const Real t419 = t418 - t222;
+  const Real t420 = t419 * nu[0];
+  const Real t421 = t417 + t420;
+  const Real t422 = t322 * t69;
+  const Real t423 = t422 * nu[2];
+  const Real t424 = t423 + t421;
+  const Real t425 = par.k13 * t324;
+  const Real t426 = t424 - t425;
+  const Real t427 = t426 * t346;
+  const Real t428 = par.k13 * t336;
+  const Real t429 = t205 * t69;
+  const Real t430 = t207 * t69;
+  const Real t431 = t429 + t430;
+  const Real t432 = t431 * nu[1];
+  const Real t433 = t69 * t265;
+  const Real t434 = t69 * t267;
+  const Real t435 = t434 + t433;
+  const Real t436 = t435 * nu[0];
+  const Real t437 = t432 + t436;
+  const Real t438 = t314 * t69;
+  const Real t439 = t316 * t69;
+  const Real t440 = t439 + t438;
+  const Real t441 = t69 - t440;
+  const Real t442 = t441 * nu[2];
+  const Real t443 = t442 - t437;
+  const Real t444 = t428 + t443;
+  const Real t445 = t444 * par.k1;
+  const Real t446 = t205 * t93;
+  const Real t447 = t207 * t93;
+  const Real t448 = t446 + t447;
+  const Real t449 = t448 * nu[1];
+  const Real t450 = t93 * t265;
+  const Real t451 = t93 * t267;
+  const Real t452 = t450 + t451;
+  const Real t453 = t452 * nu[0];
+  const Real t454 = t453 + t449;
+  const Real t455 = t314 * t93;
+  const Real t456 = t93 * t316;
+  const Real t457 = t456 + t455;
+  const Real t458 = t457 - t92;
+  const Real t459 = t458 * nu[2];
+  const Real t460 = t459 + t454;
+  const Real t461 = par.k2 * t460;
+  const Real t462 = t461 - t445;
+  const Real t463 = t462 * t355;
+  const Real t464 = t427 + t463;
+  const Real t465 = t415 + t464;
+  const Real t466 = t465 - t412;
+  const Real t467 = R[6] * t338;
+  const Real t468 = t467 * constant<Real>(2.0L);
+  const Real t469 = R[8] * t342;
+  const Real t470 = t469 * constant<Real>(2.0L);
+  const Real t471 = t468 - t470;
+
+  // joint angles
+  const Real t472 = constant<Real>(2.0L) * t66;
+
+  // passive accelerations
+  const Real t473 = t471 / t472;
+  const Real t474 = t67 * t473;
+  const Real t475 = t474 / t66;
+  const Real t476 = R[8] * t475;
+  const Real t477 = t67 * t342;
+  const Real t478 = t477 + t476;
+  const Real t479 = t478 * par.r_R;
+  const Real t480 = nu[2] - t336;
+  const Real t481 = t479 * t480;
+  const Real t482 = t83 * t481;
+  const Real t483 = t482 + t466;
+  const Real t484 = t475 * R[6];
+  const Real t485 = t67 * t338;
+  const Real t486 = t485 - t484;
+  const Real t487 = t486 * par.r_R;
+  const Real t488 = t487 * t324;
+  const Real t489 = t479 * nu[0];
+  const Real t490 = t488 - t489;
+  const Real t491 = t490 * c_r_p_1_;
+  const Real t492 = t483 - t491;
+  const Real t493 = t487 * t480;
+  const Real t494 = t73 * t493;
+  const Real t495 = t492 - t494;
+  const Real t496 = t82 * t495;
+  const Real t497 = -t496;
+  const Real t498 = s_r_p_1_ * t383;
+  const Real t499 = c_r_p_1_ * t336;
   const Real t500 = t499 + t498;
-  const Real t501 = t500 + t497;
-  const Real t502 = t173 * t501;
-  const Real t503 = t502 * t22;
-  const Real t504 = -t503;
-  const Real t505 = sum_error(t476, t504);
-  const Real t506 = t505 * t93;
-  const Real t507 = t476 - t503;
-  const Real t508 = t507 * t97;
-  const Real t509 = t508 + t506;
-  const Real t510 = product_error(t507, t93);
-  const Real t511 = t510 + t509;
-  const Real t512 = t511 * t72;
-  const Real t513 = t507 * t93;
-  const Real t514 = product_error(t72, t513);
-  const Real t515 = t512 + t514;
-  const Real t516 = t513 * t72;
-  const Real t517 = t446 - t516;
-  const Real t518 = t517 - t515;
-  const Real t519 = t48 * t518;
-  const Real t520 = t519 * par.k1;
-  const Real t521 = s_r_p_1_ * t520;
-  const Real t522 = t511 * c_r_p_1_;
-  const Real t523 = t513 * c_r_p_1_;
-  const Real t524 = t522 + t523;
-  const Real t525 = t521 + t524;
-  const Real t526 = t337 * nu[1];
+  const Real t501 = t190 * nu[1];
+  const Real t502 = t192 * nu[1];
+  const Real t503 = t501 + t502;
+  const Real t504 = t256 * nu[0];
+  const Real t505 = t503 + t504;
+  const Real t506 = t305 * nu[2];
+  const Real t507 = t505 + t506;
+  const Real t508 = t500 + t507;
+  const Real t509 = t508 * t404;
+  const Real t510 = t383 * t355;
+  const Real t511 = t346 * t336;
+  const Real t512 = t510 - t511;
+  const Real t513 = t512 * t52;
+  const Real t514 = t509 + t513;
+  const Real t515 = t512 * par.c;
+  const Real t516 = t426 * t355;
+  const Real t517 = t462 * t346;
+  const Real t518 = t516 - t517;
+  const Real t519 = par.k1 * t518;
+  const Real t520 = t515 + t519;
+  const Real t521 = t520 - t514;
+  const Real t522 = t481 * t108;
+  const Real t523 = t521 - t522;
+  const Real t524 = t490 * t73;
+  const Real t525 = t523 + t524;
+  const Real t526 = t54 * t493;
   const Real t527 = t525 - t526;
-  const Real t528 = t342 * t337;
-  const Real t529 = t528 - t527;
-  const Real t530 = t529 * par.k12;
-  const Real t531 = t450 * t450;
-  const Real t532 = t337 * t337;
-  const Real t533 = t531 + t532;
-  const Real t534 = par.k11 * t533;
-  const Real t535 = t530 + t534;
-  const Real t536 = t511 * t45;
-  const Real t537 = t513 * t45;
-  const Real t538 = t537 + t536;
-  const Real t539 = t538 + t444;
-  const Real t540 = t375 * nu[0];
-  const Real t541 = t289 * t411;
-  const Real t542 = t541 + t540;
-  const Real t543 = t542 + t539;
+  const Real t528 = sum_error(t527, t497);
+  const Real t529 = product_error(t82, t495);
+  const Real t530 = t528 - t529;
+  const Real t531 = t530 * t154;
+  const Real t532 = t527 - t496;
+  const Real t533 = t152 * t532;
+  const Real t534 = t531 + t533;
+  const Real t535 = product_error(t532, t154);
+  const Real t536 = t535 + t534;
+  const Real t537 = t495 * t129;
+  const Real t538 = t508 * t380;
+  const Real t539 = t512 * t46;
+  const Real t540 = t539 + t538;
+  const Real t541 = t512 * par.r_F;
+  const Real t542 = par.k2 * t518;
+  const Real t543 = t541 + t542;
+  const Real t544 = t540 + t543;
+  const Real t545 = t481 * t138;
+  const Real t546 = t545 + t544;
+  const Real t547 = t490 * t83;
+  const Real t548 = t547 + t546;
+  const Real t549 = t49 * t493;
+  const Real t550 = t548 + t549;
+  const Real t551 = sum_error(t537, t550);
+  const Real t552 = product_error(t495, t129);
+  const Real t553 = t551 + t552;
+  const Real t554 = t536 + t553;
+  const Real t555 = t532 * t154;
+  const Real t556 = t537 + t550;
+  const Real t557 = t555 + t556;
+  const Real t558 = t554 + t557;
+  const Real t559 = t558 * t166;
+  const Real t560 = t558 * t162;
+  const Real t561 = t559 + t560;
+  const Real t562 = t561 * t52;
+  const Real t563 = -t562;
+  const Real t564 = sum_error(t532, t563);
+  const Real t565 = t530 + t564;
+  const Real t566 = t117 * t565;
+  const Real t567 = t532 - t562;
+  const Real t568 = t121 * t567;
+  const Real t569 = t568 + t566;
+  const Real t570 = product_error(t567, t117);
+  const Real t571 = t569 + t570;
+  const Real t572 = t96 * t571;
+  const Real t573 = t117 * t567;
+  const Real t574 = product_error(t96, t573);
+  const Real t575 = t574 + t572;
+  const Real t576 = t573 * t96;
+  const Real t577 = t495 - t576;
+  const Real t578 = t577 - t575;
+  const Real t579 = t72 * t578;
+  const Real t580 = t579 * t69;
+  const Real t581 = t490 - t580;
+  const Real t582 = t460 * t324;
+  const Real t583 = nu[0] * t443;
+  const Real t584 = t582 + t583;
+  const Real t585 = t581 - t584;
 
   // frame: acceleration
-  const Real t544 = par.g * R[8];
+  const Real t586 = par.g * R[7];
 
   // passive accelerations
-  const Real t545 = t543 - t544;
-  const Real t546 = t277 * nu[0];
-  const Real t547 = t513 + t546;
-  const Real t548 = t511 + t547;
-  const Real t549 = par.k13 * t548;
-  const Real t550 = t545 - t549;
-  const Real t551 = t550 * par.k2;
-  const Real t552 = t511 * t69;
-  const Real t553 = t513 * t69;
-  const Real t554 = t553 + t552;
-  const Real t555 = t432 - t554;
-  const Real t556 = t375 * t277;
-  const Real t557 = t289 * t394;
-  const Real t558 = t556 - t557;
-  const Real t559 = t558 + t555;
+  const Real t587 = t585 - t586;
+  const Real t588 = t336 * nu[0];
+  const Real t589 = t579 - t588;
+  const Real t590 = t589 * par.k13;
+  const Real t591 = t587 + t590;
+  const Real t592 = s_r_p_1_ * t591;
+  const Real t593 = t93 * t571;
+  const Real t594 = t573 * t93;
+  const Real t595 = t593 + t594;
+  const Real t596 = t481 - t595;
+  const Real t597 = t424 * t324;
+  const Real t598 = t336 * t443;
+  const Real t599 = t597 - t598;
+  const Real t600 = t599 + t596;
 
   // frame: acceleration
-  const Real t560 = par.g * R[6];
+  const Real t601 = par.g * R[6];
 
   // passive accelerations
-  const Real t561 = t559 - t560;
-  const Real t562 = t277 * t277;
-  const Real t563 = t289 * t289;
-  const Real t564 = t562 + t563;
-  const Real t565 = t564 * par.k13;
-  const Real t566 = t561 - t565;
-  const Real t567 = par.k1 * t566;
-  const Real t568 = t551 + t567;
-  const Real t569 = t568 + t535;
-  const Real t570 = t569 * par.k2;
-  const Real t571 = t519 * t45;
-  const Real t572 = t441 - t571;
-  const Real t573 = t411 * t277;
-  const Real t574 = t394 * nu[0];
-  const Real t575 = t574 + t573;
-  const Real t576 = t572 - t575;
+  const Real t602 = t600 - t601;
+  const Real t603 = t324 * t324;
+  const Real t604 = t336 * t336;
+  const Real t605 = t604 + t603;
+  const Real t606 = t605 * par.k13;
+  const Real t607 = t602 - t606;
+  const Real t608 = par.k2 * t607;
+  const Real t609 = t571 * t69;
+  const Real t610 = t573 * t69;
+  const Real t611 = t610 + t609;
+  const Real t612 = t611 + t493;
+  const Real t613 = t424 * nu[0];
+  const Real t614 = t336 * t460;
+  const Real t615 = t614 + t613;
+  const Real t616 = t612 + t615;
 
   // frame: acceleration
-  const Real t577 = par.g * R[7];
+  const Real t617 = par.g * R[8];
 
   // passive accelerations
-  const Real t578 = t576 - t577;
-  const Real t579 = t289 * nu[0];
-  const Real t580 = t519 - t579;
-  const Real t581 = t580 * par.k13;
-  const Real t582 = t581 + t578;
-  const Real t583 = s_r_p_1_ * t582;
-  const Real t584 = t566 * par.k2;
-  const Real t585 = par.k1 * t550;
-  const Real t586 = t584 - t585;
-  const Real t587 = t586 * c_r_p_1_;
-  const Real t588 = t587 + t583;
-  const Real t589 = t527 + t528;
-  const Real t590 = t589 * par.k11;
-  const Real t591 = t342 * t342;
-  const Real t592 = t531 + t591;
-  const Real t593 = t592 * par.k12;
-  const Real t594 = t590 + t593;
-  const Real t595 = t588 - t594;
-  const Real t596 = par.k1 * t595;
-  const Real t597 = t570 - t596;
-  const Real t598 = t597 * c_r_p_2_;
-  const Real t599 = par.k1 * t569;
-  const Real t600 = t595 * par.k2;
-  const Real t601 = t599 + t600;
-  const Real t602 = t601 * s_r_p_2_;
-  const Real t603 = t598 + t602;
-  const Real t604 = par.m_F * t603;
-  const Real t605 = t604 * s_r_p_2_;
-  const Real t606 = c_r_p_2_ * t601;
-  const Real t607 = t597 * s_r_p_2_;
-  const Real t608 = t606 - t607;
-  const Real t609 = t608 * par.m_F;
-  const Real t610 = t609 * c_r_p_2_;
-  const Real t611 = t605 + t610;
-  const Real t612 = par.k2 * t611;
-  const Real t613 = c_r_p_2_ * t604;
-  const Real t614 = t609 * s_r_p_2_;
-  const Real t615 = t613 - t614;
-  const Real t616 = t615 * par.k1;
-  const Real t617 = t612 - t616;
-  const Real t618 = par.k11 * t617;
-  const Real t619 = par.k1 * t611;
-  const Real t620 = t615 * par.k2;
-  const Real t621 = t619 + t620;
-  const Real t622 = par.k12 * t621;
-  const Real t623 = t618 + t622;
-  const Real t624 = t527 - t502;
-  const Real t625 = t624 * par.I_Fyy;
-  const Real t626 = t625 - t623;
-  const Real t627 = t588 * par.k8;
-  const Real t628 = par.k10 * t568;
-  const Real t629 = t627 - t628;
-  const Real t630 = t527 * par.k7;
-  const Real t631 = par.k32 * t528;
-  const Real t632 = t631 + t630;
-  const Real t633 = t591 - t532;
-  const Real t634 = t633 * par.k5;
-  const Real t635 = t634 + t632;
-  const Real t636 = t629 + t635;
-  const Real t637 = t636 + t626;
-  const Real t638 = s_r_p_1_ * t637;
-  const Real t639 = c_r_p_1_ * t520;
-  const Real t640 = t511 * s_r_p_1_;
-  const Real t641 = s_r_p_1_ * t513;
-  const Real t642 = t641 + t640;
-  const Real t643 = t642 - t639;
-  const Real t644 = t450 * nu[1];
-  const Real t645 = t643 - t644;
-  const Real t646 = t645 * par.k2;
-  const Real t647 = t519 * par.k2;
-  const Real t648 = par.k1 * t647;
-  const Real t649 = t648 + t646;
-  const Real t650 = t649 * s_r_p_2_;
-  const Real t651 = par.k1 * t645;
-  const Real t652 = par.k2 * t647;
-  const Real t653 = t652 - t651;
-  const Real t654 = c_r_p_2_ * t653;
-  const Real t655 = t650 + t654;
-  const Real t656 = c_r_p_2_ * t344;
-  const Real t657 = t358 * s_r_p_2_;
-  const Real t658 = t656 - t657;
-  const Real t659 = t658 * t455;
-  const Real t660 = t655 - t659;
-  const Real t661 = par.I_Fxx * t660;
-  const Real t662 = t456 * t658;
-  const Real t663 = par.k37 * t662;
-  const Real t664 = t661 - t663;
-  const Real t665 = t664 * s_r_p_2_;
-  const Real t666 = c_r_p_2_ * t649;
-  const Real t667 = t653 * s_r_p_2_;
-  const Real t668 = t666 - t667;
-  const Real t669 = t358 * c_r_p_2_;
-  const Real t670 = t344 * s_r_p_2_;
-  const Real t671 = t669 + t670;
-  const Real t672 = t671 * t455;
-  const Real t673 = t668 + t672;
-  const Real t674 = par.I_Fxx * t673;
-  const Real t675 = t671 * t456;
-  const Real t676 = t675 * par.k36;
-  const Real t677 = t674 - t676;
-  const Real t678 = c_r_p_2_ * t677;
-  const Real t679 = t665 + t678;
-  const Real t680 = par.k2 * t679;
-  const Real t681 = t664 * c_r_p_2_;
-  const Real t682 = t677 * s_r_p_2_;
-  const Real t683 = t681 - t682;
-  const Real t684 = par.k1 * t683;
-  const Real t685 = t680 - t684;
-  const Real t686 = t342 * t450;
-  const Real t687 = t645 + t686;
-  const Real t688 = par.k11 * t687;
-  const Real t689 = t337 * t450;
-  const Real t690 = t647 - t689;
-  const Real t691 = t690 * par.k12;
-  const Real t692 = t688 + t691;
-  const Real t693 = t582 * c_r_p_1_;
-  const Real t694 = s_r_p_1_ * t586;
-  const Real t695 = t693 - t694;
-  const Real t696 = t692 + t695;
-  const Real t697 = t696 * par.m_F;
-  const Real t698 = t697 * par.k11;
-  const Real t699 = t698 + t685;
-  const Real t700 = par.k8 * t695;
-  const Real t701 = t645 * par.k17;
-  const Real t702 = par.k31 * t686;
-  const Real t703 = t701 - t702;
-  const Real t704 = t690 * par.k5;
-  const Real t705 = t703 + t704;
-  const Real t706 = t705 - t700;
-  const Real t707 = t706 + t699;
-  const Real t708 = t707 * c_r_p_1_;
-  const Real t709 = t708 - t638;
-  const Real t710 = par.k1 * t709;
-  const Real t711 = t683 * par.k2;
-  const Real t712 = par.k1 * t679;
-  const Real t713 = t711 + t712;
-  const Real t714 = t697 * par.k12;
-  const Real t715 = t714 + t713;
-  const Real t716 = par.k10 * t695;
-  const Real t717 = par.k5 * t687;
-  const Real t718 = par.k6 * t647;
-  const Real t719 = par.k33 * t689;
-  const Real t720 = t718 - t719;
-  const Real t721 = t717 + t720;
-  const Real t722 = t721 + t716;
-  const Real t723 = t722 + t715;
-  const Real t724 = t723 * par.k2;
-  const Real t725 = t724 - t710;
-  const Real t726 = t588 * par.m_H;
-  const Real t727 = t589 * par.k8;
-  const Real t728 = t592 * par.k10;
-  const Real t729 = t727 - t728;
-  const Real t730 = t726 + t729;
-  const Real t731 = t617 + t730;
-  const Real t732 = s_r_p_1_ * t731;
-  const Real t733 = par.m_H * t695;
-  const Real t734 = par.k8 * t687;
-  const Real t735 = t690 * par.k10;
-  const Real t736 = t735 - t734;
-  const Real t737 = t736 + t733;
-  const Real t738 = t697 + t737;
-  const Real t739 = t738 * c_r_p_1_;
-  const Real t740 = t732 + t739;
-  const Real t741 = t740 * par.k13;
-  const Real t742 = t725 + t741;
-  const Real t743 = par.k16 * t578;
-  const Real t744 = t519 * par.k14;
-  const Real t745 = t579 * par.k26;
-  const Real t746 = t744 - t745;
-  const Real t747 = t289 * t277;
-  const Real t748 = par.k3 * t747;
-  const Real t749 = t746 - t748;
-  const Real t750 = t749 + t743;
-  const Real t751 = t750 + t742;
-  const Real t752 = t519 * c_r_p_0_;
-  const Real t753 = t277 * s_r_p_0_;
+  const Real t618 = t616 - t617;
+  const Real t619 = nu[0] * t324;
+  const Real t620 = t573 + t619;
+  const Real t621 = t620 + t571;
+  const Real t622 = t621 * par.k13;
+  const Real t623 = t618 - t622;
+  const Real t624 = par.k1 * t623;
+  const Real t625 = t608 - t624;
+  const Real t626 = t625 * c_r_p_1_;
+  const Real t627 = t592 + t626;
+  const Real t628 = t579 * par.k1;
+  const Real t629 = s_r_p_1_ * t628;
+  const Real t630 = c_r_p_1_ * t571;
+  const Real t631 = t573 * c_r_p_1_;
+  const Real t632 = t630 + t631;
+  const Real t633 = t629 + t632;
+  const Real t634 = t386 * nu[1];
+  const Real t635 = t633 - t634;
+  const Real t636 = t391 * t386;
+  const Real t637 = t635 + t636;
+  const Real t638 = par.k11 * t637;
+  const Real t639 = t500 * t500;
+  const Real t640 = t391 * t391;
+  const Real t641 = t639 + t640;
+  const Real t642 = t641 * par.k12;
+  const Real t643 = t642 + t638;
+  const Real t644 = t627 - t643;
+  const Real t645 = t644 * par.k2;
+  const Real t646 = t636 - t635;
+  const Real t647 = t646 * par.k12;
+  const Real t648 = t386 * t386;
+  const Real t649 = t648 + t639;
+  const Real t650 = t649 * par.k11;
+  const Real t651 = t647 + t650;
+  const Real t652 = t623 * par.k2;
+  const Real t653 = par.k1 * t607;
+  const Real t654 = t652 + t653;
+  const Real t655 = t654 + t651;
+  const Real t656 = par.k1 * t655;
+  const Real t657 = t645 + t656;
+  const Real t658 = t657 * c_r_p_2_;
+  const Real t659 = par.k2 * t655;
+  const Real t660 = par.k1 * t644;
+  const Real t661 = t659 - t660;
+  const Real t662 = t661 * s_r_p_2_;
+  const Real t663 = t658 - t662;
+  const Real t664 = t663 * par.m_F;
+  const Real t665 = c_r_p_2_ * t664;
+  const Real t666 = t657 * s_r_p_2_;
+  const Real t667 = t661 * c_r_p_2_;
+  const Real t668 = t666 + t667;
+  const Real t669 = par.m_F * t668;
+  const Real t670 = t669 * s_r_p_2_;
+  const Real t671 = t665 + t670;
+  const Real t672 = par.k2 * t671;
+  const Real t673 = c_r_p_2_ * t669;
+  const Real t674 = t664 * s_r_p_2_;
+  const Real t675 = t673 - t674;
+  const Real t676 = par.k1 * t675;
+  const Real t677 = t672 - t676;
+  const Real t678 = t677 * par.k11;
+  const Real t679 = par.k1 * t671;
+  const Real t680 = t675 * par.k2;
+  const Real t681 = t679 + t680;
+  const Real t682 = t681 * par.k12;
+  const Real t683 = t678 + t682;
+  const Real t684 = t635 - t561;
+  const Real t685 = par.I_Fyy * t684;
+  const Real t686 = t685 - t683;
+  const Real t687 = t627 * par.k8;
+  const Real t688 = t654 * par.k10;
+  const Real t689 = t687 - t688;
+  const Real t690 = par.k7 * t635;
+  const Real t691 = par.k35 * t636;
+  const Real t692 = t690 + t691;
+  const Real t693 = t640 - t648;
+  const Real t694 = par.k5 * t693;
+  const Real t695 = t692 + t694;
+  const Real t696 = t689 + t695;
+  const Real t697 = t696 + t686;
+  const Real t698 = t697 * s_r_p_1_;
+  const Real t699 = c_r_p_1_ * t628;
+  const Real t700 = s_r_p_1_ * t571;
+  const Real t701 = t573 * s_r_p_1_;
+  const Real t702 = t701 + t700;
+  const Real t703 = t702 - t699;
+  const Real t704 = t500 * nu[1];
+  const Real t705 = t703 - t704;
+  const Real t706 = t705 * par.k1;
+  const Real t707 = t579 * par.k2;
+  const Real t708 = par.k2 * t707;
+  const Real t709 = t708 - t706;
+  const Real t710 = t709 * c_r_p_2_;
+  const Real t711 = t705 * par.k2;
+  const Real t712 = par.k1 * t707;
+  const Real t713 = t712 + t711;
+  const Real t714 = t713 * s_r_p_2_;
+  const Real t715 = t710 + t714;
+  const Real t716 = t393 * c_r_p_2_;
+  const Real t717 = t407 * s_r_p_2_;
+  const Real t718 = t716 - t717;
+  const Real t719 = t718 * t507;
+  const Real t720 = t715 - t719;
+  const Real t721 = par.I_Fxx * t720;
+  const Real t722 = t718 * t508;
+  const Real t723 = par.k40 * t722;
+  const Real t724 = t721 - t723;
+  const Real t725 = t724 * s_r_p_2_;
+  const Real t726 = c_r_p_2_ * t713;
+  const Real t727 = t709 * s_r_p_2_;
+  const Real t728 = t726 - t727;
+  const Real t729 = t407 * c_r_p_2_;
+  const Real t730 = t393 * s_r_p_2_;
+  const Real t731 = t729 + t730;
+  const Real t732 = t507 * t731;
+  const Real t733 = t728 + t732;
+  const Real t734 = par.I_Fxx * t733;
+  const Real t735 = t508 * t731;
+  const Real t736 = t735 * par.k39;
+  const Real t737 = t734 - t736;
+  const Real t738 = c_r_p_2_ * t737;
+  const Real t739 = t725 + t738;
+  const Real t740 = t739 * par.k2;
+  const Real t741 = c_r_p_2_ * t724;
+  const Real t742 = t737 * s_r_p_2_;
+  const Real t743 = t741 - t742;
+  const Real t744 = t743 * par.k1;
+  const Real t745 = t740 - t744;
+  const Real t746 = t591 * c_r_p_1_;
+  const Real t747 = s_r_p_1_ * t625;
+  const Real t748 = t746 - t747;
+  const Real t749 = t500 * t391;
+  const Real t750 = t705 + t749;
+  const Real t751 = t750 * par.k11;
+  const Real t752 = t500 * t386;
+  const Real t753 = t707 - t752;
+  const Real t754 = t753 * par.k12;
+  const Real t755 = t754 + t751;
+  const Real t756 = t748 + t755;
+  const Real t757 = par.m_F * t756;
+  const Real t758 = t757 * par.k11;
+  const Real t759 = t758 + t745;
+  const Real t760 = par.k8 * t748;
+  const Real t761 = t705 * par.k17;
+  const Real t762 = t749 * par.k34;
+  const Real t763 = t761 - t762;
+  const Real t764 = par.k5 * t753;
+  const Real t765 = t764 + t763;
+  const Real t766 = t765 - t760;
+  const Real t767 = t766 + t759;
+  const Real t768 = c_r_p_1_ * t767;
+  const Real t769 = t768 - t698;
+  const Real t770 = par.k1 * t769;
+  const Real t771 = t743 * par.k2;
+  const Real t772 = par.k1 * t739;
+  const Real t773 = t771 + t772;
+  const Real t774 = t757 * par.k12;
+  const Real t775 = t773 + t774;
+  const Real t776 = par.k10 * t748;
+  const Real t777 = par.k5 * t750;
+  const Real t778 = par.k6 * t707;
+  const Real t779 = t752 * par.k36;
+  const Real t780 = t778 - t779;
+  const Real t781 = t777 + t780;
+  const Real t782 = t781 + t776;
+  const Real t783 = t782 + t775;
+  const Real t784 = t783 * par.k2;
+  const Real t785 = t784 - t770;
+  const Real t786 = t627 * par.m_H;
+  const Real t787 = par.k8 * t637;
+  const Real t788 = t641 * par.k10;
+  const Real t789 = t787 - t788;
+  const Real t790 = t786 + t789;
+  const Real t791 = t677 + t790;
+  const Real t792 = s_r_p_1_ * t791;
+  const Real t793 = par.m_H * t748;
+  const Real t794 = par.k8 * t750;
+  const Real t795 = t753 * par.k10;
+  const Real t796 = t795 - t794;
+  const Real t797 = t793 + t796;
+  const Real t798 = t797 + t757;
+  const Real t799 = c_r_p_1_ * t798;
+  const Real t800 = t792 + t799;
+  const Real t801 = t800 * par.k13;
+  const Real t802 = t801 + t785;
+  const Real t803 = t587 * par.k16;
+  const Real t804 = t579 * par.k14;
+  const Real t805 = par.k58 * t588;
+  const Real t806 = t804 - t805;
+  const Real t807 = t336 * t324;
+  const Real t808 = par.k3 * t807;
+  const Real t809 = t806 - t808;
+  const Real t810 = t809 + t803;
+  const Real t811 = t810 + t802;
+  const Real t812 = t579 * c_r_p_0_;
+  const Real t813 = s_r_p_0_ * t324;
 
   // rear_wheel: twist
-  const Real t754 = nu[0] * c_r_p_0_;
+  const Real t814 = nu[0] * c_r_p_0_;
 
   // passive accelerations
-  const Real t755 = t754 + t753;
-  const Real t756 = t755 * nu[2];
-  const Real t757 = t756 + t752;
-  const Real t758 = t757 * par.I_Rxx;
-  const Real t759 = t431 * t755;
-  const Real t760 = par.k29 * t759;
-  const Real t761 = t758 + t760;
-  const Real t762 = t761 * c_r_p_0_;
-  const Real t763 = t519 * s_r_p_0_;
-  const Real t764 = t277 * c_r_p_0_;
+  const Real t815 = t814 + t813;
+  const Real t816 = t815 * nu[2];
+  const Real t817 = t812 + t816;
+  const Real t818 = par.I_Rxx * t817;
+  const Real t819 = t815 * t480;
+  const Real t820 = par.k32 * t819;
+  const Real t821 = t818 + t820;
+  const Real t822 = t821 * c_r_p_0_;
+  const Real t823 = t579 * s_r_p_0_;
+  const Real t824 = c_r_p_0_ * t324;
 
   // rear_wheel: twist
-  const Real t765 = nu[0] * s_r_p_0_;
+  const Real t825 = nu[0] * s_r_p_0_;
 
   // passive accelerations
-  const Real t766 = t765 - t764;
-  const Real t767 = t766 * nu[2];
-  const Real t768 = t767 + t763;
-  const Real t769 = t768 * par.I_Rxx;
-  const Real t770 = t431 * t766;
-  const Real t771 = t770 * par.k30;
-  const Real t772 = t771 - t769;
-  const Real t773 = t772 * s_r_p_0_;
-  const Real t774 = t762 - t773;
-  const Real t775 = t751 + t774;
-  const Real t776 = t275 * t775;
-  const Real t777 = c_r_p_1_ * t637;
-  const Real t778 = s_r_p_1_ * t707;
-  const Real t779 = t777 + t778;
-  const Real t780 = c_r_p_1_ * t731;
-  const Real t781 = s_r_p_1_ * t738;
-  const Real t782 = t780 - t781;
-  const Real t783 = par.k1 * t782;
-  const Real t784 = t529 * par.k10;
-  const Real t785 = par.k8 * t533;
-  const Real t786 = t784 - t785;
-  const Real t787 = par.m_H * t568;
-  const Real t788 = t787 + t786;
-  const Real t789 = t788 + t621;
-  const Real t790 = par.k2 * t789;
-  const Real t791 = t790 - t783;
-  const Real t792 = t791 * par.k13;
-  const Real t793 = t779 - t792;
-  const Real t794 = t561 * par.k15;
-  const Real t795 = t545 * par.k16;
-  const Real t796 = t794 - t795;
-  const Real t797 = par.k4 * t511;
-  const Real t798 = par.k4 * t513;
-  const Real t799 = t797 + t798;
-  const Real t800 = t546 * par.k28;
-  const Real t801 = t799 - t800;
-
-  // frame: acceleration
-  const Real t802 = nu[0] * nu[0];
-
-  // passive accelerations
-  const Real t803 = t562 - t802;
-  const Real t804 = par.k3 * t803;
-  const Real t805 = t804 + t801;
-  const Real t806 = t805 + t796;
-  const Real t807 = t793 + t806;
-  const Real t808 = t513 - t546;
-  const Real t809 = t511 + t808;
-  const Real t810 = t809 * par.r_R;
-  const Real t811 = t561 - t810;
-  const Real t812 = t811 * c_r_p_0_;
-  const Real t813 = t802 + t563;
-  const Real t814 = t813 * par.r_R;
-  const Real t815 = t814 + t545;
-  const Real t816 = t815 * s_r_p_0_;
-  const Real t817 = t812 - t816;
-  const Real t818 = par.m_R * t817;
-  const Real t819 = t818 * c_r_p_0_;
-  const Real t820 = t815 * c_r_p_0_;
-  const Real t821 = t811 * s_r_p_0_;
-  const Real t822 = t820 + t821;
-  const Real t823 = par.m_R * t822;
-  const Real t824 = t823 * s_r_p_0_;
-  const Real t825 = t819 + t824;
-  const Real t826 = t825 * par.r_R;
-  const Real t827 = t511 * par.I_Ryy;
-  const Real t828 = t513 * par.I_Ryy;
-  const Real t829 = t827 + t828;
-  const Real t830 = t829 - t826;
-  const Real t831 = t830 + t807;
-  const Real t832 = t269 * t831;
-  const Real t833 = t831 * t267;
-  const Real t834 = t832 + t833;
-  const Real t835 = par.k2 * t782;
-  const Real t836 = par.k1 * t789;
-  const Real t837 = t835 + t836;
-  const Real t838 = t561 * par.m_B;
-  const Real t839 = t809 * par.k15;
-  const Real t840 = t564 * par.k16;
-  const Real t841 = t839 - t840;
-  const Real t842 = t841 + t838;
-  const Real t843 = t842 + t837;
-  const Real t844 = t843 + t825;
-  const Real t845 = t844 * t400;
-  const Real t846 = par.m_B * t578;
-  const Real t847 = t580 * par.k16;
-  const Real t848 = par.k15 * t747;
-  const Real t849 = t847 + t848;
-  const Real t850 = t849 + t846;
-  const Real t851 = t740 + t850;
-  const Real t852 = par.r_R * t747;
-  const Real t853 = t578 - t852;
-  const Real t854 = t853 * par.m_R;
-  const Real t855 = t854 + t851;
-  const Real t856 = t855 * t373;
-  const Real t857 = t856 + t845;
-  const Real t858 = t545 * par.m_B;
-  const Real t859 = par.k16 * t548;
-  const Real t860 = t813 * par.k15;
+  const Real t826 = t825 - t824;
+  const Real t827 = nu[2] * t826;
+  const Real t828 = t823 + t827;
+  const Real t829 = t828 * par.I_Rxx;
+  const Real t830 = t480 * t826;
+  const Real t831 = t830 * par.k33;
+  const Real t832 = t831 - t829;
+  const Real t833 = t832 * s_r_p_0_;
+  const Real t834 = t822 - t833;
+  const Real t835 = t811 + t834;
+  const Real t836 = t322 * t835;
+  const Real t837 = t697 * c_r_p_1_;
+  const Real t838 = s_r_p_1_ * t767;
+  const Real t839 = t837 + t838;
+  const Real t840 = c_r_p_1_ * t791;
+  const Real t841 = s_r_p_1_ * t798;
+  const Real t842 = t840 - t841;
+  const Real t843 = par.k1 * t842;
+  const Real t844 = t646 * par.k10;
+  const Real t845 = par.k8 * t649;
+  const Real t846 = t844 - t845;
+  const Real t847 = t654 * par.m_H;
+  const Real t848 = t847 + t846;
+  const Real t849 = t848 + t681;
+  const Real t850 = par.k2 * t849;
+  const Real t851 = t850 - t843;
+  const Real t852 = t851 * par.k13;
+  const Real t853 = t839 - t852;
+  const Real t854 = t602 * par.k59;
+  const Real t855 = t602 * par.k15;
+  const Real t856 = t854 + t855;
+  const Real t857 = t618 * par.k16;
+  const Real t858 = t856 - t857;
+  const Real t859 = par.k56 * t571;
+  const Real t860 = t573 * par.k56;
   const Real t861 = t860 + t859;
-  const Real t862 = t858 - t861;
-  const Real t863 = t862 + t791;
-  const Real t864 = t823 * c_r_p_0_;
-  const Real t865 = t818 * s_r_p_0_;
-  const Real t866 = t864 - t865;
+  const Real t862 = par.k60 * t619;
+  const Real t863 = t861 - t862;
+
+  // frame: acceleration
+  const Real t864 = nu[0] * nu[0];
+
+  // passive accelerations
+  const Real t865 = t603 - t864;
+  const Real t866 = t865 * par.k3;
   const Real t867 = t863 + t866;
-  const Real t868 = t383 * t867;
-  const Real t869 = t857 + t868;
-  const Real t870 = t834 - t869;
-  const Real t871 = t776 + t870;
-  const Real t872 = t871 - t829;
-  const Real t873 = t258 * t625;
-  const Real t874 = t872 + t873;
-  const Real t875 = t831 * t220;
-  const Real t876 = t222 * t831;
-  const Real t877 = t875 + t876;
-  const Real t878 = t844 * t408;
-  const Real t879 = t370 * t855;
-  const Real t880 = t878 + t879;
-  const Real t881 = t387 * t867;
-  const Real t882 = t881 - t880;
-  const Real t883 = t877 + t882;
-  const Real t884 = t228 * t775;
-  const Real t885 = t883 + t884;
-  const Real t886 = t885 - t723;
-  const Real t887 = t210 * t625;
-  const Real t888 = t887 + t886;
-  const Real t889 = t191 * t775;
-  const Real t890 = t185 * t831;
-  const Real t891 = t183 * t831;
-  const Real t892 = t890 + t891;
-  const Real t893 = t844 * t404;
-  const Real t894 = t855 * t368;
-  const Real t895 = t893 + t894;
-  const Real t896 = t867 * t391;
-  const Real t897 = t896 - t895;
-  const Real t898 = t709 * par.k2;
-  const Real t899 = t723 * par.k1;
-  const Real t900 = t899 + t898;
-  const Real t901 = par.k15 * t578;
-  const Real t902 = par.k3 * t580;
-  const Real t903 = par.k27 * t747;
-  const Real t904 = t902 + t903;
-  const Real t905 = t904 - t901;
+  const Real t868 = t858 + t867;
+  const Real t869 = t868 + t853;
+  const Real t870 = t864 + t604;
+  const Real t871 = t870 * par.r_R;
+  const Real t872 = t871 + t618;
+  const Real t873 = t872 * c_r_p_0_;
+  const Real t874 = t573 - t619;
+  const Real t875 = t874 + t571;
+  const Real t876 = par.r_R * t875;
+  const Real t877 = t602 - t876;
+  const Real t878 = t877 * s_r_p_0_;
+  const Real t879 = t873 + t878;
+  const Real t880 = par.m_R * t879;
+  const Real t881 = t880 * s_r_p_0_;
+  const Real t882 = t877 * c_r_p_0_;
+  const Real t883 = t872 * s_r_p_0_;
+  const Real t884 = t882 - t883;
+  const Real t885 = par.m_R * t884;
+  const Real t886 = c_r_p_0_ * t885;
+  const Real t887 = t881 + t886;
+  const Real t888 = par.r_R * t887;
+  const Real t889 = par.I_Ryy * t571;
+  const Real t890 = t573 * par.I_Ryy;
+  const Real t891 = t890 + t889;
+  const Real t892 = t891 - t888;
+  const Real t893 = t869 + t892;
+  const Real t894 = t314 * t893;
+  const Real t895 = t893 * t316;
+  const Real t896 = t894 + t895;
+  const Real t897 = t842 * par.k2;
+  const Real t898 = par.k1 * t849;
+  const Real t899 = t897 + t898;
+  const Real t900 = t602 * par.m_B;
+  const Real t901 = par.k15 * t875;
+  const Real t902 = par.k59 * t875;
+  const Real t903 = t901 + t902;
+  const Real t904 = t605 * par.k16;
+  const Real t905 = t903 - t904;
   const Real t906 = t905 + t900;
-  const Real t907 = t854 * par.r_R;
-  const Real t908 = t772 * c_r_p_0_;
-  const Real t909 = t761 * s_r_p_0_;
-  const Real t910 = t908 + t909;
-  const Real t911 = t907 + t910;
-  const Real t912 = t906 + t911;
-  const Real t913 = t897 - t912;
-  const Real t914 = t892 + t913;
-  const Real t915 = t889 + t914;
-  const Real t916 = t625 * t174;
-  const Real t917 = t916 + t915;
-  const Real t918 = par.k1 * t275;
-  const Real t919 = s_r_p_1_ * t918;
-  const Real t920 = c_r_p_1_ * t267;
-  const Real t921 = c_r_p_1_ * t269;
-  const Real t922 = t920 + t921;
-  const Real t923 = t922 + t919;
-  const Real t924 = par.k12 * t923;
-  const Real t925 = par.k13 * t267;
-  const Real t926 = t269 * par.k13;
-  const Real t927 = t926 + t925;
-  const Real t928 = t383 + t927;
-  const Real t929 = par.k2 * t928;
-  const Real t930 = par.k1 * t400;
-  const Real t931 = t930 + t929;
-  const Real t932 = t924 + t931;
-  const Real t933 = par.k1 * t932;
-  const Real t934 = t275 * par.k13;
-  const Real t935 = t373 - t934;
-  const Real t936 = s_r_p_1_ * t935;
-  const Real t937 = par.k1 * t928;
-  const Real t938 = par.k2 * t400;
-  const Real t939 = t938 - t937;
-  const Real t940 = c_r_p_1_ * t939;
-  const Real t941 = t936 + t940;
-  const Real t942 = par.k11 * t923;
-  const Real t943 = t941 + t942;
-  const Real t944 = t943 * par.k2;
-  const Real t945 = t933 + t944;
-  const Real t946 = t945 * s_r_p_2_;
-  const Real t947 = par.k2 * t932;
-  const Real t948 = t943 * par.k1;
-  const Real t949 = t947 - t948;
-  const Real t950 = c_r_p_2_ * t949;
-  const Real t951 = t946 + t950;
-  const Real t952 = t951 * par.m_F;
-  const Real t953 = t952 * s_r_p_2_;
-  const Real t954 = c_r_p_2_ * t945;
-  const Real t955 = t949 * s_r_p_2_;
-  const Real t956 = t954 - t955;
-  const Real t957 = t956 * par.m_F;
-  const Real t958 = t957 * c_r_p_2_;
-  const Real t959 = t953 + t958;
-  const Real t960 = par.k2 * t959;
-  const Real t961 = c_r_p_2_ * t952;
-  const Real t962 = t957 * s_r_p_2_;
-  const Real t963 = t961 - t962;
-  const Real t964 = par.k1 * t963;
-  const Real t965 = t960 - t964;
-  const Real t966 = t965 * par.k11;
-  const Real t967 = t963 * par.k2;
-  const Real t968 = par.k1 * t959;
-  const Real t969 = t967 + t968;
-  const Real t970 = par.k12 * t969;
-  const Real t971 = t966 + t970;
-  const Real t972 = t258 + t923;
-  const Real t973 = t972 * par.I_Fyy;
-  const Real t974 = t971 + t973;
-  const Real t975 = par.k8 * t941;
-  const Real t976 = par.k10 * t931;
-  const Real t977 = t975 - t976;
-  const Real t978 = par.k7 * t923;
-  const Real t979 = t977 - t978;
-  const Real t980 = t979 - t974;
-  const Real t981 = c_r_p_1_ * t980;
-  const Real t982 = c_r_p_1_ * t918;
-  const Real t983 = s_r_p_1_ * t267;
-  const Real t984 = s_r_p_1_ * t269;
-  const Real t985 = t984 + t983;
-  const Real t986 = t982 - t985;
-  const Real t987 = t986 * par.k2;
-  const Real t988 = t275 * par.k2;
-  const Real t989 = par.k1 * t988;
-  const Real t990 = t987 - t989;
-  const Real t991 = t990 * s_r_p_2_;
-  const Real t992 = par.k1 * t986;
-  const Real t993 = par.k2 * t988;
-  const Real t994 = t993 + t992;
-  const Real t995 = t994 * c_r_p_2_;
-  const Real t996 = t991 - t995;
-  const Real t997 = t996 * par.I_Fxx;
-  const Real t998 = t997 * s_r_p_2_;
-  const Real t999 = t990 * c_r_p_2_;
-  const Real t1000 = t994 * s_r_p_2_;
-  const Real t1001 = t999 + t1000;
-  const Real t1002 = par.I_Fxx * t1001;
-  const Real t1003 = c_r_p_2_ * t1002;
-  const Real t1004 = t998 + t1003;
-  const Real t1005 = t1004 * par.k2;
-  const Real t1006 = c_r_p_2_ * t997;
-  const Real t1007 = t1002 * s_r_p_2_;
-  const Real t1008 = t1006 - t1007;
-  const Real t1009 = t1008 * par.k1;
-  const Real t1010 = t1005 - t1009;
-  const Real t1011 = t985 - t982;
-  const Real t1012 = t1011 * par.k11;
-  const Real t1013 = par.k12 * t988;
+  const Real t907 = t899 + t906;
+  const Real t908 = t907 + t887;
+  const Real t909 = t458 * t908;
+  const Real t910 = t587 * par.m_B;
+  const Real t911 = t589 * par.k16;
+  const Real t912 = par.k59 * t807;
+  const Real t913 = par.k15 * t807;
+  const Real t914 = t912 + t913;
+  const Real t915 = t911 + t914;
+  const Real t916 = t910 + t915;
+  const Real t917 = t800 + t916;
+  const Real t918 = par.r_R * t807;
+  const Real t919 = t587 - t918;
+  const Real t920 = par.m_R * t919;
+  const Real t921 = t917 + t920;
+  const Real t922 = t422 * t921;
+  const Real t923 = t909 + t922;
+  const Real t924 = t618 * par.m_B;
+  const Real t925 = t621 * par.k16;
+  const Real t926 = par.k59 * t870;
+  const Real t927 = t870 * par.k15;
+  const Real t928 = t926 + t927;
+  const Real t929 = t925 + t928;
+  const Real t930 = t924 - t929;
+  const Real t931 = t851 + t930;
+  const Real t932 = t880 * c_r_p_0_;
+  const Real t933 = s_r_p_0_ * t885;
+  const Real t934 = t932 - t933;
+  const Real t935 = t934 + t931;
+  const Real t936 = t935 * t441;
+  const Real t937 = t936 + t923;
+  const Real t938 = t896 - t937;
+  const Real t939 = t836 + t938;
+  const Real t940 = t939 - t891;
+  const Real t941 = t685 * t305;
+  const Real t942 = t940 + t941;
+  const Real t943 = t835 * t213;
+  const Real t944 = t205 * t893;
+  const Real t945 = t207 * t893;
+  const Real t946 = t944 + t945;
+  const Real t947 = t908 * t448;
+  const Real t948 = t921 * t416;
+  const Real t949 = t948 + t947;
+  const Real t950 = t935 * t431;
+  const Real t951 = t950 - t949;
+  const Real t952 = t946 + t951;
+  const Real t953 = t943 + t952;
+  const Real t954 = t953 - t783;
+  const Real t955 = t685 * t190;
+  const Real t956 = t685 * t192;
+  const Real t957 = t955 + t956;
+  const Real t958 = t957 + t954;
+  const Real t959 = t273 * t835;
+  const Real t960 = t908 * t452;
+  const Real t961 = t419 * t921;
+  const Real t962 = t960 + t961;
+  const Real t963 = t935 * t435;
+  const Real t964 = t963 - t962;
+  const Real t965 = par.k2 * t769;
+  const Real t966 = t783 * par.k1;
+  const Real t967 = t966 + t965;
+  const Real t968 = par.k15 * t587;
+  const Real t969 = par.k59 * t587;
+  const Real t970 = t968 + t969;
+  const Real t971 = par.k3 * t589;
+  const Real t972 = par.k61 * t807;
+  const Real t973 = t972 + t971;
+  const Real t974 = t973 - t970;
+  const Real t975 = t967 + t974;
+  const Real t976 = par.r_R * t920;
+  const Real t977 = t821 * s_r_p_0_;
+  const Real t978 = t832 * c_r_p_0_;
+  const Real t979 = t977 + t978;
+  const Real t980 = t979 + t976;
+  const Real t981 = t980 + t975;
+  const Real t982 = t964 - t981;
+  const Real t983 = t893 * t265;
+  const Real t984 = t893 * t267;
+  const Real t985 = t983 + t984;
+  const Real t986 = t982 + t985;
+  const Real t987 = t959 + t986;
+  const Real t988 = t685 * t256;
+  const Real t989 = t988 + t987;
+  const Real t990 = t314 * par.k13;
+  const Real t991 = t316 * par.k13;
+  const Real t992 = t990 + t991;
+  const Real t993 = t441 + t992;
+  const Real t994 = par.k1 * t993;
+  const Real t995 = t458 * par.k2;
+  const Real t996 = t995 - t994;
+  const Real t997 = t996 * c_r_p_1_;
+  const Real t998 = t322 * par.k13;
+  const Real t999 = t422 - t998;
+  const Real t1000 = s_r_p_1_ * t999;
+  const Real t1001 = t997 + t1000;
+  const Real t1002 = par.k1 * t322;
+  const Real t1003 = s_r_p_1_ * t1002;
+  const Real t1004 = t314 * c_r_p_1_;
+  const Real t1005 = c_r_p_1_ * t316;
+  const Real t1006 = t1004 + t1005;
+  const Real t1007 = t1006 + t1003;
+  const Real t1008 = par.k11 * t1007;
+  const Real t1009 = t1001 + t1008;
+  const Real t1010 = par.k2 * t1009;
+  const Real t1011 = par.k12 * t1007;
+  const Real t1012 = t993 * par.k2;
+  const Real t1013 = t458 * par.k1;
   const Real t1014 = t1012 + t1013;
-  const Real t1015 = t935 * c_r_p_1_;
-  const Real t1016 = s_r_p_1_ * t939;
-  const Real t1017 = t1015 - t1016;
-  const Real t1018 = t1017 - t1014;
-  const Real t1019 = par.m_F * t1018;
-  const Real t1020 = par.k11 * t1019;
-  const Real t1021 = t1010 + t1020;
-  const Real t1022 = t986 * par.k17;
-  const Real t1023 = par.k5 * t988;
-  const Real t1024 = t1022 - t1023;
-  const Real t1025 = t1017 * par.k8;
-  const Real t1026 = t1024 - t1025;
-  const Real t1027 = t1026 + t1021;
-  const Real t1028 = t1027 * s_r_p_1_;
-  const Real t1029 = t1028 + t981;
-  const Real t1030 = par.m_H * t941;
-  const Real t1031 = par.k8 * t923;
-  const Real t1032 = t1030 - t1031;
-  const Real t1033 = t965 + t1032;
-  const Real t1034 = c_r_p_1_ * t1033;
-  const Real t1035 = t1011 * par.k8;
-  const Real t1036 = par.k10 * t988;
-  const Real t1037 = t1035 - t1036;
-  const Real t1038 = t1017 * par.m_H;
-  const Real t1039 = t1037 + t1038;
-  const Real t1040 = t1039 + t1019;
-  const Real t1041 = s_r_p_1_ * t1040;
-  const Real t1042 = t1034 - t1041;
-  const Real t1043 = par.k1 * t1042;
-  const Real t1044 = par.k10 * t923;
-  const Real t1045 = par.m_H * t931;
-  const Real t1046 = t1044 + t1045;
-  const Real t1047 = t969 + t1046;
-  const Real t1048 = par.k2 * t1047;
-  const Real t1049 = t1048 - t1043;
-  const Real t1050 = t1049 * par.k13;
-  const Real t1051 = t1029 - t1050;
-  const Real t1052 = t400 * par.k15;
-  const Real t1053 = t383 * par.k16;
-  const Real t1054 = t1052 - t1053;
-  const Real t1055 = par.k4 * t267;
-  const Real t1056 = par.k4 * t269;
-  const Real t1057 = t1056 + t1055;
+  const Real t1015 = t1014 + t1011;
+  const Real t1016 = par.k1 * t1015;
+  const Real t1017 = t1010 + t1016;
+  const Real t1018 = t1017 * s_r_p_2_;
+  const Real t1019 = par.k2 * t1015;
+  const Real t1020 = par.k1 * t1009;
+  const Real t1021 = t1019 - t1020;
+  const Real t1022 = t1021 * c_r_p_2_;
+  const Real t1023 = t1018 + t1022;
+  const Real t1024 = t1023 * par.m_F;
+  const Real t1025 = t1024 * s_r_p_2_;
+  const Real t1026 = c_r_p_2_ * t1017;
+  const Real t1027 = t1021 * s_r_p_2_;
+  const Real t1028 = t1026 - t1027;
+  const Real t1029 = par.m_F * t1028;
+  const Real t1030 = c_r_p_2_ * t1029;
+  const Real t1031 = t1025 + t1030;
+  const Real t1032 = par.k1 * t1031;
+  const Real t1033 = t1024 * c_r_p_2_;
+  const Real t1034 = t1029 * s_r_p_2_;
+  const Real t1035 = t1033 - t1034;
+  const Real t1036 = par.k2 * t1035;
+  const Real t1037 = t1032 + t1036;
+  const Real t1038 = t1037 * par.k12;
+  const Real t1039 = par.k2 * t1031;
+  const Real t1040 = par.k1 * t1035;
+  const Real t1041 = t1039 - t1040;
+  const Real t1042 = t1041 * par.k11;
+  const Real t1043 = t1038 + t1042;
+  const Real t1044 = t305 + t1007;
+  const Real t1045 = t1044 * par.I_Fyy;
+  const Real t1046 = t1045 + t1043;
+  const Real t1047 = t1001 * par.k8;
+  const Real t1048 = t1014 * par.k10;
+  const Real t1049 = t1047 - t1048;
+  const Real t1050 = par.k7 * t1007;
+  const Real t1051 = t1049 - t1050;
+  const Real t1052 = t1051 - t1046;
+  const Real t1053 = t1052 * c_r_p_1_;
+  const Real t1054 = t1002 * c_r_p_1_;
+  const Real t1055 = t314 * s_r_p_1_;
+  const Real t1056 = s_r_p_1_ * t316;
+  const Real t1057 = t1055 + t1056;
   const Real t1058 = t1054 - t1057;
-  const Real t1059 = t1058 + t1051;
-  const Real t1060 = par.r_R * t267;
-  const Real t1061 = t269 * par.r_R;
-  const Real t1062 = t1060 + t1061;
-  const Real t1063 = t1062 + t400;
-  const Real t1064 = t1063 * s_r_p_0_;
-  const Real t1065 = t383 * c_r_p_0_;
-  const Real t1066 = t1065 + t1064;
-  const Real t1067 = par.m_R * t1066;
-  const Real t1068 = t1067 * s_r_p_0_;
-  const Real t1069 = t1063 * c_r_p_0_;
-  const Real t1070 = t383 * s_r_p_0_;
-  const Real t1071 = t1069 - t1070;
-  const Real t1072 = par.m_R * t1071;
-  const Real t1073 = c_r_p_0_ * t1072;
-  const Real t1074 = t1068 + t1073;
-  const Real t1075 = t1074 * par.r_R;
-  const Real t1076 = constant<Real>(1.0L) - t269;
-  const Real t1077 = t1076 - t267;
-  const Real t1078 = par.I_Ryy * t1077;
-  const Real t1079 = t1078 - t1075;
-  const Real t1080 = t1079 + t1059;
-  const Real t1081 = t1080 * t267;
-  const Real t1082 = t1080 * t269;
-  const Real t1083 = t1081 + t1082;
-  const Real t1084 = par.k2 * t1042;
-  const Real t1085 = par.k1 * t1047;
-  const Real t1086 = t1084 + t1085;
-  const Real t1087 = t400 * par.m_B;
-  const Real t1088 = par.k15 * t267;
-  const Real t1089 = t269 * par.k15;
-  const Real t1090 = t1089 + t1088;
-  const Real t1091 = t1087 - t1090;
-  const Real t1092 = t1091 + t1086;
-  const Real t1093 = t1074 + t1092;
-  const Real t1094 = t400 * t1093;
-  const Real t1095 = s_r_p_1_ * t1033;
-  const Real t1096 = c_r_p_1_ * t1040;
-  const Real t1097 = t1095 + t1096;
-  const Real t1098 = t373 * par.m_B;
-  const Real t1099 = t275 * par.k16;
-  const Real t1100 = t1098 - t1099;
-  const Real t1101 = t1097 + t1100;
-  const Real t1102 = t373 * par.m_R;
-  const Real t1103 = t1102 + t1101;
-  const Real t1104 = t373 * t1103;
-  const Real t1105 = t1104 + t1094;
-  const Real t1106 = t383 * par.m_B;
-  const Real t1107 = par.k16 * t267;
-  const Real t1108 = t269 * par.k16;
-  const Real t1109 = t1108 + t1107;
-  const Real t1110 = t1106 + t1109;
-  const Real t1111 = t1110 + t1049;
-  const Real t1112 = t1067 * c_r_p_0_;
-  const Real t1113 = s_r_p_0_ * t1072;
-  const Real t1114 = t1112 - t1113;
-  const Real t1115 = t1111 + t1114;
-  const Real t1116 = t383 * t1115;
-  const Real t1117 = t1105 + t1116;
-  const Real t1118 = t1117 - t1083;
-  const Real t1119 = s_r_p_1_ * t980;
-  const Real t1120 = t1027 * c_r_p_1_;
-  const Real t1121 = t1120 - t1119;
-  const Real t1122 = par.k1 * t1121;
-  const Real t1123 = par.k1 * t1004;
-  const Real t1124 = t1008 * par.k2;
-  const Real t1125 = t1123 + t1124;
-  const Real t1126 = par.k12 * t1019;
-  const Real t1127 = t1126 + t1125;
-  const Real t1128 = t1017 * par.k10;
-  const Real t1129 = t1011 * par.k5;
-  const Real t1130 = par.k6 * t988;
+  const Real t1059 = t1058 * par.k2;
+  const Real t1060 = par.k2 * t322;
+  const Real t1061 = t1060 * par.k1;
+  const Real t1062 = t1059 - t1061;
+  const Real t1063 = t1062 * s_r_p_2_;
+  const Real t1064 = t1058 * par.k1;
+  const Real t1065 = t1060 * par.k2;
+  const Real t1066 = t1064 + t1065;
+  const Real t1067 = t1066 * c_r_p_2_;
+  const Real t1068 = t1063 - t1067;
+  const Real t1069 = par.I_Fxx * t1068;
+  const Real t1070 = t1069 * s_r_p_2_;
+  const Real t1071 = c_r_p_2_ * t1062;
+  const Real t1072 = t1066 * s_r_p_2_;
+  const Real t1073 = t1071 + t1072;
+  const Real t1074 = par.I_Fxx * t1073;
+  const Real t1075 = c_r_p_2_ * t1074;
+  const Real t1076 = t1070 + t1075;
+  const Real t1077 = t1076 * par.k2;
+  const Real t1078 = t1069 * c_r_p_2_;
+  const Real t1079 = t1074 * s_r_p_2_;
+  const Real t1080 = t1078 - t1079;
+  const Real t1081 = t1080 * par.k1;
+  const Real t1082 = t1077 - t1081;
+  const Real t1083 = t1057 - t1054;
+  const Real t1084 = t1083 * par.k11;
+  const Real t1085 = t1060 * par.k12;
+  const Real t1086 = t1085 + t1084;
+  const Real t1087 = c_r_p_1_ * t999;
+  const Real t1088 = t996 * s_r_p_1_;
+  const Real t1089 = t1087 - t1088;
+  const Real t1090 = t1089 - t1086;
+  const Real t1091 = par.m_F * t1090;
+  const Real t1092 = t1091 * par.k11;
+  const Real t1093 = t1082 + t1092;
+  const Real t1094 = t1058 * par.k17;
+  const Real t1095 = t1060 * par.k5;
+  const Real t1096 = t1094 - t1095;
+  const Real t1097 = par.k8 * t1089;
+  const Real t1098 = t1096 - t1097;
+  const Real t1099 = t1098 + t1093;
+  const Real t1100 = s_r_p_1_ * t1099;
+  const Real t1101 = t1053 + t1100;
+  const Real t1102 = t1001 * par.m_H;
+  const Real t1103 = par.k8 * t1007;
+  const Real t1104 = t1102 - t1103;
+  const Real t1105 = t1041 + t1104;
+  const Real t1106 = t1105 * c_r_p_1_;
+  const Real t1107 = par.m_H * t1089;
+  const Real t1108 = t1083 * par.k8;
+  const Real t1109 = t1060 * par.k10;
+  const Real t1110 = t1108 - t1109;
+  const Real t1111 = t1107 + t1110;
+  const Real t1112 = t1091 + t1111;
+  const Real t1113 = s_r_p_1_ * t1112;
+  const Real t1114 = t1106 - t1113;
+  const Real t1115 = t1114 * par.k1;
+  const Real t1116 = par.k10 * t1007;
+  const Real t1117 = t1014 * par.m_H;
+  const Real t1118 = t1116 + t1117;
+  const Real t1119 = t1037 + t1118;
+  const Real t1120 = t1119 * par.k2;
+  const Real t1121 = t1120 - t1115;
+  const Real t1122 = par.k13 * t1121;
+  const Real t1123 = t1101 - t1122;
+  const Real t1124 = t458 * par.k59;
+  const Real t1125 = t458 * par.k15;
+  const Real t1126 = t1124 + t1125;
+  const Real t1127 = t441 * par.k16;
+  const Real t1128 = t1126 - t1127;
+  const Real t1129 = t314 * par.k56;
+  const Real t1130 = par.k56 * t316;
   const Real t1131 = t1129 + t1130;
   const Real t1132 = t1128 - t1131;
-  const Real t1133 = t1127 + t1132;
-  const Real t1134 = t1133 * par.k2;
-  const Real t1135 = t1134 - t1122;
-  const Real t1136 = t1097 * par.k13;
-  const Real t1137 = t1136 + t1135;
-  const Real t1138 = t373 * par.k16;
-  const Real t1139 = t275 * par.k14;
+  const Real t1133 = t1132 + t1123;
+  const Real t1134 = t314 * par.r_R;
+  const Real t1135 = t316 * par.r_R;
+  const Real t1136 = t1134 + t1135;
+  const Real t1137 = t458 + t1136;
+  const Real t1138 = t1137 * c_r_p_0_;
+  const Real t1139 = t441 * s_r_p_0_;
   const Real t1140 = t1138 - t1139;
-  const Real t1141 = t1140 + t1137;
-  const Real t1142 = t275 * c_r_p_0_;
-  const Real t1143 = par.I_Rxx * t1142;
-  const Real t1144 = t1143 * c_r_p_0_;
-  const Real t1145 = t275 * s_r_p_0_;
-  const Real t1146 = par.I_Rxx * t1145;
-  const Real t1147 = s_r_p_0_ * t1146;
-  const Real t1148 = t1144 + t1147;
-  const Real t1149 = t1141 - t1148;
-  const Real t1150 = t275 * t1149;
-  const Real t1151 = t1118 - t1150;
-  const Real t1152 = t1151 + t1078;
-  const Real t1153 = t258 * t973;
-  const Real t1154 = t1153 + t1152;
-  const Real t1155 = par.k1 * t228;
-  const Real t1156 = s_r_p_1_ * t1155;
-  const Real t1157 = c_r_p_1_ * t220;
-  const Real t1158 = t222 * c_r_p_1_;
-  const Real t1159 = t1158 + t1157;
-  const Real t1160 = t1156 + t1159;
-  const Real t1161 = par.k12 * t1160;
-  const Real t1162 = par.k13 * t220;
-  const Real t1163 = t222 * par.k13;
+  const Real t1141 = t1140 * par.m_R;
+  const Real t1142 = t1141 * c_r_p_0_;
+  const Real t1143 = t1137 * s_r_p_0_;
+  const Real t1144 = t441 * c_r_p_0_;
+  const Real t1145 = t1143 + t1144;
+  const Real t1146 = par.m_R * t1145;
+  const Real t1147 = t1146 * s_r_p_0_;
+  const Real t1148 = t1142 + t1147;
+  const Real t1149 = t1148 * par.r_R;
+  const Real t1150 = constant<Real>(1.0L) - t316;
+  const Real t1151 = t1150 - t314;
+  const Real t1152 = par.I_Ryy * t1151;
+  const Real t1153 = t1152 - t1149;
+  const Real t1154 = t1153 + t1133;
+  const Real t1155 = t1154 * t316;
+  const Real t1156 = t314 * t1154;
+  const Real t1157 = t1155 + t1156;
+  const Real t1158 = t1114 * par.k2;
+  const Real t1159 = par.k1 * t1119;
+  const Real t1160 = t1159 + t1158;
+  const Real t1161 = t458 * par.m_B;
+  const Real t1162 = t314 * par.k15;
+  const Real t1163 = par.k59 * t316;
   const Real t1164 = t1163 + t1162;
-  const Real t1165 = t1164 - t387;
-  const Real t1166 = par.k2 * t1165;
-  const Real t1167 = par.k1 * t408;
-  const Real t1168 = t1166 + t1167;
-  const Real t1169 = t1161 + t1168;
-  const Real t1170 = t1169 * par.k2;
-  const Real t1171 = t228 * par.k13;
-  const Real t1172 = t370 - t1171;
-  const Real t1173 = s_r_p_1_ * t1172;
-  const Real t1174 = par.k1 * t1165;
-  const Real t1175 = par.k2 * t408;
-  const Real t1176 = t1175 - t1174;
-  const Real t1177 = c_r_p_1_ * t1176;
-  const Real t1178 = t1173 + t1177;
-  const Real t1179 = par.k11 * t1160;
-  const Real t1180 = t1178 + t1179;
-  const Real t1181 = par.k1 * t1180;
-  const Real t1182 = t1170 - t1181;
-  const Real t1183 = c_r_p_2_ * t1182;
-  const Real t1184 = par.k1 * t1169;
-  const Real t1185 = par.k2 * t1180;
-  const Real t1186 = t1184 + t1185;
-  const Real t1187 = t1186 * s_r_p_2_;
-  const Real t1188 = t1183 + t1187;
-  const Real t1189 = t1188 * par.m_F;
-  const Real t1190 = t1189 * s_r_p_2_;
-  const Real t1191 = c_r_p_2_ * t1186;
-  const Real t1192 = t1182 * s_r_p_2_;
-  const Real t1193 = t1191 - t1192;
-  const Real t1194 = par.m_F * t1193;
-  const Real t1195 = t1194 * c_r_p_2_;
-  const Real t1196 = t1190 + t1195;
-  const Real t1197 = par.k1 * t1196;
-  const Real t1198 = t1189 * c_r_p_2_;
-  const Real t1199 = t1194 * s_r_p_2_;
-  const Real t1200 = t1198 - t1199;
-  const Real t1201 = t1200 * par.k2;
-  const Real t1202 = t1197 + t1201;
-  const Real t1203 = par.k12 * t1202;
-  const Real t1204 = par.k2 * t1196;
-  const Real t1205 = par.k1 * t1200;
-  const Real t1206 = t1204 - t1205;
-  const Real t1207 = t1206 * par.k11;
-  const Real t1208 = t1203 + t1207;
-  const Real t1209 = t210 + t1160;
-  const Real t1210 = par.I_Fyy * t1209;
-  const Real t1211 = t1208 + t1210;
-  const Real t1212 = t1178 * par.k8;
-  const Real t1213 = t1168 * par.k10;
-  const Real t1214 = t1212 - t1213;
-  const Real t1215 = par.k7 * t1160;
+  const Real t1165 = t316 * par.k15;
+  const Real t1166 = t1165 + t1164;
+  const Real t1167 = t1161 - t1166;
+  const Real t1168 = t1167 + t1160;
+  const Real t1169 = t1168 + t1148;
+  const Real t1170 = t458 * t1169;
+  const Real t1171 = t1105 * s_r_p_1_;
+  const Real t1172 = c_r_p_1_ * t1112;
+  const Real t1173 = t1172 + t1171;
+  const Real t1174 = t422 * par.m_B;
+  const Real t1175 = t322 * par.k16;
+  const Real t1176 = t1174 - t1175;
+  const Real t1177 = t1176 + t1173;
+  const Real t1178 = t422 * par.m_R;
+  const Real t1179 = t1178 + t1177;
+  const Real t1180 = t422 * t1179;
+  const Real t1181 = t1170 + t1180;
+  const Real t1182 = t441 * par.m_B;
+  const Real t1183 = t314 * par.k16;
+  const Real t1184 = t316 * par.k16;
+  const Real t1185 = t1183 + t1184;
+  const Real t1186 = t1182 + t1185;
+  const Real t1187 = t1186 + t1121;
+  const Real t1188 = t1146 * c_r_p_0_;
+  const Real t1189 = t1141 * s_r_p_0_;
+  const Real t1190 = t1188 - t1189;
+  const Real t1191 = t1187 + t1190;
+  const Real t1192 = t441 * t1191;
+  const Real t1193 = t1181 + t1192;
+  const Real t1194 = t1193 - t1157;
+  const Real t1195 = s_r_p_1_ * t1052;
+  const Real t1196 = c_r_p_1_ * t1099;
+  const Real t1197 = t1196 - t1195;
+  const Real t1198 = par.k1 * t1197;
+  const Real t1199 = t1076 * par.k1;
+  const Real t1200 = t1080 * par.k2;
+  const Real t1201 = t1199 + t1200;
+  const Real t1202 = t1091 * par.k12;
+  const Real t1203 = t1202 + t1201;
+  const Real t1204 = par.k10 * t1089;
+  const Real t1205 = t1083 * par.k5;
+  const Real t1206 = t1060 * par.k6;
+  const Real t1207 = t1205 + t1206;
+  const Real t1208 = t1204 - t1207;
+  const Real t1209 = t1208 + t1203;
+  const Real t1210 = t1209 * par.k2;
+  const Real t1211 = t1210 - t1198;
+  const Real t1212 = t1173 * par.k13;
+  const Real t1213 = t1211 + t1212;
+  const Real t1214 = t422 * par.k16;
+  const Real t1215 = t322 * par.k14;
   const Real t1216 = t1214 - t1215;
-  const Real t1217 = t1216 - t1211;
-  const Real t1218 = c_r_p_1_ * t1217;
-  const Real t1219 = c_r_p_1_ * t1155;
-  const Real t1220 = s_r_p_1_ * t220;
-  const Real t1221 = t222 * s_r_p_1_;
-  const Real t1222 = t1220 + t1221;
-  const Real t1223 = t1219 - t1222;
-  const Real t1224 = t1223 * par.k2;
-  const Real t1225 = t228 * par.k2;
-  const Real t1226 = constant<Real>(1.0L) - t1225;
-  const Real t1227 = par.k1 * t1226;
-  const Real t1228 = t1227 + t1224;
-  const Real t1229 = t1228 * c_r_p_2_;
-  const Real t1230 = t1223 * par.k1;
-  const Real t1231 = par.k2 * t1226;
-  const Real t1232 = t1231 - t1230;
-  const Real t1233 = t1232 * s_r_p_2_;
-  const Real t1234 = t1229 - t1233;
-  const Real t1235 = par.I_Fxx * t1234;
-  const Real t1236 = c_r_p_2_ * t1235;
-  const Real t1237 = t1228 * s_r_p_2_;
-  const Real t1238 = t1232 * c_r_p_2_;
-  const Real t1239 = t1237 + t1238;
-  const Real t1240 = par.I_Fxx * t1239;
-  const Real t1241 = t1240 * s_r_p_2_;
-  const Real t1242 = t1236 + t1241;
-  const Real t1243 = t1242 * par.k2;
-  const Real t1244 = c_r_p_2_ * t1240;
-  const Real t1245 = t1235 * s_r_p_2_;
-  const Real t1246 = t1244 - t1245;
-  const Real t1247 = t1246 * par.k1;
-  const Real t1248 = t1243 - t1247;
-  const Real t1249 = t1222 - t1219;
-  const Real t1250 = t1249 * par.k11;
-  const Real t1251 = par.k12 * t1226;
-  const Real t1252 = t1251 - t1250;
-  const Real t1253 = c_r_p_1_ * t1172;
-  const Real t1254 = s_r_p_1_ * t1176;
-  const Real t1255 = t1253 - t1254;
-  const Real t1256 = t1255 + t1252;
-  const Real t1257 = t1256 * par.m_F;
-  const Real t1258 = t1257 * par.k11;
-  const Real t1259 = t1248 + t1258;
-  const Real t1260 = t1223 * par.k17;
-  const Real t1261 = par.k5 * t1226;
-  const Real t1262 = t1261 + t1260;
-  const Real t1263 = t1255 * par.k8;
-  const Real t1264 = t1262 - t1263;
-  const Real t1265 = t1264 + t1259;
-  const Real t1266 = t1265 * s_r_p_1_;
-  const Real t1267 = t1266 + t1218;
-  const Real t1268 = t1178 * par.m_H;
-  const Real t1269 = par.k8 * t1160;
-  const Real t1270 = t1268 - t1269;
-  const Real t1271 = t1206 + t1270;
-  const Real t1272 = c_r_p_1_ * t1271;
-  const Real t1273 = t1255 * par.m_H;
-  const Real t1274 = t1249 * par.k8;
-  const Real t1275 = par.k10 * t1226;
-  const Real t1276 = t1275 + t1274;
-  const Real t1277 = t1273 + t1276;
-  const Real t1278 = t1257 + t1277;
-  const Real t1279 = s_r_p_1_ * t1278;
-  const Real t1280 = t1272 - t1279;
-  const Real t1281 = par.k1 * t1280;
-  const Real t1282 = par.k10 * t1160;
-  const Real t1283 = par.m_H * t1168;
-  const Real t1284 = t1282 + t1283;
-  const Real t1285 = t1284 + t1202;
-  const Real t1286 = t1285 * par.k2;
-  const Real t1287 = t1286 - t1281;
-  const Real t1288 = t1287 * par.k13;
-  const Real t1289 = t1267 - t1288;
-  const Real t1290 = t387 * par.k16;
-  const Real t1291 = par.k15 * t408;
-  const Real t1292 = t1290 + t1291;
-  const Real t1293 = par.k4 * t220;
-  const Real t1294 = t222 * par.k4;
-  const Real t1295 = t1294 + t1293;
-  const Real t1296 = t1292 - t1295;
-  const Real t1297 = t1289 + t1296;
-  const Real t1298 = par.r_R * t220;
-  const Real t1299 = t222 * par.r_R;
-  const Real t1300 = t1298 + t1299;
-  const Real t1301 = t408 + t1300;
-  const Real t1302 = t1301 * s_r_p_0_;
-  const Real t1303 = t387 * c_r_p_0_;
-  const Real t1304 = t1302 - t1303;
-  const Real t1305 = par.m_R * t1304;
-  const Real t1306 = t1305 * s_r_p_0_;
-  const Real t1307 = t1301 * c_r_p_0_;
-  const Real t1308 = t387 * s_r_p_0_;
-  const Real t1309 = t1308 + t1307;
-  const Real t1310 = par.m_R * t1309;
-  const Real t1311 = t1310 * c_r_p_0_;
-  const Real t1312 = t1306 + t1311;
-  const Real t1313 = t1312 * par.r_R;
-  const Real t1314 = par.I_Ryy * t220;
-  const Real t1315 = t222 * par.I_Ryy;
-  const Real t1316 = t1315 + t1314;
-  const Real t1317 = t1313 + t1316;
-  const Real t1318 = t1297 - t1317;
-  const Real t1319 = t269 * t1318;
-  const Real t1320 = t1318 * t267;
-  const Real t1321 = t1319 + t1320;
-  const Real t1322 = par.k2 * t1280;
-  const Real t1323 = par.k1 * t1285;
-  const Real t1324 = t1323 + t1322;
-  const Real t1325 = t408 * par.m_B;
-  const Real t1326 = par.k15 * t220;
-  const Real t1327 = t222 * par.k15;
-  const Real t1328 = t1326 + t1327;
-  const Real t1329 = t1325 - t1328;
-  const Real t1330 = t1329 + t1324;
-  const Real t1331 = t1330 + t1312;
-  const Real t1332 = t400 * t1331;
-  const Real t1333 = s_r_p_1_ * t1271;
-  const Real t1334 = t1278 * c_r_p_1_;
-  const Real t1335 = t1333 + t1334;
-  const Real t1336 = t370 * par.m_B;
-  const Real t1337 = t228 * par.k16;
-  const Real t1338 = t1336 - t1337;
-  const Real t1339 = t1338 + t1335;
-  const Real t1340 = t370 * par.m_R;
-  const Real t1341 = t1340 + t1339;
-  const Real t1342 = t373 * t1341;
-  const Real t1343 = t1332 + t1342;
-  const Real t1344 = t387 * par.m_B;
-  const Real t1345 = par.k16 * t220;
-  const Real t1346 = t222 * par.k16;
-  const Real t1347 = t1346 + t1345;
-  const Real t1348 = t1347 - t1344;
-  const Real t1349 = t1287 + t1348;
-  const Real t1350 = t1305 * c_r_p_0_;
-  const Real t1351 = t1310 * s_r_p_0_;
-  const Real t1352 = t1350 - t1351;
-  const Real t1353 = t1352 + t1349;
-  const Real t1354 = t383 * t1353;
-  const Real t1355 = t1354 + t1343;
-  const Real t1356 = t1355 - t1321;
-  const Real t1357 = s_r_p_1_ * t1217;
-  const Real t1358 = t1265 * c_r_p_1_;
-  const Real t1359 = t1358 - t1357;
-  const Real t1360 = t1359 * par.k1;
-  const Real t1361 = t1246 * par.k2;
-  const Real t1362 = par.k1 * t1242;
-  const Real t1363 = t1361 + t1362;
-  const Real t1364 = t1257 * par.k12;
-  const Real t1365 = t1364 + t1363;
-  const Real t1366 = t1249 * par.k5;
-  const Real t1367 = par.k6 * t1226;
-  const Real t1368 = t1367 - t1366;
-  const Real t1369 = t1255 * par.k10;
-  const Real t1370 = t1368 + t1369;
-  const Real t1371 = t1365 + t1370;
-  const Real t1372 = t1371 * par.k2;
-  const Real t1373 = t1372 - t1360;
-  const Real t1374 = t1335 * par.k13;
-  const Real t1375 = t1373 + t1374;
-  const Real t1376 = t370 * par.k16;
-  const Real t1377 = t228 * par.k14;
-  const Real t1378 = t1376 - t1377;
-  const Real t1379 = t1375 + t1378;
-  const Real t1380 = t228 * s_r_p_0_;
-  const Real t1381 = par.I_Rxx * t1380;
-  const Real t1382 = t1381 * s_r_p_0_;
-  const Real t1383 = t228 * c_r_p_0_;
-  const Real t1384 = par.I_Rxx * t1383;
-  const Real t1385 = t1384 * c_r_p_0_;
-  const Real t1386 = t1382 + t1385;
-  const Real t1387 = t1379 - t1386;
-  const Real t1388 = t275 * t1387;
-  const Real t1389 = t1356 - t1388;
-  const Real t1390 = t1389 - t1316;
-  const Real t1391 = t258 * t1210;
-  const Real t1392 = t1391 + t1390;
-  const Real t1393 = t191 * par.k1;
-  const Real t1394 = par.k2 + t1393;
-  const Real t1395 = s_r_p_1_ * t1394;
-  const Real t1396 = t183 * c_r_p_1_;
-  const Real t1397 = c_r_p_1_ * t185;
-  const Real t1398 = t1397 + t1396;
-  const Real t1399 = t1398 + t1395;
-  const Real t1400 = t1399 * par.k12;
-  const Real t1401 = t183 * par.k13;
-  const Real t1402 = t185 * par.k13;
+  const Real t1217 = t1216 + t1213;
+  const Real t1218 = t322 * c_r_p_0_;
+  const Real t1219 = t1218 * par.I_Rxx;
+  const Real t1220 = t1219 * c_r_p_0_;
+  const Real t1221 = t322 * s_r_p_0_;
+  const Real t1222 = t1221 * par.I_Rxx;
+  const Real t1223 = t1222 * s_r_p_0_;
+  const Real t1224 = t1220 + t1223;
+  const Real t1225 = t1217 - t1224;
+  const Real t1226 = t1225 * t322;
+  const Real t1227 = t1194 - t1226;
+  const Real t1228 = t1227 + t1152;
+  const Real t1229 = t1045 * t305;
+  const Real t1230 = t1229 + t1228;
+  const Real t1231 = par.k1 * t213;
+  const Real t1232 = t1231 * s_r_p_1_;
+  const Real t1233 = t205 * c_r_p_1_;
+  const Real t1234 = t207 * c_r_p_1_;
+  const Real t1235 = t1234 + t1233;
+  const Real t1236 = t1235 + t1232;
+  const Real t1237 = t1236 * par.k12;
+  const Real t1238 = t205 * par.k13;
+  const Real t1239 = t207 * par.k13;
+  const Real t1240 = t1238 + t1239;
+  const Real t1241 = t1240 - t431;
+  const Real t1242 = par.k2 * t1241;
+  const Real t1243 = par.k1 * t448;
+  const Real t1244 = t1243 + t1242;
+  const Real t1245 = t1244 + t1237;
+  const Real t1246 = par.k2 * t1245;
+  const Real t1247 = t1236 * par.k11;
+  const Real t1248 = par.k13 * t213;
+  const Real t1249 = t416 - t1248;
+  const Real t1250 = s_r_p_1_ * t1249;
+  const Real t1251 = par.k1 * t1241;
+  const Real t1252 = par.k2 * t448;
+  const Real t1253 = t1252 - t1251;
+  const Real t1254 = c_r_p_1_ * t1253;
+  const Real t1255 = t1254 + t1250;
+  const Real t1256 = t1247 + t1255;
+  const Real t1257 = par.k1 * t1256;
+  const Real t1258 = t1246 - t1257;
+  const Real t1259 = t1258 * c_r_p_2_;
+  const Real t1260 = par.k2 * t1256;
+  const Real t1261 = par.k1 * t1245;
+  const Real t1262 = t1260 + t1261;
+  const Real t1263 = t1262 * s_r_p_2_;
+  const Real t1264 = t1259 + t1263;
+  const Real t1265 = t1264 * par.m_F;
+  const Real t1266 = t1265 * s_r_p_2_;
+  const Real t1267 = c_r_p_2_ * t1262;
+  const Real t1268 = t1258 * s_r_p_2_;
+  const Real t1269 = t1267 - t1268;
+  const Real t1270 = t1269 * par.m_F;
+  const Real t1271 = c_r_p_2_ * t1270;
+  const Real t1272 = t1266 + t1271;
+  const Real t1273 = par.k1 * t1272;
+  const Real t1274 = t1265 * c_r_p_2_;
+  const Real t1275 = t1270 * s_r_p_2_;
+  const Real t1276 = t1274 - t1275;
+  const Real t1277 = t1276 * par.k2;
+  const Real t1278 = t1273 + t1277;
+  const Real t1279 = t1278 * par.k12;
+  const Real t1280 = t1272 * par.k2;
+  const Real t1281 = par.k1 * t1276;
+  const Real t1282 = t1280 - t1281;
+  const Real t1283 = t1282 * par.k11;
+  const Real t1284 = t1279 + t1283;
+  const Real t1285 = t1236 + t192;
+  const Real t1286 = t190 + t1285;
+  const Real t1287 = par.I_Fyy * t1286;
+  const Real t1288 = t1284 + t1287;
+  const Real t1289 = par.k8 * t1255;
+  const Real t1290 = t1244 * par.k10;
+  const Real t1291 = t1289 - t1290;
+  const Real t1292 = t1236 * par.k7;
+  const Real t1293 = t1291 - t1292;
+  const Real t1294 = t1293 - t1288;
+  const Real t1295 = c_r_p_1_ * t1294;
+  const Real t1296 = t1231 * c_r_p_1_;
+  const Real t1297 = t205 * s_r_p_1_;
+  const Real t1298 = s_r_p_1_ * t207;
+  const Real t1299 = t1297 + t1298;
+  const Real t1300 = t1296 - t1299;
+  const Real t1301 = t1300 * par.k1;
+  const Real t1302 = par.k2 * t213;
+  const Real t1303 = constant<Real>(1.0L) - t1302;
+  const Real t1304 = par.k2 * t1303;
+  const Real t1305 = t1304 - t1301;
+  const Real t1306 = t1305 * c_r_p_2_;
+  const Real t1307 = t1300 * par.k2;
+  const Real t1308 = par.k1 * t1303;
+  const Real t1309 = t1307 + t1308;
+  const Real t1310 = t1309 * s_r_p_2_;
+  const Real t1311 = t1306 + t1310;
+  const Real t1312 = par.I_Fxx * t1311;
+  const Real t1313 = t1312 * s_r_p_2_;
+  const Real t1314 = t1309 * c_r_p_2_;
+  const Real t1315 = t1305 * s_r_p_2_;
+  const Real t1316 = t1314 - t1315;
+  const Real t1317 = par.I_Fxx * t1316;
+  const Real t1318 = c_r_p_2_ * t1317;
+  const Real t1319 = t1313 + t1318;
+  const Real t1320 = par.k2 * t1319;
+  const Real t1321 = t1312 * c_r_p_2_;
+  const Real t1322 = t1317 * s_r_p_2_;
+  const Real t1323 = t1321 - t1322;
+  const Real t1324 = t1323 * par.k1;
+  const Real t1325 = t1320 - t1324;
+  const Real t1326 = t1299 - t1296;
+  const Real t1327 = t1326 * par.k11;
+  const Real t1328 = par.k12 * t1303;
+  const Real t1329 = t1328 - t1327;
+  const Real t1330 = t1249 * c_r_p_1_;
+  const Real t1331 = s_r_p_1_ * t1253;
+  const Real t1332 = t1330 - t1331;
+  const Real t1333 = t1332 + t1329;
+  const Real t1334 = t1333 * par.m_F;
+  const Real t1335 = t1334 * par.k11;
+  const Real t1336 = t1325 + t1335;
+  const Real t1337 = t1300 * par.k17;
+  const Real t1338 = par.k5 * t1303;
+  const Real t1339 = t1337 + t1338;
+  const Real t1340 = t1332 * par.k8;
+  const Real t1341 = t1339 - t1340;
+  const Real t1342 = t1341 + t1336;
+  const Real t1343 = s_r_p_1_ * t1342;
+  const Real t1344 = t1343 + t1295;
+  const Real t1345 = par.m_H * t1255;
+  const Real t1346 = t1236 * par.k8;
+  const Real t1347 = t1345 - t1346;
+  const Real t1348 = t1347 + t1282;
+  const Real t1349 = t1348 * c_r_p_1_;
+  const Real t1350 = t1332 * par.m_H;
+  const Real t1351 = par.k8 * t1326;
+  const Real t1352 = par.k10 * t1303;
+  const Real t1353 = t1351 + t1352;
+  const Real t1354 = t1350 + t1353;
+  const Real t1355 = t1354 + t1334;
+  const Real t1356 = s_r_p_1_ * t1355;
+  const Real t1357 = t1349 - t1356;
+  const Real t1358 = par.k1 * t1357;
+  const Real t1359 = t1236 * par.k10;
+  const Real t1360 = t1244 * par.m_H;
+  const Real t1361 = t1359 + t1360;
+  const Real t1362 = t1278 + t1361;
+  const Real t1363 = par.k2 * t1362;
+  const Real t1364 = t1363 - t1358;
+  const Real t1365 = t1364 * par.k13;
+  const Real t1366 = t1344 - t1365;
+  const Real t1367 = par.k15 * t448;
+  const Real t1368 = par.k59 * t448;
+  const Real t1369 = t1367 + t1368;
+  const Real t1370 = t431 * par.k16;
+  const Real t1371 = t1370 + t1369;
+  const Real t1372 = t205 * par.k56;
+  const Real t1373 = par.k56 * t207;
+  const Real t1374 = t1372 + t1373;
+  const Real t1375 = t1371 - t1374;
+  const Real t1376 = t1375 + t1366;
+  const Real t1377 = t205 * par.r_R;
+  const Real t1378 = t207 * par.r_R;
+  const Real t1379 = t1377 + t1378;
+  const Real t1380 = t448 + t1379;
+  const Real t1381 = t1380 * s_r_p_0_;
+  const Real t1382 = t431 * c_r_p_0_;
+  const Real t1383 = t1381 - t1382;
+  const Real t1384 = par.m_R * t1383;
+  const Real t1385 = t1384 * s_r_p_0_;
+  const Real t1386 = t1380 * c_r_p_0_;
+  const Real t1387 = t431 * s_r_p_0_;
+  const Real t1388 = t1387 + t1386;
+  const Real t1389 = par.m_R * t1388;
+  const Real t1390 = t1389 * c_r_p_0_;
+  const Real t1391 = t1385 + t1390;
+  const Real t1392 = t1391 * par.r_R;
+  const Real t1393 = t205 * par.I_Ryy;
+  const Real t1394 = t207 * par.I_Ryy;
+  const Real t1395 = t1393 + t1394;
+  const Real t1396 = t1395 + t1392;
+  const Real t1397 = t1376 - t1396;
+  const Real t1398 = t314 * t1397;
+  const Real t1399 = t316 * t1397;
+  const Real t1400 = t1398 + t1399;
+  const Real t1401 = par.k2 * t1357;
+  const Real t1402 = par.k1 * t1362;
   const Real t1403 = t1401 + t1402;
-  const Real t1404 = t1403 - t391;
-  const Real t1405 = par.k2 * t1404;
-  const Real t1406 = par.k1 * t404;
-  const Real t1407 = t1405 + t1406;
-  const Real t1408 = t1400 + t1407;
-  const Real t1409 = par.k1 * t1408;
-  const Real t1410 = par.k11 * t1399;
-  const Real t1411 = t191 * par.k13;
-  const Real t1412 = t368 - t1411;
-  const Real t1413 = s_r_p_1_ * t1412;
-  const Real t1414 = par.k1 * t1404;
-  const Real t1415 = par.k2 * t404;
-  const Real t1416 = t1415 - t1414;
-  const Real t1417 = c_r_p_1_ * t1416;
-  const Real t1418 = t1413 + t1417;
-  const Real t1419 = t1410 + t1418;
-  const Real t1420 = t1419 * par.k2;
-  const Real t1421 = t1409 + t1420;
-  const Real t1422 = c_r_p_2_ * t1421;
-  const Real t1423 = t1408 * par.k2;
-  const Real t1424 = par.k1 * t1419;
-  const Real t1425 = t1423 - t1424;
-  const Real t1426 = t1425 * s_r_p_2_;
-  const Real t1427 = t1422 - t1426;
-  const Real t1428 = par.m_F * t1427;
-  const Real t1429 = t1428 * c_r_p_2_;
-  const Real t1430 = c_r_p_2_ * t1425;
-  const Real t1431 = t1421 * s_r_p_2_;
-  const Real t1432 = t1430 + t1431;
-  const Real t1433 = par.m_F * t1432;
-  const Real t1434 = t1433 * s_r_p_2_;
-  const Real t1435 = t1429 + t1434;
-  const Real t1436 = par.k1 * t1435;
-  const Real t1437 = t1433 * c_r_p_2_;
-  const Real t1438 = t1428 * s_r_p_2_;
-  const Real t1439 = t1437 - t1438;
-  const Real t1440 = par.k2 * t1439;
-  const Real t1441 = t1436 + t1440;
-  const Real t1442 = t1441 * par.k12;
-  const Real t1443 = par.k2 * t1435;
-  const Real t1444 = par.k1 * t1439;
-  const Real t1445 = t1443 - t1444;
-  const Real t1446 = par.k11 * t1445;
-  const Real t1447 = t1442 + t1446;
-  const Real t1448 = t1399 + t174;
-  const Real t1449 = t1448 * par.I_Fyy;
-  const Real t1450 = t1447 + t1449;
-  const Real t1451 = par.k8 * t1418;
-  const Real t1452 = t1407 * par.k10;
-  const Real t1453 = t1451 - t1452;
-  const Real t1454 = par.k7 * t1399;
-  const Real t1455 = t1453 - t1454;
-  const Real t1456 = t1455 - t1450;
-  const Real t1457 = c_r_p_1_ * t1456;
-  const Real t1458 = c_r_p_1_ * t1394;
-  const Real t1459 = t183 * s_r_p_1_;
-  const Real t1460 = s_r_p_1_ * t185;
-  const Real t1461 = t1459 + t1460;
-  const Real t1462 = t1458 - t1461;
-  const Real t1463 = par.k1 * t1462;
-  const Real t1464 = t191 * par.k2;
-  const Real t1465 = par.k1 - t1464;
-  const Real t1466 = par.k2 * t1465;
-  const Real t1467 = t1466 - t1463;
-  const Real t1468 = c_r_p_2_ * t1467;
-  const Real t1469 = t1462 * par.k2;
-  const Real t1470 = par.k1 * t1465;
-  const Real t1471 = t1469 + t1470;
-  const Real t1472 = t1471 * s_r_p_2_;
-  const Real t1473 = t1468 + t1472;
-  const Real t1474 = par.I_Fxx * t1473;
-  const Real t1475 = t1474 * s_r_p_2_;
-  const Real t1476 = c_r_p_2_ * t1471;
-  const Real t1477 = t1467 * s_r_p_2_;
-  const Real t1478 = t1476 - t1477;
-  const Real t1479 = par.I_Fxx * t1478;
-  const Real t1480 = c_r_p_2_ * t1479;
-  const Real t1481 = t1475 + t1480;
-  const Real t1482 = par.k2 * t1481;
-  const Real t1483 = c_r_p_2_ * t1474;
-  const Real t1484 = t1479 * s_r_p_2_;
-  const Real t1485 = t1483 - t1484;
-  const Real t1486 = t1485 * par.k1;
-  const Real t1487 = t1482 - t1486;
-  const Real t1488 = t1461 - t1458;
-  const Real t1489 = t1488 * par.k11;
-  const Real t1490 = par.k12 * t1465;
-  const Real t1491 = t1490 - t1489;
-  const Real t1492 = c_r_p_1_ * t1412;
-  const Real t1493 = s_r_p_1_ * t1416;
-  const Real t1494 = t1492 - t1493;
-  const Real t1495 = t1491 + t1494;
-  const Real t1496 = t1495 * par.m_F;
-  const Real t1497 = par.k11 * t1496;
-  const Real t1498 = t1497 + t1487;
-  const Real t1499 = t1462 * par.k17;
-  const Real t1500 = par.k5 * t1465;
-  const Real t1501 = t1500 + t1499;
-  const Real t1502 = par.k8 * t1494;
-  const Real t1503 = t1501 - t1502;
-  const Real t1504 = t1503 + t1498;
-  const Real t1505 = s_r_p_1_ * t1504;
-  const Real t1506 = t1457 + t1505;
-  const Real t1507 = t1418 * par.m_H;
-  const Real t1508 = par.k8 * t1399;
-  const Real t1509 = t1507 - t1508;
-  const Real t1510 = t1509 + t1445;
-  const Real t1511 = c_r_p_1_ * t1510;
-  const Real t1512 = t1488 * par.k8;
-  const Real t1513 = par.k10 * t1465;
-  const Real t1514 = t1513 + t1512;
-  const Real t1515 = par.m_H * t1494;
-  const Real t1516 = t1514 + t1515;
-  const Real t1517 = t1516 + t1496;
-  const Real t1518 = s_r_p_1_ * t1517;
-  const Real t1519 = t1511 - t1518;
-  const Real t1520 = t1519 * par.k1;
-  const Real t1521 = par.k10 * t1399;
-  const Real t1522 = par.m_H * t1407;
-  const Real t1523 = t1522 + t1521;
-  const Real t1524 = t1441 + t1523;
-  const Real t1525 = par.k2 * t1524;
-  const Real t1526 = t1525 - t1520;
-  const Real t1527 = par.k13 * t1526;
-  const Real t1528 = t1506 - t1527;
-  const Real t1529 = t391 * par.k16;
-  const Real t1530 = t404 * par.k15;
-  const Real t1531 = t1529 + t1530;
-  const Real t1532 = t183 * par.k4;
-  const Real t1533 = par.k4 * t185;
-  const Real t1534 = t1533 + t1532;
-  const Real t1535 = t1531 - t1534;
-  const Real t1536 = t1535 + t1528;
-  const Real t1537 = t183 * par.r_R;
-  const Real t1538 = t185 * par.r_R;
-  const Real t1539 = t1537 + t1538;
-  const Real t1540 = t1539 + t404;
-  const Real t1541 = t1540 * c_r_p_0_;
-  const Real t1542 = t391 * s_r_p_0_;
-  const Real t1543 = t1542 + t1541;
-  const Real t1544 = par.m_R * t1543;
-  const Real t1545 = t1544 * c_r_p_0_;
-  const Real t1546 = t1540 * s_r_p_0_;
-  const Real t1547 = t391 * c_r_p_0_;
-  const Real t1548 = t1546 - t1547;
-  const Real t1549 = par.m_R * t1548;
-  const Real t1550 = t1549 * s_r_p_0_;
-  const Real t1551 = t1545 + t1550;
-  const Real t1552 = par.r_R * t1551;
-  const Real t1553 = t183 * par.I_Ryy;
-  const Real t1554 = par.I_Ryy * t185;
-  const Real t1555 = t1553 + t1554;
-  const Real t1556 = t1552 + t1555;
-  const Real t1557 = t1536 - t1556;
-  const Real t1558 = t269 * t1557;
-  const Real t1559 = t1557 * t267;
-  const Real t1560 = t1558 + t1559;
-  const Real t1561 = t1519 * par.k2;
-  const Real t1562 = par.k1 * t1524;
-  const Real t1563 = t1562 + t1561;
-  const Real t1564 = t404 * par.m_B;
-  const Real t1565 = t183 * par.k15;
-  const Real t1566 = t185 * par.k15;
-  const Real t1567 = t1565 + t1566;
-  const Real t1568 = t1564 - t1567;
-  const Real t1569 = t1563 + t1568;
-  const Real t1570 = t1569 + t1551;
-  const Real t1571 = t1570 * t400;
-  const Real t1572 = s_r_p_1_ * t1510;
-  const Real t1573 = t1517 * c_r_p_1_;
-  const Real t1574 = t1573 + t1572;
-  const Real t1575 = t368 * par.m_B;
-  const Real t1576 = t191 * par.k16;
-  const Real t1577 = t1576 + par.k15;
-  const Real t1578 = t1575 - t1577;
-  const Real t1579 = t1574 + t1578;
-  const Real t1580 = t368 + par.r_R;
-  const Real t1581 = par.m_R * t1580;
-  const Real t1582 = t1579 + t1581;
-  const Real t1583 = t1582 * t373;
-  const Real t1584 = t1583 + t1571;
-  const Real t1585 = t391 * par.m_B;
-  const Real t1586 = t183 * par.k16;
-  const Real t1587 = t185 * par.k16;
-  const Real t1588 = t1587 + t1586;
-  const Real t1589 = t1588 - t1585;
-  const Real t1590 = t1589 + t1526;
-  const Real t1591 = t1549 * c_r_p_0_;
-  const Real t1592 = t1544 * s_r_p_0_;
-  const Real t1593 = t1591 - t1592;
-  const Real t1594 = t1590 + t1593;
-  const Real t1595 = t383 * t1594;
-  const Real t1596 = t1584 + t1595;
-  const Real t1597 = t1596 - t1560;
-  const Real t1598 = s_r_p_1_ * t1456;
-  const Real t1599 = t1504 * c_r_p_1_;
-  const Real t1600 = t1599 - t1598;
+  const Real t1404 = t448 * par.m_B;
+  const Real t1405 = t205 * par.k15;
+  const Real t1406 = t207 * par.k59;
+  const Real t1407 = t1406 + t1405;
+  const Real t1408 = t207 * par.k15;
+  const Real t1409 = t1407 + t1408;
+  const Real t1410 = t1404 - t1409;
+  const Real t1411 = t1410 + t1403;
+  const Real t1412 = t1411 + t1391;
+  const Real t1413 = t458 * t1412;
+  const Real t1414 = s_r_p_1_ * t1348;
+  const Real t1415 = c_r_p_1_ * t1355;
+  const Real t1416 = t1415 + t1414;
+  const Real t1417 = t416 * par.m_B;
+  const Real t1418 = par.k16 * t213;
+  const Real t1419 = t1417 - t1418;
+  const Real t1420 = t1419 + t1416;
+  const Real t1421 = par.m_R * t416;
+  const Real t1422 = t1421 + t1420;
+  const Real t1423 = t422 * t1422;
+  const Real t1424 = t1413 + t1423;
+  const Real t1425 = t431 * par.m_B;
+  const Real t1426 = t205 * par.k16;
+  const Real t1427 = t207 * par.k16;
+  const Real t1428 = t1427 + t1426;
+  const Real t1429 = t1428 - t1425;
+  const Real t1430 = t1364 + t1429;
+  const Real t1431 = t1384 * c_r_p_0_;
+  const Real t1432 = t1389 * s_r_p_0_;
+  const Real t1433 = t1431 - t1432;
+  const Real t1434 = t1430 + t1433;
+  const Real t1435 = t1434 * t441;
+  const Real t1436 = t1435 + t1424;
+  const Real t1437 = t1436 - t1400;
+  const Real t1438 = s_r_p_1_ * t1294;
+  const Real t1439 = t1342 * c_r_p_1_;
+  const Real t1440 = t1439 - t1438;
+  const Real t1441 = par.k1 * t1440;
+  const Real t1442 = par.k1 * t1319;
+  const Real t1443 = t1323 * par.k2;
+  const Real t1444 = t1442 + t1443;
+  const Real t1445 = t1334 * par.k12;
+  const Real t1446 = t1444 + t1445;
+  const Real t1447 = par.k5 * t1326;
+  const Real t1448 = par.k6 * t1303;
+  const Real t1449 = t1448 - t1447;
+  const Real t1450 = t1332 * par.k10;
+  const Real t1451 = t1449 + t1450;
+  const Real t1452 = t1446 + t1451;
+  const Real t1453 = t1452 * par.k2;
+  const Real t1454 = t1453 - t1441;
+  const Real t1455 = t1416 * par.k13;
+  const Real t1456 = t1455 + t1454;
+  const Real t1457 = par.k16 * t416;
+  const Real t1458 = par.k14 * t213;
+  const Real t1459 = t1457 - t1458;
+  const Real t1460 = t1459 + t1456;
+  const Real t1461 = t213 * c_r_p_0_;
+  const Real t1462 = t1461 * par.I_Rxx;
+  const Real t1463 = t1462 * c_r_p_0_;
+  const Real t1464 = t213 * s_r_p_0_;
+  const Real t1465 = par.I_Rxx * t1464;
+  const Real t1466 = t1465 * s_r_p_0_;
+  const Real t1467 = t1463 + t1466;
+  const Real t1468 = t1460 - t1467;
+  const Real t1469 = t1468 * t322;
+  const Real t1470 = t1437 - t1469;
+  const Real t1471 = t1470 - t1395;
+  const Real t1472 = t305 * t1287;
+  const Real t1473 = t1471 + t1472;
+  const Real t1474 = par.k1 * t273;
+  const Real t1475 = par.k2 + t1474;
+  const Real t1476 = s_r_p_1_ * t1475;
+  const Real t1477 = c_r_p_1_ * t265;
+  const Real t1478 = c_r_p_1_ * t267;
+  const Real t1479 = t1478 + t1477;
+  const Real t1480 = t1476 + t1479;
+  const Real t1481 = par.k12 * t1480;
+  const Real t1482 = par.k13 * t265;
+  const Real t1483 = par.k13 * t267;
+  const Real t1484 = t1482 + t1483;
+  const Real t1485 = t1484 - t435;
+  const Real t1486 = par.k2 * t1485;
+  const Real t1487 = par.k1 * t452;
+  const Real t1488 = t1486 + t1487;
+  const Real t1489 = t1481 + t1488;
+  const Real t1490 = t1489 * par.k1;
+  const Real t1491 = t273 * par.k13;
+  const Real t1492 = t419 - t1491;
+  const Real t1493 = s_r_p_1_ * t1492;
+  const Real t1494 = par.k1 * t1485;
+  const Real t1495 = par.k2 * t452;
+  const Real t1496 = t1495 - t1494;
+  const Real t1497 = c_r_p_1_ * t1496;
+  const Real t1498 = t1497 + t1493;
+  const Real t1499 = par.k11 * t1480;
+  const Real t1500 = t1498 + t1499;
+  const Real t1501 = par.k2 * t1500;
+  const Real t1502 = t1490 + t1501;
+  const Real t1503 = c_r_p_2_ * t1502;
+  const Real t1504 = t1489 * par.k2;
+  const Real t1505 = par.k1 * t1500;
+  const Real t1506 = t1504 - t1505;
+  const Real t1507 = t1506 * s_r_p_2_;
+  const Real t1508 = t1503 - t1507;
+  const Real t1509 = t1508 * par.m_F;
+  const Real t1510 = c_r_p_2_ * t1509;
+  const Real t1511 = t1502 * s_r_p_2_;
+  const Real t1512 = c_r_p_2_ * t1506;
+  const Real t1513 = t1511 + t1512;
+  const Real t1514 = t1513 * par.m_F;
+  const Real t1515 = t1514 * s_r_p_2_;
+  const Real t1516 = t1510 + t1515;
+  const Real t1517 = par.k1 * t1516;
+  const Real t1518 = c_r_p_2_ * t1514;
+  const Real t1519 = s_r_p_2_ * t1509;
+  const Real t1520 = t1518 - t1519;
+  const Real t1521 = par.k2 * t1520;
+  const Real t1522 = t1517 + t1521;
+  const Real t1523 = par.k12 * t1522;
+  const Real t1524 = t1516 * par.k2;
+  const Real t1525 = par.k1 * t1520;
+  const Real t1526 = t1524 - t1525;
+  const Real t1527 = t1526 * par.k11;
+  const Real t1528 = t1523 + t1527;
+  const Real t1529 = t256 + t1480;
+  const Real t1530 = t1529 * par.I_Fyy;
+  const Real t1531 = t1528 + t1530;
+  const Real t1532 = par.k8 * t1498;
+  const Real t1533 = par.k10 * t1488;
+  const Real t1534 = t1532 - t1533;
+  const Real t1535 = par.k7 * t1480;
+  const Real t1536 = t1534 - t1535;
+  const Real t1537 = t1536 - t1531;
+  const Real t1538 = t1537 * c_r_p_1_;
+  const Real t1539 = t1475 * c_r_p_1_;
+  const Real t1540 = s_r_p_1_ * t265;
+  const Real t1541 = s_r_p_1_ * t267;
+  const Real t1542 = t1540 + t1541;
+  const Real t1543 = t1539 - t1542;
+  const Real t1544 = par.k2 * t1543;
+  const Real t1545 = t273 * par.k2;
+  const Real t1546 = par.k1 - t1545;
+  const Real t1547 = par.k1 * t1546;
+  const Real t1548 = t1544 + t1547;
+  const Real t1549 = t1548 * s_r_p_2_;
+  const Real t1550 = par.k1 * t1543;
+  const Real t1551 = par.k2 * t1546;
+  const Real t1552 = t1551 - t1550;
+  const Real t1553 = t1552 * c_r_p_2_;
+  const Real t1554 = t1549 + t1553;
+  const Real t1555 = par.I_Fxx * t1554;
+  const Real t1556 = t1555 * s_r_p_2_;
+  const Real t1557 = t1548 * c_r_p_2_;
+  const Real t1558 = t1552 * s_r_p_2_;
+  const Real t1559 = t1557 - t1558;
+  const Real t1560 = par.I_Fxx * t1559;
+  const Real t1561 = c_r_p_2_ * t1560;
+  const Real t1562 = t1556 + t1561;
+  const Real t1563 = t1562 * par.k2;
+  const Real t1564 = c_r_p_2_ * t1555;
+  const Real t1565 = t1560 * s_r_p_2_;
+  const Real t1566 = t1564 - t1565;
+  const Real t1567 = par.k1 * t1566;
+  const Real t1568 = t1563 - t1567;
+  const Real t1569 = t1542 - t1539;
+  const Real t1570 = par.k11 * t1569;
+  const Real t1571 = t1546 * par.k12;
+  const Real t1572 = t1571 - t1570;
+  const Real t1573 = t1492 * c_r_p_1_;
+  const Real t1574 = s_r_p_1_ * t1496;
+  const Real t1575 = t1573 - t1574;
+  const Real t1576 = t1572 + t1575;
+  const Real t1577 = par.m_F * t1576;
+  const Real t1578 = par.k11 * t1577;
+  const Real t1579 = t1578 + t1568;
+  const Real t1580 = t1543 * par.k17;
+  const Real t1581 = par.k5 * t1546;
+  const Real t1582 = t1581 + t1580;
+  const Real t1583 = par.k8 * t1575;
+  const Real t1584 = t1582 - t1583;
+  const Real t1585 = t1579 + t1584;
+  const Real t1586 = t1585 * s_r_p_1_;
+  const Real t1587 = t1586 + t1538;
+  const Real t1588 = par.m_H * t1498;
+  const Real t1589 = par.k8 * t1480;
+  const Real t1590 = t1588 - t1589;
+  const Real t1591 = t1526 + t1590;
+  const Real t1592 = t1591 * c_r_p_1_;
+  const Real t1593 = par.k8 * t1569;
+  const Real t1594 = par.k10 * t1546;
+  const Real t1595 = t1594 + t1593;
+  const Real t1596 = par.m_H * t1575;
+  const Real t1597 = t1595 + t1596;
+  const Real t1598 = t1597 + t1577;
+  const Real t1599 = s_r_p_1_ * t1598;
+  const Real t1600 = t1592 - t1599;
   const Real t1601 = par.k1 * t1600;
-  const Real t1602 = par.k1 * t1481;
-  const Real t1603 = t1485 * par.k2;
+  const Real t1602 = par.k10 * t1480;
+  const Real t1603 = par.m_H * t1488;
   const Real t1604 = t1602 + t1603;
-  const Real t1605 = par.k12 * t1496;
-  const Real t1606 = t1605 + t1604;
-  const Real t1607 = par.k10 * t1494;
-  const Real t1608 = t1488 * par.k5;
-  const Real t1609 = par.k6 * t1465;
-  const Real t1610 = t1609 - t1608;
-  const Real t1611 = t1607 + t1610;
-  const Real t1612 = t1611 + t1606;
-  const Real t1613 = t1612 * par.k2;
-  const Real t1614 = t1613 - t1601;
-  const Real t1615 = t1574 * par.k13;
-  const Real t1616 = t1615 + t1614;
-  const Real t1617 = t368 * par.k16;
-  const Real t1618 = t191 * par.k14;
-  const Real t1619 = par.k42 + t1618;
-  const Real t1620 = t1617 - t1619;
-  const Real t1621 = t1620 + t1616;
-  const Real t1622 = t191 * c_r_p_0_;
-  const Real t1623 = s_r_p_0_ - t1622;
-  const Real t1624 = t1623 * par.I_Rxx;
-  const Real t1625 = t1624 * c_r_p_0_;
-  const Real t1626 = t191 * s_r_p_0_;
-  const Real t1627 = t1626 + c_r_p_0_;
-  const Real t1628 = par.I_Rxx * t1627;
-  const Real t1629 = t1628 * s_r_p_0_;
-  const Real t1630 = t1625 - t1629;
-  const Real t1631 = t1621 + t1630;
-  const Real t1632 = t275 * t1631;
-  const Real t1633 = t1597 - t1632;
-  const Real t1634 = t1633 - t1555;
-  const Real t1635 = t258 * t1449;
-  const Real t1636 = t1635 + t1634;
-  const Real t1637 = t222 * t1318;
-  const Real t1638 = t1318 * t220;
-  const Real t1639 = t1637 + t1638;
-  const Real t1640 = t408 * t1331;
-  const Real t1641 = t370 * t1341;
-  const Real t1642 = t1641 + t1640;
-  const Real t1643 = t387 * t1353;
-  const Real t1644 = t1642 - t1643;
-  const Real t1645 = t1644 - t1639;
-  const Real t1646 = t228 * t1387;
-  const Real t1647 = t1645 - t1646;
-  const Real t1648 = t1647 + t1371;
-  const Real t1649 = t210 * t1210;
-  const Real t1650 = t1648 + t1649;
-  const Real t1651 = t1557 * t220;
-  const Real t1652 = t222 * t1557;
-  const Real t1653 = t1651 + t1652;
-  const Real t1654 = t1570 * t408;
-  const Real t1655 = t370 * t1582;
-  const Real t1656 = t1655 + t1654;
-  const Real t1657 = t387 * t1594;
-  const Real t1658 = t1656 - t1657;
-  const Real t1659 = t1658 - t1653;
-  const Real t1660 = t228 * t1631;
-  const Real t1661 = t1659 - t1660;
-  const Real t1662 = t1612 + t1661;
-  const Real t1663 = t210 * t1449;
-  const Real t1664 = t1663 + t1662;
-  const Real t1665 = t1570 * t404;
-  const Real t1666 = t1582 * t368;
-  const Real t1667 = t1665 + t1666;
-  const Real t1668 = t1594 * t391;
-  const Real t1669 = t1667 - t1668;
-  const Real t1670 = t1600 * par.k2;
-  const Real t1671 = t1612 * par.k1;
-  const Real t1672 = t1670 + t1671;
-  const Real t1673 = t368 * par.k15;
-  const Real t1674 = par.k3 * t191;
-  const Real t1675 = par.k9 - t1674;
-  const Real t1676 = t1675 - t1673;
-  const Real t1677 = t1676 + t1672;
-  const Real t1678 = par.r_R * t1581;
-  const Real t1679 = t1624 * s_r_p_0_;
-  const Real t1680 = t1628 * c_r_p_0_;
-  const Real t1681 = t1679 + t1680;
-  const Real t1682 = t1678 + t1681;
-  const Real t1683 = t1677 + t1682;
-  const Real t1684 = t1669 + t1683;
-  const Real t1685 = t183 * t1557;
-  const Real t1686 = t185 * t1557;
-  const Real t1687 = t1685 + t1686;
-  const Real t1688 = t1684 - t1687;
-  const Real t1689 = t191 * t1631;
-  const Real t1690 = t1688 - t1689;
-  const Real t1691 = t1449 * t174;
+  const Real t1605 = t1604 + t1522;
+  const Real t1606 = t1605 * par.k2;
+  const Real t1607 = t1606 - t1601;
+  const Real t1608 = t1607 * par.k13;
+  const Real t1609 = t1587 - t1608;
+  const Real t1610 = par.k15 * t452;
+  const Real t1611 = par.k59 * t452;
+  const Real t1612 = t1610 + t1611;
+  const Real t1613 = t435 * par.k16;
+  const Real t1614 = t1613 + t1612;
+  const Real t1615 = par.k56 * t265;
+  const Real t1616 = par.k56 * t267;
+  const Real t1617 = t1615 + t1616;
+  const Real t1618 = t1614 - t1617;
+  const Real t1619 = t1609 + t1618;
+  const Real t1620 = par.r_R * t265;
+  const Real t1621 = par.r_R * t267;
+  const Real t1622 = t1621 + t1620;
+  const Real t1623 = t1622 + t452;
+  const Real t1624 = t1623 * s_r_p_0_;
+  const Real t1625 = t435 * c_r_p_0_;
+  const Real t1626 = t1624 - t1625;
+  const Real t1627 = t1626 * par.m_R;
+  const Real t1628 = t1627 * s_r_p_0_;
+  const Real t1629 = t1623 * c_r_p_0_;
+  const Real t1630 = t435 * s_r_p_0_;
+  const Real t1631 = t1629 + t1630;
+  const Real t1632 = t1631 * par.m_R;
+  const Real t1633 = t1632 * c_r_p_0_;
+  const Real t1634 = t1628 + t1633;
+  const Real t1635 = t1634 * par.r_R;
+  const Real t1636 = par.I_Ryy * t265;
+  const Real t1637 = par.I_Ryy * t267;
+  const Real t1638 = t1636 + t1637;
+  const Real t1639 = t1638 + t1635;
+  const Real t1640 = t1619 - t1639;
+  const Real t1641 = t1640 * t316;
+  const Real t1642 = t314 * t1640;
+  const Real t1643 = t1641 + t1642;
+  const Real t1644 = t1600 * par.k2;
+  const Real t1645 = t1605 * par.k1;
+  const Real t1646 = t1645 + t1644;
+  const Real t1647 = t452 * par.m_B;
+  const Real t1648 = par.k15 * t265;
+  const Real t1649 = par.k59 * t267;
+  const Real t1650 = t1649 + t1648;
+  const Real t1651 = par.k15 * t267;
+  const Real t1652 = t1650 + t1651;
+  const Real t1653 = t1647 - t1652;
+  const Real t1654 = t1646 + t1653;
+  const Real t1655 = t1654 + t1634;
+  const Real t1656 = t458 * t1655;
+  const Real t1657 = s_r_p_1_ * t1591;
+  const Real t1658 = c_r_p_1_ * t1598;
+  const Real t1659 = t1658 + t1657;
+  const Real t1660 = t419 * par.m_B;
+  const Real t1661 = t273 * par.k16;
+  const Real t1662 = t1661 + par.k15;
+  const Real t1663 = par.k59 + t1662;
+  const Real t1664 = t1660 - t1663;
+  const Real t1665 = t1664 + t1659;
+  const Real t1666 = t419 + par.r_R;
+  const Real t1667 = par.m_R * t1666;
+  const Real t1668 = t1665 + t1667;
+  const Real t1669 = t422 * t1668;
+  const Real t1670 = t1669 + t1656;
+  const Real t1671 = t435 * par.m_B;
+  const Real t1672 = par.k16 * t265;
+  const Real t1673 = par.k16 * t267;
+  const Real t1674 = t1672 + t1673;
+  const Real t1675 = t1674 - t1671;
+  const Real t1676 = t1607 + t1675;
+  const Real t1677 = t1627 * c_r_p_0_;
+  const Real t1678 = t1632 * s_r_p_0_;
+  const Real t1679 = t1677 - t1678;
+  const Real t1680 = t1676 + t1679;
+  const Real t1681 = t441 * t1680;
+  const Real t1682 = t1670 + t1681;
+  const Real t1683 = t1682 - t1643;
+  const Real t1684 = s_r_p_1_ * t1537;
+  const Real t1685 = t1585 * c_r_p_1_;
+  const Real t1686 = t1685 - t1684;
+  const Real t1687 = par.k1 * t1686;
+  const Real t1688 = par.k1 * t1562;
+  const Real t1689 = t1566 * par.k2;
+  const Real t1690 = t1688 + t1689;
+  const Real t1691 = par.k12 * t1577;
   const Real t1692 = t1690 + t1691;
+  const Real t1693 = par.k5 * t1569;
+  const Real t1694 = par.k6 * t1546;
+  const Real t1695 = t1694 - t1693;
+  const Real t1696 = par.k10 * t1575;
+  const Real t1697 = t1695 + t1696;
+  const Real t1698 = t1692 + t1697;
+  const Real t1699 = t1698 * par.k2;
+  const Real t1700 = t1699 - t1687;
+  const Real t1701 = t1659 * par.k13;
+  const Real t1702 = t1701 + t1700;
+  const Real t1703 = t419 * par.k16;
+  const Real t1704 = t273 * par.k14;
+  const Real t1705 = t1704 + par.k46;
+  const Real t1706 = t1703 - t1705;
+  const Real t1707 = t1706 + t1702;
+  const Real t1708 = t273 * c_r_p_0_;
+  const Real t1709 = s_r_p_0_ - t1708;
+  const Real t1710 = par.I_Rxx * t1709;
+  const Real t1711 = c_r_p_0_ * t1710;
+  const Real t1712 = t273 * s_r_p_0_;
+  const Real t1713 = t1712 + c_r_p_0_;
+  const Real t1714 = par.I_Rxx * t1713;
+  const Real t1715 = t1714 * s_r_p_0_;
+  const Real t1716 = t1711 - t1715;
+  const Real t1717 = t1716 + t1707;
+  const Real t1718 = t1717 * t322;
+  const Real t1719 = t1683 - t1718;
+  const Real t1720 = t1719 - t1638;
+  const Real t1721 = t1530 * t305;
+  const Real t1722 = t1720 + t1721;
+  const Real t1723 = t207 * t1397;
+  const Real t1724 = t205 * t1397;
+  const Real t1725 = t1723 + t1724;
+  const Real t1726 = t1412 * t448;
+  const Real t1727 = t1422 * t416;
+  const Real t1728 = t1726 + t1727;
+  const Real t1729 = t431 * t1434;
+  const Real t1730 = t1728 - t1729;
+  const Real t1731 = t1730 - t1725;
+  const Real t1732 = t1468 * t213;
+  const Real t1733 = t1731 - t1732;
+  const Real t1734 = t1733 + t1452;
+  const Real t1735 = t192 * t1287;
+  const Real t1736 = t1287 * t190;
+  const Real t1737 = t1735 + t1736;
+  const Real t1738 = t1737 + t1734;
+  const Real t1739 = t207 * t1640;
+  const Real t1740 = t205 * t1640;
+  const Real t1741 = t1739 + t1740;
+  const Real t1742 = t1655 * t448;
+  const Real t1743 = t416 * t1668;
+  const Real t1744 = t1742 + t1743;
+  const Real t1745 = t431 * t1680;
+  const Real t1746 = t1744 - t1745;
+  const Real t1747 = t1746 - t1741;
+  const Real t1748 = t1717 * t213;
+  const Real t1749 = t1747 - t1748;
+  const Real t1750 = t1698 + t1749;
+  const Real t1751 = t1530 * t190;
+  const Real t1752 = t1530 * t192;
+  const Real t1753 = t1751 + t1752;
+  const Real t1754 = t1753 + t1750;
+  const Real t1755 = t1655 * t452;
+  const Real t1756 = t419 * t1668;
+  const Real t1757 = t1755 + t1756;
+  const Real t1758 = t435 * t1680;
+  const Real t1759 = t1757 - t1758;
+  const Real t1760 = par.k2 * t1686;
+  const Real t1761 = t1698 * par.k1;
+  const Real t1762 = t1761 + t1760;
+  const Real t1763 = t419 * par.k15;
+  const Real t1764 = par.k59 * t419;
+  const Real t1765 = t1763 + t1764;
+  const Real t1766 = par.k3 * t273;
+  const Real t1767 = par.k9 - t1766;
+  const Real t1768 = t1767 - t1765;
+  const Real t1769 = -t1766;
+  const Real t1770 = sum_error(par.k9, t1769);
+  const Real t1771 = t1770 + par.k57;
+  const Real t1772 = t1771 + t1768;
+  const Real t1773 = t1762 + t1772;
+  const Real t1774 = par.r_R * t1667;
+  const Real t1775 = t1714 * c_r_p_0_;
+  const Real t1776 = s_r_p_0_ * t1710;
+  const Real t1777 = t1775 + t1776;
+  const Real t1778 = t1774 + t1777;
+  const Real t1779 = t1773 + t1778;
+  const Real t1780 = t1759 + t1779;
+  const Real t1781 = t1640 * t267;
+  const Real t1782 = t1640 * t265;
+  const Real t1783 = t1781 + t1782;
+  const Real t1784 = t1780 - t1783;
+  const Real t1785 = t273 * t1717;
+  const Real t1786 = t1784 - t1785;
+  const Real t1787 = t1530 * t256;
+  const Real t1788 = t1786 + t1787;
 
-  M_r[0] = t1692;
-  M_r[1] = t1664;
-  M_r[2] = t1636;
-  M_r[3] = t1664;
-  M_r[4] = t1650;
-  M_r[5] = t1392;
-  M_r[6] = t1636;
-  M_r[7] = t1392;
-  M_r[8] = t1154;
-  f_r[0] = t917;
-  f_r[1] = t888;
-  f_r[2] = t874;
+  M_r[0] = t1788;
+  M_r[1] = t1754;
+  M_r[2] = t1722;
+  M_r[3] = t1754;
+  M_r[4] = t1738;
+  M_r[5] = t1473;
+  M_r[6] = t1722;
+  M_r[7] = t1473;
+  M_r[8] = t1230;
+  f_r[0] = t989;
+  f_r[1] = t958;
+  f_r[2] = t942;
 }
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
-/// route: orthogonal basis, projected recursion, compensated beyond 2 ulps
-/// operations: 1526 add, 1337 mul, 16 div, 24 neg, 2 sqrt, 3 sin, 3 cos
+/// route: orthogonal basis, all blocks, compensated beyond 1.4 ulps
+/// operations: 2030 add, 1583 mul, 22 div, 37 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par         made by prepare()
 /// @param[in]  R           (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p         (3) rad or m: rear_spin, steer, front_spin
@@ -4448,7 +4690,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t72 = t71 + t56;
   const Real t73 = t58 * t72;
 
-  // passive accelerations
+  // accelerations
   const Real t74 = -t73;
 
   // joint angles
@@ -4469,7 +4711,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t87 = t25 * t45;
   const Real t88 = t87 + t86;
 
-  // passive accelerations
+  // accelerations
   const Real t89 = sum_error(t88, t74);
   const Real t90 = product_error(t58, t72);
   const Real t91 = t89 - t90;
@@ -4478,7 +4720,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t92 = t88 - t73;
   const Real t93 = constant<Real>(1.0L) / t92;
 
-  // passive accelerations
+  // accelerations
   const Real t94 = t91 * t93;
   const Real t95 = t94 / t92;
   const Real t96 = quotient_error(constant<Real>(1.0L), t92);
@@ -4514,7 +4756,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t118 = t116 + t117;
   const Real t119 = t118 - t106;
 
-  // passive accelerations
+  // accelerations
   const Real t120 = t97 * t119;
   const Real t121 = -t106;
   const Real t122 = sum_error(t118, t121);
@@ -4524,2335 +4766,3122 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t126 = t120 + t125;
   const Real t127 = product_error(t119, t93);
   const Real t128 = t127 + t126;
-
-  // joint angles
-  const Real t129 = t22 * t84;
-  const Real t130 = t28 * t114;
-  const Real t131 = t129 + t130;
-  const Real t132 = par.r_F * t114;
-  const Real t133 = t84 * par.c;
-  const Real t134 = t132 - t133;
-  const Real t135 = t134 + t131;
-  const Real t136 = par.r_R - t68;
+  const Real t129 = t128 * t22;
 
   // kernel
-  const Real t137 = c_r_p_1_ * t136;
-  const Real t138 = t135 - t137;
-  const Real t139 = t58 * t138;
+  const Real t130 = t119 * t93;
 
-  // joint angles
-  const Real t140 = t22 * t59;
-  const Real t141 = t59 * par.c;
-  const Real t142 = t140 - t141;
+  // accelerations
+  const Real t131 = product_error(t22, t130);
+  const Real t132 = t131 + t129;
 
   // kernel
-  const Real t143 = t136 * t49;
-  const Real t144 = t142 + t143;
-  const Real t145 = t144 - t139;
+  const Real t133 = t22 * t130;
 
-  // passive accelerations
-  const Real t146 = t128 * t145;
-  const Real t147 = -t139;
-  const Real t148 = sum_error(t144, t147);
-  const Real t149 = product_error(t58, t138);
+  // joint angles
+  const Real t134 = -t28;
+
+  // accelerations
+  const Real t135 = sum_error(t133, t134);
+  const Real t136 = t132 + t135;
+
+  // kernel
+  const Real t137 = t133 - t28;
+  const Real t138 = constant<Real>(1.0L) / t137;
+
+  // accelerations
+  const Real t139 = t136 * t138;
+  const Real t140 = t139 / t137;
+  const Real t141 = quotient_error(constant<Real>(1.0L), t137);
+  const Real t142 = t141 - t140;
+
+  // joint angles
+  const Real t143 = par.k1 * t28;
+  const Real t144 = t22 * par.k2;
+  const Real t145 = t143 + t144;
+  const Real t146 = t145 + par.k12;
+
+  // kernel
+  const Real t147 = t58 * t146;
+  const Real t148 = t147 * t130;
+  const Real t149 = t146 * t105;
   const Real t150 = t148 - t149;
 
+  // accelerations
+  const Real t151 = t150 * t142;
+  const Real t152 = t128 * t147;
+  const Real t153 = product_error(t58, t146);
+  const Real t154 = t153 * t130;
+  const Real t155 = t154 + t152;
+  const Real t156 = product_error(t147, t130);
+  const Real t157 = t155 + t156;
+  const Real t158 = product_error(t146, t105);
+  const Real t159 = t157 - t158;
+
   // kernel
-  const Real t151 = t119 * t93;
+  const Real t160 = -t149;
 
-  // passive accelerations
-  const Real t152 = t150 * t151;
-  const Real t153 = t146 + t152;
-  const Real t154 = product_error(t145, t151);
-  const Real t155 = t153 + t154;
+  // accelerations
+  const Real t161 = sum_error(t148, t160);
+  const Real t162 = t161 + t159;
+  const Real t163 = t162 * t138;
+  const Real t164 = t151 + t163;
+  const Real t165 = product_error(t150, t138);
+  const Real t166 = t164 + t165;
+  const Real t167 = t22 * t166;
 
   // kernel
-  const Real t156 = t138 * t105;
+  const Real t168 = t150 * t138;
 
-  // passive accelerations
-  const Real t157 = -t156;
+  // accelerations
+  const Real t169 = product_error(t168, t22);
+  const Real t170 = t169 + t167;
+  const Real t171 = t170 - t153;
+
+  // kernel
+  const Real t172 = t168 * t22;
+  const Real t173 = -t147;
+
+  // accelerations
+  const Real t174 = sum_error(t172, t173);
+  const Real t175 = t174 + t171;
+  const Real t176 = t175 * t93;
+
+  // kernel
+  const Real t177 = t172 - t147;
+
+  // accelerations
+  const Real t178 = t97 * t177;
+  const Real t179 = t176 + t178;
+  const Real t180 = product_error(t177, t93);
+  const Real t181 = t179 + t180;
+  const Real t182 = t181 * t72;
+
+  // kernel
+  const Real t183 = t177 * t93;
+
+  // accelerations
+  const Real t184 = product_error(t183, t72);
+  const Real t185 = t182 + t184;
+
+  // kernel
+  const Real t186 = t183 * t72;
+  const Real t187 = t146 - t186;
+
+  // accelerations
+  const Real t188 = t187 - t185;
+  const Real t189 = t48 * t188;
+  const Real t190 = t189 * nu[1];
 
   // joint angles
-  const Real t158 = t62 + t60;
+  const Real t191 = t22 * t84;
+  const Real t192 = t28 * t114;
+  const Real t193 = t191 + t192;
+  const Real t194 = par.r_F * t114;
+  const Real t195 = t84 * par.c;
+  const Real t196 = t194 - t195;
+  const Real t197 = t196 + t193;
+  const Real t198 = par.r_R - t68;
 
   // kernel
-  const Real t159 = t59 * t136;
-  const Real t160 = t158 - t159;
-
-  // passive accelerations
-  const Real t161 = sum_error(t160, t157);
-  const Real t162 = product_error(t138, t105);
-  const Real t163 = t161 - t162;
-  const Real t164 = t163 - t155;
-
-  // kernel
-  const Real t165 = t145 * t151;
-  const Real t166 = t160 - t156;
-  const Real t167 = t166 - t165;
-
-  // passive accelerations
-  const Real t168 = t164 + t167;
-  const Real t169 = t128 * t22;
-
-  // kernel
-  const Real t170 = t22 * t151;
-
-  // passive accelerations
-  const Real t171 = t170 + t169;
-  const Real t172 = t171 - t28;
-  const Real t173 = constant<Real>(1.0L) / t172;
-  const Real t174 = t173 * t168;
-  const Real t175 = t22 * t174;
-  const Real t176 = sum_error(t145, t175);
-  const Real t177 = t150 + t176;
-  const Real t178 = t177 * t93;
-  const Real t179 = t145 + t175;
-  const Real t180 = t97 * t179;
-  const Real t181 = t180 + t178;
-  const Real t182 = product_error(t93, t179);
-  const Real t183 = t181 + t182;
-  const Real t184 = t183 * t72;
-  const Real t185 = t179 * t93;
-  const Real t186 = product_error(t72, t185);
-  const Real t187 = t184 + t186;
-  const Real t188 = t72 * t185;
-  const Real t189 = t138 - t188;
-  const Real t190 = t189 - t187;
-  const Real t191 = t48 * t190;
-  const Real t192 = t191 * nu[0];
+  const Real t199 = c_r_p_1_ * t198;
+  const Real t200 = t197 - t199;
+  const Real t201 = t58 * t200;
 
   // joint angles
-  const Real t193 = par.k1 * t28;
-  const Real t194 = t22 * par.k2;
-  const Real t195 = t193 + t194;
-  const Real t196 = t195 + par.k12;
+  const Real t202 = t22 * t59;
+  const Real t203 = t59 * par.c;
+  const Real t204 = t202 - t203;
 
   // kernel
-  const Real t197 = t58 * t196;
+  const Real t205 = t198 * t49;
+  const Real t206 = t204 + t205;
+  const Real t207 = t206 - t201;
 
-  // passive accelerations
-  const Real t198 = t128 * t197;
-  const Real t199 = product_error(t58, t196);
-  const Real t200 = t199 * t151;
-  const Real t201 = t200 + t198;
-  const Real t202 = product_error(t197, t151);
-  const Real t203 = t201 + t202;
-  const Real t204 = product_error(t196, t105);
-  const Real t205 = t203 - t204;
+  // accelerations
+  const Real t208 = t128 * t207;
+  const Real t209 = -t201;
+  const Real t210 = sum_error(t206, t209);
+  const Real t211 = product_error(t58, t200);
+  const Real t212 = t210 - t211;
+  const Real t213 = t212 * t130;
+  const Real t214 = t208 + t213;
+  const Real t215 = product_error(t207, t130);
+  const Real t216 = t214 + t215;
 
   // kernel
-  const Real t206 = t197 * t151;
-  const Real t207 = t196 * t105;
-  const Real t208 = t206 - t207;
+  const Real t217 = t200 * t105;
 
-  // passive accelerations
-  const Real t209 = t208 + t205;
-  const Real t210 = t173 * t209;
-  const Real t211 = t22 * t210;
+  // accelerations
+  const Real t218 = -t217;
+
+  // joint angles
+  const Real t219 = t62 + t60;
 
   // kernel
-  const Real t212 = -t197;
-
-  // passive accelerations
-  const Real t213 = sum_error(t211, t212);
+  const Real t220 = t59 * t198;
+  const Real t221 = t219 - t220;
 
   // accelerations
-  const Real t214 = product_error(t210, t22);
-  const Real t215 = t214 - t199;
-  const Real t216 = t213 + t215;
-  const Real t217 = t216 * t93;
-
-  // passive accelerations
-  const Real t218 = t211 - t197;
-  const Real t219 = t97 * t218;
-
-  // accelerations
-  const Real t220 = t217 + t219;
-
-  // passive accelerations
-  const Real t221 = product_error(t218, t93);
-
-  // accelerations
-  const Real t222 = t221 + t220;
-  const Real t223 = t72 * t222;
-
-  // passive accelerations
-  const Real t224 = t218 * t93;
-  const Real t225 = product_error(t224, t72);
-
-  // accelerations
-  const Real t226 = t223 + t225;
-
-  // passive accelerations
-  const Real t227 = t224 * t72;
-  const Real t228 = t196 - t227;
-
-  // accelerations
-  const Real t229 = t228 - t226;
-  const Real t230 = t48 * t229;
-  const Real t231 = t230 * nu[1];
-  const Real t232 = t192 + t231;
+  const Real t222 = sum_error(t221, t218);
+  const Real t223 = product_error(t200, t105);
+  const Real t224 = t222 - t223;
+  const Real t225 = t224 - t216;
 
   // kernel
-  const Real t233 = t59 * t68;
-  const Real t234 = t56 + t233;
-  const Real t235 = t58 * t234;
-  const Real t236 = t84 * t68;
-  const Real t237 = t87 - t236;
-  const Real t238 = t237 - t235;
+  const Real t226 = t207 * t130;
+  const Real t227 = t221 - t217;
+  const Real t228 = t227 - t226;
 
-  // passive accelerations
-  const Real t239 = t128 * t238;
-  const Real t240 = -t235;
-  const Real t241 = sum_error(t237, t240);
-  const Real t242 = product_error(t58, t234);
-  const Real t243 = t241 - t242;
-  const Real t244 = t243 * t151;
-  const Real t245 = t239 + t244;
-  const Real t246 = product_error(t238, t151);
-  const Real t247 = t246 + t245;
+  // accelerations
+  const Real t229 = t225 + t228;
+  const Real t230 = t229 * t142;
+  const Real t231 = t229 * t138;
+  const Real t232 = t231 + t230;
+  const Real t233 = t232 * t22;
+  const Real t234 = sum_error(t207, t233);
+  const Real t235 = t212 + t234;
+  const Real t236 = t93 * t235;
+  const Real t237 = t233 + t207;
+  const Real t238 = t97 * t237;
+  const Real t239 = t236 + t238;
+  const Real t240 = product_error(t93, t237);
+  const Real t241 = t239 + t240;
+  const Real t242 = t72 * t241;
+  const Real t243 = t237 * t93;
+  const Real t244 = product_error(t72, t243);
+  const Real t245 = t244 + t242;
+  const Real t246 = t243 * t72;
+  const Real t247 = t200 - t246;
+  const Real t248 = t247 - t245;
+  const Real t249 = t248 * t48;
+  const Real t250 = t249 * nu[0];
+  const Real t251 = t250 + t190;
 
   // kernel
-  const Real t248 = t234 * t105;
+  const Real t252 = t59 * t68;
+  const Real t253 = t56 + t252;
+  const Real t254 = t58 * t253;
+  const Real t255 = t84 * t68;
+  const Real t256 = t87 - t255;
+  const Real t257 = t256 - t254;
 
-  // passive accelerations
-  const Real t249 = -t248;
+  // accelerations
+  const Real t258 = t128 * t257;
+  const Real t259 = -t254;
+  const Real t260 = sum_error(t256, t259);
+  const Real t261 = product_error(t58, t253);
+  const Real t262 = t260 - t261;
+  const Real t263 = t262 * t130;
+  const Real t264 = t258 + t263;
+  const Real t265 = product_error(t257, t130);
+  const Real t266 = t265 + t264;
 
   // kernel
-  const Real t250 = t68 * t114;
-  const Real t251 = t117 - t250;
+  const Real t267 = t253 * t105;
 
-  // passive accelerations
-  const Real t252 = sum_error(t251, t249);
-  const Real t253 = product_error(t234, t105);
-  const Real t254 = t252 - t253;
-  const Real t255 = t254 - t247;
+  // accelerations
+  const Real t268 = -t267;
 
   // kernel
-  const Real t256 = t238 * t151;
-  const Real t257 = t251 - t248;
-  const Real t258 = t257 - t256;
-
-  // passive accelerations
-  const Real t259 = t255 + t258;
-  const Real t260 = t173 * t259;
+  const Real t269 = t68 * t114;
+  const Real t270 = t117 - t269;
 
   // accelerations
-  const Real t261 = product_error(t22, t260);
-  const Real t262 = t243 + t261;
+  const Real t271 = sum_error(t270, t268);
+  const Real t272 = product_error(t253, t105);
+  const Real t273 = t271 - t272;
+  const Real t274 = t273 - t266;
 
-  // passive accelerations
-  const Real t263 = t22 * t260;
-  const Real t264 = sum_error(t238, t263);
-
-  // accelerations
-  const Real t265 = t262 + t264;
-  const Real t266 = t265 * t93;
-
-  // passive accelerations
-  const Real t267 = t238 + t263;
-  const Real t268 = t267 * t97;
+  // kernel
+  const Real t275 = t257 * t130;
+  const Real t276 = t270 - t267;
+  const Real t277 = t276 - t275;
 
   // accelerations
-  const Real t269 = t268 + t266;
+  const Real t278 = t274 + t277;
+  const Real t279 = t278 * t142;
+  const Real t280 = t278 * t138;
+  const Real t281 = t280 + t279;
+  const Real t282 = t22 * t281;
+  const Real t283 = sum_error(t257, t282);
+  const Real t284 = product_error(t22, t281);
+  const Real t285 = t262 + t284;
+  const Real t286 = t283 + t285;
+  const Real t287 = t286 * t93;
+  const Real t288 = t257 + t282;
+  const Real t289 = t288 * t97;
+  const Real t290 = t289 + t287;
+  const Real t291 = product_error(t288, t93);
+  const Real t292 = t290 + t291;
+  const Real t293 = t72 * t292;
+  const Real t294 = t288 * t93;
+  const Real t295 = product_error(t294, t72);
+  const Real t296 = t293 + t295;
+  const Real t297 = t294 * t72;
+  const Real t298 = t253 - t297;
+  const Real t299 = t298 - t296;
+  const Real t300 = t48 * t299;
+  const Real t301 = t300 * nu[2];
+  const Real t302 = t301 + t251;
+  const Real t303 = t302 * R[7];
+  const Real t304 = t181 * nu[1];
 
-  // passive accelerations
-  const Real t270 = product_error(t267, t93);
-
-  // accelerations
-  const Real t271 = t270 + t269;
-  const Real t272 = t72 * t271;
-
-  // passive accelerations
-  const Real t273 = t267 * t93;
-  const Real t274 = product_error(t273, t72);
-
-  // accelerations
-  const Real t275 = t272 + t274;
-
-  // passive accelerations
-  const Real t276 = t72 * t273;
-  const Real t277 = t234 - t276;
-
-  // accelerations
-  const Real t278 = t277 - t275;
-  const Real t279 = t48 * t278;
-  const Real t280 = t279 * nu[2];
-  const Real t281 = t232 + t280;
-  const Real t282 = t281 * R[7];
-
-  // passive accelerations
-  const Real t283 = t183 * nu[0];
-  const Real t284 = t185 * nu[0];
-  const Real t285 = t283 + t284;
-
-  // accelerations
-  const Real t286 = nu[1] * t222;
-
-  // passive accelerations
-  const Real t287 = t224 * nu[1];
+  // kernel
+  const Real t305 = t183 * nu[1];
 
   // accelerations
-  const Real t288 = t287 + t286;
-  const Real t289 = t285 + t288;
-  const Real t290 = nu[2] * t271;
-
-  // passive accelerations
-  const Real t291 = t273 * nu[2];
-
-  // accelerations
-  const Real t292 = t291 + t290;
-  const Real t293 = t292 + t289;
-  const Real t294 = R[8] * t293;
-  const Real t295 = t294 - t282;
-  const Real t296 = t295 * par.k2;
-  const Real t297 = t293 * R[6];
+  const Real t306 = t304 + t305;
+  const Real t307 = t241 * nu[0];
+  const Real t308 = t243 * nu[0];
+  const Real t309 = t308 + t307;
+  const Real t310 = t306 + t309;
+  const Real t311 = t292 * nu[2];
+  const Real t312 = t294 * nu[2];
+  const Real t313 = t311 + t312;
+  const Real t314 = t313 + t310;
+  const Real t315 = R[8] * t314;
+  const Real t316 = t315 - t303;
+  const Real t317 = par.k2 * t316;
+  const Real t318 = t314 * R[6];
 
   // joint angles
-  const Real t298 = nu[0] * R[7];
+  const Real t319 = nu[0] * R[7];
 
   // accelerations
-  const Real t299 = t298 + t297;
-  const Real t300 = par.k1 * t299;
-  const Real t301 = t296 + t300;
-  const Real t302 = t301 * c_r_p_1_;
+  const Real t320 = t318 + t319;
+  const Real t321 = par.k1 * t320;
+  const Real t322 = t321 + t317;
+  const Real t323 = t322 * c_r_p_1_;
 
   // joint angles
-  const Real t303 = s_r_p_1_ * nu[1];
-  const Real t304 = t303 * t3;
+  const Real t324 = s_r_p_1_ * nu[1];
+  const Real t325 = t324 * t3;
 
   // accelerations
-  const Real t305 = t302 - t304;
-  const Real t306 = t281 * R[6];
+  const Real t326 = t323 - t325;
+  const Real t327 = R[6] * t302;
 
   // joint angles
-  const Real t307 = R[8] * nu[0];
+  const Real t328 = R[8] * nu[0];
 
   // accelerations
-  const Real t308 = t307 + t306;
-  const Real t309 = s_r_p_1_ * t308;
+  const Real t329 = t328 + t327;
+  const Real t330 = s_r_p_1_ * t329;
 
   // joint angles
-  const Real t310 = c_r_p_1_ * nu[1];
-  const Real t311 = t310 * R[7];
+  const Real t331 = c_r_p_1_ * nu[1];
+  const Real t332 = t331 * R[7];
 
   // accelerations
-  const Real t312 = t311 + t309;
-  const Real t313 = t305 + t312;
-  const Real t314 = par.k1 * t313;
-  const Real t315 = t295 * par.k1;
-  const Real t316 = par.k2 * t299;
-  const Real t317 = t315 - t316;
-  const Real t318 = t317 * par.k2;
-  const Real t319 = t314 - t318;
-  const Real t320 = t12 * t319;
-  const Real t321 = t320 * constant<Real>(2.0L);
-  const Real t322 = par.k2 * t313;
-  const Real t323 = t317 * par.k1;
-  const Real t324 = t322 + t323;
-  const Real t325 = t16 * t324;
-  const Real t326 = t325 * constant<Real>(2.0L);
-  const Real t327 = t321 + t326;
+  const Real t333 = t332 + t330;
+  const Real t334 = t333 + t326;
+  const Real t335 = t334 * par.k1;
+  const Real t336 = par.k1 * t316;
+  const Real t337 = par.k2 * t320;
+  const Real t338 = t336 - t337;
+  const Real t339 = par.k2 * t338;
+  const Real t340 = t335 - t339;
+  const Real t341 = t12 * t340;
+  const Real t342 = t341 * constant<Real>(2.0L);
+  const Real t343 = t334 * par.k2;
+  const Real t344 = par.k1 * t338;
+  const Real t345 = t344 + t343;
+  const Real t346 = t345 * t16;
+  const Real t347 = t346 * constant<Real>(2.0L);
+  const Real t348 = t342 + t347;
 
   // joint angles
-  const Real t328 = constant<Real>(2.0L) * t19;
+  const Real t349 = constant<Real>(2.0L) * t19;
 
   // accelerations
-  const Real t329 = t327 / t328;
-  const Real t330 = t329 * t20;
-  const Real t331 = t330 / t19;
-  const Real t332 = t12 * t331;
-  const Real t333 = t319 * t20;
-  const Real t334 = t333 - t332;
-  const Real t335 = par.r_F * t334;
-  const Real t336 = par.k1 * t281;
+  const Real t350 = t348 / t349;
+  const Real t351 = t350 * t20;
+  const Real t352 = t351 / t19;
+  const Real t353 = t352 * t12;
+  const Real t354 = t20 * t340;
+  const Real t355 = t354 - t353;
+  const Real t356 = t355 * par.r_F;
+  const Real t357 = par.k1 * t302;
 
   // joint angles
-  const Real t337 = par.k2 * nu[0];
+  const Real t358 = par.k2 * nu[0];
 
   // accelerations
-  const Real t338 = t337 + t336;
-  const Real t339 = t338 * c_r_p_1_;
-  const Real t340 = s_r_p_1_ * t293;
-  const Real t341 = t339 - t340;
-  const Real t342 = t341 * par.k2;
-  const Real t343 = par.k2 * t281;
+  const Real t359 = t358 + t357;
+  const Real t360 = t359 * c_r_p_1_;
+  const Real t361 = t314 * s_r_p_1_;
+  const Real t362 = t360 - t361;
+  const Real t363 = par.k2 * t362;
+  const Real t364 = par.k2 * t302;
 
   // joint angles
-  const Real t344 = par.k1 * nu[0];
+  const Real t365 = par.k1 * nu[0];
 
   // accelerations
-  const Real t345 = t344 - t343;
-  const Real t346 = t345 + nu[1];
-  const Real t347 = t346 * par.k1;
-  const Real t348 = t347 + t342;
-  const Real t349 = t335 * t348;
-  const Real t350 = t338 * t303;
-  const Real t351 = t293 * t310;
-  const Real t352 = t350 + t351;
-  const Real t353 = t352 * par.k2;
-  const Real t354 = t28 * t353;
-  const Real t355 = t349 - t354;
-  const Real t356 = t331 * t16;
-  const Real t357 = t20 * t324;
-  const Real t358 = t357 - t356;
-  const Real t359 = par.r_F * t358;
-  const Real t360 = t341 * par.k1;
-  const Real t361 = t346 * par.k2;
-  const Real t362 = t361 - t360;
-  const Real t363 = t359 * t362;
-  const Real t364 = t352 * par.k1;
-  const Real t365 = t22 * t364;
-  const Real t366 = t363 + t365;
-  const Real t367 = t355 + t366;
-  const Real t368 = par.r_F * t353;
-  const Real t369 = t364 * par.c;
-  const Real t370 = t368 + t369;
+  const Real t366 = t365 - t364;
+  const Real t367 = t366 + nu[1];
+  const Real t368 = par.k1 * t367;
+  const Real t369 = t363 + t368;
+  const Real t370 = t356 * t369;
+  const Real t371 = t359 * t324;
+  const Real t372 = t314 * t331;
+  const Real t373 = t371 + t372;
+  const Real t374 = par.k2 * t373;
+  const Real t375 = t374 * t28;
+  const Real t376 = t370 - t375;
+  const Real t377 = t352 * t16;
+  const Real t378 = t345 * t20;
+  const Real t379 = t378 - t377;
+  const Real t380 = par.r_F * t379;
+  const Real t381 = par.k1 * t362;
+  const Real t382 = t367 * par.k2;
+  const Real t383 = t382 - t381;
+  const Real t384 = t380 * t383;
+  const Real t385 = par.k1 * t373;
+  const Real t386 = t385 * t22;
+  const Real t387 = t386 + t384;
+  const Real t388 = t376 + t387;
+  const Real t389 = t385 * par.c;
+  const Real t390 = t374 * par.r_F;
+  const Real t391 = t389 + t390;
+  const Real t392 = t189 * t45;
+  const Real t393 = t392 * nu[1];
+  const Real t394 = t249 * t45;
+  const Real t395 = t394 - t198;
+  const Real t396 = nu[0] * t395;
+  const Real t397 = t393 + t396;
+  const Real t398 = t300 * t45;
+  const Real t399 = t398 * nu[2];
+  const Real t400 = t397 + t399;
+  const Real t401 = par.k13 * t302;
+  const Real t402 = t400 - t401;
+  const Real t403 = t324 * t402;
+  const Real t404 = t181 * t69;
+  const Real t405 = product_error(t69, t183);
+  const Real t406 = t405 + t404;
+  const Real t407 = t406 * nu[1];
 
-  // passive accelerations
-  const Real t371 = t191 * t45;
-  const Real t372 = t371 - t136;
-  const Real t373 = t372 * nu[0];
-
-  // accelerations
-  const Real t374 = t230 * t45;
-  const Real t375 = t374 * nu[1];
-  const Real t376 = t373 + t375;
-  const Real t377 = t279 * t45;
-  const Real t378 = t377 * nu[2];
-  const Real t379 = t376 + t378;
-  const Real t380 = t281 * par.k13;
-  const Real t381 = t379 - t380;
-  const Real t382 = t303 * t381;
-  const Real t383 = t69 * t271;
-
-  // passive accelerations
-  const Real t384 = t69 * t273;
-
-  // accelerations
-  const Real t385 = t383 + t384;
-  const Real t386 = t385 - t68;
-  const Real t387 = t386 * nu[2];
-  const Real t388 = -t68;
-  const Real t389 = sum_error(t385, t388);
-  const Real t390 = t389 * nu[2];
-  const Real t391 = t387 + t390;
-
-  // passive accelerations
-  const Real t392 = t183 * t69;
-  const Real t393 = t69 * t185;
-  const Real t394 = t393 + t392;
-  const Real t395 = t394 * nu[0];
+  // kernel
+  const Real t408 = t69 * t183;
+  const Real t409 = t408 * nu[1];
 
   // accelerations
-  const Real t396 = t69 * t222;
+  const Real t410 = t409 + t407;
+  const Real t411 = t69 * t241;
+  const Real t412 = t243 * t69;
+  const Real t413 = t411 + t412;
+  const Real t414 = t413 * nu[0];
+  const Real t415 = t410 + t414;
+  const Real t416 = t69 * t292;
+  const Real t417 = product_error(t294, t69);
+  const Real t418 = t416 + t417;
+  const Real t419 = t69 * t294;
+  const Real t420 = -t68;
+  const Real t421 = sum_error(t419, t420);
+  const Real t422 = t418 + t421;
+  const Real t423 = t422 * nu[2];
+  const Real t424 = t419 - t68;
+  const Real t425 = nu[2] * t424;
+  const Real t426 = t423 + t425;
+  const Real t427 = t426 + t415;
+  const Real t428 = t427 * par.k2;
+  const Real t429 = t314 * par.k13;
+  const Real t430 = t181 * t45;
 
-  // passive accelerations
-  const Real t397 = t224 * t69;
-
-  // accelerations
-  const Real t398 = t396 + t397;
-  const Real t399 = t398 * nu[1];
-  const Real t400 = t395 + t399;
-  const Real t401 = t400 + t391;
-  const Real t402 = t401 * par.k2;
-  const Real t403 = t293 * par.k13;
-  const Real t404 = t45 * t271;
-
-  // passive accelerations
-  const Real t405 = t273 * t45;
-
-  // accelerations
-  const Real t406 = t404 + t405;
-  const Real t407 = t45 - t406;
-  const Real t408 = nu[2] * t407;
-  const Real t409 = t45 * t222;
-
-  // passive accelerations
-  const Real t410 = t224 * t45;
-
-  // accelerations
-  const Real t411 = t410 + t409;
-  const Real t412 = t411 * nu[1];
-
-  // passive accelerations
-  const Real t413 = t183 * t45;
-  const Real t414 = t185 * t45;
-  const Real t415 = t414 + t413;
-  const Real t416 = t415 * nu[0];
+  // kernel
+  const Real t431 = t183 * t45;
 
   // accelerations
-  const Real t417 = t412 + t416;
-  const Real t418 = t408 - t417;
-  const Real t419 = t403 + t418;
-  const Real t420 = par.k1 * t419;
-  const Real t421 = t402 - t420;
-  const Real t422 = t421 * t310;
-  const Real t423 = t422 + t382;
-  const Real t424 = t423 + t370;
-  const Real t425 = t424 - t367;
-  const Real t426 = t295 * R[6];
-  const Real t427 = t426 * constant<Real>(2.0L);
-  const Real t428 = R[8] * t299;
-  const Real t429 = t428 * constant<Real>(2.0L);
-  const Real t430 = t427 - t429;
+  const Real t432 = t430 + t431;
+  const Real t433 = t432 * nu[1];
+  const Real t434 = t45 * t241;
+  const Real t435 = t243 * t45;
+  const Real t436 = t434 + t435;
+  const Real t437 = t436 * nu[0];
+  const Real t438 = t437 + t433;
+  const Real t439 = t292 * t45;
+  const Real t440 = t294 * t45;
+  const Real t441 = t439 + t440;
+  const Real t442 = t45 - t441;
+  const Real t443 = t442 * nu[2];
+  const Real t444 = t443 - t438;
+  const Real t445 = t429 + t444;
+  const Real t446 = t445 * par.k1;
+  const Real t447 = t428 - t446;
+  const Real t448 = t447 * t331;
+  const Real t449 = t403 + t448;
+  const Real t450 = t449 + t391;
+  const Real t451 = t450 - t388;
+  const Real t452 = t316 * R[6];
+  const Real t453 = t452 * constant<Real>(2.0L);
+  const Real t454 = R[8] * t320;
+  const Real t455 = t454 * constant<Real>(2.0L);
+  const Real t456 = t453 - t455;
 
   // joint angles
-  const Real t431 = constant<Real>(2.0L) * t42;
+  const Real t457 = constant<Real>(2.0L) * t42;
 
   // accelerations
-  const Real t432 = t430 / t431;
-  const Real t433 = t432 * t43;
-  const Real t434 = t433 / t42;
-  const Real t435 = R[8] * t434;
-  const Real t436 = t43 * t299;
-  const Real t437 = t436 + t435;
-  const Real t438 = t437 * par.r_R;
-  const Real t439 = nu[2] - t293;
-  const Real t440 = t438 * t439;
-  const Real t441 = t59 * t440;
-  const Real t442 = t441 + t425;
-  const Real t443 = R[6] * t434;
-  const Real t444 = t295 * t43;
-  const Real t445 = t444 - t443;
-  const Real t446 = t445 * par.r_R;
-  const Real t447 = t281 * t446;
-  const Real t448 = t438 * nu[0];
-  const Real t449 = t447 - t448;
-  const Real t450 = t449 * c_r_p_1_;
-  const Real t451 = t442 - t450;
-  const Real t452 = t439 * t446;
-  const Real t453 = t452 * t49;
-  const Real t454 = t451 - t453;
-  const Real t455 = t58 * t454;
-  const Real t456 = -t455;
-  const Real t457 = s_r_p_1_ * t338;
-  const Real t458 = t293 * c_r_p_1_;
-  const Real t459 = t458 + t457;
+  const Real t458 = t456 / t457;
+  const Real t459 = t43 * t458;
+  const Real t460 = t459 / t42;
+  const Real t461 = R[8] * t460;
+  const Real t462 = t43 * t320;
+  const Real t463 = t461 + t462;
+  const Real t464 = t463 * par.r_R;
+  const Real t465 = nu[2] - t314;
+  const Real t466 = t464 * t465;
+  const Real t467 = t466 * t59;
+  const Real t468 = t467 + t451;
+  const Real t469 = t460 * R[6];
+  const Real t470 = t43 * t316;
+  const Real t471 = t470 - t469;
+  const Real t472 = t471 * par.r_R;
+  const Real t473 = t472 * t302;
+  const Real t474 = t464 * nu[0];
+  const Real t475 = t473 - t474;
+  const Real t476 = c_r_p_1_ * t475;
+  const Real t477 = t468 - t476;
+  const Real t478 = t472 * t465;
+  const Real t479 = t49 * t478;
+  const Real t480 = t477 - t479;
+  const Real t481 = t58 * t480;
+  const Real t482 = -t481;
+  const Real t483 = t359 * s_r_p_1_;
+  const Real t484 = t314 * c_r_p_1_;
+  const Real t485 = t483 + t484;
+  const Real t486 = t166 * nu[1];
 
-  // passive accelerations
-  const Real t460 = nu[0] * t174;
-  const Real t461 = t210 * nu[1];
-  const Real t462 = t460 + t461;
-  const Real t463 = t260 * nu[2];
-  const Real t464 = t462 + t463;
+  // kernel
+  const Real t487 = t168 * nu[1];
 
   // accelerations
-  const Real t465 = t459 + t464;
-  const Real t466 = t359 * t465;
-  const Real t467 = t338 * t310;
-  const Real t468 = t293 * t303;
-  const Real t469 = t467 - t468;
-  const Real t470 = t22 * t469;
-  const Real t471 = t466 + t470;
-  const Real t472 = t310 * t381;
-  const Real t473 = t303 * t421;
-  const Real t474 = t472 - t473;
-  const Real t475 = t474 * par.k1;
-  const Real t476 = par.c * t469;
-  const Real t477 = t476 + t475;
-  const Real t478 = t477 - t471;
-  const Real t479 = t84 * t440;
-  const Real t480 = t478 - t479;
-  const Real t481 = t449 * t49;
-  const Real t482 = t480 + t481;
-  const Real t483 = t25 * t452;
-  const Real t484 = t482 - t483;
-  const Real t485 = sum_error(t484, t456);
-  const Real t486 = product_error(t58, t454);
-  const Real t487 = t485 - t486;
-  const Real t488 = t151 * t487;
-  const Real t489 = t484 - t455;
-  const Real t490 = t128 * t489;
-  const Real t491 = t488 + t490;
-  const Real t492 = product_error(t489, t151);
-  const Real t493 = t492 + t491;
-  const Real t494 = t454 * t105;
-  const Real t495 = t335 * t465;
-  const Real t496 = t28 * t469;
-  const Real t497 = t496 + t495;
-  const Real t498 = t474 * par.k2;
-  const Real t499 = par.r_F * t469;
-  const Real t500 = t499 + t498;
-  const Real t501 = t497 + t500;
-  const Real t502 = t440 * t114;
-  const Real t503 = t502 + t501;
-  const Real t504 = t59 * t449;
+  const Real t488 = t487 + t486;
+  const Real t489 = t232 * nu[0];
+  const Real t490 = t489 + t488;
+  const Real t491 = nu[2] * t281;
+  const Real t492 = t490 + t491;
+  const Real t493 = t485 + t492;
+  const Real t494 = t493 * t380;
+  const Real t495 = t359 * t331;
+  const Real t496 = t314 * t324;
+  const Real t497 = t495 - t496;
+  const Real t498 = t22 * t497;
+  const Real t499 = t494 + t498;
+  const Real t500 = t331 * t402;
+  const Real t501 = t324 * t447;
+  const Real t502 = t500 - t501;
+  const Real t503 = par.k1 * t502;
+  const Real t504 = t497 * par.c;
   const Real t505 = t503 + t504;
-  const Real t506 = t452 * t30;
-  const Real t507 = t505 + t506;
-  const Real t508 = sum_error(t494, t507);
-  const Real t509 = product_error(t454, t105);
+  const Real t506 = t505 - t499;
+  const Real t507 = t466 * t84;
+  const Real t508 = t506 - t507;
+  const Real t509 = t475 * t49;
   const Real t510 = t508 + t509;
-  const Real t511 = t510 + t493;
-  const Real t512 = t151 * t489;
-  const Real t513 = t507 + t494;
-  const Real t514 = t513 + t512;
-  const Real t515 = t511 + t514;
-  const Real t516 = t173 * t515;
-  const Real t517 = t22 * t516;
-  const Real t518 = -t517;
-  const Real t519 = sum_error(t489, t518);
-  const Real t520 = t519 + t487;
-  const Real t521 = t520 * t93;
-  const Real t522 = t489 - t517;
-  const Real t523 = t522 * t97;
-  const Real t524 = t521 + t523;
-  const Real t525 = product_error(t522, t93);
-  const Real t526 = t524 + t525;
-  const Real t527 = t72 * t526;
-  const Real t528 = t522 * t93;
-  const Real t529 = product_error(t72, t528);
-  const Real t530 = t527 + t529;
-  const Real t531 = t72 * t528;
-  const Real t532 = t454 - t531;
-  const Real t533 = t532 - t530;
-  const Real t534 = t48 * t533;
-  const Real t535 = par.k1 * t534;
-  const Real t536 = s_r_p_1_ * t535;
-  const Real t537 = c_r_p_1_ * t526;
-  const Real t538 = c_r_p_1_ * t528;
-  const Real t539 = t538 + t537;
-  const Real t540 = t536 + t539;
-  const Real t541 = t341 * nu[1];
-  const Real t542 = t540 - t541;
-  const Real t543 = t341 * t346;
-  const Real t544 = t543 - t542;
-  const Real t545 = par.k12 * t544;
-  const Real t546 = t459 * t459;
-  const Real t547 = t341 * t341;
-  const Real t548 = t546 + t547;
-  const Real t549 = t548 * par.k11;
-  const Real t550 = t545 + t549;
-  const Real t551 = t526 * t45;
-  const Real t552 = t45 * t528;
-  const Real t553 = t552 + t551;
-  const Real t554 = t452 + t553;
-  const Real t555 = t379 * nu[0];
-  const Real t556 = t293 * t401;
-  const Real t557 = t556 + t555;
-  const Real t558 = t554 + t557;
+  const Real t511 = t25 * t478;
+  const Real t512 = t510 - t511;
+  const Real t513 = sum_error(t512, t482);
+  const Real t514 = product_error(t58, t480);
+  const Real t515 = t513 - t514;
+  const Real t516 = t515 * t130;
+  const Real t517 = t512 - t481;
+  const Real t518 = t128 * t517;
+  const Real t519 = t516 + t518;
+  const Real t520 = product_error(t517, t130);
+  const Real t521 = t519 + t520;
+  const Real t522 = t480 * t105;
+  const Real t523 = t493 * t356;
+  const Real t524 = t28 * t497;
+  const Real t525 = t524 + t523;
+  const Real t526 = t497 * par.r_F;
+  const Real t527 = par.k2 * t502;
+  const Real t528 = t526 + t527;
+  const Real t529 = t525 + t528;
+  const Real t530 = t466 * t114;
+  const Real t531 = t529 + t530;
+  const Real t532 = t59 * t475;
+  const Real t533 = t532 + t531;
+  const Real t534 = t30 * t478;
+  const Real t535 = t533 + t534;
+  const Real t536 = sum_error(t522, t535);
+  const Real t537 = product_error(t480, t105);
+  const Real t538 = t537 + t536;
+  const Real t539 = t521 + t538;
+  const Real t540 = t130 * t517;
+  const Real t541 = t535 + t522;
+  const Real t542 = t541 + t540;
+  const Real t543 = t542 + t539;
+  const Real t544 = t543 * t142;
+  const Real t545 = t543 * t138;
+  const Real t546 = t544 + t545;
+  const Real t547 = t22 * t546;
+  const Real t548 = -t547;
+  const Real t549 = sum_error(t517, t548);
+  const Real t550 = t515 + t549;
+  const Real t551 = t550 * t93;
+  const Real t552 = t517 - t547;
+  const Real t553 = t552 * t97;
+  const Real t554 = t553 + t551;
+  const Real t555 = product_error(t552, t93);
+  const Real t556 = t554 + t555;
+  const Real t557 = t72 * t556;
+  const Real t558 = t552 * t93;
+  const Real t559 = product_error(t72, t558);
+  const Real t560 = t557 + t559;
+  const Real t561 = t72 * t558;
+  const Real t562 = t480 - t561;
+  const Real t563 = t562 - t560;
+  const Real t564 = t563 * t48;
+  const Real t565 = t45 * t564;
+  const Real t566 = t475 - t565;
 
-  // frame: acceleration
-  const Real t559 = par.g * R[8];
+  // front_wheel: acceleration
+  const Real t567 = c_r_p_2_ * t114;
+  const Real t568 = t84 * s_r_p_2_;
+  const Real t569 = t567 - t568;
+
+  // front_wheel: wrench
+  const Real t570 = par.m_F * t569;
+
+  // front_wheel: joint force
+  const Real t571 = t570 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t572 = t114 * s_r_p_2_;
+  const Real t573 = c_r_p_2_ * t84;
+  const Real t574 = t572 + t573;
+
+  // front_wheel: wrench
+  const Real t575 = t574 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t576 = t575 * s_r_p_2_;
+  const Real t577 = t571 + t576;
+  const Real t578 = par.k2 * t577;
+  const Real t579 = c_r_p_2_ * t575;
+  const Real t580 = t570 * s_r_p_2_;
+  const Real t581 = t579 - t580;
+  const Real t582 = par.k1 * t581;
+  const Real t583 = t578 - t582;
+
+  // fork: wrench
+  const Real t584 = par.m_H * t82;
+
+  // front_wheel: joint force
+  const Real t585 = t583 + t584;
+
+  // fork: joint force
+  const Real t586 = s_r_p_1_ * t585;
+
+  // fork: wrench
+  const Real t587 = t59 * par.m_H;
+
+  // front_wheel: wrench
+  const Real t588 = t59 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t589 = t587 + t588;
+
+  // fork: joint force
+  const Real t590 = c_r_p_1_ * t589;
+  const Real t591 = t586 - t590;
 
   // accelerations
-  const Real t560 = t558 - t559;
-  const Real t561 = t281 * nu[0];
-  const Real t562 = t561 + t528;
-  const Real t563 = t526 + t562;
-  const Real t564 = t563 * par.k13;
-  const Real t565 = t560 - t564;
-  const Real t566 = t565 * par.k2;
-  const Real t567 = t69 * t526;
-  const Real t568 = t69 * t528;
-  const Real t569 = t567 + t568;
-  const Real t570 = t440 - t569;
-  const Real t571 = t379 * t281;
-  const Real t572 = t293 * t418;
-  const Real t573 = t571 - t572;
-  const Real t574 = t573 + t570;
+  const Real t592 = t566 * t591;
+  const Real t593 = t69 * t556;
+  const Real t594 = t69 * t558;
+  const Real t595 = t594 + t593;
+  const Real t596 = t466 - t595;
 
-  // frame: acceleration
-  const Real t575 = par.g * R[6];
+  // fork: joint force
+  const Real t597 = c_r_p_1_ * t585;
+  const Real t598 = s_r_p_1_ * t589;
+  const Real t599 = t597 + t598;
+  const Real t600 = par.k2 * t599;
 
-  // accelerations
-  const Real t576 = t574 - t575;
-  const Real t577 = t281 * t281;
-  const Real t578 = t293 * t293;
-  const Real t579 = t578 + t577;
-  const Real t580 = t579 * par.k13;
-  const Real t581 = t576 - t580;
-  const Real t582 = t581 * par.k1;
-  const Real t583 = t566 + t582;
-  const Real t584 = t583 + t550;
-  const Real t585 = par.k2 * t584;
-  const Real t586 = t534 * t45;
-  const Real t587 = t449 - t586;
-  const Real t588 = t401 * t281;
-  const Real t589 = t418 * nu[0];
-  const Real t590 = t589 + t588;
-  const Real t591 = t587 - t590;
+  // front_wheel: joint force
+  const Real t601 = t581 * par.k2;
+  const Real t602 = par.k1 * t577;
+  const Real t603 = t601 + t602;
+  const Real t604 = t603 + par.k38;
 
-  // frame: acceleration
-  const Real t592 = par.g * R[7];
+  // fork: joint force
+  const Real t605 = par.k1 * t604;
+  const Real t606 = t600 + t605;
+  const Real t607 = t606 + par.m_B;
+
+  // rear_wheel: wrench
+  const Real t608 = par.m_R * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t609 = t608 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t610 = par.m_R * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t611 = t610 * s_r_p_0_;
+  const Real t612 = t609 + t611;
+  const Real t613 = t612 + t607;
 
   // accelerations
-  const Real t593 = t591 - t592;
-  const Real t594 = t293 * nu[0];
-  const Real t595 = t534 - t594;
-  const Real t596 = t595 * par.k13;
-  const Real t597 = t593 + t596;
-  const Real t598 = s_r_p_1_ * t597;
-  const Real t599 = t581 * par.k2;
-  const Real t600 = t565 * par.k1;
-  const Real t601 = t599 - t600;
-  const Real t602 = t601 * c_r_p_1_;
-  const Real t603 = t602 + t598;
-  const Real t604 = t543 + t542;
-  const Real t605 = par.k11 * t604;
-  const Real t606 = t346 * t346;
-  const Real t607 = t606 + t546;
-  const Real t608 = t607 * par.k12;
-  const Real t609 = t608 + t605;
-  const Real t610 = t603 - t609;
-  const Real t611 = t610 * par.k1;
-  const Real t612 = t585 - t611;
-  const Real t613 = c_r_p_2_ * t612;
-  const Real t614 = par.k1 * t584;
-  const Real t615 = t610 * par.k2;
-  const Real t616 = t614 + t615;
-  const Real t617 = t616 * s_r_p_2_;
-  const Real t618 = t613 + t617;
-  const Real t619 = t618 * par.m_F;
-  const Real t620 = c_r_p_2_ * t619;
-  const Real t621 = c_r_p_2_ * t616;
-  const Real t622 = t612 * s_r_p_2_;
-  const Real t623 = t621 - t622;
-  const Real t624 = par.m_F * t623;
-  const Real t625 = t624 * s_r_p_2_;
-  const Real t626 = t620 - t625;
-  const Real t627 = par.k2 * t626;
-  const Real t628 = t619 * s_r_p_2_;
-  const Real t629 = t624 * c_r_p_2_;
-  const Real t630 = t628 + t629;
-  const Real t631 = par.k1 * t630;
-  const Real t632 = t627 + t631;
-  const Real t633 = t632 * par.k12;
-  const Real t634 = par.k2 * t630;
-  const Real t635 = par.k1 * t626;
-  const Real t636 = t634 - t635;
-  const Real t637 = par.k11 * t636;
-  const Real t638 = t633 + t637;
-  const Real t639 = t542 - t516;
-  const Real t640 = t639 * par.I_Fyy;
-  const Real t641 = t640 - t638;
-  const Real t642 = t603 * par.k8;
-  const Real t643 = t583 * par.k10;
-  const Real t644 = t642 - t643;
-  const Real t645 = par.k7 * t542;
-  const Real t646 = t543 * par.k32;
-  const Real t647 = t645 + t646;
-  const Real t648 = t606 - t547;
-  const Real t649 = par.k5 * t648;
-  const Real t650 = t647 + t649;
-  const Real t651 = t650 + t644;
-  const Real t652 = t641 + t651;
-  const Real t653 = t652 * s_r_p_1_;
-  const Real t654 = c_r_p_1_ * t535;
-  const Real t655 = s_r_p_1_ * t526;
-  const Real t656 = s_r_p_1_ * t528;
-  const Real t657 = t655 + t656;
-  const Real t658 = t657 - t654;
-  const Real t659 = t459 * nu[1];
-  const Real t660 = t658 - t659;
+  const Real t614 = t596 * t613;
+  const Real t615 = t614 + t592;
+  const Real t616 = t45 * t556;
+  const Real t617 = t558 * t45;
+  const Real t618 = t617 + t616;
+  const Real t619 = t618 + t478;
+
+  // fork: joint force
+  const Real t620 = par.k1 * t599;
+  const Real t621 = par.k2 * t604;
+  const Real t622 = t621 - t620;
+
+  // rear_wheel: joint force
+  const Real t623 = t610 * c_r_p_0_;
+  const Real t624 = t608 * s_r_p_0_;
+  const Real t625 = t623 - t624;
+  const Real t626 = t622 + t625;
+
+  // accelerations
+  const Real t627 = t619 * t626;
+  const Real t628 = t627 + t615;
+
+  // fork: joint force
+  const Real t629 = t622 * par.k13;
+
+  // front_wheel: joint force
+  const Real t630 = t583 * par.k11;
+  const Real t631 = par.k12 * t603;
+  const Real t632 = t630 + t631;
+
+  // fork: wrench
+  const Real t633 = par.k8 * t82;
+  const Real t634 = t633 - par.k37;
+
+  // front_wheel: joint force
+  const Real t635 = t634 - t632;
+
+  // fork: joint force
+  const Real t636 = t635 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t637 = t588 * par.k11;
+
+  // fork: wrench
+  const Real t638 = par.k8 * t59;
+
+  // front_wheel: joint force
+  const Real t639 = t638 - t637;
+
+  // fork: joint force
+  const Real t640 = t639 * s_r_p_1_;
+  const Real t641 = t640 + t636;
+  const Real t642 = t641 - t629;
+  const Real t643 = t642 + par.k15;
+
+  // passive accelerations
+  const Real t644 = par.k59 + t643;
+
+  // rear_wheel: joint force
+  const Real t645 = t612 * par.r_R;
+
+  // passive accelerations
+  const Real t646 = t644 - t645;
+
+  // accelerations
+  const Real t647 = t558 * t646;
+  const Real t648 = sum_error(t647, t628);
+  const Real t649 = t646 * t556;
+  const Real t650 = product_error(t646, t558);
+  const Real t651 = t649 + t650;
+  const Real t652 = t651 + t648;
+  const Real t653 = t628 + t647;
+
+  // fork: joint force
+  const Real t654 = s_r_p_1_ * t635;
+  const Real t655 = t639 * c_r_p_1_;
+  const Real t656 = t655 - t654;
+  const Real t657 = par.k1 * t656;
+
+  // front_wheel: joint force
+  const Real t658 = t588 * par.k12;
+
+  // fork: wrench
+  const Real t659 = t59 * par.k10;
+
+  // front_wheel: joint force
+  const Real t660 = t659 + t658;
+
+  // fork: joint force
   const Real t661 = par.k2 * t660;
-  const Real t662 = t534 * par.k2;
-  const Real t663 = t662 * par.k1;
-  const Real t664 = t663 + t661;
-  const Real t665 = t664 * s_r_p_2_;
-  const Real t666 = par.k1 * t660;
-  const Real t667 = t662 * par.k2;
-  const Real t668 = t667 - t666;
-  const Real t669 = c_r_p_2_ * t668;
-  const Real t670 = t665 + t669;
-  const Real t671 = c_r_p_2_ * t348;
-  const Real t672 = t362 * s_r_p_2_;
-  const Real t673 = t671 - t672;
-  const Real t674 = t673 * t464;
-  const Real t675 = t670 - t674;
-  const Real t676 = t675 * par.I_Fxx;
-  const Real t677 = t673 * t465;
-  const Real t678 = par.k37 * t677;
-  const Real t679 = t676 - t678;
-  const Real t680 = t679 * s_r_p_2_;
-  const Real t681 = t664 * c_r_p_2_;
-  const Real t682 = t668 * s_r_p_2_;
-  const Real t683 = t681 - t682;
-  const Real t684 = c_r_p_2_ * t362;
-  const Real t685 = t348 * s_r_p_2_;
-  const Real t686 = t684 + t685;
-  const Real t687 = t686 * t464;
-  const Real t688 = t687 + t683;
-  const Real t689 = par.I_Fxx * t688;
-  const Real t690 = t465 * t686;
-  const Real t691 = par.k36 * t690;
-  const Real t692 = t689 - t691;
-  const Real t693 = c_r_p_2_ * t692;
-  const Real t694 = t680 + t693;
-  const Real t695 = par.k2 * t694;
-  const Real t696 = c_r_p_2_ * t679;
-  const Real t697 = t692 * s_r_p_2_;
-  const Real t698 = t696 - t697;
-  const Real t699 = t698 * par.k1;
-  const Real t700 = t695 - t699;
-  const Real t701 = c_r_p_1_ * t597;
-  const Real t702 = s_r_p_1_ * t601;
-  const Real t703 = t701 - t702;
-  const Real t704 = t346 * t459;
-  const Real t705 = t704 + t660;
-  const Real t706 = t705 * par.k11;
-  const Real t707 = t341 * t459;
-  const Real t708 = t662 - t707;
-  const Real t709 = t708 * par.k12;
-  const Real t710 = t706 + t709;
-  const Real t711 = t703 + t710;
-  const Real t712 = t711 * par.m_F;
-  const Real t713 = t712 * par.k11;
-  const Real t714 = t713 + t700;
-  const Real t715 = t703 * par.k8;
-  const Real t716 = t660 * par.k17;
-  const Real t717 = t704 * par.k31;
-  const Real t718 = t716 - t717;
-  const Real t719 = t708 * par.k5;
-  const Real t720 = t718 + t719;
-  const Real t721 = t720 - t715;
-  const Real t722 = t721 + t714;
-  const Real t723 = c_r_p_1_ * t722;
-  const Real t724 = t723 - t653;
-  const Real t725 = t724 * par.k2;
-  const Real t726 = par.k1 * t694;
-  const Real t727 = t698 * par.k2;
-  const Real t728 = t726 + t727;
-  const Real t729 = t712 * par.k12;
-  const Real t730 = t729 + t728;
-  const Real t731 = t703 * par.k10;
-  const Real t732 = t705 * par.k5;
-  const Real t733 = t662 * par.k6;
-  const Real t734 = t707 * par.k33;
-  const Real t735 = t733 - t734;
-  const Real t736 = t735 + t732;
-  const Real t737 = t736 + t731;
-  const Real t738 = t737 + t730;
-  const Real t739 = par.k1 * t738;
-  const Real t740 = t739 + t725;
-  const Real t741 = par.k52 * t593;
-  const Real t742 = t593 * par.k15;
-  const Real t743 = t741 + t742;
-  const Real t744 = par.k3 * t595;
-  const Real t745 = t293 * t281;
-  const Real t746 = t745 * par.k57;
-  const Real t747 = t746 + t744;
-  const Real t748 = t747 - t743;
-  const Real t749 = t740 + t748;
-  const Real t750 = t745 * par.r_R;
-  const Real t751 = t593 - t750;
-  const Real t752 = par.m_R * t751;
-  const Real t753 = t752 * par.r_R;
-  const Real t754 = t534 * s_r_p_0_;
-  const Real t755 = t281 * c_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t756 = nu[0] * s_r_p_0_;
+  const Real t662 = t661 + t657;
+  const Real t663 = par.k13 * t591;
+  const Real t664 = t663 - t662;
 
   // accelerations
-  const Real t757 = t756 - t755;
-  const Real t758 = t757 * nu[2];
-  const Real t759 = t758 + t754;
-  const Real t760 = par.I_Rxx * t759;
-  const Real t761 = t757 * t439;
-  const Real t762 = t761 * par.k30;
-  const Real t763 = t762 - t760;
-  const Real t764 = t763 * c_r_p_0_;
-  const Real t765 = t534 * c_r_p_0_;
-  const Real t766 = t281 * s_r_p_0_;
-
-  // rear_wheel: twist
-  const Real t767 = nu[0] * c_r_p_0_;
-
-  // accelerations
-  const Real t768 = t767 + t766;
-  const Real t769 = nu[2] * t768;
-  const Real t770 = t769 + t765;
-  const Real t771 = par.I_Rxx * t770;
-  const Real t772 = t439 * t768;
-  const Real t773 = t772 * par.k29;
-  const Real t774 = t771 + t773;
-  const Real t775 = t774 * s_r_p_0_;
-  const Real t776 = t764 + t775;
-  const Real t777 = t776 + t753;
-  const Real t778 = t749 + t777;
-  const Real t779 = t372 * t372;
-  const Real t780 = t394 * t394;
-  const Real t781 = t779 + t780;
-  const Real t782 = t415 * t415;
-  const Real t783 = t781 + t782;
-  const Real t784 = constant<Real>(1.0L) + t783;
-  const Real t785 = t183 * t185;
-  const Real t786 = t785 * constant<Real>(2.0L);
-  const Real t787 = t185 * t185;
-  const Real t788 = t786 + t787;
-  const Real t789 = t788 + t784;
-  const Real t790 = t191 * t191;
-  const Real t791 = t790 + t789;
-  const Real t792 = t174 * t174;
-  const Real t793 = t791 + t792;
-  const Real t794 = constant<Real>(1.0L) / t793;
-  const Real t795 = t372 * t374;
-  const Real t796 = t398 * t394;
-  const Real t797 = t796 + t795;
-  const Real t798 = t411 * t415;
-  const Real t799 = t798 + t797;
-  const Real t800 = t183 * t224;
-  const Real t801 = t185 * t222;
-  const Real t802 = t800 + t801;
-  const Real t803 = t224 * t185;
-  const Real t804 = t802 + t803;
-  const Real t805 = t804 + t799;
-  const Real t806 = t191 * t230;
-  const Real t807 = t805 + t806;
-  const Real t808 = t210 * t174;
-  const Real t809 = t808 + t807;
-  const Real t810 = t794 * t809;
-  const Real t811 = t810 * t185;
-  const Real t812 = t810 * t183;
-  const Real t813 = t811 + t812;
-  const Real t814 = -t224;
-  const Real t815 = sum_error(t813, t814);
-  const Real t816 = t815 - t222;
-  const Real t817 = t813 - t224;
-  const Real t818 = t816 * t817;
-  const Real t819 = t818 * constant<Real>(2.0L);
-  const Real t820 = t817 * t817;
-  const Real t821 = t820 + t819;
-  const Real t822 = t810 * t394;
-  const Real t823 = t398 - t822;
-  const Real t824 = t823 * t823;
-  const Real t825 = t810 * t372;
-  const Real t826 = t374 - t825;
-  const Real t827 = t826 * t826;
-  const Real t828 = t824 + t827;
-  const Real t829 = t810 * t415;
-  const Real t830 = t829 - t411;
-  const Real t831 = t830 * t830;
-  const Real t832 = t831 + t828;
-  const Real t833 = t810 * t810;
-  const Real t834 = t832 + t833;
-  const Real t835 = t834 + t821;
-  const Real t836 = t810 * t191;
-  const Real t837 = t836 - t230;
-  const Real t838 = t837 * t837;
-  const Real t839 = t835 + t838;
-  const Real t840 = t839 + constant<Real>(1.0L);
-  const Real t841 = t810 * t174;
-  const Real t842 = t841 - t210;
-  const Real t843 = -t210;
-  const Real t844 = sum_error(t841, t843);
-  const Real t845 = t842 * t844;
-  const Real t846 = t845 * constant<Real>(2.0L);
-  const Real t847 = t842 * t842;
-  const Real t848 = t847 + t846;
-  const Real t849 = t840 + t848;
-  const Real t850 = constant<Real>(1.0L) / t849;
-  const Real t851 = t377 * t372;
-  const Real t852 = t394 * t389;
-  const Real t853 = t386 * t394;
-  const Real t854 = t852 + t853;
-  const Real t855 = t854 + t851;
-  const Real t856 = t415 * t407;
-  const Real t857 = t855 - t856;
-  const Real t858 = t183 * t273;
-  const Real t859 = t185 * t271;
-  const Real t860 = t858 + t859;
-  const Real t861 = t185 * t273;
-  const Real t862 = t860 + t861;
-  const Real t863 = t857 + t862;
-  const Real t864 = t191 * t279;
-  const Real t865 = t864 + t863;
-  const Real t866 = t260 * t174;
-  const Real t867 = t866 + t865;
-  const Real t868 = t867 * t794;
-  const Real t869 = t394 * t868;
-  const Real t870 = -t869;
-  const Real t871 = sum_error(t386, t870);
-  const Real t872 = t871 + t389;
-  const Real t873 = t823 * t872;
-  const Real t874 = t386 - t869;
-  const Real t875 = t874 * t823;
-  const Real t876 = t873 + t875;
-  const Real t877 = t372 * t868;
-  const Real t878 = t377 - t877;
-  const Real t879 = t826 * t878;
-  const Real t880 = t879 + t876;
-  const Real t881 = t415 * t868;
-  const Real t882 = t881 + t407;
-  const Real t883 = t830 * t882;
-  const Real t884 = t883 + t880;
-  const Real t885 = t810 * t868;
-  const Real t886 = t884 + t885;
-  const Real t887 = t185 * t868;
-  const Real t888 = t183 * t868;
-  const Real t889 = t887 + t888;
-  const Real t890 = t889 - t273;
-  const Real t891 = t816 * t890;
-  const Real t892 = -t273;
-  const Real t893 = sum_error(t889, t892);
-  const Real t894 = t893 - t271;
-  const Real t895 = t894 * t817;
-  const Real t896 = t891 + t895;
-  const Real t897 = t817 * t890;
-  const Real t898 = t897 + t896;
-  const Real t899 = t898 + t886;
-  const Real t900 = t191 * t868;
-  const Real t901 = t900 - t279;
-  const Real t902 = t837 * t901;
-  const Real t903 = t899 + t902;
-  const Real t904 = t868 * t174;
-  const Real t905 = t904 - t260;
-  const Real t906 = t905 * t844;
-  const Real t907 = -t260;
-  const Real t908 = sum_error(t904, t907);
-  const Real t909 = t842 * t908;
-  const Real t910 = t906 + t909;
-  const Real t911 = t842 * t905;
-  const Real t912 = t910 + t911;
-  const Real t913 = t903 + t912;
-  const Real t914 = t850 * t913;
-  const Real t915 = t810 * t914;
-  const Real t916 = t915 - t868;
-  const Real t917 = t916 * t778;
-  const Real t918 = sum_error(t749, t777);
-  const Real t919 = t918 * t916;
-  const Real t920 = t917 + t919;
-  const Real t921 = t603 * par.m_H;
-  const Real t922 = par.k8 * t604;
-  const Real t923 = t607 * par.k10;
-  const Real t924 = t922 - t923;
-  const Real t925 = t924 + t921;
-  const Real t926 = t636 + t925;
-  const Real t927 = c_r_p_1_ * t926;
-  const Real t928 = t703 * par.m_H;
-  const Real t929 = t705 * par.k8;
-  const Real t930 = t708 * par.k10;
-  const Real t931 = t930 - t929;
-  const Real t932 = t931 + t928;
-  const Real t933 = t712 + t932;
-  const Real t934 = s_r_p_1_ * t933;
-  const Real t935 = t927 - t934;
-  const Real t936 = par.k2 * t935;
-  const Real t937 = par.k10 * t544;
-  const Real t938 = par.k8 * t548;
-  const Real t939 = t937 - t938;
-  const Real t940 = t583 * par.m_H;
-  const Real t941 = t940 + t939;
-  const Real t942 = t632 + t941;
-  const Real t943 = par.k1 * t942;
-  const Real t944 = t943 + t936;
-  const Real t945 = t576 * par.m_B;
-  const Real t946 = t528 - t561;
-  const Real t947 = par.k15 * t946;
-  const Real t948 = t579 * par.k16;
-  const Real t949 = t947 - t948;
-  const Real t950 = t949 + t945;
-  const Real t951 = t950 + t944;
+  const Real t665 = t664 * t564;
+  const Real t666 = sum_error(t653, t665);
+  const Real t667 = t652 + t666;
+  const Real t668 = t665 + t653;
+  const Real t669 = t400 * t302;
+  const Real t670 = t314 * t444;
+  const Real t671 = t669 - t670;
 
   // frame: acceleration
-  const Real t952 = nu[0] * nu[0];
+  const Real t672 = par.g * R[6];
 
   // accelerations
-  const Real t953 = t952 + t578;
-  const Real t954 = t953 * par.r_R;
-  const Real t955 = t954 + t560;
-  const Real t956 = t955 * c_r_p_0_;
-  const Real t957 = -t561;
-  const Real t958 = sum_error(t528, t957);
-  const Real t959 = t958 + t526;
-  const Real t960 = t959 * par.r_R;
-  const Real t961 = par.r_R * t946;
-  const Real t962 = t961 + t960;
-  const Real t963 = t576 - t962;
-  const Real t964 = t963 * s_r_p_0_;
-  const Real t965 = t956 + t964;
-  const Real t966 = t965 * par.m_R;
-  const Real t967 = t966 * s_r_p_0_;
-  const Real t968 = t963 * c_r_p_0_;
-  const Real t969 = t955 * s_r_p_0_;
-  const Real t970 = t968 - t969;
-  const Real t971 = par.m_R * t970;
-  const Real t972 = t971 * c_r_p_0_;
-  const Real t973 = t967 + t972;
-  const Real t974 = t973 + t951;
-  const Real t975 = t914 * t823;
-  const Real t976 = t874 - t975;
-  const Real t977 = t872 + t976;
-  const Real t978 = t977 * t974;
-  const Real t979 = s_r_p_1_ * t926;
-  const Real t980 = c_r_p_1_ * t933;
-  const Real t981 = t979 + t980;
-  const Real t982 = t593 * par.m_B;
-  const Real t983 = t595 * par.k16;
-  const Real t984 = t745 * par.k15;
-  const Real t985 = t745 * par.k52;
-  const Real t986 = t984 + t985;
-  const Real t987 = t983 + t986;
-  const Real t988 = t987 + t982;
-  const Real t989 = t988 + t981;
-  const Real t990 = t989 + t752;
-  const Real t991 = t826 * t914;
-  const Real t992 = t878 - t991;
-  const Real t993 = t990 * t992;
-  const Real t994 = t978 + t993;
-  const Real t995 = par.k1 * t935;
-  const Real t996 = par.k2 * t942;
-  const Real t997 = t996 - t995;
-  const Real t998 = par.m_B * t560;
-  const Real t999 = t563 * par.k16;
-  const Real t1000 = par.k15 * t953;
-  const Real t1001 = par.k52 * t953;
-  const Real t1002 = t1000 + t1001;
-  const Real t1003 = t1002 + t999;
-  const Real t1004 = t998 - t1003;
-  const Real t1005 = t1004 + t997;
-  const Real t1006 = t966 * c_r_p_0_;
-  const Real t1007 = t971 * s_r_p_0_;
-  const Real t1008 = t1006 - t1007;
-  const Real t1009 = t1008 + t1005;
-  const Real t1010 = t914 * t830;
-  const Real t1011 = t882 - t1010;
-  const Real t1012 = t1011 * t1009;
-  const Real t1013 = t994 + t1012;
-  const Real t1014 = sum_error(t920, t1013);
-  const Real t1015 = sum_error(t944, t950);
-  const Real t1016 = sum_error(t949, t945);
-  const Real t1017 = t959 * par.k15;
-  const Real t1018 = par.k52 * t946;
-  const Real t1019 = t1018 + t1017;
-  const Real t1020 = product_error(t946, par.k15);
-  const Real t1021 = t1020 + t1019;
-  const Real t1022 = -t948;
-  const Real t1023 = sum_error(t947, t1022);
-  const Real t1024 = t1023 + t1021;
-  const Real t1025 = t1016 + t1024;
-  const Real t1026 = t1015 + t1025;
-  const Real t1027 = sum_error(t973, t951);
-  const Real t1028 = t1026 + t1027;
-  const Real t1029 = t977 * t1028;
-  const Real t1030 = product_error(t974, t977);
-  const Real t1031 = t1030 + t1029;
-  const Real t1032 = sum_error(t993, t978);
-  const Real t1033 = t1031 + t1032;
-  const Real t1034 = sum_error(t1012, t994);
-  const Real t1035 = t1034 + t1033;
-  const Real t1036 = t1014 + t1035;
-  const Real t1037 = t652 * c_r_p_1_;
-  const Real t1038 = s_r_p_1_ * t722;
-  const Real t1039 = t1038 + t1037;
-  const Real t1040 = par.k13 * t997;
+  const Real t673 = t671 - t672;
+  const Real t674 = t302 * t302;
+  const Real t675 = t314 * t314;
+  const Real t676 = t674 + t675;
+  const Real t677 = t676 * par.k13;
+  const Real t678 = t673 - t677;
+  const Real t679 = t678 * par.k2;
+  const Real t680 = t400 * nu[0];
+  const Real t681 = t314 * t427;
+  const Real t682 = t680 + t681;
+
+  // frame: acceleration
+  const Real t683 = par.g * R[8];
+
+  // accelerations
+  const Real t684 = t682 - t683;
+  const Real t685 = t302 * nu[0];
+  const Real t686 = t685 * par.k13;
+  const Real t687 = t684 - t686;
+  const Real t688 = t687 * par.k1;
+  const Real t689 = t679 - t688;
+  const Real t690 = t689 * c_r_p_1_;
+  const Real t691 = t427 * t302;
+  const Real t692 = t444 * nu[0];
+  const Real t693 = t692 + t691;
+
+  // frame: acceleration
+  const Real t694 = par.g * R[7];
+
+  // accelerations
+  const Real t695 = t693 + t694;
+  const Real t696 = t314 * nu[0];
+  const Real t697 = t696 * par.k13;
+  const Real t698 = t697 + t695;
+  const Real t699 = t698 * s_r_p_1_;
+  const Real t700 = t690 - t699;
+  const Real t701 = t485 * t485;
+  const Real t702 = t367 * t367;
+  const Real t703 = t701 + t702;
+  const Real t704 = t703 * par.k12;
+  const Real t705 = t367 * t362;
+  const Real t706 = t362 * nu[1];
+  const Real t707 = t705 - t706;
+  const Real t708 = t707 * par.k11;
+  const Real t709 = t704 + t708;
+  const Real t710 = t700 - t709;
+  const Real t711 = par.k2 * t710;
+  const Real t712 = t705 + t706;
+  const Real t713 = t712 * par.k12;
+  const Real t714 = t362 * t362;
+  const Real t715 = t701 + t714;
+  const Real t716 = par.k11 * t715;
+  const Real t717 = t713 + t716;
+  const Real t718 = t687 * par.k2;
+  const Real t719 = t678 * par.k1;
+  const Real t720 = t718 + t719;
+  const Real t721 = t720 + t717;
+  const Real t722 = par.k1 * t721;
+  const Real t723 = t722 + t711;
+  const Real t724 = c_r_p_2_ * t723;
+  const Real t725 = par.k1 * t710;
+  const Real t726 = t721 * par.k2;
+  const Real t727 = t726 - t725;
+  const Real t728 = t727 * s_r_p_2_;
+  const Real t729 = t724 - t728;
+  const Real t730 = t729 * par.m_F;
+  const Real t731 = t730 * c_r_p_2_;
+  const Real t732 = t723 * s_r_p_2_;
+  const Real t733 = t727 * c_r_p_2_;
+  const Real t734 = t732 + t733;
+  const Real t735 = t734 * par.m_F;
+  const Real t736 = t735 * s_r_p_2_;
+  const Real t737 = t731 + t736;
+  const Real t738 = t737 * par.k2;
+  const Real t739 = t735 * c_r_p_2_;
+  const Real t740 = t730 * s_r_p_2_;
+  const Real t741 = t739 - t740;
+  const Real t742 = t741 * par.k1;
+  const Real t743 = t738 - t742;
+  const Real t744 = par.m_H * t700;
+  const Real t745 = par.k8 * t707;
+  const Real t746 = t703 * par.k10;
+  const Real t747 = t745 - t746;
+  const Real t748 = t744 + t747;
+  const Real t749 = t743 + t748;
+  const Real t750 = c_r_p_1_ * t749;
+  const Real t751 = s_r_p_1_ * t689;
+  const Real t752 = t698 * c_r_p_1_;
+  const Real t753 = t751 + t752;
+  const Real t754 = t753 * par.m_H;
+  const Real t755 = t485 * nu[1];
+  const Real t756 = t485 * t367;
+  const Real t757 = t755 - t756;
+  const Real t758 = t757 * par.k8;
+  const Real t759 = t485 * t362;
+  const Real t760 = t759 * par.k10;
+  const Real t761 = t758 - t760;
+  const Real t762 = t761 - t754;
+  const Real t763 = t757 * par.k11;
+  const Real t764 = t759 * par.k12;
+  const Real t765 = t764 + t763;
+  const Real t766 = t753 + t765;
+  const Real t767 = t766 * par.m_F;
+  const Real t768 = t762 - t767;
+  const Real t769 = s_r_p_1_ * t768;
+  const Real t770 = t750 - t769;
+  const Real t771 = par.k2 * t770;
+  const Real t772 = par.k1 * t737;
+  const Real t773 = t741 * par.k2;
+  const Real t774 = t772 + t773;
+  const Real t775 = t712 * par.k10;
+  const Real t776 = par.k8 * t715;
+  const Real t777 = t775 - t776;
+  const Real t778 = par.m_H * t720;
+  const Real t779 = t777 + t778;
+  const Real t780 = t774 + t779;
+  const Real t781 = t780 * par.k1;
+  const Real t782 = t771 + t781;
+  const Real t783 = t673 * par.m_B;
+  const Real t784 = t676 * par.k16;
+  const Real t785 = t685 * par.k15;
+  const Real t786 = par.k59 * t685;
+  const Real t787 = t785 + t786;
+  const Real t788 = t784 + t787;
+  const Real t789 = t783 - t788;
+  const Real t790 = t782 + t789;
+  const Real t791 = t685 * par.r_R;
+  const Real t792 = t791 + t673;
+  const Real t793 = t792 * c_r_p_0_;
+
+  // frame: acceleration
+  const Real t794 = nu[0] * nu[0];
+
+  // accelerations
+  const Real t795 = t794 + t675;
+  const Real t796 = t795 * par.r_R;
+  const Real t797 = t684 + t796;
+  const Real t798 = t797 * s_r_p_0_;
+  const Real t799 = t793 - t798;
+  const Real t800 = par.m_R * t799;
+  const Real t801 = t800 * c_r_p_0_;
+  const Real t802 = t792 * s_r_p_0_;
+  const Real t803 = t797 * c_r_p_0_;
+  const Real t804 = t802 + t803;
+  const Real t805 = t804 * par.m_R;
+  const Real t806 = t805 * s_r_p_0_;
+  const Real t807 = t801 + t806;
+  const Real t808 = t807 + t790;
+  const Real t809 = sum_error(t808, t668);
+  const Real t810 = t667 + t809;
+  const Real t811 = t395 * t395;
+  const Real t812 = t413 * t413;
+  const Real t813 = t811 + t812;
+  const Real t814 = t436 * t436;
+  const Real t815 = t814 + t813;
+  const Real t816 = constant<Real>(1.0L) + t815;
+  const Real t817 = t243 * t241;
+  const Real t818 = t817 * constant<Real>(2.0L);
+  const Real t819 = t243 * t243;
+  const Real t820 = t818 + t819;
+  const Real t821 = t816 + t820;
+  const Real t822 = t249 * t249;
+  const Real t823 = t822 + t821;
+  const Real t824 = t232 * t232;
+  const Real t825 = t823 + t824;
+  const Real t826 = constant<Real>(1.0L) / t825;
+  const Real t827 = t392 * t395;
+  const Real t828 = t406 * t413;
+  const Real t829 = t408 * t413;
+  const Real t830 = t829 + t828;
+  const Real t831 = t830 + t827;
+  const Real t832 = t436 * t432;
+  const Real t833 = t831 + t832;
+  const Real t834 = t243 * t181;
+  const Real t835 = t183 * t241;
+  const Real t836 = t835 + t834;
+  const Real t837 = t243 * t183;
+  const Real t838 = t836 + t837;
+  const Real t839 = t833 + t838;
+  const Real t840 = t249 * t189;
+  const Real t841 = t840 + t839;
+  const Real t842 = t232 * t166;
+  const Real t843 = t232 * t168;
+  const Real t844 = t843 + t842;
+  const Real t845 = t841 + t844;
+  const Real t846 = t845 * t826;
+  const Real t847 = t846 * t413;
+  const Real t848 = t408 - t847;
+  const Real t849 = t810 * t848;
+  const Real t850 = t808 + t668;
+  const Real t851 = -t847;
+  const Real t852 = sum_error(t408, t851);
+  const Real t853 = t406 + t852;
+  const Real t854 = t853 * t850;
+  const Real t855 = t849 + t854;
+  const Real t856 = t850 * t848;
+  const Real t857 = t856 + t855;
+
+  // front_wheel: acceleration
+  const Real t858 = t59 * c_r_p_2_;
+  const Real t859 = t49 * s_r_p_2_;
+  const Real t860 = t858 + t859;
+
+  // front_wheel: wrench
+  const Real t861 = par.m_F * t860;
+
+  // front_wheel: joint force
+  const Real t862 = c_r_p_2_ * t861;
+
+  // front_wheel: acceleration
+  const Real t863 = t59 * s_r_p_2_;
+  const Real t864 = c_r_p_2_ * t49;
+  const Real t865 = t863 - t864;
+
+  // front_wheel: wrench
+  const Real t866 = t865 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t867 = t866 * s_r_p_2_;
+  const Real t868 = t862 + t867;
+  const Real t869 = par.k2 * t868;
+  const Real t870 = t866 * c_r_p_2_;
+  const Real t871 = t861 * s_r_p_2_;
+  const Real t872 = t870 - t871;
+  const Real t873 = par.k1 * t872;
+  const Real t874 = t869 - t873;
+
+  // fork: wrench
+  const Real t875 = s_r_p_1_ * par.m_H;
+
+  // front_wheel: joint force
+  const Real t876 = t875 + t874;
+
+  // fork: joint force
+  const Real t877 = s_r_p_1_ * t876;
+
+  // fork: wrench
+  const Real t878 = par.m_H * c_r_p_1_;
+
+  // front_wheel: wrench
+  const Real t879 = c_r_p_1_ * par.m_F;
+
+  // front_wheel: joint force
+  const Real t880 = t878 + t879;
+
+  // fork: joint force
+  const Real t881 = t880 * c_r_p_1_;
+  const Real t882 = t881 + t877;
+  const Real t883 = t882 + par.m_B;
+
+  // rear_wheel: joint force
+  const Real t884 = t883 + par.m_R;
+
+  // accelerations
+  const Real t885 = t884 * t566;
+  const Real t886 = t596 * t591;
+  const Real t887 = t885 + t886;
+
+  // fork: joint force
+  const Real t888 = c_r_p_1_ * t876;
+  const Real t889 = s_r_p_1_ * t880;
+  const Real t890 = t888 - t889;
+  const Real t891 = par.k1 * t890;
+
+  // front_wheel: joint force
+  const Real t892 = par.k2 * t872;
+  const Real t893 = par.k1 * t868;
+  const Real t894 = t892 + t893;
+
+  // fork: joint force
+  const Real t895 = t894 * par.k2;
+  const Real t896 = t895 - t891;
+
+  // accelerations
+  const Real t897 = t619 * t896;
+  const Real t898 = t897 + t887;
+
+  // fork: joint force
+  const Real t899 = t896 * par.k13;
+
+  // front_wheel: joint force
+  const Real t900 = t894 * par.k12;
+  const Real t901 = t874 * par.k11;
+  const Real t902 = t900 + t901;
+
+  // fork: wrench
+  const Real t903 = s_r_p_1_ * par.k8;
+
+  // front_wheel: joint force
+  const Real t904 = t903 - t902;
+
+  // fork: joint force
+  const Real t905 = c_r_p_1_ * t904;
+
+  // front_wheel: joint force
+  const Real t906 = par.k11 * t879;
+
+  // fork: wrench
+  const Real t907 = par.k8 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t908 = t906 - t907;
+
+  // fork: joint force
+  const Real t909 = s_r_p_1_ * t908;
+  const Real t910 = t909 + t905;
+  const Real t911 = t910 - t899;
+
+  // accelerations
+  const Real t912 = t556 * t911;
+  const Real t913 = t558 * t911;
+  const Real t914 = t912 + t913;
+  const Real t915 = t914 + t898;
+
+  // fork: joint force
+  const Real t916 = s_r_p_1_ * t904;
+  const Real t917 = c_r_p_1_ * t908;
+  const Real t918 = t917 - t916;
+  const Real t919 = par.k1 * t918;
+
+  // front_wheel: joint force
+  const Real t920 = par.k12 * t879;
+
+  // fork: wrench
+  const Real t921 = c_r_p_1_ * par.k10;
+
+  // front_wheel: joint force
+  const Real t922 = t921 + t920;
+
+  // fork: joint force
+  const Real t923 = par.k2 * t922;
+  const Real t924 = t923 - t919;
+  const Real t925 = t882 * par.k13;
+  const Real t926 = t924 + t925;
+  const Real t927 = t926 + par.k16;
+
+  // accelerations
+  const Real t928 = t564 * t927;
+  const Real t929 = t928 + t915;
+  const Real t930 = s_r_p_1_ * t749;
+  const Real t931 = c_r_p_1_ * t768;
+  const Real t932 = t931 + t930;
+  const Real t933 = t314 * t302;
+  const Real t934 = t933 * par.k15;
+  const Real t935 = t933 * par.k59;
+  const Real t936 = t934 + t935;
+  const Real t937 = t696 * par.k16;
+  const Real t938 = t936 - t937;
+  const Real t939 = t695 * par.m_B;
+  const Real t940 = t938 - t939;
+  const Real t941 = t932 + t940;
+  const Real t942 = t933 * par.r_R;
+  const Real t943 = t695 + t942;
+  const Real t944 = par.m_R * t943;
+  const Real t945 = t944 - t941;
+  const Real t946 = t945 - t929;
+  const Real t947 = t846 * t395;
+  const Real t948 = t392 - t947;
+  const Real t949 = t946 * t948;
+  const Real t950 = t949 - t857;
+  const Real t951 = t896 * t566;
+  const Real t952 = t596 * t626;
+  const Real t953 = t951 + t952;
+
+  // front_wheel: acceleration
+  const Real t954 = t30 * s_r_p_2_;
+  const Real t955 = t25 * c_r_p_2_;
+  const Real t956 = t954 + t955;
+
+  // front_wheel: wrench
+  const Real t957 = t956 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t958 = t957 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t959 = t30 * c_r_p_2_;
+  const Real t960 = t25 * s_r_p_2_;
+  const Real t961 = t959 - t960;
+
+  // front_wheel: wrench
+  const Real t962 = par.m_F * t961;
+
+  // front_wheel: joint force
+  const Real t963 = c_r_p_2_ * t962;
+  const Real t964 = t958 + t963;
+  const Real t965 = t964 * par.k2;
+  const Real t966 = c_r_p_2_ * t957;
+  const Real t967 = t962 * s_r_p_2_;
+  const Real t968 = t966 - t967;
+  const Real t969 = par.k1 * t968;
+  const Real t970 = t965 - t969;
+
+  // fork: wrench
+  const Real t971 = par.m_H * t23;
+
+  // front_wheel: joint force
+  const Real t972 = t970 - t971;
+
+  // fork: joint force
+  const Real t973 = t972 * c_r_p_1_;
+
+  // fork: wrench
+  const Real t974 = par.m_H * t49;
+
+  // front_wheel: wrench
+  const Real t975 = par.m_F * t49;
+
+  // front_wheel: joint force
+  const Real t976 = t974 + t975;
+
+  // fork: joint force
+  const Real t977 = s_r_p_1_ * t976;
+  const Real t978 = t973 - t977;
+  const Real t979 = par.k1 * t978;
+
+  // front_wheel: joint force
+  const Real t980 = t964 * par.k1;
+  const Real t981 = t968 * par.k2;
+  const Real t982 = t980 + t981;
+  const Real t983 = par.k43 + t982;
+
+  // fork: joint force
+  const Real t984 = t983 * par.k2;
+  const Real t985 = t984 - t979;
+  const Real t986 = t985 + par.m_B;
+
+  // rear_wheel: joint force
+  const Real t987 = t612 + t986;
+
+  // accelerations
+  const Real t988 = t987 * t619;
+  const Real t989 = t953 + t988;
+
+  // fork: joint force
+  const Real t990 = t985 * par.k13;
+
+  // front_wheel: joint force
+  const Real t991 = par.k11 * t970;
+  const Real t992 = par.k12 * t982;
+  const Real t993 = t991 + t992;
+
+  // fork: wrench
+  const Real t994 = par.k8 * t23;
+  const Real t995 = par.k44 + t994;
+
+  // front_wheel: joint force
+  const Real t996 = t993 + t995;
+
+  // fork: joint force
+  const Real t997 = t996 * c_r_p_1_;
+
+  // front_wheel: joint force
+  const Real t998 = par.k11 * t975;
+
+  // fork: wrench
+  const Real t999 = par.k8 * t49;
+
+  // front_wheel: joint force
+  const Real t1000 = t998 - t999;
+
+  // fork: joint force
+  const Real t1001 = s_r_p_1_ * t1000;
+  const Real t1002 = t1001 - t997;
+  const Real t1003 = t1002 - t990;
+  const Real t1004 = t1003 - par.k16;
+
+  // rear_wheel: joint force
+  const Real t1005 = t624 - t623;
+  const Real t1006 = t1005 * par.r_R;
+  const Real t1007 = t1004 - t1006;
+
+  // accelerations
+  const Real t1008 = t1007 * t556;
+  const Real t1009 = t1007 * t558;
+  const Real t1010 = t1009 + t1008;
+  const Real t1011 = t989 + t1010;
+
+  // fork: joint force
+  const Real t1012 = s_r_p_1_ * t996;
+  const Real t1013 = c_r_p_1_ * t1000;
+  const Real t1014 = t1012 + t1013;
+  const Real t1015 = par.k1 * t1014;
+
+  // front_wheel: joint force
+  const Real t1016 = par.k12 * t975;
+
+  // fork: wrench
+  const Real t1017 = par.k10 * t49;
+
+  // front_wheel: joint force
+  const Real t1018 = t1017 + t1016;
+
+  // fork: joint force
+  const Real t1019 = t1018 * par.k2;
+  const Real t1020 = t1019 - t1015;
+  const Real t1021 = s_r_p_1_ * t972;
+  const Real t1022 = c_r_p_1_ * t976;
+  const Real t1023 = t1021 + t1022;
+  const Real t1024 = t1023 * par.k13;
+  const Real t1025 = t1020 + t1024;
+
+  // accelerations
+  const Real t1026 = t564 * t1025;
+  const Real t1027 = t1011 + t1026;
+  const Real t1028 = par.k1 * t770;
+  const Real t1029 = t780 * par.k2;
+  const Real t1030 = t1029 - t1028;
+  const Real t1031 = t684 * par.m_B;
+  const Real t1032 = t685 * par.k16;
+  const Real t1033 = par.k59 * t795;
+  const Real t1034 = t795 * par.k15;
+  const Real t1035 = t1033 + t1034;
+  const Real t1036 = t1032 + t1035;
+  const Real t1037 = t1031 - t1036;
+  const Real t1038 = t1030 + t1037;
+  const Real t1039 = t805 * c_r_p_0_;
+  const Real t1040 = t800 * s_r_p_0_;
   const Real t1041 = t1039 - t1040;
-  const Real t1042 = t576 * par.k15;
-  const Real t1043 = t576 * par.k52;
-  const Real t1044 = t1042 + t1043;
-  const Real t1045 = par.k16 * t560;
-  const Real t1046 = t1044 - t1045;
-  const Real t1047 = par.k56 * t528;
-  const Real t1048 = t561 * par.k55;
-  const Real t1049 = t1047 - t1048;
-  const Real t1050 = t577 - t952;
-  const Real t1051 = par.k3 * t1050;
-  const Real t1052 = t1049 + t1051;
-  const Real t1053 = t1052 + t1046;
-  const Real t1054 = sum_error(t1041, t1053);
-  const Real t1055 = sum_error(t1046, t1052);
-  const Real t1056 = par.k56 * t526;
-  const Real t1057 = product_error(par.k56, t528);
-  const Real t1058 = t1057 + t1056;
-  const Real t1059 = -t1048;
-  const Real t1060 = sum_error(t1047, t1059);
-  const Real t1061 = t1060 + t1058;
-  const Real t1062 = sum_error(t1051, t1049);
-  const Real t1063 = t1061 + t1062;
-  const Real t1064 = t1055 + t1063;
-  const Real t1065 = t1054 + t1064;
-  const Real t1066 = t1053 + t1041;
-  const Real t1067 = t973 * par.r_R;
-  const Real t1068 = par.I_Ryy * t526;
-  const Real t1069 = par.I_Ryy * t528;
-  const Real t1070 = t1068 + t1069;
-  const Real t1071 = t1070 - t1067;
-  const Real t1072 = sum_error(t1066, t1071);
-  const Real t1073 = t1065 + t1072;
-  const Real t1074 = product_error(t914, t817);
-  const Real t1075 = t914 * t816;
-  const Real t1076 = t1074 + t1075;
-  const Real t1077 = t894 - t1076;
-  const Real t1078 = t914 * t817;
-  const Real t1079 = t890 - t1078;
-  const Real t1080 = t1077 + t1079;
-  const Real t1081 = t1080 * t1073;
-  const Real t1082 = t1066 + t1071;
-  const Real t1083 = product_error(t1080, t1082);
-  const Real t1084 = t1081 + t1083;
-  const Real t1085 = t1036 + t1084;
-  const Real t1086 = t1013 + t920;
-  const Real t1087 = t1082 * t1080;
-  const Real t1088 = t1086 + t1087;
-  const Real t1089 = t1085 + t1088;
-  const Real t1090 = t724 * par.k1;
-  const Real t1091 = par.k2 * t738;
-  const Real t1092 = t1091 - t1090;
-  const Real t1093 = t981 * par.k13;
-  const Real t1094 = t1092 + t1093;
-  const Real t1095 = t593 * par.k16;
-  const Real t1096 = t534 * par.k14;
-  const Real t1097 = t594 * par.k58;
-  const Real t1098 = t1096 - t1097;
-  const Real t1099 = t745 * par.k3;
-  const Real t1100 = t1098 - t1099;
-  const Real t1101 = t1100 + t1095;
-  const Real t1102 = t1101 + t1094;
-  const Real t1103 = t774 * c_r_p_0_;
-  const Real t1104 = t763 * s_r_p_0_;
-  const Real t1105 = t1103 - t1104;
-  const Real t1106 = t1105 + t1102;
-  const Real t1107 = t914 * t837;
-  const Real t1108 = t901 - t1107;
-  const Real t1109 = t1108 * t1106;
-  const Real t1110 = t1109 + t1089;
-  const Real t1111 = t1070 + t1110;
-  const Real t1112 = -t1111;
-  const Real t1113 = t914 * t738;
-  const Real t1114 = sum_error(t1113, t1112);
-  const Real t1115 = sum_error(t1110, t1070);
-  const Real t1116 = sum_error(t1109, t1089);
-  const Real t1117 = t1116 + t1115;
-  const Real t1118 = t1114 - t1117;
-  const Real t1119 = t1113 - t1111;
-  const Real t1120 = t914 * t844;
-  const Real t1121 = product_error(t914, t842);
-  const Real t1122 = t1120 + t1121;
-  const Real t1123 = t908 - t1122;
-  const Real t1124 = t914 * t842;
-  const Real t1125 = t905 - t1124;
-  const Real t1126 = t1125 + t1123;
-  const Real t1127 = t1126 * t640;
-  const Real t1128 = -t1127;
-  const Real t1129 = sum_error(t1119, t1128);
-  const Real t1130 = t1129 + t1118;
-  const Real t1131 = t1119 - t1127;
-  const Real t1132 = t1028 * t394;
-  const Real t1133 = t394 * t974;
-  const Real t1134 = t1132 + t1133;
-  const Real t1135 = t990 * t372;
-  const Real t1136 = t1135 + t1134;
-  const Real t1137 = t1009 * t415;
-  const Real t1138 = t1137 - t1136;
-  const Real t1139 = t1138 - t778;
-  const Real t1140 = t1139 - t918;
-  const Real t1141 = t185 * t1073;
-  const Real t1142 = t183 * t1082;
-  const Real t1143 = t1142 + t1141;
-  const Real t1144 = t1082 * t185;
+  const Real t1042 = t1038 + t1041;
+  const Real t1043 = t1042 + t1027;
+  const Real t1044 = t436 * t846;
+  const Real t1045 = t1044 - t432;
+  const Real t1046 = t1043 * t1045;
+  const Real t1047 = t950 - t1046;
+
+  // fork: joint force
+  const Real t1048 = t918 * par.k2;
+  const Real t1049 = par.k1 * t922;
+  const Real t1050 = t1048 + t1049;
+
+  // passive accelerations
+  const Real t1051 = sum_error(t1050, par.k41);
+  const Real t1052 = t1051 - par.k59;
+
+  // fork: joint force
+  const Real t1053 = t1050 - par.k15;
+
+  // passive accelerations
+  const Real t1054 = sum_error(par.k42, t1053);
+  const Real t1055 = t1052 + t1054;
+
+  // accelerations
+  const Real t1056 = t566 * t1055;
+
+  // rear_wheel: joint force
+  const Real t1057 = par.k42 + t1053;
+
+  // accelerations
+  const Real t1058 = t1057 * t566;
+  const Real t1059 = t1056 + t1058;
+
+  // fork: joint force
+  const Real t1060 = par.k2 * t656;
+  const Real t1061 = par.k1 * t660;
+  const Real t1062 = t1060 - t1061;
+
+  // accelerations
+  const Real t1063 = t596 * t1062;
+  const Real t1064 = t1059 + t1063;
+
+  // fork: joint force
+  const Real t1065 = par.k2 * t1014;
+  const Real t1066 = par.k1 * t1018;
+  const Real t1067 = t1066 + t1065;
+
+  // accelerations
+  const Real t1068 = t619 * t1067;
+  const Real t1069 = t1064 + t1068;
+
+  // front_wheel: acceleration
+  const Real t1070 = t59 * par.k12;
+  const Real t1071 = t1070 * par.k1;
+  const Real t1072 = t59 * par.k11;
+  const Real t1073 = t1072 * par.k2;
+  const Real t1074 = t1071 + t1073;
+  const Real t1075 = c_r_p_2_ * t1074;
+  const Real t1076 = t1070 * par.k2;
+  const Real t1077 = par.k1 * t1072;
+  const Real t1078 = t1076 - t1077;
+  const Real t1079 = s_r_p_2_ * t1078;
+  const Real t1080 = t1075 - t1079;
+
+  // front_wheel: wrench
+  const Real t1081 = t1080 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1082 = t1081 * c_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1083 = c_r_p_2_ * t1078;
+  const Real t1084 = t1074 * s_r_p_2_;
+  const Real t1085 = t1083 + t1084;
+
+  // front_wheel: wrench
+  const Real t1086 = t1085 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1087 = t1086 * s_r_p_2_;
+  const Real t1088 = t1082 + t1087;
+  const Real t1089 = t1088 * par.k2;
+  const Real t1090 = t1086 * c_r_p_2_;
+  const Real t1091 = t1081 * s_r_p_2_;
+  const Real t1092 = t1090 - t1091;
+  const Real t1093 = par.k1 * t1092;
+  const Real t1094 = t1089 - t1093;
+  const Real t1095 = par.k11 * t1094;
+  const Real t1096 = par.k2 * t1092;
+  const Real t1097 = t1088 * par.k1;
+  const Real t1098 = t1096 + t1097;
+  const Real t1099 = t1098 * par.k12;
+  const Real t1100 = t1095 + t1099;
+
+  // front_wheel: wrench
+  const Real t1101 = t59 * par.I_Fyy;
+
+  // front_wheel: joint force
+  const Real t1102 = t1101 + t1100;
+
+  // fork: wrench
+  const Real t1103 = par.k7 * t59;
+
+  // front_wheel: joint force
+  const Real t1104 = t1103 + t1102;
+
+  // fork: joint force
+  const Real t1105 = t1104 * c_r_p_1_;
+
+  // front_wheel: wrench
+  const Real t1106 = t574 * par.I_Fxx;
+
+  // front_wheel: joint force
+  const Real t1107 = t1106 * s_r_p_2_;
+
+  // front_wheel: wrench
+  const Real t1108 = par.I_Fxx * t569;
+
+  // front_wheel: joint force
+  const Real t1109 = t1108 * c_r_p_2_;
+  const Real t1110 = t1107 + t1109;
+  const Real t1111 = t1110 * par.k2;
+  const Real t1112 = c_r_p_2_ * t1106;
+  const Real t1113 = t1108 * s_r_p_2_;
+  const Real t1114 = t1112 - t1113;
+  const Real t1115 = t1114 * par.k1;
+  const Real t1116 = t1111 - t1115;
+
+  // front_wheel: acceleration
+  const Real t1117 = par.k11 * t82;
+  const Real t1118 = par.k45 + t1117;
+
+  // front_wheel: wrench
+  const Real t1119 = t1118 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1120 = par.k11 * t1119;
+  const Real t1121 = t1116 + t1120;
+
+  // fork: wrench
+  const Real t1122 = t82 * par.k17;
+  const Real t1123 = t1122 + par.k48;
+
+  // front_wheel: joint force
+  const Real t1124 = t1121 + t1123;
+
+  // fork: joint force
+  const Real t1125 = s_r_p_1_ * t1124;
+  const Real t1126 = t1125 - t1105;
+
+  // front_wheel: joint force
+  const Real t1127 = t1094 - t638;
+
+  // fork: joint force
+  const Real t1128 = t1127 * c_r_p_1_;
+
+  // fork: wrench
+  const Real t1129 = par.k37 - t633;
+
+  // front_wheel: joint force
+  const Real t1130 = t1129 + t1119;
+
+  // fork: joint force
+  const Real t1131 = s_r_p_1_ * t1130;
+  const Real t1132 = t1128 - t1131;
+  const Real t1133 = t1132 * par.k1;
+
+  // front_wheel: joint force
+  const Real t1134 = t1098 + t659;
+
+  // fork: joint force
+  const Real t1135 = t1134 * par.k2;
+  const Real t1136 = t1135 - t1133;
+  const Real t1137 = t1136 * par.k13;
+  const Real t1138 = t1126 - t1137;
+
+  // accelerations
+  const Real t1139 = t1138 * t556;
+  const Real t1140 = t558 * t1138;
+  const Real t1141 = t1139 + t1140;
+  const Real t1142 = t1069 + t1141;
+
+  // fork: joint force
+  const Real t1143 = t1104 * s_r_p_1_;
+  const Real t1144 = t1124 * c_r_p_1_;
   const Real t1145 = t1144 + t1143;
-  const Real t1146 = t1140 + t1145;
-  const Real t1147 = t191 * t1106;
-  const Real t1148 = t1147 + t1146;
-  const Real t1149 = t640 * t174;
-  const Real t1150 = t1149 + t1148;
+  const Real t1146 = par.k1 * t1145;
 
-  // passive accelerations
-  const Real t1151 = t191 * par.k1;
-  const Real t1152 = par.k2 + t1151;
-  const Real t1153 = s_r_p_1_ * t1152;
-  const Real t1154 = t183 * c_r_p_1_;
-  const Real t1155 = c_r_p_1_ * t185;
-  const Real t1156 = t1155 + t1154;
-  const Real t1157 = t1156 + t1153;
-  const Real t1158 = t1157 * par.k12;
-  const Real t1159 = t183 * par.k13;
-  const Real t1160 = t185 * par.k13;
-  const Real t1161 = t1159 + t1160;
-  const Real t1162 = t1161 - t415;
-  const Real t1163 = par.k2 * t1162;
-  const Real t1164 = par.k1 * t394;
-  const Real t1165 = t1163 + t1164;
-  const Real t1166 = t1158 + t1165;
-  const Real t1167 = par.k1 * t1166;
-  const Real t1168 = par.k11 * t1157;
-  const Real t1169 = t191 * par.k13;
-  const Real t1170 = t372 - t1169;
-  const Real t1171 = s_r_p_1_ * t1170;
-  const Real t1172 = par.k1 * t1162;
-  const Real t1173 = par.k2 * t394;
-  const Real t1174 = t1173 - t1172;
-  const Real t1175 = c_r_p_1_ * t1174;
-  const Real t1176 = t1171 + t1175;
-  const Real t1177 = t1168 + t1176;
-  const Real t1178 = t1177 * par.k2;
-  const Real t1179 = t1167 + t1178;
-  const Real t1180 = c_r_p_2_ * t1179;
-  const Real t1181 = t1166 * par.k2;
-  const Real t1182 = par.k1 * t1177;
+  // front_wheel: joint force
+  const Real t1147 = t1114 * par.k2;
+  const Real t1148 = t1110 * par.k1;
+  const Real t1149 = t1147 + t1148;
+  const Real t1150 = par.k12 * t1119;
+  const Real t1151 = t1149 + t1150;
+
+  // fork: wrench
+  const Real t1152 = par.k5 * t82;
+  const Real t1153 = par.k47 + t1152;
+
+  // front_wheel: joint force
+  const Real t1154 = t1153 + t1151;
+
+  // fork: joint force
+  const Real t1155 = par.k2 * t1154;
+  const Real t1156 = t1155 - t1146;
+  const Real t1157 = t1127 * s_r_p_1_;
+  const Real t1158 = t1130 * c_r_p_1_;
+  const Real t1159 = t1157 + t1158;
+  const Real t1160 = t1159 * par.k13;
+  const Real t1161 = t1156 + t1160;
+  const Real t1162 = par.k3 + t1161;
+
+  // rear_wheel: wrench
+  const Real t1163 = par.I_Rxx * s_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1164 = t1163 * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1165 = par.I_Rxx * c_r_p_0_;
+
+  // rear_wheel: joint force
+  const Real t1166 = t1165 * s_r_p_0_;
+  const Real t1167 = t1164 - t1166;
+  const Real t1168 = t1162 + t1167;
+
+  // accelerations
+  const Real t1169 = t1168 * t564;
+  const Real t1170 = t1142 + t1169;
+  const Real t1171 = t1101 * t546;
+  const Real t1172 = t1171 + t1170;
+  const Real t1173 = t774 * par.k12;
+  const Real t1174 = t743 * par.k11;
+  const Real t1175 = t1173 + t1174;
+  const Real t1176 = t706 * par.I_Fyy;
+  const Real t1177 = t1175 + t1176;
+  const Real t1178 = par.k8 * t700;
+  const Real t1179 = t720 * par.k10;
+  const Real t1180 = t1178 - t1179;
+  const Real t1181 = t705 * par.k35;
+  const Real t1182 = par.k7 * t706;
   const Real t1183 = t1181 - t1182;
-  const Real t1184 = t1183 * s_r_p_2_;
-  const Real t1185 = t1180 - t1184;
-  const Real t1186 = par.m_F * t1185;
-  const Real t1187 = t1186 * c_r_p_2_;
-  const Real t1188 = c_r_p_2_ * t1183;
-  const Real t1189 = t1179 * s_r_p_2_;
-  const Real t1190 = t1188 + t1189;
-  const Real t1191 = par.m_F * t1190;
-  const Real t1192 = t1191 * s_r_p_2_;
-  const Real t1193 = t1187 + t1192;
-  const Real t1194 = par.k2 * t1193;
-  const Real t1195 = t1191 * c_r_p_2_;
-  const Real t1196 = t1186 * s_r_p_2_;
-  const Real t1197 = t1195 - t1196;
-  const Real t1198 = par.k1 * t1197;
-  const Real t1199 = t1194 - t1198;
-  const Real t1200 = t1176 * par.m_H;
-  const Real t1201 = par.k8 * t1157;
-  const Real t1202 = t1200 - t1201;
-  const Real t1203 = t1202 + t1199;
-  const Real t1204 = c_r_p_1_ * t1203;
-  const Real t1205 = c_r_p_1_ * t1152;
-  const Real t1206 = t183 * s_r_p_1_;
-  const Real t1207 = s_r_p_1_ * t185;
-  const Real t1208 = t1206 + t1207;
-  const Real t1209 = t1208 - t1205;
-  const Real t1210 = t1209 * par.k11;
-  const Real t1211 = t191 * par.k2;
-  const Real t1212 = par.k1 - t1211;
-  const Real t1213 = par.k12 * t1212;
-  const Real t1214 = t1213 - t1210;
-  const Real t1215 = c_r_p_1_ * t1170;
-  const Real t1216 = s_r_p_1_ * t1174;
-  const Real t1217 = t1215 - t1216;
-  const Real t1218 = t1214 + t1217;
-  const Real t1219 = t1218 * par.m_F;
-  const Real t1220 = t1209 * par.k8;
-  const Real t1221 = par.k10 * t1212;
-  const Real t1222 = t1221 + t1220;
-  const Real t1223 = par.m_H * t1217;
-  const Real t1224 = t1222 + t1223;
-  const Real t1225 = t1224 + t1219;
-  const Real t1226 = s_r_p_1_ * t1225;
-  const Real t1227 = t1204 - t1226;
-  const Real t1228 = t1227 * par.k2;
-  const Real t1229 = par.k1 * t1193;
-  const Real t1230 = par.k2 * t1197;
-  const Real t1231 = t1229 + t1230;
-  const Real t1232 = par.k10 * t1157;
-  const Real t1233 = par.m_H * t1165;
-  const Real t1234 = t1233 + t1232;
-  const Real t1235 = t1231 + t1234;
-  const Real t1236 = par.k1 * t1235;
-  const Real t1237 = t1236 + t1228;
-  const Real t1238 = t394 * par.m_B;
-  const Real t1239 = t183 * par.k15;
+  const Real t1184 = t702 - t714;
+  const Real t1185 = par.k5 * t1184;
+  const Real t1186 = t1183 + t1185;
+  const Real t1187 = t1180 + t1186;
+  const Real t1188 = t1187 - t1177;
+  const Real t1189 = s_r_p_1_ * t1188;
+  const Real t1190 = t369 * c_r_p_2_;
+  const Real t1191 = t383 * s_r_p_2_;
+  const Real t1192 = t1190 - t1191;
+  const Real t1193 = t1192 * t492;
+  const Real t1194 = par.k1 * t755;
+  const Real t1195 = t1194 * c_r_p_2_;
+  const Real t1196 = par.k2 * t755;
+  const Real t1197 = t1196 * s_r_p_2_;
+  const Real t1198 = t1195 - t1197;
+  const Real t1199 = t1198 - t1193;
+  const Real t1200 = t1199 * par.I_Fxx;
+  const Real t1201 = t493 * t1192;
+  const Real t1202 = par.k40 * t1201;
+  const Real t1203 = t1200 - t1202;
+  const Real t1204 = t1203 * s_r_p_2_;
+  const Real t1205 = c_r_p_2_ * t383;
+  const Real t1206 = t369 * s_r_p_2_;
+  const Real t1207 = t1205 + t1206;
+  const Real t1208 = t492 * t1207;
+  const Real t1209 = t1196 * c_r_p_2_;
+  const Real t1210 = t1194 * s_r_p_2_;
+  const Real t1211 = t1209 + t1210;
+  const Real t1212 = t1208 - t1211;
+  const Real t1213 = t1212 * par.I_Fxx;
+  const Real t1214 = t493 * t1207;
+  const Real t1215 = par.k39 * t1214;
+  const Real t1216 = t1213 - t1215;
+  const Real t1217 = c_r_p_2_ * t1216;
+  const Real t1218 = t1204 + t1217;
+  const Real t1219 = par.k2 * t1218;
+  const Real t1220 = c_r_p_2_ * t1203;
+  const Real t1221 = t1216 * s_r_p_2_;
+  const Real t1222 = t1220 - t1221;
+  const Real t1223 = par.k1 * t1222;
+  const Real t1224 = t1219 - t1223;
+  const Real t1225 = t767 * par.k11;
+  const Real t1226 = t1224 - t1225;
+  const Real t1227 = t753 * par.k8;
+  const Real t1228 = t755 * par.k17;
+  const Real t1229 = t756 * par.k34;
+  const Real t1230 = t1228 + t1229;
+  const Real t1231 = par.k5 * t759;
+  const Real t1232 = t1230 + t1231;
+  const Real t1233 = t1227 - t1232;
+  const Real t1234 = t1233 + t1226;
+  const Real t1235 = t1234 * c_r_p_1_;
+  const Real t1236 = t1235 - t1189;
+  const Real t1237 = par.k2 * t1236;
+  const Real t1238 = par.k1 * t1218;
+  const Real t1239 = par.k2 * t1222;
+  const Real t1240 = t1238 + t1239;
+  const Real t1241 = t767 * par.k12;
+  const Real t1242 = t1240 - t1241;
+  const Real t1243 = t753 * par.k10;
+  const Real t1244 = t757 * par.k5;
+  const Real t1245 = t759 * par.k36;
+  const Real t1246 = t1244 + t1245;
+  const Real t1247 = t1246 + t1243;
+  const Real t1248 = t1242 - t1247;
+  const Real t1249 = par.k1 * t1248;
+  const Real t1250 = t1237 + t1249;
+  const Real t1251 = t695 * par.k15;
+  const Real t1252 = t933 * par.k61;
+  const Real t1253 = par.k3 * t696;
+  const Real t1254 = t1252 - t1253;
+  const Real t1255 = t1251 + t1254;
+  const Real t1256 = t1255 + t1250;
+  const Real t1257 = t302 * c_r_p_0_;
+
+  // rear_wheel: twist
+  const Real t1258 = nu[0] * s_r_p_0_;
 
   // accelerations
-  const Real t1240 = par.k52 * t185;
-  const Real t1241 = t1240 + t1239;
+  const Real t1259 = t1258 - t1257;
+  const Real t1260 = t1259 * t465;
+  const Real t1261 = t1260 * par.k33;
+  const Real t1262 = t1259 * nu[2];
+  const Real t1263 = t1262 * par.I_Rxx;
+  const Real t1264 = t1261 - t1263;
+  const Real t1265 = t1264 * c_r_p_0_;
+  const Real t1266 = t302 * s_r_p_0_;
 
-  // passive accelerations
-  const Real t1242 = t185 * par.k15;
-
-  // accelerations
-  const Real t1243 = t1241 + t1242;
-  const Real t1244 = t1238 - t1243;
-  const Real t1245 = t1237 + t1244;
-
-  // passive accelerations
-  const Real t1246 = t183 * par.r_R;
-  const Real t1247 = t185 * par.r_R;
-  const Real t1248 = t1246 + t1247;
-  const Real t1249 = t1248 + t394;
-  const Real t1250 = t1249 * c_r_p_0_;
-  const Real t1251 = t415 * s_r_p_0_;
-  const Real t1252 = t1251 + t1250;
-  const Real t1253 = par.m_R * t1252;
-  const Real t1254 = t1253 * c_r_p_0_;
-  const Real t1255 = t1249 * s_r_p_0_;
-  const Real t1256 = t415 * c_r_p_0_;
-  const Real t1257 = t1255 - t1256;
-  const Real t1258 = par.m_R * t1257;
-  const Real t1259 = t1258 * s_r_p_0_;
-  const Real t1260 = t1254 + t1259;
+  // rear_wheel: twist
+  const Real t1267 = nu[0] * c_r_p_0_;
 
   // accelerations
-  const Real t1261 = t1245 + t1260;
-  const Real t1262 = t977 * t1261;
+  const Real t1268 = t1267 + t1266;
+  const Real t1269 = t1268 * t465;
+  const Real t1270 = par.k32 * t1269;
+  const Real t1271 = t1268 * nu[2];
+  const Real t1272 = par.I_Rxx * t1271;
+  const Real t1273 = t1270 + t1272;
+  const Real t1274 = t1273 * s_r_p_0_;
+  const Real t1275 = t1265 + t1274;
+  const Real t1276 = par.r_R * t944;
+  const Real t1277 = t1275 - t1276;
+  const Real t1278 = t1277 + t1256;
+  const Real t1279 = sum_error(t1278, t1172);
+  const Real t1280 = sum_error(t1255, t1250);
+  const Real t1281 = sum_error(t1254, t1251);
+  const Real t1282 = product_error(t695, par.k15);
+  const Real t1283 = par.k59 * t695;
+  const Real t1284 = t1282 + t1283;
+  const Real t1285 = t1281 + t1284;
+  const Real t1286 = t1285 + t1280;
+  const Real t1287 = sum_error(t1277, t1256);
+  const Real t1288 = t1286 + t1287;
+  const Real t1289 = t1288 + t1279;
+  const Real t1290 = t846 * t1289;
+  const Real t1291 = t1278 + t1172;
+  const Real t1292 = t1291 * t846;
+  const Real t1293 = t1290 + t1292;
+  const Real t1294 = t1293 + t1047;
+  const Real t1295 = t566 * t911;
+  const Real t1296 = t596 * t646;
+  const Real t1297 = t1295 + t1296;
+  const Real t1298 = t1007 * t619;
+  const Real t1299 = t1298 + t1297;
+
+  // front_wheel: acceleration
+  const Real t1300 = c_r_p_1_ * par.k11;
+  const Real t1301 = t76 - t1300;
+  const Real t1302 = par.k2 * t1301;
+  const Real t1303 = c_r_p_1_ * par.k12;
+  const Real t1304 = t1303 + par.k20;
+  const Real t1305 = par.k1 * t1304;
+  const Real t1306 = t1302 - t1305;
+  const Real t1307 = t1306 * s_r_p_2_;
+  const Real t1308 = par.k1 * t1301;
+  const Real t1309 = par.k2 * t1304;
+  const Real t1310 = t1308 + t1309;
+  const Real t1311 = t1310 * c_r_p_2_;
+  const Real t1312 = t1307 - t1311;
+
+  // front_wheel: wrench
+  const Real t1313 = t1312 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1314 = t1313 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t1315 = t1306 * c_r_p_2_;
+  const Real t1316 = t1310 * s_r_p_2_;
+  const Real t1317 = t1315 + t1316;
+
+  // front_wheel: wrench
+  const Real t1318 = t1317 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1319 = c_r_p_2_ * t1318;
+  const Real t1320 = t1314 + t1319;
+  const Real t1321 = par.k2 * t1320;
+  const Real t1322 = c_r_p_2_ * t1313;
+  const Real t1323 = t1318 * s_r_p_2_;
+  const Real t1324 = t1322 - t1323;
+  const Real t1325 = t1324 * par.k1;
+  const Real t1326 = t1321 - t1325;
+  const Real t1327 = t1326 * par.k11;
+  const Real t1328 = par.k1 * t1320;
+  const Real t1329 = t1324 * par.k2;
+  const Real t1330 = t1328 + t1329;
+  const Real t1331 = t1330 * par.k12;
+  const Real t1332 = t1327 + t1331;
+
+  // front_wheel: wrench
+  const Real t1333 = c_r_p_1_ * par.I_Fyy;
+
+  // front_wheel: joint force
+  const Real t1334 = t1333 - t1332;
+
+  // fork: wrench
+  const Real t1335 = t76 * par.k8;
+  const Real t1336 = t1335 + par.k51;
+  const Real t1337 = par.k7 * c_r_p_1_;
+  const Real t1338 = t1337 + t1336;
+
+  // front_wheel: joint force
+  const Real t1339 = t1338 + t1334;
+
+  // fork: joint force
+  const Real t1340 = c_r_p_1_ * t1339;
+
+  // front_wheel: wrench
+  const Real t1341 = t865 * par.I_Fxx;
+
+  // front_wheel: joint force
+  const Real t1342 = t1341 * s_r_p_2_;
+
+  // front_wheel: wrench
+  const Real t1343 = par.I_Fxx * t860;
+
+  // front_wheel: joint force
+  const Real t1344 = c_r_p_2_ * t1343;
+  const Real t1345 = t1342 + t1344;
+  const Real t1346 = par.k2 * t1345;
+  const Real t1347 = t1341 * c_r_p_2_;
+  const Real t1348 = t1343 * s_r_p_2_;
+  const Real t1349 = t1347 - t1348;
+  const Real t1350 = par.k1 * t1349;
+  const Real t1351 = t1346 - t1350;
+
+  // front_wheel: acceleration
+  const Real t1352 = s_r_p_1_ * par.k11;
+  const Real t1353 = t1352 - t64;
+
+  // front_wheel: wrench
+  const Real t1354 = par.m_F * t1353;
+
+  // front_wheel: joint force
+  const Real t1355 = t1354 * par.k11;
+  const Real t1356 = t1351 + t1355;
+
+  // fork: wrench
+  const Real t1357 = par.k8 * t64;
+  const Real t1358 = s_r_p_1_ * par.k17;
+  const Real t1359 = t1357 + t1358;
+
+  // front_wheel: joint force
+  const Real t1360 = t1356 + t1359;
+
+  // fork: joint force
+  const Real t1361 = s_r_p_1_ * t1360;
+  const Real t1362 = t1361 + t1340;
+
+  // fork: wrench
+  const Real t1363 = t76 * par.m_H;
+  const Real t1364 = t907 + t1363;
+
+  // front_wheel: joint force
+  const Real t1365 = t1326 + t1364;
+
+  // fork: joint force
+  const Real t1366 = c_r_p_1_ * t1365;
+
+  // fork: wrench
+  const Real t1367 = par.m_H * t64;
+  const Real t1368 = t903 + t1367;
+
+  // front_wheel: joint force
+  const Real t1369 = t1354 - t1368;
+
+  // fork: joint force
+  const Real t1370 = t1369 * s_r_p_1_;
+  const Real t1371 = t1366 - t1370;
+  const Real t1372 = t1371 * par.k1;
+
+  // fork: wrench
+  const Real t1373 = par.k50 + t921;
+
+  // front_wheel: joint force
+  const Real t1374 = t1330 - t1373;
+
+  // fork: joint force
+  const Real t1375 = t1374 * par.k2;
+  const Real t1376 = t1375 - t1372;
+  const Real t1377 = par.k13 * t1376;
+  const Real t1378 = t1362 - t1377;
 
   // passive accelerations
-  const Real t1263 = s_r_p_1_ * t1203;
-  const Real t1264 = t1225 * c_r_p_1_;
-  const Real t1265 = t1264 + t1263;
-  const Real t1266 = t372 * par.m_B;
-  const Real t1267 = t191 * par.k16;
-  const Real t1268 = t1267 + par.k15;
+  const Real t1379 = par.k56 + t1378;
+
+  // rear_wheel: acceleration
+  const Real t1380 = par.r_R * c_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1381 = par.m_R * t1380;
+
+  // rear_wheel: joint force
+  const Real t1382 = t1381 * c_r_p_0_;
+
+  // rear_wheel: acceleration
+  const Real t1383 = par.r_R * s_r_p_0_;
+
+  // rear_wheel: wrench
+  const Real t1384 = par.m_R * t1383;
+
+  // rear_wheel: joint force
+  const Real t1385 = t1384 * s_r_p_0_;
+  const Real t1386 = t1382 + t1385;
+  const Real t1387 = t1386 * par.r_R;
+  const Real t1388 = par.I_Ryy + t1387;
+
+  // passive accelerations
+  const Real t1389 = t1388 + t1379;
 
   // accelerations
-  const Real t1269 = par.k52 + t1268;
-  const Real t1270 = t1266 - t1269;
-  const Real t1271 = t1265 + t1270;
+  const Real t1390 = t558 * t1389;
+  const Real t1391 = t1390 + t1299;
 
-  // passive accelerations
-  const Real t1272 = t372 + par.r_R;
-  const Real t1273 = par.m_R * t1272;
+  // fork: joint force
+  const Real t1392 = s_r_p_1_ * t1339;
+  const Real t1393 = t1360 * c_r_p_1_;
+  const Real t1394 = t1393 - t1392;
+  const Real t1395 = par.k1 * t1394;
 
-  // accelerations
-  const Real t1274 = t1271 + t1273;
-  const Real t1275 = t992 * t1274;
-  const Real t1276 = t1275 + t1262;
+  // front_wheel: joint force
+  const Real t1396 = par.k2 * t1349;
+  const Real t1397 = par.k1 * t1345;
+  const Real t1398 = t1396 + t1397;
+  const Real t1399 = t1354 * par.k12;
+  const Real t1400 = t1398 + t1399;
 
-  // passive accelerations
-  const Real t1277 = t1227 * par.k1;
-  const Real t1278 = par.k2 * t1235;
-  const Real t1279 = t1278 - t1277;
-  const Real t1280 = t415 * par.m_B;
-  const Real t1281 = t183 * par.k16;
-  const Real t1282 = t185 * par.k16;
-  const Real t1283 = t1282 + t1281;
-  const Real t1284 = t1283 - t1280;
-  const Real t1285 = t1284 + t1279;
-  const Real t1286 = t1258 * c_r_p_0_;
-  const Real t1287 = t1253 * s_r_p_0_;
-  const Real t1288 = t1286 - t1287;
-  const Real t1289 = t1285 + t1288;
-
-  // accelerations
-  const Real t1290 = t1011 * t1289;
-  const Real t1291 = t1276 + t1290;
-
-  // passive accelerations
-  const Real t1292 = t1231 * par.k12;
-  const Real t1293 = par.k11 * t1199;
-  const Real t1294 = t1292 + t1293;
-  const Real t1295 = t1157 + t174;
-  const Real t1296 = t1295 * par.I_Fyy;
-  const Real t1297 = t1294 + t1296;
-  const Real t1298 = par.k8 * t1176;
-  const Real t1299 = t1165 * par.k10;
-  const Real t1300 = t1298 - t1299;
-  const Real t1301 = par.k7 * t1157;
-  const Real t1302 = t1300 - t1301;
-  const Real t1303 = t1302 - t1297;
-  const Real t1304 = s_r_p_1_ * t1303;
-  const Real t1305 = t1205 - t1208;
-  const Real t1306 = par.k1 * t1305;
-  const Real t1307 = par.k2 * t1212;
-  const Real t1308 = t1307 - t1306;
-  const Real t1309 = c_r_p_2_ * t1308;
-  const Real t1310 = t1305 * par.k2;
-  const Real t1311 = par.k1 * t1212;
-  const Real t1312 = t1310 + t1311;
-  const Real t1313 = t1312 * s_r_p_2_;
-  const Real t1314 = t1309 + t1313;
-  const Real t1315 = par.I_Fxx * t1314;
-  const Real t1316 = t1315 * s_r_p_2_;
-  const Real t1317 = c_r_p_2_ * t1312;
-  const Real t1318 = t1308 * s_r_p_2_;
-  const Real t1319 = t1317 - t1318;
-  const Real t1320 = par.I_Fxx * t1319;
-  const Real t1321 = c_r_p_2_ * t1320;
-  const Real t1322 = t1316 + t1321;
-  const Real t1323 = par.k2 * t1322;
-  const Real t1324 = c_r_p_2_ * t1315;
-  const Real t1325 = t1320 * s_r_p_2_;
-  const Real t1326 = t1324 - t1325;
-  const Real t1327 = t1326 * par.k1;
-  const Real t1328 = t1323 - t1327;
-  const Real t1329 = par.k11 * t1219;
-  const Real t1330 = t1329 + t1328;
-  const Real t1331 = t1305 * par.k17;
-  const Real t1332 = par.k5 * t1212;
-  const Real t1333 = t1332 + t1331;
-  const Real t1334 = par.k8 * t1217;
-  const Real t1335 = t1333 - t1334;
-  const Real t1336 = t1335 + t1330;
-  const Real t1337 = t1336 * c_r_p_1_;
-  const Real t1338 = t1337 - t1304;
-  const Real t1339 = t1338 * par.k2;
-  const Real t1340 = par.k1 * t1322;
-  const Real t1341 = t1326 * par.k2;
-  const Real t1342 = t1340 + t1341;
-  const Real t1343 = par.k12 * t1219;
-  const Real t1344 = t1343 + t1342;
-  const Real t1345 = par.k10 * t1217;
-  const Real t1346 = t1209 * par.k5;
-  const Real t1347 = par.k6 * t1212;
-  const Real t1348 = t1347 - t1346;
-  const Real t1349 = t1345 + t1348;
-  const Real t1350 = t1349 + t1344;
-  const Real t1351 = t1350 * par.k1;
-  const Real t1352 = t1339 + t1351;
-
-  // accelerations
-  const Real t1353 = par.k52 * t372;
-
-  // passive accelerations
-  const Real t1354 = t372 * par.k15;
-
-  // accelerations
-  const Real t1355 = t1353 + t1354;
-
-  // passive accelerations
-  const Real t1356 = par.k3 * t191;
-
-  // accelerations
-  const Real t1357 = par.k53 - t1356;
-  const Real t1358 = t1357 - t1355;
-  const Real t1359 = -t1356;
-  const Real t1360 = sum_error(par.k53, t1359);
-  const Real t1361 = t1360 + par.k54;
-  const Real t1362 = t1361 + t1358;
-  const Real t1363 = t1352 + t1362;
-
-  // passive accelerations
-  const Real t1364 = par.r_R * t1273;
-  const Real t1365 = t191 * c_r_p_0_;
-  const Real t1366 = s_r_p_0_ - t1365;
-  const Real t1367 = t1366 * par.I_Rxx;
-  const Real t1368 = t1367 * s_r_p_0_;
-  const Real t1369 = t191 * s_r_p_0_;
-  const Real t1370 = t1369 + c_r_p_0_;
-  const Real t1371 = par.I_Rxx * t1370;
-  const Real t1372 = t1371 * c_r_p_0_;
-  const Real t1373 = t1368 + t1372;
-  const Real t1374 = t1364 + t1373;
-
-  // accelerations
-  const Real t1375 = t1363 + t1374;
-  const Real t1376 = t916 * t1375;
-  const Real t1377 = t1376 + t1291;
-
-  // passive accelerations
-  const Real t1378 = c_r_p_1_ * t1303;
-  const Real t1379 = s_r_p_1_ * t1336;
-  const Real t1380 = t1378 + t1379;
-  const Real t1381 = par.k13 * t1279;
-  const Real t1382 = t1380 - t1381;
-
-  // accelerations
-  const Real t1383 = par.k52 * t394;
-
-  // passive accelerations
-  const Real t1384 = t394 * par.k15;
-
-  // accelerations
-  const Real t1385 = t1383 + t1384;
-
-  // passive accelerations
-  const Real t1386 = t415 * par.k16;
-
-  // accelerations
-  const Real t1387 = t1386 + t1385;
-  const Real t1388 = t183 * par.k56;
-  const Real t1389 = par.k56 * t185;
-  const Real t1390 = t1389 + t1388;
-  const Real t1391 = t1387 - t1390;
-  const Real t1392 = t1382 + t1391;
-
-  // passive accelerations
-  const Real t1393 = par.r_R * t1260;
-  const Real t1394 = t183 * par.I_Ryy;
-  const Real t1395 = par.I_Ryy * t185;
-  const Real t1396 = t1394 + t1395;
-  const Real t1397 = t1393 + t1396;
-
-  // accelerations
-  const Real t1398 = t1392 - t1397;
-  const Real t1399 = t1398 * t1080;
-  const Real t1400 = t1377 + t1399;
-
-  // passive accelerations
-  const Real t1401 = par.k1 * t1338;
-  const Real t1402 = t1350 * par.k2;
+  // fork: wrench
+  const Real t1401 = par.k10 * t64;
+  const Real t1402 = s_r_p_1_ * par.k5;
   const Real t1403 = t1402 - t1401;
-  const Real t1404 = t1265 * par.k13;
-  const Real t1405 = t1404 + t1403;
-  const Real t1406 = t372 * par.k16;
-  const Real t1407 = t191 * par.k14;
-  const Real t1408 = par.k42 + t1407;
-  const Real t1409 = t1406 - t1408;
-  const Real t1410 = t1409 + t1405;
-  const Real t1411 = t1367 * c_r_p_0_;
-  const Real t1412 = t1371 * s_r_p_0_;
-  const Real t1413 = t1411 - t1412;
-  const Real t1414 = t1410 + t1413;
+
+  // front_wheel: joint force
+  const Real t1404 = t1403 + t1400;
+
+  // fork: joint force
+  const Real t1405 = t1404 * par.k2;
+  const Real t1406 = t1405 - t1395;
+  const Real t1407 = s_r_p_1_ * t1365;
+  const Real t1408 = t1369 * c_r_p_1_;
+  const Real t1409 = t1408 + t1407;
+  const Real t1410 = t1409 * par.k13;
+  const Real t1411 = t1406 + t1410;
 
   // accelerations
-  const Real t1415 = t1414 * t1108;
-  const Real t1416 = t1400 + t1415;
-  const Real t1417 = t1416 - t1396;
-  const Real t1418 = t1350 * t914;
-  const Real t1419 = t1417 - t1418;
-  const Real t1420 = t1126 * t1296;
-  const Real t1421 = t1419 - t1420;
-  const Real t1422 = t394 * t1261;
-  const Real t1423 = t372 * t1274;
-  const Real t1424 = t1423 + t1422;
+  const Real t1412 = t1411 * t564;
+  const Real t1413 = t1391 + t1412;
+  const Real t1414 = t1333 * t546;
+  const Real t1415 = t1413 - t1414;
+  const Real t1416 = c_r_p_1_ * t1188;
+  const Real t1417 = t1234 * s_r_p_1_;
+  const Real t1418 = t1417 + t1416;
+  const Real t1419 = t1030 * par.k13;
+  const Real t1420 = t1418 - t1419;
+  const Real t1421 = par.k15 * t673;
+  const Real t1422 = par.k59 * t673;
+  const Real t1423 = t1421 + t1422;
+  const Real t1424 = t684 * par.k16;
+  const Real t1425 = t1423 - t1424;
+  const Real t1426 = t674 - t794;
+  const Real t1427 = par.k3 * t1426;
+  const Real t1428 = t685 * par.k60;
+  const Real t1429 = t1427 - t1428;
+  const Real t1430 = t1425 + t1429;
+  const Real t1431 = t1430 + t1420;
+  const Real t1432 = t807 * par.r_R;
+  const Real t1433 = t1432 - t1431;
+  const Real t1434 = t1433 - t1415;
+  const Real t1435 = t846 * t241;
+  const Real t1436 = t243 * t846;
+  const Real t1437 = t1435 + t1436;
+  const Real t1438 = t1437 - t183;
+  const Real t1439 = t1434 * t1438;
+  const Real t1440 = sum_error(t1294, t1439);
+  const Real t1441 = t1414 - t1413;
+  const Real t1442 = sum_error(t1433, t1441);
+  const Real t1443 = sum_error(t1391, t1412);
+  const Real t1444 = sum_error(t1299, t1390);
+  const Real t1445 = t1389 * t556;
+  const Real t1446 = sum_error(t1379, t1388);
+  const Real t1447 = sum_error(par.k56, t1378);
+  const Real t1448 = t1447 + t1446;
+  const Real t1449 = t558 * t1448;
+  const Real t1450 = t1445 + t1449;
+  const Real t1451 = product_error(t1389, t558);
+  const Real t1452 = t1450 + t1451;
+  const Real t1453 = t1444 + t1452;
+  const Real t1454 = t1443 + t1453;
+  const Real t1455 = -t1414;
+  const Real t1456 = sum_error(t1413, t1455);
+  const Real t1457 = t1454 + t1456;
+  const Real t1458 = t1442 - t1457;
+  const Real t1459 = t1458 * t1438;
 
-  // passive accelerations
-  const Real t1425 = t1289 * t415;
+  // kernel
+  const Real t1460 = -t183;
 
   // accelerations
-  const Real t1426 = t1424 - t1425;
-  const Real t1427 = t1426 + t1375;
-  const Real t1428 = t183 * t1398;
-  const Real t1429 = t1398 * t185;
-  const Real t1430 = t1428 + t1429;
-  const Real t1431 = t1427 - t1430;
-
-  // passive accelerations
-  const Real t1432 = t191 * t1414;
-
-  // accelerations
-  const Real t1433 = t1431 - t1432;
-
-  // passive accelerations
-  const Real t1434 = t1296 * t174;
-
-  // accelerations
-  const Real t1435 = t1434 + t1433;
-  const Real t1436 = constant<Real>(1.0L) / t1435;
-  const Real t1437 = t1421 * t1436;
-  const Real t1438 = t1437 * t1150;
-  const Real t1439 = t1131 - t1438;
-  const Real t1440 = t1130 + t1439;
-  const Real t1441 = t810 * t1375;
-  const Real t1442 = t823 * t1261;
-  const Real t1443 = t826 * t1274;
-  const Real t1444 = t1443 + t1442;
-  const Real t1445 = t830 * t1289;
-  const Real t1446 = t1444 + t1445;
-  const Real t1447 = t1446 - t1441;
-  const Real t1448 = t1398 * t817;
-  const Real t1449 = t1398 * t816;
-  const Real t1450 = t1448 + t1449;
-  const Real t1451 = t1447 + t1450;
-  const Real t1452 = t1414 * t837;
-  const Real t1453 = t1452 + t1451;
-  const Real t1454 = t1453 + t1350;
-  const Real t1455 = t1296 * t844;
-  const Real t1456 = t842 * t1296;
-  const Real t1457 = t1455 + t1456;
-  const Real t1458 = t1454 - t1457;
-  const Real t1459 = t1436 * t1458;
-  const Real t1460 = t1150 * t1459;
-  const Real t1461 = t810 * t778;
-  const Real t1462 = t810 * t918;
-  const Real t1463 = t1461 + t1462;
-  const Real t1464 = t1028 * t823;
-  const Real t1465 = t823 * t974;
+  const Real t1461 = sum_error(t1437, t1460);
+  const Real t1462 = t1461 - t181;
+  const Real t1463 = t1434 * t1462;
+  const Real t1464 = t1459 + t1463;
+  const Real t1465 = product_error(t1434, t1438);
   const Real t1466 = t1465 + t1464;
-  const Real t1467 = t826 * t990;
-  const Real t1468 = t1467 + t1466;
-  const Real t1469 = t830 * t1009;
-  const Real t1470 = t1468 + t1469;
-  const Real t1471 = t1463 - t1470;
-  const Real t1472 = t817 * t1073;
-  const Real t1473 = t1082 * t816;
-  const Real t1474 = t1472 + t1473;
-  const Real t1475 = t1082 * t817;
-  const Real t1476 = t1475 + t1474;
-  const Real t1477 = t1471 - t1476;
-  const Real t1478 = t837 * t1106;
-  const Real t1479 = t1477 - t1478;
-  const Real t1480 = t1479 - t738;
-  const Real t1481 = t640 * t844;
-  const Real t1482 = t842 * t640;
-  const Real t1483 = t1481 + t1482;
-  const Real t1484 = t1480 - t1483;
-  const Real t1485 = t1484 - t1460;
-  const Real t1486 = -t1483;
-  const Real t1487 = sum_error(t1480, t1486);
-  const Real t1488 = -t738;
-  const Real t1489 = sum_error(t1479, t1488);
-  const Real t1490 = -t1478;
-  const Real t1491 = sum_error(t1477, t1490);
-  const Real t1492 = t1491 + t1489;
-  const Real t1493 = t1487 + t1492;
-  const Real t1494 = t1493 + t1485;
-  const Real t1495 = t224 - t813;
-  const Real t1496 = t1495 + t222;
-  const Real t1497 = t1496 * par.k13;
-  const Real t1498 = t1497 + t830;
-  const Real t1499 = par.k1 * t1498;
-  const Real t1500 = t823 * par.k2;
-  const Real t1501 = t1500 - t1499;
-  const Real t1502 = t1501 * c_r_p_1_;
-  const Real t1503 = par.k13 * t837;
-  const Real t1504 = t826 + t1503;
-  const Real t1505 = t1504 * s_r_p_1_;
-  const Real t1506 = t1502 + t1505;
-  const Real t1507 = t816 * c_r_p_1_;
-  const Real t1508 = t817 * c_r_p_1_;
-  const Real t1509 = t1507 + t1508;
-  const Real t1510 = par.k1 * t837;
-  const Real t1511 = t810 * par.k2;
-  const Real t1512 = t1511 + t1510;
-  const Real t1513 = s_r_p_1_ * t1512;
-  const Real t1514 = t1509 + t1513;
-  const Real t1515 = par.k11 * t1514;
-  const Real t1516 = t1506 - t1515;
-  const Real t1517 = par.k1 * t1516;
-  const Real t1518 = par.k2 * t1498;
-  const Real t1519 = par.k1 * t823;
-  const Real t1520 = t1519 + t1518;
-  const Real t1521 = par.k12 * t1514;
-  const Real t1522 = t1520 - t1521;
-  const Real t1523 = t1522 * par.k2;
-  const Real t1524 = t1523 - t1517;
-  const Real t1525 = c_r_p_2_ * t1524;
-  const Real t1526 = t1516 * par.k2;
-  const Real t1527 = par.k1 * t1522;
-  const Real t1528 = t1526 + t1527;
-  const Real t1529 = t1528 * s_r_p_2_;
-  const Real t1530 = t1525 + t1529;
-  const Real t1531 = t1530 * par.m_F;
-  const Real t1532 = t1531 * c_r_p_2_;
-  const Real t1533 = c_r_p_2_ * t1528;
-  const Real t1534 = t1524 * s_r_p_2_;
-  const Real t1535 = t1533 - t1534;
-  const Real t1536 = par.m_F * t1535;
-  const Real t1537 = t1536 * s_r_p_2_;
-  const Real t1538 = t1532 - t1537;
-  const Real t1539 = par.k2 * t1538;
-  const Real t1540 = c_r_p_2_ * t1536;
-  const Real t1541 = t1531 * s_r_p_2_;
-  const Real t1542 = t1540 + t1541;
-  const Real t1543 = par.k1 * t1542;
-  const Real t1544 = t1539 + t1543;
-  const Real t1545 = t1544 * par.k12;
-  const Real t1546 = t1542 * par.k2;
-  const Real t1547 = par.k1 * t1538;
-  const Real t1548 = t1546 - t1547;
-  const Real t1549 = t1548 * par.k11;
-  const Real t1550 = t1545 + t1549;
-  const Real t1551 = t842 + t1514;
-  const Real t1552 = t1551 + t844;
-  const Real t1553 = t1552 * par.I_Fyy;
-  const Real t1554 = t1553 - t1550;
-  const Real t1555 = par.k8 * t1506;
-  const Real t1556 = t1520 * par.k10;
-  const Real t1557 = t1555 - t1556;
-  const Real t1558 = par.k7 * t1514;
-  const Real t1559 = t1558 + t1557;
-  const Real t1560 = t1559 + t1554;
-  const Real t1561 = t1560 * s_r_p_1_;
-  const Real t1562 = s_r_p_1_ * t816;
-  const Real t1563 = s_r_p_1_ * t817;
-  const Real t1564 = t1563 + t1562;
-  const Real t1565 = c_r_p_1_ * t1512;
-  const Real t1566 = t1564 - t1565;
-  const Real t1567 = t1566 * par.k2;
-  const Real t1568 = par.k2 * t837;
-  const Real t1569 = t810 * par.k1;
-  const Real t1570 = t1568 - t1569;
-  const Real t1571 = t1570 + constant<Real>(1.0L);
-  const Real t1572 = par.k1 * t1571;
-  const Real t1573 = t1572 + t1567;
-  const Real t1574 = t1573 * s_r_p_2_;
-  const Real t1575 = t1566 * par.k1;
-  const Real t1576 = t1571 * par.k2;
-  const Real t1577 = t1576 - t1575;
-  const Real t1578 = t1577 * c_r_p_2_;
-  const Real t1579 = t1574 + t1578;
-  const Real t1580 = t1579 * par.I_Fxx;
-  const Real t1581 = t1580 * s_r_p_2_;
-  const Real t1582 = t1573 * c_r_p_2_;
-  const Real t1583 = t1577 * s_r_p_2_;
-  const Real t1584 = t1582 - t1583;
-  const Real t1585 = par.I_Fxx * t1584;
-  const Real t1586 = c_r_p_2_ * t1585;
-  const Real t1587 = t1581 + t1586;
-  const Real t1588 = par.k2 * t1587;
-  const Real t1589 = t1580 * c_r_p_2_;
-  const Real t1590 = t1585 * s_r_p_2_;
-  const Real t1591 = t1589 - t1590;
-  const Real t1592 = par.k1 * t1591;
-  const Real t1593 = t1588 - t1592;
-  const Real t1594 = s_r_p_1_ * t1501;
-  const Real t1595 = t1504 * c_r_p_1_;
-  const Real t1596 = t1595 - t1594;
-  const Real t1597 = t1565 - t1564;
-  const Real t1598 = t1597 * par.k11;
-  const Real t1599 = t1571 * par.k12;
-  const Real t1600 = t1599 - t1598;
-  const Real t1601 = t1596 + t1600;
-  const Real t1602 = par.m_F * t1601;
-  const Real t1603 = par.k11 * t1602;
-  const Real t1604 = t1603 + t1593;
-  const Real t1605 = t1596 * par.k8;
-  const Real t1606 = t1566 * par.k17;
-  const Real t1607 = par.k5 * t1571;
-  const Real t1608 = t1607 + t1606;
-  const Real t1609 = t1608 - t1605;
-  const Real t1610 = t1604 + t1609;
-  const Real t1611 = t1610 * c_r_p_1_;
-  const Real t1612 = t1611 - t1561;
-  const Real t1613 = t1612 * par.k2;
-  const Real t1614 = par.k2 * t1591;
-  const Real t1615 = par.k1 * t1587;
-  const Real t1616 = t1614 + t1615;
-  const Real t1617 = par.k12 * t1602;
-  const Real t1618 = t1617 + t1616;
-  const Real t1619 = t1596 * par.k10;
-  const Real t1620 = par.k5 * t1597;
-  const Real t1621 = par.k6 * t1571;
-  const Real t1622 = t1621 - t1620;
-  const Real t1623 = t1619 + t1622;
-  const Real t1624 = t1623 + t1618;
-  const Real t1625 = t1624 * par.k1;
-  const Real t1626 = t1613 + t1625;
-  const Real t1627 = par.k3 * t837;
-  const Real t1628 = t810 * par.k53;
-  const Real t1629 = t810 * par.k54;
-  const Real t1630 = t1628 + t1629;
-  const Real t1631 = t1627 - t1630;
-  const Real t1632 = t826 * par.k52;
-  const Real t1633 = t826 * par.k15;
-  const Real t1634 = t1632 + t1633;
-  const Real t1635 = t1631 - t1634;
-  const Real t1636 = t1626 + t1635;
-  const Real t1637 = t837 * c_r_p_0_;
-  const Real t1638 = t810 * s_r_p_0_;
-  const Real t1639 = t1637 - t1638;
-  const Real t1640 = par.I_Rxx * t1639;
-  const Real t1641 = t1640 * s_r_p_0_;
-  const Real t1642 = t837 * s_r_p_0_;
-  const Real t1643 = t810 * c_r_p_0_;
-  const Real t1644 = t1642 + t1643;
-  const Real t1645 = par.I_Rxx * t1644;
-  const Real t1646 = t1645 * c_r_p_0_;
-  const Real t1647 = t1641 - t1646;
-  const Real t1648 = t810 * par.r_R;
-  const Real t1649 = t826 - t1648;
-  const Real t1650 = par.m_R * t1649;
-  const Real t1651 = t1650 * par.r_R;
-  const Real t1652 = t1647 + t1651;
-  const Real t1653 = t1636 + t1652;
-  const Real t1654 = t916 * t1653;
-  const Real t1655 = t1506 * par.m_H;
-  const Real t1656 = par.k8 * t1514;
-  const Real t1657 = t1655 + t1656;
-  const Real t1658 = t1548 + t1657;
-  const Real t1659 = c_r_p_1_ * t1658;
-  const Real t1660 = t1596 * par.m_H;
-  const Real t1661 = par.k8 * t1597;
-  const Real t1662 = t1571 * par.k10;
-  const Real t1663 = t1661 + t1662;
-  const Real t1664 = t1660 + t1663;
-  const Real t1665 = t1664 + t1602;
-  const Real t1666 = t1665 * s_r_p_1_;
-  const Real t1667 = t1659 - t1666;
-  const Real t1668 = t1667 * par.k2;
-  const Real t1669 = t1520 * par.m_H;
-  const Real t1670 = par.k10 * t1514;
-  const Real t1671 = t1669 - t1670;
-  const Real t1672 = t1544 + t1671;
-  const Real t1673 = t1672 * par.k1;
-  const Real t1674 = t1673 + t1668;
-  const Real t1675 = t817 * par.k15;
-  const Real t1676 = t823 * par.m_B;
-  const Real t1677 = t1675 + t1676;
-  const Real t1678 = t1677 + t1674;
-  const Real t1679 = t816 * par.r_R;
-  const Real t1680 = t817 * par.r_R;
-  const Real t1681 = t1680 + t1679;
-  const Real t1682 = t823 - t1681;
-  const Real t1683 = t1682 * c_r_p_0_;
-  const Real t1684 = t830 * s_r_p_0_;
-  const Real t1685 = t1683 - t1684;
-  const Real t1686 = t1685 * par.m_R;
-  const Real t1687 = t1686 * c_r_p_0_;
-  const Real t1688 = t1682 * s_r_p_0_;
-  const Real t1689 = t830 * c_r_p_0_;
-  const Real t1690 = t1688 + t1689;
-  const Real t1691 = par.m_R * t1690;
-  const Real t1692 = t1691 * s_r_p_0_;
-  const Real t1693 = t1687 + t1692;
-  const Real t1694 = t1678 + t1693;
-  const Real t1695 = t977 * t1694;
-  const Real t1696 = s_r_p_1_ * t1658;
-  const Real t1697 = t1665 * c_r_p_1_;
-  const Real t1698 = t1696 + t1697;
-  const Real t1699 = t837 * par.k16;
-  const Real t1700 = t810 * par.k15;
-  const Real t1701 = t810 * par.k52;
-  const Real t1702 = t1700 + t1701;
-  const Real t1703 = t1702 + t1699;
-  const Real t1704 = t826 * par.m_B;
-  const Real t1705 = t1703 + t1704;
-  const Real t1706 = t1705 + t1698;
-  const Real t1707 = t1706 + t1650;
-  const Real t1708 = t1707 * t992;
-  const Real t1709 = t1708 + t1695;
-  const Real t1710 = par.k1 * t1667;
-  const Real t1711 = t1672 * par.k2;
-  const Real t1712 = t1711 - t1710;
-  const Real t1713 = t1496 * par.k16;
-  const Real t1714 = t830 * par.m_B;
-  const Real t1715 = t1714 + t1713;
-  const Real t1716 = t1715 + t1712;
-  const Real t1717 = t1691 * c_r_p_0_;
-  const Real t1718 = t1686 * s_r_p_0_;
-  const Real t1719 = t1717 - t1718;
-  const Real t1720 = t1719 + t1716;
-  const Real t1721 = t1011 * t1720;
-  const Real t1722 = t1709 + t1721;
-  const Real t1723 = sum_error(t1654, t1722);
-  const Real t1724 = sum_error(t1674, t1677);
-  const Real t1725 = t816 * par.k15;
-  const Real t1726 = par.k52 * t817;
-  const Real t1727 = t1725 + t1726;
-  const Real t1728 = product_error(par.k15, t817);
-  const Real t1729 = t1728 + t1727;
-  const Real t1730 = sum_error(t1676, t1675);
-  const Real t1731 = t1730 + t1729;
-  const Real t1732 = t1731 + t1724;
-  const Real t1733 = sum_error(t1678, t1693);
-  const Real t1734 = t1732 + t1733;
-  const Real t1735 = t977 * t1734;
-  const Real t1736 = product_error(t1694, t977);
-  const Real t1737 = t1736 + t1735;
-  const Real t1738 = sum_error(t1695, t1708);
-  const Real t1739 = t1738 + t1737;
-  const Real t1740 = sum_error(t1709, t1721);
-  const Real t1741 = t1740 + t1739;
-  const Real t1742 = t1723 + t1741;
-  const Real t1743 = t1560 * c_r_p_1_;
-  const Real t1744 = s_r_p_1_ * t1610;
-  const Real t1745 = t1743 + t1744;
-  const Real t1746 = t1712 * par.k13;
-  const Real t1747 = t1745 - t1746;
-  const Real t1748 = par.k52 * t823;
-  const Real t1749 = t823 * par.k15;
-  const Real t1750 = t1748 + t1749;
-  const Real t1751 = t830 * par.k16;
-  const Real t1752 = t1750 - t1751;
-  const Real t1753 = par.k56 * t817;
-  const Real t1754 = t1752 + t1753;
-  const Real t1755 = t1754 + t1747;
-  const Real t1756 = t1693 * par.r_R;
-  const Real t1757 = par.I_Ryy * t816;
-  const Real t1758 = par.I_Ryy * t817;
-  const Real t1759 = t1757 + t1758;
-  const Real t1760 = t1759 - t1756;
-  const Real t1761 = sum_error(t1755, t1760);
-  const Real t1762 = sum_error(t1747, t1754);
-  const Real t1763 = par.k56 * t816;
-  const Real t1764 = product_error(par.k56, t817);
-  const Real t1765 = t1764 + t1763;
-  const Real t1766 = sum_error(t1753, t1752);
-  const Real t1767 = t1765 + t1766;
-  const Real t1768 = t1767 + t1762;
-  const Real t1769 = t1761 + t1768;
-  const Real t1770 = t1769 * t1080;
-  const Real t1771 = t1755 + t1760;
-  const Real t1772 = product_error(t1080, t1771);
-  const Real t1773 = t1770 + t1772;
-  const Real t1774 = t1773 + t1742;
-  const Real t1775 = t1722 + t1654;
-  const Real t1776 = t1771 * t1080;
-  const Real t1777 = t1775 + t1776;
-  const Real t1778 = t1774 + t1777;
-  const Real t1779 = t1612 * par.k1;
-  const Real t1780 = t1624 * par.k2;
-  const Real t1781 = t1780 - t1779;
-  const Real t1782 = par.k13 * t1698;
-  const Real t1783 = t1781 + t1782;
-  const Real t1784 = par.k14 * t837;
-  const Real t1785 = t810 * par.k3;
-  const Real t1786 = t1784 - t1785;
-  const Real t1787 = t826 * par.k16;
-  const Real t1788 = t1787 + t1786;
-  const Real t1789 = t1783 + t1788;
-  const Real t1790 = t1645 * s_r_p_0_;
-  const Real t1791 = t1640 * c_r_p_0_;
-  const Real t1792 = t1790 + t1791;
-  const Real t1793 = t1792 + t1789;
-  const Real t1794 = t1793 * t1108;
-  const Real t1795 = t1794 + t1778;
-  const Real t1796 = t1759 + t1795;
-  const Real t1797 = t1624 * t914;
-  const Real t1798 = t1796 - t1797;
-  const Real t1799 = t1126 * t1553;
-  const Real t1800 = t1799 + t1798;
-  const Real t1801 = t1421 * t1459;
-  const Real t1802 = t1800 - t1801;
-  const Real t1803 = t1769 * t817;
-  const Real t1804 = t1771 * t816;
-  const Real t1805 = t1804 + t1803;
-  const Real t1806 = t1771 * t817;
-  const Real t1807 = t1806 + t1805;
-  const Real t1808 = t823 * t1734;
-  const Real t1809 = t823 * t1694;
-  const Real t1810 = t1809 + t1808;
-  const Real t1811 = t826 * t1707;
-  const Real t1812 = t1811 + t1810;
-  const Real t1813 = t830 * t1720;
-  const Real t1814 = t1813 + t1812;
-  const Real t1815 = t810 * t1653;
-  const Real t1816 = t1814 - t1815;
-  const Real t1817 = t1807 + t1816;
-  const Real t1818 = t1793 * t837;
-  const Real t1819 = t1818 + t1817;
-  const Real t1820 = t1819 + t1624;
-  const Real t1821 = t842 * t1553;
-  const Real t1822 = t1553 * t844;
-  const Real t1823 = t1821 + t1822;
-  const Real t1824 = t1820 + t1823;
-  const Real t1825 = t1459 * t1458;
-  const Real t1826 = t1824 - t1825;
-  const Real t1827 = constant<Real>(1.0L) / t1826;
-  const Real t1828 = t1827 * t1802;
-  const Real t1829 = t1494 * t1828;
-  const Real t1830 = t1440 - t1829;
-  const Real t1831 = t1076 - t894;
-  const Real t1832 = t1078 - t890;
-  const Real t1833 = t1832 + t1831;
-  const Real t1834 = par.k13 * t1833;
-  const Real t1835 = t1834 + t1011;
-  const Real t1836 = par.k1 * t1835;
-  const Real t1837 = t977 * par.k2;
-  const Real t1838 = t1837 - t1836;
-  const Real t1839 = c_r_p_1_ * t1838;
-  const Real t1840 = par.k13 * t1108;
-  const Real t1841 = t1840 + t992;
-  const Real t1842 = s_r_p_1_ * t1841;
-  const Real t1843 = t1842 + t1839;
-  const Real t1844 = c_r_p_1_ * t1080;
-  const Real t1845 = t916 * par.k2;
-  const Real t1846 = par.k1 * t1108;
-  const Real t1847 = t1845 - t1846;
-  const Real t1848 = s_r_p_1_ * t1847;
-  const Real t1849 = t1844 - t1848;
-  const Real t1850 = par.k11 * t1849;
-  const Real t1851 = t1843 - t1850;
-  const Real t1852 = par.k2 * t1851;
-  const Real t1853 = t1835 * par.k2;
-  const Real t1854 = t977 * par.k1;
-  const Real t1855 = t1853 + t1854;
-  const Real t1856 = t1848 - t1844;
-  const Real t1857 = par.k12 * t1856;
-  const Real t1858 = t1855 + t1857;
-  const Real t1859 = t1858 * par.k1;
-  const Real t1860 = t1852 + t1859;
-  const Real t1861 = c_r_p_2_ * t1860;
-  const Real t1862 = par.k1 * t1851;
-  const Real t1863 = t1858 * par.k2;
-  const Real t1864 = t1863 - t1862;
-  const Real t1865 = t1864 * s_r_p_2_;
-  const Real t1866 = t1861 - t1865;
-  const Real t1867 = t1866 * par.m_F;
-  const Real t1868 = c_r_p_2_ * t1867;
-  const Real t1869 = t1860 * s_r_p_2_;
-  const Real t1870 = c_r_p_2_ * t1864;
-  const Real t1871 = t1869 + t1870;
-  const Real t1872 = t1871 * par.m_F;
-  const Real t1873 = t1872 * s_r_p_2_;
-  const Real t1874 = t1868 + t1873;
-  const Real t1875 = par.k2 * t1874;
-  const Real t1876 = c_r_p_2_ * t1872;
-  const Real t1877 = t1867 * s_r_p_2_;
-  const Real t1878 = t1876 - t1877;
-  const Real t1879 = par.k1 * t1878;
-  const Real t1880 = t1875 - t1879;
-  const Real t1881 = t1880 * par.k11;
-  const Real t1882 = t1878 * par.k2;
-  const Real t1883 = par.k1 * t1874;
-  const Real t1884 = t1882 + t1883;
-  const Real t1885 = t1884 * par.k12;
-  const Real t1886 = t1881 + t1885;
-  const Real t1887 = t1126 + t1849;
-  const Real t1888 = t1887 * par.I_Fyy;
-  const Real t1889 = t1888 - t1886;
-  const Real t1890 = par.k8 * t1843;
-  const Real t1891 = t1855 * par.k10;
-  const Real t1892 = t1890 - t1891;
-  const Real t1893 = par.k7 * t1849;
-  const Real t1894 = t1892 + t1893;
-  const Real t1895 = t1894 + t1889;
-  const Real t1896 = s_r_p_1_ * t1895;
-  const Real t1897 = s_r_p_1_ * t1080;
-  const Real t1898 = c_r_p_1_ * t1847;
-  const Real t1899 = t1897 + t1898;
-  const Real t1900 = par.k1 * t1899;
-  const Real t1901 = par.k2 * t1108;
-  const Real t1902 = t916 * par.k1;
-  const Real t1903 = t1901 + t1902;
-  const Real t1904 = t1903 - t914;
-  const Real t1905 = t1904 * par.k2;
-  const Real t1906 = t1905 - t1900;
-  const Real t1907 = t1906 * c_r_p_2_;
-  const Real t1908 = par.k2 * t1899;
-  const Real t1909 = par.k1 * t1904;
-  const Real t1910 = t1909 + t1908;
-  const Real t1911 = t1910 * s_r_p_2_;
-  const Real t1912 = t1907 + t1911;
-  const Real t1913 = par.I_Fxx * t1912;
-  const Real t1914 = t1913 * s_r_p_2_;
-  const Real t1915 = c_r_p_2_ * t1910;
-  const Real t1916 = t1906 * s_r_p_2_;
-  const Real t1917 = t1915 - t1916;
-  const Real t1918 = par.I_Fxx * t1917;
-  const Real t1919 = c_r_p_2_ * t1918;
-  const Real t1920 = t1914 + t1919;
-  const Real t1921 = t1920 * par.k2;
-  const Real t1922 = c_r_p_2_ * t1913;
-  const Real t1923 = t1918 * s_r_p_2_;
-  const Real t1924 = t1922 - t1923;
-  const Real t1925 = par.k1 * t1924;
-  const Real t1926 = t1921 - t1925;
-  const Real t1927 = s_r_p_1_ * t1838;
-  const Real t1928 = c_r_p_1_ * t1841;
-  const Real t1929 = t1928 - t1927;
-  const Real t1930 = par.k11 * t1899;
-  const Real t1931 = t1904 * par.k12;
-  const Real t1932 = t1930 + t1931;
-  const Real t1933 = t1929 + t1932;
-  const Real t1934 = par.m_F * t1933;
-  const Real t1935 = par.k11 * t1934;
-  const Real t1936 = t1926 + t1935;
-  const Real t1937 = t1929 * par.k8;
-  const Real t1938 = par.k17 * t1899;
-  const Real t1939 = par.k5 * t1904;
-  const Real t1940 = t1939 + t1938;
-  const Real t1941 = t1940 - t1937;
-  const Real t1942 = t1941 + t1936;
-  const Real t1943 = c_r_p_1_ * t1942;
-  const Real t1944 = t1943 - t1896;
-  const Real t1945 = par.k2 * t1944;
-  const Real t1946 = par.k1 * t1920;
-  const Real t1947 = par.k2 * t1924;
-  const Real t1948 = t1946 + t1947;
-  const Real t1949 = par.k12 * t1934;
-  const Real t1950 = t1949 + t1948;
-  const Real t1951 = t1929 * par.k10;
-  const Real t1952 = par.k5 * t1899;
-  const Real t1953 = par.k6 * t1904;
-  const Real t1954 = t1953 + t1952;
-  const Real t1955 = t1951 + t1954;
-  const Real t1956 = t1955 + t1950;
-  const Real t1957 = par.k1 * t1956;
-  const Real t1958 = t1945 + t1957;
-  const Real t1959 = t916 * par.k54;
-  const Real t1960 = t916 * par.k53;
-  const Real t1961 = t1959 + t1960;
-  const Real t1962 = par.k3 * t1108;
-  const Real t1963 = t1961 + t1962;
-  const Real t1964 = par.k52 * t992;
-  const Real t1965 = t992 * par.k15;
-  const Real t1966 = t1964 + t1965;
-  const Real t1967 = t1963 - t1966;
-  const Real t1968 = t1967 + t1958;
-  const Real t1969 = t1108 * c_r_p_0_;
-  const Real t1970 = t916 * s_r_p_0_;
-  const Real t1971 = t1969 + t1970;
-  const Real t1972 = par.I_Rxx * t1971;
-  const Real t1973 = t1972 * s_r_p_0_;
-  const Real t1974 = t916 * c_r_p_0_;
-  const Real t1975 = t1108 * s_r_p_0_;
-  const Real t1976 = t1974 - t1975;
-  const Real t1977 = t1976 * par.I_Rxx;
-  const Real t1978 = t1977 * c_r_p_0_;
-  const Real t1979 = t1973 + t1978;
-  const Real t1980 = t868 - t915;
-  const Real t1981 = t1980 * par.r_R;
-  const Real t1982 = t992 - t1981;
-  const Real t1983 = par.m_R * t1982;
-  const Real t1984 = t1983 * par.r_R;
-  const Real t1985 = t1984 + t1979;
-  const Real t1986 = t1985 + t1968;
-  const Real t1987 = t916 * t1986;
-  const Real t1988 = par.m_H * t1843;
-  const Real t1989 = par.k8 * t1849;
-  const Real t1990 = t1989 + t1988;
-  const Real t1991 = t1880 + t1990;
-  const Real t1992 = c_r_p_1_ * t1991;
-  const Real t1993 = t1929 * par.m_H;
-  const Real t1994 = par.k8 * t1899;
-  const Real t1995 = t1904 * par.k10;
-  const Real t1996 = t1995 - t1994;
-  const Real t1997 = t1993 + t1996;
-  const Real t1998 = t1997 + t1934;
-  const Real t1999 = s_r_p_1_ * t1998;
-  const Real t2000 = t1992 - t1999;
-  const Real t2001 = t2000 * par.k2;
-  const Real t2002 = t1855 * par.m_H;
-  const Real t2003 = par.k10 * t1856;
-  const Real t2004 = t2003 + t2002;
-  const Real t2005 = t1884 + t2004;
-  const Real t2006 = t2005 * par.k1;
-  const Real t2007 = t2006 + t2001;
-  const Real t2008 = par.k52 * t1080;
-  const Real t2009 = t1080 * par.k15;
-  const Real t2010 = t2008 + t2009;
-  const Real t2011 = t977 * par.m_B;
-  const Real t2012 = t2011 + t2010;
-  const Real t2013 = t2007 + t2012;
-  const Real t2014 = t1080 * par.r_R;
-  const Real t2015 = t977 - t2014;
-  const Real t2016 = t2015 * c_r_p_0_;
-  const Real t2017 = t1011 * s_r_p_0_;
-  const Real t2018 = t2016 - t2017;
-  const Real t2019 = t2018 * par.m_R;
-  const Real t2020 = t2019 * c_r_p_0_;
-  const Real t2021 = t2015 * s_r_p_0_;
-  const Real t2022 = t1011 * c_r_p_0_;
-  const Real t2023 = t2022 + t2021;
-  const Real t2024 = par.m_R * t2023;
-  const Real t2025 = t2024 * s_r_p_0_;
-  const Real t2026 = t2020 + t2025;
-  const Real t2027 = t2013 + t2026;
-  const Real t2028 = t977 * t2027;
-  const Real t2029 = s_r_p_1_ * t1991;
-  const Real t2030 = c_r_p_1_ * t1998;
-  const Real t2031 = t2030 + t2029;
-  const Real t2032 = par.k52 * t1980;
-  const Real t2033 = t1980 * par.k15;
-  const Real t2034 = t2032 + t2033;
-  const Real t2035 = t1108 * par.k16;
-  const Real t2036 = t2035 + t2034;
-  const Real t2037 = t992 * par.m_B;
-  const Real t2038 = t2036 + t2037;
-  const Real t2039 = t2031 + t2038;
-  const Real t2040 = t1983 + t2039;
-  const Real t2041 = t992 * t2040;
-  const Real t2042 = t2028 + t2041;
-  const Real t2043 = t2000 * par.k1;
-  const Real t2044 = t2005 * par.k2;
-  const Real t2045 = t2044 - t2043;
-  const Real t2046 = t1833 * par.k16;
-  const Real t2047 = t1011 * par.m_B;
-  const Real t2048 = t2047 + t2046;
-  const Real t2049 = t2045 + t2048;
-  const Real t2050 = t2024 * c_r_p_0_;
-  const Real t2051 = t2019 * s_r_p_0_;
-  const Real t2052 = t2050 - t2051;
-  const Real t2053 = t2049 + t2052;
-  const Real t2054 = t1011 * t2053;
-  const Real t2055 = t2054 + t2042;
-  const Real t2056 = t2055 + t1987;
-  const Real t2057 = c_r_p_1_ * t1895;
-  const Real t2058 = s_r_p_1_ * t1942;
-  const Real t2059 = t2057 + t2058;
-  const Real t2060 = t2045 * par.k13;
-  const Real t2061 = t2059 - t2060;
-  const Real t2062 = t977 * par.k52;
-  const Real t2063 = t977 * par.k15;
-  const Real t2064 = t2062 + t2063;
-  const Real t2065 = t1011 * par.k16;
-  const Real t2066 = t2064 - t2065;
-  const Real t2067 = par.k56 * t1080;
-  const Real t2068 = t2066 + t2067;
-  const Real t2069 = t2061 + t2068;
-  const Real t2070 = t2026 * par.r_R;
-  const Real t2071 = constant<Real>(1.0L) + t1080;
-  const Real t2072 = par.I_Ryy * t2071;
-  const Real t2073 = t2072 - t2070;
-  const Real t2074 = t2073 + t2069;
-  const Real t2075 = t1080 * t2074;
-  const Real t2076 = t2075 + t2056;
-  const Real t2077 = par.k1 * t1944;
-  const Real t2078 = par.k2 * t1956;
-  const Real t2079 = t2078 - t2077;
-  const Real t2080 = t2031 * par.k13;
-  const Real t2081 = t2080 + t2079;
-  const Real t2082 = par.k14 * t1108;
-  const Real t2083 = par.k3 * t1980;
-  const Real t2084 = t2082 - t2083;
-  const Real t2085 = t992 * par.k16;
-  const Real t2086 = t2084 + t2085;
-  const Real t2087 = t2086 + t2081;
-  const Real t2088 = t1972 * c_r_p_0_;
-  const Real t2089 = t1977 * s_r_p_0_;
-  const Real t2090 = t2088 - t2089;
-  const Real t2091 = t2087 + t2090;
-  const Real t2092 = t2091 * t1108;
-  const Real t2093 = t2076 + t2092;
-  const Real t2094 = t2072 + t2093;
-  const Real t2095 = t914 * t1956;
-  const Real t2096 = t2094 - t2095;
-  const Real t2097 = t1126 * t1888;
-  const Real t2098 = t2097 + t2096;
-  const Real t2099 = t1421 * t1437;
-  const Real t2100 = t2098 - t2099;
-  const Real t2101 = t1828 * t1802;
-  const Real t2102 = t2100 - t2101;
-  const Real t2103 = constant<Real>(1.0L) / t2102;
-  const Real t2104 = t2103 * t1830;
-  const Real t2105 = t1828 * t2104;
-  const Real t2106 = t1827 * t1494;
-  const Real t2107 = t2106 - t2105;
-  const Real t2108 = t1459 * t2107;
-  const Real t2109 = t1150 * t1436;
-  const Real t2110 = t2109 - t2108;
-  const Real t2111 = t1437 * t2104;
-  const Real t2112 = t2110 - t2111;
-  const Real t2113 = t2112 * t174;
-  const Real t2114 = t2107 * t844;
-  const Real t2115 = t842 * t2107;
-  const Real t2116 = t2114 + t2115;
-  const Real t2117 = t2116 - t2113;
-  const Real t2118 = t1126 * t2104;
-  const Real t2119 = t2118 + t2117;
-  const Real t2120 = t2119 - t516;
-  const Real t2121 = t914 * t2104;
-  const Real t2122 = t2107 - t2121;
-  const Real t2123 = t2112 * t191;
-  const Real t2124 = t837 * t2107;
-  const Real t2125 = t2124 - t2123;
-  const Real t2126 = t1108 * t2104;
-  const Real t2127 = t2125 + t2126;
-  const Real t2128 = t2127 + t534;
-  const Real t2129 = t2112 * t185;
-  const Real t2130 = t183 * t2112;
-  const Real t2131 = t2129 + t2130;
-  const Real t2132 = t817 * t2107;
-  const Real t2133 = t816 * t2107;
-  const Real t2134 = t2132 + t2133;
-  const Real t2135 = t2134 - t2131;
-  const Real t2136 = t1080 * t2104;
-  const Real t2137 = t2135 + t2136;
-  const Real t2138 = t2137 + t528;
-  const Real t2139 = t2138 + t526;
-  const Real t2140 = t810 * t2107;
-  const Real t2141 = t2112 - t2140;
-  const Real t2142 = t916 * t2104;
-  const Real t2143 = t2142 + t2141;
-  const Real t2144 = t2112 * t415;
-  const Real t2145 = t830 * t2107;
-  const Real t2146 = t2145 - t2144;
-  const Real t2147 = t1011 * t2104;
-  const Real t2148 = t2146 + t2147;
-  const Real t2149 = t554 + t2148;
-  const Real t2150 = t2112 * t372;
-  const Real t2151 = t826 * t2107;
-  const Real t2152 = t2150 + t2151;
-  const Real t2153 = t992 * t2104;
-  const Real t2154 = t2152 + t2153;
-  const Real t2155 = t2154 + t587;
-  const Real t2156 = t2112 * t394;
-  const Real t2157 = t823 * t2107;
-  const Real t2158 = t2157 + t2156;
-  const Real t2159 = t977 * t2104;
-  const Real t2160 = t2159 + t2158;
-  const Real t2161 = t2160 + t570;
-  const Real t2162 = t810 * t2122;
-  const Real t2163 = t2112 - t2162;
-  const Real t2164 = t2104 * t868;
-  const Real t2165 = t2163 - t2164;
+  const Real t1467 = t1466 + t1440;
+  const Real t1468 = t566 * t927;
+  const Real t1469 = t596 * t664;
+  const Real t1470 = t1469 + t1468;
+  const Real t1471 = t619 * t1025;
+  const Real t1472 = t1470 + t1471;
+  const Real t1473 = t1411 * t556;
+  const Real t1474 = t558 * t1411;
+  const Real t1475 = t1473 + t1474;
+  const Real t1476 = t1472 + t1475;
 
-  nu_dot_out[0] = t2165;
-  nu_dot_out[1] = t2122;
-  nu_dot_out[2] = t2104;
-  eta_dot[0] = t2161;
-  eta_dot[1] = t2155;
-  eta_dot[2] = t2149;
-  eta_dot[3] = t2143;
-  eta_dot[4] = t2139;
-  eta_dot[5] = t2128;
-  r_p_ddot[0] = t2104;
-  r_p_ddot[1] = t2122;
-  r_p_ddot[2] = t2120;
+  // front_wheel: acceleration
+  const Real t1477 = par.k11 * t49;
+  const Real t1478 = t52 - t1477;
+  const Real t1479 = t1478 * par.k2;
+  const Real t1480 = par.k12 * t49;
+  const Real t1481 = t1480 * par.k1;
+  const Real t1482 = t1479 - t1481;
+  const Real t1483 = t1482 * s_r_p_2_;
+  const Real t1484 = par.k1 * t1478;
+  const Real t1485 = t1480 * par.k2;
+  const Real t1486 = t1484 + t1485;
+  const Real t1487 = t1486 * c_r_p_2_;
+  const Real t1488 = t1483 - t1487;
+
+  // front_wheel: wrench
+  const Real t1489 = par.m_F * t1488;
+
+  // front_wheel: joint force
+  const Real t1490 = c_r_p_2_ * t1489;
+
+  // front_wheel: acceleration
+  const Real t1491 = t1486 * s_r_p_2_;
+  const Real t1492 = c_r_p_2_ * t1482;
+  const Real t1493 = t1491 + t1492;
+
+  // front_wheel: wrench
+  const Real t1494 = t1493 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1495 = t1494 * s_r_p_2_;
+  const Real t1496 = t1490 - t1495;
+  const Real t1497 = par.k2 * t1496;
+  const Real t1498 = t1489 * s_r_p_2_;
+  const Real t1499 = t1494 * c_r_p_2_;
+  const Real t1500 = t1498 + t1499;
+  const Real t1501 = par.k1 * t1500;
+  const Real t1502 = t1497 + t1501;
+  const Real t1503 = t1502 * par.k12;
+  const Real t1504 = par.k2 * t1500;
+  const Real t1505 = par.k1 * t1496;
+  const Real t1506 = t1504 - t1505;
+  const Real t1507 = t1506 * par.k11;
+  const Real t1508 = t1503 + t1507;
+
+  // front_wheel: wrench
+  const Real t1509 = par.I_Fyy * t49;
+
+  // front_wheel: joint force
+  const Real t1510 = t1509 - t1508;
+
+  // fork: wrench
+  const Real t1511 = par.k7 * t49;
+  const Real t1512 = par.k8 * t52;
+  const Real t1513 = t1511 + t1512;
+
+  // front_wheel: joint force
+  const Real t1514 = t1513 + t1510;
+
+  // fork: joint force
+  const Real t1515 = s_r_p_1_ * t1514;
+
+  // front_wheel: wrench
+  const Real t1516 = t956 * par.I_Fxx;
+
+  // front_wheel: joint force
+  const Real t1517 = t1516 * s_r_p_2_;
+
+  // front_wheel: wrench
+  const Real t1518 = par.I_Fxx * t961;
+
+  // front_wheel: joint force
+  const Real t1519 = c_r_p_2_ * t1518;
+  const Real t1520 = t1517 + t1519;
+  const Real t1521 = t1520 * par.k2;
+  const Real t1522 = c_r_p_2_ * t1516;
+  const Real t1523 = t1518 * s_r_p_2_;
+  const Real t1524 = t1522 - t1523;
+  const Real t1525 = par.k1 * t1524;
+  const Real t1526 = t1521 - t1525;
+
+  // front_wheel: acceleration
+  const Real t1527 = t23 * par.k11;
+  const Real t1528 = par.k52 - t1527;
+  const Real t1529 = t36 + t1528;
+
+  // front_wheel: wrench
+  const Real t1530 = t1529 * par.m_F;
+
+  // front_wheel: joint force
+  const Real t1531 = t1530 * par.k11;
+  const Real t1532 = t1531 + t1526;
+
+  // fork: wrench
+  const Real t1533 = t23 * par.k17;
+  const Real t1534 = par.k53 - t1533;
+  const Real t1535 = par.k8 * t36;
+  const Real t1536 = t1534 - t1535;
+
+  // front_wheel: joint force
+  const Real t1537 = t1536 + t1532;
+
+  // fork: joint force
+  const Real t1538 = c_r_p_1_ * t1537;
+  const Real t1539 = t1538 - t1515;
+  const Real t1540 = par.k1 * t1539;
+
+  // front_wheel: joint force
+  const Real t1541 = t1524 * par.k2;
+  const Real t1542 = t1520 * par.k1;
+  const Real t1543 = t1541 + t1542;
+  const Real t1544 = t1530 * par.k12;
+  const Real t1545 = t1544 + t1543;
+
+  // fork: wrench
+  const Real t1546 = par.k5 * t23;
+  const Real t1547 = par.k54 - t1546;
+  const Real t1548 = t36 * par.k10;
+  const Real t1549 = t1548 + t1547;
+
+  // front_wheel: joint force
+  const Real t1550 = t1549 + t1545;
+
+  // fork: joint force
+  const Real t1551 = par.k2 * t1550;
+  const Real t1552 = t1551 - t1540;
+
+  // fork: wrench
+  const Real t1553 = par.m_H * t52;
+  const Real t1554 = t999 + t1553;
+
+  // front_wheel: joint force
+  const Real t1555 = t1554 + t1506;
+
+  // fork: joint force
+  const Real t1556 = s_r_p_1_ * t1555;
+
+  // fork: wrench
+  const Real t1557 = par.m_H * t36;
+  const Real t1558 = t1557 + t995;
+
+  // front_wheel: joint force
+  const Real t1559 = t1530 + t1558;
+
+  // fork: joint force
+  const Real t1560 = c_r_p_1_ * t1559;
+  const Real t1561 = t1560 + t1556;
+  const Real t1562 = t1561 * par.k13;
+  const Real t1563 = t1552 + t1562;
+  const Real t1564 = t1563 + par.k14;
+
+  // rear_wheel: joint force
+  const Real t1565 = t1163 * s_r_p_0_;
+  const Real t1566 = t1165 * c_r_p_0_;
+  const Real t1567 = t1565 + t1566;
+
+  // rear_wheel: joint force
+  const Real t1568 = t1567 + t1564;
+
+  // accelerations
+  const Real t1569 = t1568 * t564;
+  const Real t1570 = t1569 + t1476;
+  const Real t1571 = t1509 * t546;
+  const Real t1572 = t1570 - t1571;
+  const Real t1573 = par.k1 * t1236;
+  const Real t1574 = t1248 * par.k2;
+  const Real t1575 = t1574 - t1573;
+  const Real t1576 = t932 * par.k13;
+  const Real t1577 = t1576 + t1575;
+  const Real t1578 = t695 * par.k16;
+  const Real t1579 = par.k3 * t933;
+  const Real t1580 = par.k58 * t696;
+  const Real t1581 = t1580 + t1579;
+  const Real t1582 = t1581 + t1578;
+  const Real t1583 = t1577 - t1582;
+  const Real t1584 = t1273 * c_r_p_0_;
+  const Real t1585 = t1264 * s_r_p_0_;
+  const Real t1586 = t1584 - t1585;
+  const Real t1587 = t1583 + t1586;
+  const Real t1588 = sum_error(t1587, t1572);
+  const Real t1589 = sum_error(t1586, t1583);
+  const Real t1590 = -t1582;
+  const Real t1591 = sum_error(t1577, t1590);
+  const Real t1592 = t1591 + t1589;
+  const Real t1593 = t1588 + t1592;
+  const Real t1594 = t249 * t846;
+  const Real t1595 = t1594 - t189;
+  const Real t1596 = t1595 * t1593;
+  const Real t1597 = t1572 + t1587;
+  const Real t1598 = product_error(t1595, t1597);
+  const Real t1599 = t1598 + t1596;
+  const Real t1600 = t1467 - t1599;
+  const Real t1601 = t1439 + t1294;
+  const Real t1602 = t1597 * t1595;
+  const Real t1603 = -t1602;
+  const Real t1604 = sum_error(t1601, t1603);
+  const Real t1605 = t1604 + t1600;
+  const Real t1606 = t1601 - t1602;
+  const Real t1607 = t922 * t566;
+  const Real t1608 = t596 * t660;
+  const Real t1609 = t1607 - t1608;
+  const Real t1610 = t619 * t1018;
+  const Real t1611 = t1610 + t1609;
+  const Real t1612 = t1404 * t556;
+  const Real t1613 = t1404 * t558;
+  const Real t1614 = t1612 + t1613;
+  const Real t1615 = t1611 + t1614;
+  const Real t1616 = t564 * t1550;
+  const Real t1617 = t1616 + t1615;
+  const Real t1618 = t1247 - t1242;
+  const Real t1619 = t1618 - t1617;
+  const Real t1620 = sum_error(t1606, t1619);
+  const Real t1621 = t1605 + t1620;
+  const Real t1622 = t1619 + t1606;
+  const Real t1623 = t1509 * t564;
+  const Real t1624 = t1333 * t556;
+  const Real t1625 = t1333 * t558;
+  const Real t1626 = t1624 + t1625;
+  const Real t1627 = t1623 + t1626;
+  const Real t1628 = t546 * par.I_Fyy;
+  const Real t1629 = t1627 - t1628;
+  const Real t1630 = t1176 - t1629;
+  const Real t1631 = t232 * t846;
+  const Real t1632 = t1631 - t168;
+  const Real t1633 = t1630 * t1632;
+
+  // kernel
+  const Real t1634 = -t168;
+
+  // accelerations
+  const Real t1635 = sum_error(t1631, t1634);
+  const Real t1636 = t1635 - t166;
+  const Real t1637 = t1636 * t1630;
+  const Real t1638 = t1633 + t1637;
+  const Real t1639 = sum_error(t1638, t1622);
+  const Real t1640 = t1621 + t1639;
+  const Real t1641 = t810 * t413;
+  const Real t1642 = t850 * t413;
+  const Real t1643 = t1642 + t1641;
+  const Real t1644 = t946 * t395;
+  const Real t1645 = t1644 - t1643;
+  const Real t1646 = t436 * t1043;
+  const Real t1647 = t1646 + t1645;
+  const Real t1648 = t1647 - t1291;
+  const Real t1649 = t243 * t1458;
+  const Real t1650 = t1434 * t241;
+  const Real t1651 = t1649 + t1650;
+  const Real t1652 = t243 * t1434;
+  const Real t1653 = t1651 + t1652;
+  const Real t1654 = t1648 - t1653;
+  const Real t1655 = t249 * t1593;
+  const Real t1656 = t249 * t1597;
+  const Real t1657 = t1655 + t1656;
+  const Real t1658 = t1657 + t1654;
+  const Real t1659 = t232 * t1630;
+  const Real t1660 = -t1659;
+  const Real t1661 = sum_error(t1658, t1660);
+  const Real t1662 = -t1653;
+  const Real t1663 = sum_error(t1648, t1662);
+  const Real t1664 = -t1291;
+  const Real t1665 = sum_error(t1647, t1664);
+  const Real t1666 = t1665 - t1289;
+  const Real t1667 = t1663 + t1666;
+  const Real t1668 = sum_error(t1657, t1654);
+  const Real t1669 = t1667 + t1668;
+  const Real t1670 = t1661 + t1669;
+  const Real t1671 = t395 * t591;
+  const Real t1672 = t413 * t613;
+  const Real t1673 = t1671 + t1672;
+  const Real t1674 = t436 * t626;
+  const Real t1675 = t1673 - t1674;
+  const Real t1676 = t1675 + t1062;
+  const Real t1677 = t646 * t241;
+  const Real t1678 = t243 * t646;
+  const Real t1679 = t1678 + t1677;
+  const Real t1680 = t1676 - t1679;
+  const Real t1681 = t249 * t664;
+  const Real t1682 = t1680 - t1681;
+  const Real t1683 = t853 * t1682;
+  const Real t1684 = t1682 * t848;
+  const Real t1685 = t1683 + t1684;
+  const Real t1686 = t884 * t395;
+  const Real t1687 = t413 * t591;
+  const Real t1688 = t1686 + t1687;
+  const Real t1689 = t436 * t896;
+  const Real t1690 = t1688 - t1689;
+  const Real t1691 = t1057 + t1690;
+  const Real t1692 = t1691 + t1055;
+  const Real t1693 = t241 * t911;
+  const Real t1694 = t243 * t911;
+  const Real t1695 = t1693 + t1694;
+  const Real t1696 = t1692 - t1695;
+  const Real t1697 = t249 * t927;
+  const Real t1698 = t1696 - t1697;
+  const Real t1699 = t948 * t1698;
+  const Real t1700 = t1699 + t1685;
+  const Real t1701 = t896 * t395;
+  const Real t1702 = t626 * t413;
+  const Real t1703 = t1702 + t1701;
+  const Real t1704 = t987 * t436;
+  const Real t1705 = t1703 - t1704;
+  const Real t1706 = t1705 + t1067;
+  const Real t1707 = t1007 * t241;
+  const Real t1708 = t243 * t1007;
+  const Real t1709 = t1707 + t1708;
+  const Real t1710 = t1706 - t1709;
+  const Real t1711 = t249 * t1025;
+  const Real t1712 = t1710 - t1711;
+  const Real t1713 = t1712 * t1045;
+  const Real t1714 = t1700 + t1713;
+  const Real t1715 = t1055 * t395;
+  const Real t1716 = t1057 * t395;
+  const Real t1717 = t1715 + t1716;
+  const Real t1718 = t413 * t1062;
+  const Real t1719 = t1718 + t1717;
+  const Real t1720 = t436 * t1067;
+  const Real t1721 = t1719 - t1720;
+
+  // fork: joint force
+  const Real t1722 = t1145 * par.k2;
+  const Real t1723 = par.k1 * t1154;
+  const Real t1724 = t1722 + t1723;
+  const Real t1725 = par.k9 + t1724;
+
+  // rear_wheel: joint force
+  const Real t1726 = par.k49 + t1567;
+  const Real t1727 = t1725 + t1726;
+
+  // accelerations
+  const Real t1728 = t1727 + t1721;
+  const Real t1729 = t1138 * t241;
+  const Real t1730 = t243 * t1138;
+  const Real t1731 = t1730 + t1729;
+  const Real t1732 = t1728 - t1731;
+  const Real t1733 = t249 * t1168;
+  const Real t1734 = t1732 - t1733;
+  const Real t1735 = t232 * t1101;
+  const Real t1736 = sum_error(t1735, t1734);
+  const Real t1737 = -t1731;
+  const Real t1738 = sum_error(t1728, t1737);
+  const Real t1739 = sum_error(t1727, t1721);
+
+  // passive accelerations
+  const Real t1740 = sum_error(par.k9, t1724);
+  const Real t1741 = t1740 + par.k57;
+  const Real t1742 = sum_error(t1725, t1726);
+  const Real t1743 = t1741 + t1742;
+
+  // accelerations
+  const Real t1744 = t1739 + t1743;
+  const Real t1745 = t1738 + t1744;
+  const Real t1746 = -t1733;
+  const Real t1747 = sum_error(t1732, t1746);
+  const Real t1748 = t1745 + t1747;
+  const Real t1749 = t1736 + t1748;
+  const Real t1750 = t1749 * t846;
+  const Real t1751 = t1734 + t1735;
+  const Real t1752 = t846 * t1751;
+  const Real t1753 = t1750 + t1752;
+  const Real t1754 = t1714 - t1753;
+  const Real t1755 = t395 * t911;
+  const Real t1756 = t646 * t413;
+  const Real t1757 = t1756 + t1755;
+  const Real t1758 = t436 * t1007;
+  const Real t1759 = t1757 - t1758;
+  const Real t1760 = t1759 + t1138;
+  const Real t1761 = t1389 * t241;
+  const Real t1762 = t243 * t1448;
+  const Real t1763 = t1762 + t1761;
+  const Real t1764 = t243 * t1389;
+  const Real t1765 = t1763 + t1764;
+  const Real t1766 = t1760 - t1765;
+  const Real t1767 = t249 * t1411;
+  const Real t1768 = t1766 - t1767;
+  const Real t1769 = t1333 * t232;
+  const Real t1770 = t1768 - t1769;
+  const Real t1771 = t1770 * t1462;
+  const Real t1772 = t1770 * t1438;
+  const Real t1773 = t1772 + t1771;
+  const Real t1774 = t1773 + t1754;
+  const Real t1775 = t927 * t395;
+  const Real t1776 = t664 * t413;
+  const Real t1777 = t1775 + t1776;
+  const Real t1778 = t436 * t1025;
+  const Real t1779 = t1777 - t1778;
+  const Real t1780 = t1168 + t1779;
+  const Real t1781 = t1411 * t241;
+  const Real t1782 = t243 * t1411;
+  const Real t1783 = t1781 + t1782;
+  const Real t1784 = t1780 - t1783;
+  const Real t1785 = t249 * t1568;
+  const Real t1786 = t1784 - t1785;
+  const Real t1787 = t232 * t1509;
+  const Real t1788 = t1786 - t1787;
+  const Real t1789 = t1595 * t1788;
+  const Real t1790 = t1789 + t1774;
+  const Real t1791 = t922 * t395;
+  const Real t1792 = t660 * t413;
+  const Real t1793 = t1791 - t1792;
+  const Real t1794 = t436 * t1018;
+  const Real t1795 = t1793 - t1794;
+  const Real t1796 = t1795 + t1154;
+  const Real t1797 = t1404 * t241;
+  const Real t1798 = t243 * t1404;
+  const Real t1799 = t1798 + t1797;
+  const Real t1800 = t1796 - t1799;
+  const Real t1801 = t249 * t1550;
+  const Real t1802 = t1800 - t1801;
+  const Real t1803 = t1790 + t1802;
+  const Real t1804 = t249 * t1509;
+  const Real t1805 = t1333 * t241;
+  const Real t1806 = t1333 * t243;
+  const Real t1807 = t1806 + t1805;
+  const Real t1808 = t1807 + t1101;
+  const Real t1809 = t1808 + t1804;
+  const Real t1810 = t232 * par.I_Fyy;
+  const Real t1811 = t1809 + t1810;
+  const Real t1812 = t1636 * t1811;
+  const Real t1813 = t1811 * t1632;
+  const Real t1814 = t1812 + t1813;
+  const Real t1815 = t1803 - t1814;
+  const Real t1816 = t1698 * t395;
+  const Real t1817 = t1682 * t413;
+  const Real t1818 = t1816 + t1817;
+  const Real t1819 = t436 * t1712;
+  const Real t1820 = t1818 - t1819;
+  const Real t1821 = t1751 + t1820;
+  const Real t1822 = t1770 * t243;
+  const Real t1823 = t1770 * t241;
+  const Real t1824 = t1822 + t1823;
+  const Real t1825 = t1821 - t1824;
+  const Real t1826 = t249 * t1788;
+  const Real t1827 = t1825 - t1826;
+  const Real t1828 = t232 * t1811;
+  const Real t1829 = t1827 + t1828;
+  const Real t1830 = constant<Real>(1.0L) / t1829;
+  const Real t1831 = t1830 * t1815;
+  const Real t1832 = t1831 * t1670;
+  const Real t1833 = t1658 - t1659;
+  const Real t1834 = product_error(t1830, t1815);
+  const Real t1835 = sum_error(t1820, t1751);
+  const Real t1836 = t1749 + t1835;
+  const Real t1837 = -t1824;
+  const Real t1838 = sum_error(t1821, t1837);
+  const Real t1839 = t1836 + t1838;
+  const Real t1840 = -t1826;
+  const Real t1841 = sum_error(t1825, t1840);
+  const Real t1842 = t1839 + t1841;
+  const Real t1843 = sum_error(t1828, t1827);
+  const Real t1844 = t1842 + t1843;
+  const Real t1845 = t1830 * t1844;
+  const Real t1846 = t1845 / t1829;
+  const Real t1847 = quotient_error(constant<Real>(1.0L), t1829);
+  const Real t1848 = t1847 - t1846;
+  const Real t1849 = t1815 * t1848;
+  const Real t1850 = t1834 + t1849;
+  const Real t1851 = t1833 * t1850;
+  const Real t1852 = t1832 + t1851;
+  const Real t1853 = product_error(t1833, t1831);
+  const Real t1854 = t1853 + t1852;
+  const Real t1855 = t1640 - t1854;
+  const Real t1856 = t1638 + t1622;
+  const Real t1857 = t1833 * t1831;
+  const Real t1858 = -t1857;
+  const Real t1859 = sum_error(t1856, t1858);
+  const Real t1860 = t1855 + t1859;
+  const Real t1861 = t853 * t848;
+  const Real t1862 = t1861 * constant<Real>(2.0L);
+  const Real t1863 = t848 * t848;
+  const Real t1864 = t1862 + t1863;
+  const Real t1865 = t948 * t948;
+  const Real t1866 = t1864 + t1865;
+  const Real t1867 = t1045 * t1045;
+  const Real t1868 = t1867 + t1866;
+  const Real t1869 = t846 * t846;
+  const Real t1870 = t1869 + t1868;
+  const Real t1871 = t1438 * t1462;
+  const Real t1872 = t1871 * constant<Real>(2.0L);
+  const Real t1873 = t1438 * t1438;
+  const Real t1874 = t1872 + t1873;
+  const Real t1875 = t1874 + t1870;
+  const Real t1876 = t1595 * t1595;
+  const Real t1877 = t1875 + t1876;
+  const Real t1878 = constant<Real>(1.0L) + t1877;
+  const Real t1879 = t1636 * t1632;
+  const Real t1880 = t1879 * constant<Real>(2.0L);
+  const Real t1881 = t1632 * t1632;
+  const Real t1882 = t1880 + t1881;
+  const Real t1883 = t1878 + t1882;
+  const Real t1884 = constant<Real>(1.0L) / t1883;
+  const Real t1885 = t398 * t395;
+  const Real t1886 = t422 * t413;
+  const Real t1887 = t413 * t424;
+  const Real t1888 = t1887 + t1886;
+  const Real t1889 = t1885 + t1888;
+  const Real t1890 = t442 * t436;
+  const Real t1891 = t1889 - t1890;
+  const Real t1892 = t243 * t292;
+  const Real t1893 = t294 * t241;
+  const Real t1894 = t1892 + t1893;
+  const Real t1895 = t243 * t294;
+  const Real t1896 = t1894 + t1895;
+  const Real t1897 = t1896 + t1891;
+  const Real t1898 = t249 * t300;
+  const Real t1899 = t1898 + t1897;
+  const Real t1900 = t232 * t281;
+  const Real t1901 = t1899 + t1900;
+  const Real t1902 = t826 * t1901;
+  const Real t1903 = t413 * t1902;
+  const Real t1904 = -t1903;
+  const Real t1905 = sum_error(t424, t1904);
+  const Real t1906 = t1905 + t422;
+  const Real t1907 = t1906 * t848;
+  const Real t1908 = t424 - t1903;
+  const Real t1909 = t1908 * t853;
+  const Real t1910 = t1907 + t1909;
+  const Real t1911 = t1908 * t848;
+  const Real t1912 = t1910 + t1911;
+  const Real t1913 = t395 * t1902;
+  const Real t1914 = t398 - t1913;
+  const Real t1915 = t948 * t1914;
+  const Real t1916 = t1912 + t1915;
+  const Real t1917 = t436 * t1902;
+  const Real t1918 = t442 + t1917;
+  const Real t1919 = t1918 * t1045;
+  const Real t1920 = t1916 + t1919;
+  const Real t1921 = t846 * t1902;
+  const Real t1922 = t1920 + t1921;
+  const Real t1923 = t241 * t1902;
+  const Real t1924 = t243 * t1902;
+  const Real t1925 = t1923 + t1924;
+  const Real t1926 = t1925 - t294;
+  const Real t1927 = t1926 * t1462;
+  const Real t1928 = -t294;
+  const Real t1929 = sum_error(t1925, t1928);
+  const Real t1930 = t1929 - t292;
+  const Real t1931 = t1930 * t1438;
+  const Real t1932 = t1927 + t1931;
+  const Real t1933 = t1926 * t1438;
+  const Real t1934 = t1933 + t1932;
+  const Real t1935 = t1922 + t1934;
+  const Real t1936 = t249 * t1902;
+  const Real t1937 = t1936 - t300;
+  const Real t1938 = t1595 * t1937;
+  const Real t1939 = t1935 + t1938;
+  const Real t1940 = t232 * t1902;
+  const Real t1941 = t1940 - t281;
+  const Real t1942 = t1636 * t1941;
+  const Real t1943 = -t281;
+  const Real t1944 = sum_error(t1940, t1943);
+  const Real t1945 = t1944 * t1632;
+  const Real t1946 = t1942 + t1945;
+  const Real t1947 = t1632 * t1941;
+  const Real t1948 = t1946 + t1947;
+  const Real t1949 = t1939 + t1948;
+  const Real t1950 = t1884 * t1949;
+  const Real t1951 = t853 * t1950;
+  const Real t1952 = product_error(t848, t1950);
+  const Real t1953 = t1951 + t1952;
+  const Real t1954 = t1906 - t1953;
+  const Real t1955 = t848 * t1950;
+  const Real t1956 = t1908 - t1955;
+  const Real t1957 = t1954 + t1956;
+  const Real t1958 = t1957 * t1682;
+  const Real t1959 = t948 * t1950;
+  const Real t1960 = t1914 - t1959;
+  const Real t1961 = t1960 * t1698;
+  const Real t1962 = t1961 + t1958;
+  const Real t1963 = t1045 * t1950;
+  const Real t1964 = t1918 - t1963;
+  const Real t1965 = t1712 * t1964;
+  const Real t1966 = t1962 + t1965;
+  const Real t1967 = t846 * t1950;
+  const Real t1968 = t1967 - t1902;
+  const Real t1969 = t1749 * t1968;
+  const Real t1970 = t1968 * t1751;
+  const Real t1971 = t1969 + t1970;
+  const Real t1972 = t1966 + t1971;
+  const Real t1973 = product_error(t1950, t1438);
+  const Real t1974 = t1950 * t1462;
+  const Real t1975 = t1973 + t1974;
+  const Real t1976 = t1930 - t1975;
+  const Real t1977 = t1438 * t1950;
+  const Real t1978 = t1926 - t1977;
+  const Real t1979 = t1976 + t1978;
+  const Real t1980 = t1770 * t1979;
+  const Real t1981 = t1972 + t1980;
+  const Real t1982 = sum_error(t1971, t1966);
+  const Real t1983 = t1982 + t1981;
+  const Real t1984 = t1595 * t1950;
+  const Real t1985 = t1937 - t1984;
+  const Real t1986 = t1985 * t1788;
+  const Real t1987 = t1986 + t1983;
+  const Real t1988 = par.I_Ryy * t241;
+  const Real t1989 = t243 * par.I_Ryy;
+  const Real t1990 = t1988 + t1989;
+  const Real t1991 = t1987 - t1990;
+  const Real t1992 = t1950 * t1802;
+  const Real t1993 = t1991 - t1992;
+  const Real t1994 = product_error(t1950, t1632);
+  const Real t1995 = t1636 * t1950;
+  const Real t1996 = t1994 + t1995;
+  const Real t1997 = t1944 - t1996;
+  const Real t1998 = t1632 * t1950;
+  const Real t1999 = t1941 - t1998;
+  const Real t2000 = t1997 + t1999;
+  const Real t2001 = t1811 * t2000;
+  const Real t2002 = t1993 - t2001;
+  const Real t2003 = t2002 * t1831;
+  const Real t2004 = t2002 * t1850;
+  const Real t2005 = t2003 + t2004;
+  const Real t2006 = t853 * t613;
+  const Real t2007 = t848 * t613;
+  const Real t2008 = t2007 + t2006;
+  const Real t2009 = t948 * t591;
+  const Real t2010 = t2009 + t2008;
+  const Real t2011 = t1045 * t626;
+  const Real t2012 = t2011 + t2010;
+  const Real t2013 = t846 * t1062;
+  const Real t2014 = t2012 - t2013;
+  const Real t2015 = t646 * t1438;
+  const Real t2016 = t2014 + t2015;
+  const Real t2017 = t1595 * t664;
+  const Real t2018 = t2016 + t2017;
+  const Real t2019 = t2018 - t660;
+  const Real t2020 = t1957 * t2019;
+  const Real t2021 = t853 * t591;
+  const Real t2022 = t848 * t591;
+  const Real t2023 = t2021 + t2022;
+  const Real t2024 = t884 * t948;
+  const Real t2025 = t2024 + t2023;
+  const Real t2026 = t896 * t1045;
+  const Real t2027 = t2025 + t2026;
+  const Real t2028 = t1057 * t846;
+  const Real t2029 = t846 * t1055;
+  const Real t2030 = t2028 + t2029;
+  const Real t2031 = t2027 - t2030;
+  const Real t2032 = t1462 * t911;
+  const Real t2033 = t1438 * t911;
+  const Real t2034 = t2033 + t2032;
+  const Real t2035 = t2034 + t2031;
+  const Real t2036 = t1595 * t927;
+  const Real t2037 = t2035 + t2036;
+  const Real t2038 = t2037 + t922;
+  const Real t2039 = t1960 * t2038;
+  const Real t2040 = t2020 + t2039;
+  const Real t2041 = t853 * t626;
+  const Real t2042 = t626 * t848;
+  const Real t2043 = t2041 + t2042;
+  const Real t2044 = t896 * t948;
+  const Real t2045 = t2044 + t2043;
+  const Real t2046 = t987 * t1045;
+  const Real t2047 = t2045 + t2046;
+  const Real t2048 = t846 * t1067;
+  const Real t2049 = t2047 - t2048;
+  const Real t2050 = t1007 * t1462;
+  const Real t2051 = t1007 * t1438;
+  const Real t2052 = t2050 + t2051;
+  const Real t2053 = t2049 + t2052;
+  const Real t2054 = t1595 * t1025;
+  const Real t2055 = t2053 + t2054;
+  const Real t2056 = t2055 + t1018;
+  const Real t2057 = t2056 * t1964;
+  const Real t2058 = t2040 + t2057;
+  const Real t2059 = t853 * t1062;
+  const Real t2060 = t848 * t1062;
+  const Real t2061 = t2059 + t2060;
+  const Real t2062 = t948 * t1055;
+  const Real t2063 = t1057 * t948;
+  const Real t2064 = t2062 + t2063;
+  const Real t2065 = t2064 + t2061;
+  const Real t2066 = t1045 * t1067;
+  const Real t2067 = t2065 + t2066;
+  const Real t2068 = t1727 * t846;
+  const Real t2069 = t846 * t1743;
+  const Real t2070 = t2068 + t2069;
+  const Real t2071 = t2067 - t2070;
+  const Real t2072 = t1138 * t1462;
+  const Real t2073 = t1138 * t1438;
+  const Real t2074 = t2073 + t2072;
+  const Real t2075 = t2071 + t2074;
+  const Real t2076 = t1168 * t1595;
+  const Real t2077 = t2076 + t2075;
+  const Real t2078 = t2077 + t1154;
+  const Real t2079 = t1636 * t1101;
+  const Real t2080 = t1101 * t1632;
+  const Real t2081 = t2080 + t2079;
+  const Real t2082 = t2078 - t2081;
+  const Real t2083 = t2082 * t1968;
+  const Real t2084 = sum_error(t2083, t2058);
+  const Real t2085 = product_error(t2019, t1957);
+
+  // front_wheel: joint force
+  const Real t2086 = -t660;
+
+  // accelerations
+  const Real t2087 = sum_error(t2018, t2086);
+  const Real t2088 = sum_error(t2014, t2015);
+  const Real t2089 = t646 * t1462;
+  const Real t2090 = product_error(t646, t1438);
+  const Real t2091 = t2089 + t2090;
+  const Real t2092 = t2088 + t2091;
+  const Real t2093 = sum_error(t2017, t2016);
+  const Real t2094 = t2092 + t2093;
+  const Real t2095 = t2087 + t2094;
+  const Real t2096 = t1957 * t2095;
+  const Real t2097 = t2085 + t2096;
+  const Real t2098 = sum_error(t2020, t2039);
+  const Real t2099 = t2097 + t2098;
+  const Real t2100 = sum_error(t2057, t2040);
+  const Real t2101 = t2099 + t2100;
+  const Real t2102 = t2084 + t2101;
+  const Real t2103 = t853 * t646;
+  const Real t2104 = t646 * t848;
+  const Real t2105 = t2103 + t2104;
+  const Real t2106 = t948 * t911;
+  const Real t2107 = t2106 + t2105;
+  const Real t2108 = t1007 * t1045;
+  const Real t2109 = t2107 + t2108;
+  const Real t2110 = t846 * t1138;
+  const Real t2111 = t2109 - t2110;
+  const Real t2112 = t1438 * t1389;
+  const Real t2113 = t2112 + t2111;
+  const Real t2114 = t1595 * t1411;
+  const Real t2115 = t2114 + t2113;
+  const Real t2116 = t2115 + t1404;
+  const Real t2117 = t1333 * t1636;
+  const Real t2118 = t1333 * t1632;
+  const Real t2119 = t2117 + t2118;
+  const Real t2120 = sum_error(t2116, t2119);
+  const Real t2121 = sum_error(t2114, t2113);
+  const Real t2122 = sum_error(t2111, t2112);
+  const Real t2123 = t1389 * t1462;
+  const Real t2124 = t1448 * t1438;
+  const Real t2125 = t2123 + t2124;
+  const Real t2126 = product_error(t1389, t1438);
+  const Real t2127 = t2126 + t2125;
+  const Real t2128 = t2122 + t2127;
+  const Real t2129 = t2121 + t2128;
+  const Real t2130 = sum_error(t2115, t1404);
+  const Real t2131 = t2129 + t2130;
+  const Real t2132 = t2120 + t2131;
+  const Real t2133 = t1979 * t2132;
+  const Real t2134 = t2116 + t2119;
+  const Real t2135 = product_error(t1979, t2134);
+  const Real t2136 = t2133 + t2135;
+  const Real t2137 = t2136 + t2102;
+  const Real t2138 = t2083 + t2058;
+  const Real t2139 = t2134 * t1979;
+  const Real t2140 = t2139 + t2138;
+  const Real t2141 = t2137 + t2140;
+  const Real t2142 = t853 * t664;
+  const Real t2143 = t664 * t848;
+  const Real t2144 = t2142 + t2143;
+  const Real t2145 = t948 * t927;
+  const Real t2146 = t2145 + t2144;
+  const Real t2147 = t1045 * t1025;
+  const Real t2148 = t2146 + t2147;
+  const Real t2149 = t1168 * t846;
+  const Real t2150 = t2148 - t2149;
+  const Real t2151 = t1411 * t1462;
+  const Real t2152 = t1438 * t1411;
+  const Real t2153 = t2151 + t2152;
+  const Real t2154 = t2150 + t2153;
+  const Real t2155 = t1568 * t1595;
+  const Real t2156 = t2154 + t2155;
+  const Real t2157 = t2156 + t1550;
+  const Real t2158 = t1636 * t1509;
+  const Real t2159 = t1509 * t1632;
+  const Real t2160 = t2158 + t2159;
+  const Real t2161 = t2157 + t2160;
+  const Real t2162 = t1985 * t2161;
+  const Real t2163 = t2162 + t2141;
+  const Real t2164 = par.I_Ryy * t1462;
+  const Real t2165 = par.I_Ryy * t1438;
+  const Real t2166 = t2164 + t2165;
+  const Real t2167 = t2166 + t2163;
+  const Real t2168 = t853 * t660;
+  const Real t2169 = t660 * t848;
+  const Real t2170 = t2169 + t2168;
+  const Real t2171 = t948 * t922;
+  const Real t2172 = t2171 - t2170;
+  const Real t2173 = t1045 * t1018;
+  const Real t2174 = t2172 + t2173;
+  const Real t2175 = t846 * t1154;
+  const Real t2176 = t2174 - t2175;
+  const Real t2177 = t1404 * t1462;
+  const Real t2178 = t1404 * t1438;
+  const Real t2179 = t2178 + t2177;
+  const Real t2180 = t2179 + t2176;
+  const Real t2181 = t1595 * t1550;
+  const Real t2182 = t2181 + t2180;
+
+  // front_wheel: acceleration
+  const Real t2183 = c_r_p_2_ * par.k2;
+  const Real t2184 = par.k1 * s_r_p_2_;
+  const Real t2185 = t2183 + t2184;
+
+  // front_wheel: wrench
+  const Real t2186 = par.I_Fxx * t2185;
+
+  // front_wheel: joint force
+  const Real t2187 = t2186 * s_r_p_2_;
+
+  // front_wheel: acceleration
+  const Real t2188 = par.k1 * c_r_p_2_;
+  const Real t2189 = par.k2 * s_r_p_2_;
+  const Real t2190 = t2188 - t2189;
+
+  // front_wheel: wrench
+  const Real t2191 = par.I_Fxx * t2190;
+
+  // front_wheel: joint force
+  const Real t2192 = c_r_p_2_ * t2191;
+  const Real t2193 = t2187 + t2192;
+  const Real t2194 = par.k1 * t2193;
+  const Real t2195 = c_r_p_2_ * t2186;
+  const Real t2196 = t2191 * s_r_p_2_;
+  const Real t2197 = t2195 - t2196;
+  const Real t2198 = par.k2 * t2197;
+  const Real t2199 = t2194 + t2198;
+  const Real t2200 = par.k55 + t2199;
+  const Real t2201 = par.k6 + t2200;
+
+  // accelerations
+  const Real t2202 = t2182 + t2201;
+  const Real t2203 = t2202 * t1950;
+  const Real t2204 = t2167 - t2203;
+  const Real t2205 = t1333 * t1462;
+  const Real t2206 = t1333 * t1438;
+  const Real t2207 = t2205 + t2206;
+  const Real t2208 = t1101 * t846;
+  const Real t2209 = t2208 + t2207;
+  const Real t2210 = t1509 * t1595;
+  const Real t2211 = t2210 + t2209;
+  const Real t2212 = t1636 * par.I_Fyy;
+  const Real t2213 = par.I_Fyy * t1632;
+  const Real t2214 = t2212 + t2213;
+  const Real t2215 = t2211 + t2214;
+  const Real t2216 = t2215 * t2000;
+  const Real t2217 = t2204 + t2216;
+  const Real t2218 = t2217 - t2005;
+  const Real t2219 = t848 * t2095;
+  const Real t2220 = t2019 * t853;
+  const Real t2221 = t2219 + t2220;
+  const Real t2222 = t2019 * t848;
+  const Real t2223 = t2222 + t2221;
+  const Real t2224 = t2038 * t948;
+  const Real t2225 = t2224 + t2223;
+  const Real t2226 = t1045 * t2056;
+  const Real t2227 = t2225 + t2226;
+  const Real t2228 = t2082 * t846;
+  const Real t2229 = t2227 - t2228;
+  const Real t2230 = t2134 * t1438;
+  const Real t2231 = t2230 + t2229;
+  const Real t2232 = t2161 * t1595;
+  const Real t2233 = t2232 + t2231;
+  const Real t2234 = t2233 + t2202;
+  const Real t2235 = t2215 * t1632;
+  const Real t2236 = t1636 * t2215;
+  const Real t2237 = t2235 + t2236;
+  const Real t2238 = t2237 + t2234;
+  const Real t2239 = t1815 * t1850;
+  const Real t2240 = t1815 * t1831;
+  const Real t2241 = t2240 + t2239;
+  const Real t2242 = t2238 - t2241;
+  const Real t2243 = constant<Real>(1.0L) / t2242;
+  const Real t2244 = t2218 * t2243;
+  const Real t2245 = -t2241;
+  const Real t2246 = sum_error(t2238, t2245);
+  const Real t2247 = sum_error(t2234, t2237);
+  const Real t2248 = sum_error(t2229, t2230);
+  const Real t2249 = t2132 * t1438;
+  const Real t2250 = t2134 * t1462;
+  const Real t2251 = t2249 + t2250;
+  const Real t2252 = product_error(t2134, t1438);
+  const Real t2253 = t2252 + t2251;
+  const Real t2254 = t2248 + t2253;
+  const Real t2255 = sum_error(t2232, t2231);
+  const Real t2256 = t2254 + t2255;
+  const Real t2257 = sum_error(t2202, t2233);
+  const Real t2258 = t2256 + t2257;
+  const Real t2259 = t2247 + t2258;
+  const Real t2260 = t2246 + t2259;
+  const Real t2261 = t2243 * t2260;
+  const Real t2262 = t2261 / t2242;
+  const Real t2263 = quotient_error(constant<Real>(1.0L), t2242);
+  const Real t2264 = t2263 - t2262;
+  const Real t2265 = t2264 * t2218;
+  const Real t2266 = t2244 + t2265;
+  const Real t2267 = t2266 * t1860;
+  const Real t2268 = t1856 - t1857;
+  const Real t2269 = t2266 * t2268;
+  const Real t2270 = t2267 + t2269;
+  const Real t2271 = t1968 * t1289;
+  const Real t2272 = t1291 * t1968;
+  const Real t2273 = t2272 + t2271;
+  const Real t2274 = -t2273;
+  const Real t2275 = t1960 * t946;
+  const Real t2276 = t1957 * t850;
+  const Real t2277 = t2275 - t2276;
+  const Real t2278 = t1043 * t1964;
+  const Real t2279 = t2277 - t2278;
+  const Real t2280 = sum_error(t2279, t2274);
+  const Real t2281 = -t2276;
+  const Real t2282 = sum_error(t2275, t2281);
+  const Real t2283 = t1957 * t810;
+  const Real t2284 = product_error(t850, t1957);
+  const Real t2285 = t2283 + t2284;
+  const Real t2286 = t2282 - t2285;
+  const Real t2287 = -t2278;
+  const Real t2288 = sum_error(t2277, t2287);
+  const Real t2289 = t2288 + t2286;
+  const Real t2290 = t2289 + t2280;
+  const Real t2291 = t1979 * t1458;
+  const Real t2292 = product_error(t1979, t1434);
+  const Real t2293 = t2291 + t2292;
+  const Real t2294 = t2290 + t2293;
+  const Real t2295 = t2279 - t2273;
+  const Real t2296 = t1979 * t1434;
+  const Real t2297 = sum_error(t2296, t2295);
+  const Real t2298 = t2294 + t2297;
+  const Real t2299 = t2295 + t2296;
+  const Real t2300 = t1985 * t1593;
+  const Real t2301 = t1985 * t1597;
+  const Real t2302 = t2301 + t2300;
+  const Real t2303 = -t2302;
+  const Real t2304 = sum_error(t2299, t2303);
+  const Real t2305 = t2298 + t2304;
+  const Real t2306 = t2299 - t2302;
+  const Real t2307 = par.I_Ryy * t556;
+  const Real t2308 = par.I_Ryy * t558;
+  const Real t2309 = t2308 + t2307;
+  const Real t2310 = -t2309;
+  const Real t2311 = sum_error(t2306, t2310);
+  const Real t2312 = t2305 + t2311;
+  const Real t2313 = t2306 - t2309;
+  const Real t2314 = t1619 * t1950;
+  const Real t2315 = -t2314;
+  const Real t2316 = sum_error(t2313, t2315);
+  const Real t2317 = t2312 + t2316;
+  const Real t2318 = t2313 - t2314;
+  const Real t2319 = t1630 * t2000;
+  const Real t2320 = sum_error(t2319, t2318);
+  const Real t2321 = t2320 + t2317;
+  const Real t2322 = t2002 * t1830;
+  const Real t2323 = t2322 * t1670;
+  const Real t2324 = t2002 * t1848;
+  const Real t2325 = product_error(t2002, t1830);
+  const Real t2326 = t2324 + t2325;
+  const Real t2327 = t2326 * t1833;
+  const Real t2328 = t2323 + t2327;
+  const Real t2329 = product_error(t2322, t1833);
+  const Real t2330 = t2329 + t2328;
+  const Real t2331 = t2321 - t2330;
+  const Real t2332 = t2319 + t2318;
+  const Real t2333 = t2322 * t1833;
+  const Real t2334 = t2332 - t2333;
+  const Real t2335 = t2331 + t2334;
+  const Real t2336 = t2335 - t2270;
+  const Real t2337 = t1957 * t613;
+  const Real t2338 = t1960 * t591;
+  const Real t2339 = t2338 + t2337;
+  const Real t2340 = t626 * t1964;
+  const Real t2341 = t2340 + t2339;
+  const Real t2342 = t1968 * t1062;
+  const Real t2343 = t2341 + t2342;
+  const Real t2344 = t1979 * t646;
+  const Real t2345 = t2344 + t2343;
+  const Real t2346 = t1985 * t664;
+  const Real t2347 = t2346 + t2345;
+  const Real t2348 = t660 * t1950;
+  const Real t2349 = t2347 + t2348;
+  const Real t2350 = t1957 * t2349;
+  const Real t2351 = t1957 * t591;
+  const Real t2352 = t1960 * t884;
+  const Real t2353 = t2351 + t2352;
+  const Real t2354 = t896 * t1964;
+  const Real t2355 = t2354 + t2353;
+  const Real t2356 = t1968 * t1055;
+  const Real t2357 = t1057 * t1968;
+  const Real t2358 = t2356 + t2357;
+  const Real t2359 = t2355 + t2358;
+  const Real t2360 = t1979 * t911;
+  const Real t2361 = t2359 + t2360;
+  const Real t2362 = t1985 * t927;
+  const Real t2363 = t2361 + t2362;
+  const Real t2364 = t922 * t1950;
+  const Real t2365 = t2363 - t2364;
+  const Real t2366 = t1960 * t2365;
+  const Real t2367 = t2350 + t2366;
+  const Real t2368 = t1957 * t626;
+  const Real t2369 = t1960 * t896;
+  const Real t2370 = t2368 + t2369;
+  const Real t2371 = t987 * t1964;
+  const Real t2372 = t2371 + t2370;
+  const Real t2373 = t1968 * t1067;
+  const Real t2374 = t2372 + t2373;
+  const Real t2375 = t1979 * t1007;
+  const Real t2376 = t2374 + t2375;
+  const Real t2377 = t1985 * t1025;
+  const Real t2378 = t2377 + t2376;
+  const Real t2379 = t1018 * t1950;
+  const Real t2380 = t2378 - t2379;
+  const Real t2381 = t2380 * t1964;
+  const Real t2382 = t2381 + t2367;
+  const Real t2383 = t1957 * t1062;
+  const Real t2384 = t1960 * t1055;
+  const Real t2385 = t1057 * t1960;
+  const Real t2386 = t2384 + t2385;
+  const Real t2387 = t2386 + t2383;
+  const Real t2388 = t1067 * t1964;
+  const Real t2389 = t2388 + t2387;
+  const Real t2390 = t1727 * t1968;
+  const Real t2391 = t1968 * t1743;
+  const Real t2392 = t2390 + t2391;
+  const Real t2393 = t2389 + t2392;
+  const Real t2394 = t1979 * t1138;
+  const Real t2395 = t2393 + t2394;
+  const Real t2396 = t1985 * t1168;
+  const Real t2397 = t2395 + t2396;
+  const Real t2398 = t1154 * t1950;
+  const Real t2399 = t2397 - t2398;
+  const Real t2400 = t1101 * t2000;
+  const Real t2401 = t2399 - t2400;
+  const Real t2402 = t2401 * t1968;
+  const Real t2403 = t2402 + t2382;
+  const Real t2404 = t1957 * t646;
+  const Real t2405 = t1960 * t911;
+  const Real t2406 = t2404 + t2405;
+  const Real t2407 = t1007 * t1964;
+  const Real t2408 = t2406 + t2407;
+  const Real t2409 = t1968 * t1138;
+  const Real t2410 = t2408 + t2409;
+  const Real t2411 = t1979 * t1389;
+  const Real t2412 = t1979 * t1448;
+  const Real t2413 = t2411 + t2412;
+  const Real t2414 = t2410 + t2413;
+  const Real t2415 = t1985 * t1411;
+  const Real t2416 = t2415 + t2414;
+  const Real t2417 = par.I_Ryy + t2416;
+  const Real t2418 = t1404 * t1950;
+  const Real t2419 = t2417 - t2418;
+  const Real t2420 = t1333 * t2000;
+  const Real t2421 = t2419 + t2420;
+  const Real t2422 = t1979 * t2421;
+  const Real t2423 = t2422 + t2403;
+  const Real t2424 = t1957 * t664;
+  const Real t2425 = t1960 * t927;
+  const Real t2426 = t2425 + t2424;
+  const Real t2427 = t1025 * t1964;
+  const Real t2428 = t2426 + t2427;
+  const Real t2429 = t1168 * t1968;
+  const Real t2430 = t2429 + t2428;
+  const Real t2431 = t1979 * t1411;
+  const Real t2432 = t2431 + t2430;
+  const Real t2433 = t1985 * t1568;
+  const Real t2434 = t2432 + t2433;
+  const Real t2435 = t1950 * t1550;
+  const Real t2436 = t2434 - t2435;
+  const Real t2437 = t1509 * t2000;
+  const Real t2438 = t2436 + t2437;
+  const Real t2439 = t2438 * t1985;
+  const Real t2440 = t2423 + t2439;
+  const Real t2441 = t1979 * par.I_Ryy;
+  const Real t2442 = par.I_Ryy + t2441;
+  const Real t2443 = t2440 + t2442;
+  const Real t2444 = t1957 * t660;
+  const Real t2445 = t1960 * t922;
+  const Real t2446 = t2445 - t2444;
+  const Real t2447 = t1018 * t1964;
+  const Real t2448 = t2446 + t2447;
+  const Real t2449 = t1968 * t1154;
+  const Real t2450 = t2449 + t2448;
+  const Real t2451 = t1979 * t1404;
+  const Real t2452 = t2451 + t2450;
+  const Real t2453 = t1985 * t1550;
+  const Real t2454 = t2453 + t2452;
+  const Real t2455 = t2201 * t1950;
+  const Real t2456 = t2454 - t2455;
+  const Real t2457 = t1950 * t2456;
+  const Real t2458 = t2443 - t2457;
+  const Real t2459 = t1333 * t1979;
+  const Real t2460 = t1101 * t1968;
+  const Real t2461 = t2459 - t2460;
+  const Real t2462 = t1985 * t1509;
+  const Real t2463 = t2461 + t2462;
+  const Real t2464 = par.I_Fyy * t2000;
+  const Real t2465 = t2464 + t2463;
+  const Real t2466 = t2465 * t2000;
+  const Real t2467 = t2466 + t2458;
+  const Real t2468 = t2326 * t2002;
+  const Real t2469 = t2322 * t2002;
+  const Real t2470 = t2469 + t2468;
+  const Real t2471 = t2467 - t2470;
+  const Real t2472 = t2266 * t2218;
+  const Real t2473 = t2471 - t2472;
+  const Real t2474 = constant<Real>(1.0L) / t2473;
+  const Real t2475 = t2474 * t2336;
+  const Real t2476 = t2266 * t2475;
+  const Real t2477 = t1860 * t2243;
+  const Real t2478 = t2264 * t2268;
+  const Real t2479 = t2478 + t2477;
+  const Real t2480 = t2243 * t2268;
+  const Real t2481 = t2480 + t2479;
+  const Real t2482 = t2481 - t2476;
+  const Real t2483 = t2482 * t1831;
+  const Real t2484 = t2482 * t1850;
+  const Real t2485 = t2483 + t2484;
+  const Real t2486 = t1830 * t1670;
+  const Real t2487 = t1833 * t1848;
+  const Real t2488 = t2487 + t2486;
+  const Real t2489 = t1830 * t1833;
+  const Real t2490 = t2489 + t2488;
+  const Real t2491 = t2490 - t2485;
+  const Real t2492 = t2322 * t2475;
+  const Real t2493 = t2326 * t2475;
+  const Real t2494 = t2492 + t2493;
+  const Real t2495 = t2491 - t2494;
+  const Real t2496 = t232 * t2495;
+  const Real t2497 = t1636 * t2482;
+  const Real t2498 = t2482 * t1632;
+  const Real t2499 = t2497 + t2498;
+  const Real t2500 = t2499 - t2496;
+  const Real t2501 = t2475 * t2000;
+  const Real t2502 = t2500 + t2501;
+  const Real t2503 = t2502 - t546;
+  const Real t2504 = t2475 * t1950;
+  const Real t2505 = t2482 - t2504;
+  const Real t2506 = t249 * t2495;
+  const Real t2507 = t2482 * t1595;
+  const Real t2508 = t2507 - t2506;
+  const Real t2509 = t1985 * t2475;
+  const Real t2510 = t2509 + t2508;
+  const Real t2511 = t2510 + t564;
+  const Real t2512 = t243 * t2495;
+  const Real t2513 = t2495 * t241;
+  const Real t2514 = t2512 + t2513;
+  const Real t2515 = t2482 * t1462;
+  const Real t2516 = t2482 * t1438;
+  const Real t2517 = t2515 + t2516;
+  const Real t2518 = t2517 - t2514;
+  const Real t2519 = t1979 * t2475;
+  const Real t2520 = t2518 + t2519;
+  const Real t2521 = t2520 + t558;
+  const Real t2522 = t2521 + t556;
+  const Real t2523 = t2482 * t846;
+  const Real t2524 = t2495 - t2523;
+  const Real t2525 = t2475 * t1968;
+  const Real t2526 = t2525 + t2524;
+  const Real t2527 = t436 * t2495;
+  const Real t2528 = t2482 * t1045;
+  const Real t2529 = t2528 - t2527;
+  const Real t2530 = t2475 * t1964;
+  const Real t2531 = t2530 + t2529;
+  const Real t2532 = t619 + t2531;
+  const Real t2533 = t2495 * t395;
+  const Real t2534 = t2482 * t948;
+  const Real t2535 = t2533 + t2534;
+  const Real t2536 = t1960 * t2475;
+  const Real t2537 = t2535 + t2536;
+  const Real t2538 = t2537 + t566;
+  const Real t2539 = t2495 * t413;
+  const Real t2540 = t2482 * t853;
+  const Real t2541 = t2482 * t848;
+  const Real t2542 = t2540 + t2541;
+  const Real t2543 = t2542 + t2539;
+  const Real t2544 = t1957 * t2475;
+  const Real t2545 = t2544 + t2543;
+  const Real t2546 = t2545 + t596;
+  const Real t2547 = t2505 * t846;
+  const Real t2548 = t2495 - t2547;
+  const Real t2549 = t2475 * t1902;
+  const Real t2550 = t2548 - t2549;
+
+  nu_dot_out[0] = t2550;
+  nu_dot_out[1] = t2505;
+  nu_dot_out[2] = t2475;
+  eta_dot[0] = t2546;
+  eta_dot[1] = t2538;
+  eta_dot[2] = t2532;
+  eta_dot[3] = t2526;
+  eta_dot[4] = t2522;
+  eta_dot[5] = t2511;
+  r_p_ddot[0] = t2475;
+  r_p_ddot[1] = t2505;
+  r_p_ddot[2] = t2503;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
-/// route: projected recursion, compensated beyond 2 ulps
-/// operations: 766 add, 693 mul, 13 div, 11 neg, 2 sqrt, 3 sin, 3 cos
+/// route: projected recursion, compensated beyond 1 ulps
+/// operations: 972 add, 792 mul, 13 div, 16 neg, 2 sqrt, 3 sin, 3 cos
 /// @param[in]  par     made by prepare()
 /// @param[in]  R       (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p     (3) rad or m: rear_spin, steer, front_spin
@@ -6881,1019 +7910,1100 @@ inline void multipliers(const Prepared<Real>& par,
   const Real c_r_p_2_ = cos(r_p[2]);
 
   // joint angles
-  const Real t1 = par.k2 * R[6];
-  const Real t2 = R[8] * par.k1;
-  const Real t3 = t1 - t2;
-  const Real t4 = c_r_p_1_ * t3;
-  const Real t5 = s_r_p_1_ * R[7];
-  const Real t6 = t4 + t5;
-  const Real t7 = par.k1 * t6;
-  const Real t8 = par.k1 * R[6];
-  const Real t9 = R[8] * par.k2;
-  const Real t10 = t8 + t9;
-  const Real t11 = t10 * par.k2;
-  const Real t12 = t7 - t11;
-  const Real t13 = t12 * t12;
-  const Real t14 = par.k2 * t6;
-  const Real t15 = par.k1 * t10;
-  const Real t16 = t14 + t15;
-  const Real t17 = t16 * t16;
-  const Real t18 = t13 + t17;
-  const Real t19 = sqrt(t18);
-  const Real t20 = constant<Real>(1.0L) / t19;
-  const Real t21 = t12 * t20;
-  const Real t22 = par.r_F * t21;
-  const Real t23 = par.k1 * t22;
-  const Real t24 = t20 * t16;
-  const Real t25 = t24 * par.r_F;
-  const Real t26 = t25 * par.k2;
-  const Real t27 = t23 + t26;
-  const Real t28 = t27 + par.k12;
-  const Real t29 = par.k1 * c_r_p_1_;
-  const Real t30 = par.k1 * t29;
-  const Real t31 = par.k18 + t30;
-  const Real t32 = t31 * t25;
-  const Real t33 = t29 * par.k2;
-  const Real t34 = par.k22 - t33;
-  const Real t35 = t22 * t34;
-  const Real t36 = t32 + t35;
-  const Real t37 = c_r_p_1_ * par.k13;
-  const Real t38 = t34 * par.r_F;
-  const Real t39 = t31 * par.c;
-  const Real t40 = t38 - t39;
-  const Real t41 = t37 + t40;
-  const Real t42 = t36 + t41;
-  const Real t43 = s_r_p_1_ * par.k13;
-  const Real t44 = par.k2 * t43;
-  const Real t45 = s_r_p_1_ * par.k1;
-  const Real t46 = par.r_F * t45;
-  const Real t47 = t44 - t46;
-  const Real t48 = t22 * t45;
-  const Real t49 = t47 - t48;
-  const Real t50 = R[6] * R[6];
-  const Real t51 = R[8] * R[8];
-  const Real t52 = t50 + t51;
-  const Real t53 = sqrt(t52);
-  const Real t54 = constant<Real>(2.0L) * t53;
-  const Real t55 = constant<Real>(1.0L) / t53;
-  const Real t56 = R[8] * t55;
-  const Real t57 = t56 * par.r_R;
-  const Real t58 = t57 - par.r_R;
-  const Real t59 = s_r_p_1_ * par.k2;
-  const Real t60 = t25 * t59;
-  const Real t61 = t59 * par.c;
-  const Real t62 = t60 - t61;
-  const Real t63 = par.r_R - t57;
-  const Real t64 = c_r_p_1_ * par.c;
-  const Real t65 = c_r_p_1_ * par.k23;
-  const Real t66 = t65 * par.k1;
-  const Real t67 = t66 + par.k21;
-  const Real t68 = t64 - t67;
-  const Real t69 = t25 * c_r_p_1_;
-  const Real t70 = t68 - t69;
-  const Real t71 = constant<Real>(2.0L) * t19;
-  const Real t72 = t59 * par.r_F;
-  const Real t73 = t22 * t59;
-  const Real t74 = t72 + t73;
-  const Real t75 = t65 * par.k2;
-  const Real t76 = t75 - par.k24;
-  const Real t77 = c_r_p_1_ * par.r_F;
-  const Real t78 = t76 - t77;
-  const Real t79 = t22 * c_r_p_1_;
-  const Real t80 = t78 - t79;
-  const Real t81 = t25 * t45;
-  const Real t82 = t73 - t81;
-  const Real t83 = par.c * t45;
-  const Real t84 = t72 + t83;
-  const Real t85 = s_r_p_1_ * par.k23;
-  const Real t86 = t84 - t85;
-  const Real t87 = t82 + t86;
-  const Real t88 = c_r_p_1_ * par.k2;
-  const Real t89 = par.k2 * t88;
-  const Real t90 = par.k19 + t89;
-  const Real t91 = par.r_F * t90;
-  const Real t92 = par.k1 * t88;
-  const Real t93 = par.k22 - t92;
-  const Real t94 = t93 * par.c;
-  const Real t95 = t91 - t94;
-  const Real t96 = t25 * t93;
-  const Real t97 = t22 * t90;
-  const Real t98 = t96 + t97;
-  const Real t99 = t95 + t98;
-  const Real t100 = -t22;
-  const Real t101 = t55 * R[6];
-  const Real t102 = t101 * par.r_R;
-  const Real t103 = par.k1 * t43;
-  const Real t104 = t83 - t103;
-  const Real t105 = t104 - t81;
+  const Real t1 = s_r_p_1_ * par.k2;
+  const Real t2 = t1 * par.r_F;
+  const Real t3 = s_r_p_1_ * par.k1;
+  const Real t4 = par.c * t3;
+  const Real t5 = t2 + t4;
+  const Real t6 = c_r_p_1_ * par.k23;
+  const Real t7 = t6 * par.k2;
+  const Real t8 = t7 - par.k24;
+  const Real t9 = s_r_p_1_ * par.k13;
+  const Real t10 = par.k1 * t9;
+  const Real t11 = t4 - t10;
+  const Real t12 = R[6] * R[6];
+  const Real t13 = R[8] * R[8];
+  const Real t14 = t12 + t13;
+  const Real t15 = sqrt(t14);
+  const Real t16 = constant<Real>(2.0L) * t15;
+  const Real t17 = c_r_p_1_ * par.c;
+  const Real t18 = constant<Real>(1.0L) / t15;
+  const Real t19 = R[8] * t18;
+  const Real t20 = t19 * par.r_R;
+  const Real t21 = t20 - par.r_R;
+  const Real t22 = t6 * par.k1;
+  const Real t23 = c_r_p_1_ * par.k2;
+  const Real t24 = par.k2 * t23;
+  const Real t25 = par.k19 + t24;
+  const Real t26 = par.r_F * t25;
+  const Real t27 = par.k1 * t23;
+  const Real t28 = par.k22 - t27;
+  const Real t29 = t28 * par.c;
+  const Real t30 = t26 - t29;
+  const Real t31 = par.k2 * R[6];
+  const Real t32 = R[8] * par.k1;
+  const Real t33 = t31 - t32;
+  const Real t34 = c_r_p_1_ * t33;
+  const Real t35 = s_r_p_1_ * R[7];
+  const Real t36 = t34 + t35;
+  const Real t37 = par.k2 * t36;
+  const Real t38 = par.k1 * t36;
+  const Real t39 = par.k1 * R[6];
+  const Real t40 = R[8] * par.k2;
+  const Real t41 = t39 + t40;
+  const Real t42 = t41 * par.k2;
+  const Real t43 = t38 - t42;
+  const Real t44 = par.r_R - t20;
+  const Real t45 = t1 * par.c;
+  const Real t46 = par.k1 * t41;
+  const Real t47 = c_r_p_1_ * par.r_F;
+  const Real t48 = s_r_p_1_ * par.k23;
+  const Real t49 = c_r_p_1_ * par.k13;
+  const Real t50 = par.k1 * c_r_p_1_;
+  const Real t51 = t50 * par.k2;
+  const Real t52 = par.k22 - t51;
+  const Real t53 = t52 * par.r_F;
+  const Real t54 = par.k1 * t50;
+  const Real t55 = par.k18 + t54;
+  const Real t56 = t55 * par.c;
+  const Real t57 = t53 - t56;
+  const Real t58 = t49 + t57;
+  const Real t59 = t18 * R[6];
+  const Real t60 = t59 * par.r_R;
+  const Real t61 = par.k2 * t9;
+  const Real t62 = par.r_F * t3;
+  const Real t63 = t61 - t62;
 
   // kernel
-  const Real t106 = t45 * t102;
-  const Real t107 = t106 + t105;
-  const Real t108 = c_r_p_1_ * t102;
-  const Real t109 = t42 - t108;
-  const Real t110 = constant<Real>(1.0L) / t109;
-  const Real t111 = t107 * t110;
-  const Real t112 = t111 * t28;
-  const Real t113 = t58 * t90;
-  const Real t114 = t80 - t113;
-  const Real t115 = t34 * t102;
-  const Real t116 = t114 + t115;
-  const Real t117 = t58 * t59;
-  const Real t118 = t117 + t87;
-  const Real t119 = t118 + t106;
-  const Real t120 = t59 * t102;
-  const Real t121 = t49 - t120;
-  const Real t122 = t110 * t121;
-  const Real t123 = t119 * t122;
-  const Real t124 = t116 - t123;
-  const Real t125 = t31 * t102;
-  const Real t126 = t58 * t93;
-  const Real t127 = t70 - t126;
-  const Real t128 = t125 + t127;
-  const Real t129 = t111 * t119;
-  const Real t130 = t128 - t129;
-  const Real t131 = constant<Real>(1.0L) / t130;
-  const Real t132 = t124 * t131;
-  const Real t133 = t112 * t132;
-  const Real t134 = t28 * t122;
-  const Real t135 = t133 - t134;
-  const Real t136 = -t112;
-  const Real t137 = t57 * t90;
-  const Real t138 = t115 - t137;
-  const Real t139 = t59 * t57;
-  const Real t140 = t106 + t139;
-  const Real t141 = t140 * t122;
-  const Real t142 = t138 - t141;
-  const Real t143 = t93 * t57;
-  const Real t144 = t125 - t143;
-  const Real t145 = t111 * t140;
-  const Real t146 = t144 - t145;
-  const Real t147 = t146 * t132;
-  const Real t148 = t142 - t147;
-  const Real t149 = t59 * t63;
-  const Real t150 = t74 - t149;
-  const Real t151 = c_r_p_1_ * t63;
-  const Real t152 = t99 - t151;
-  const Real t153 = t152 * t122;
-  const Real t154 = t150 - t153;
-  const Real t155 = t63 * t45;
-  const Real t156 = t62 + t155;
-  const Real t157 = t111 * t152;
-  const Real t158 = t156 - t157;
-  const Real t159 = t158 * t132;
-  const Real t160 = t154 - t159;
-  const Real t161 = t25 * t132;
-  const Real t162 = t161 - t22;
-  const Real t163 = constant<Real>(1.0L) / t162;
+  const Real t64 = -t47;
+  const Real t65 = product_error(par.k1, t36);
+  const Real t66 = sum_error(t34, t35);
+  const Real t67 = product_error(c_r_p_1_, t33);
+  const Real t68 = -t32;
+  const Real t69 = sum_error(t31, t68);
+  const Real t70 = product_error(par.k2, R[6]);
+  const Real t71 = t69 + t70;
+  const Real t72 = t71 * c_r_p_1_;
+  const Real t73 = t67 + t72;
+  const Real t74 = t66 + t73;
+  const Real t75 = par.k1 * t74;
+  const Real t76 = t65 + t75;
+  const Real t77 = product_error(t41, par.k2);
+  const Real t78 = product_error(par.k1, R[6]);
+  const Real t79 = sum_error(t39, t40);
+  const Real t80 = t78 + t79;
+  const Real t81 = par.k2 * t80;
+  const Real t82 = t77 + t81;
+  const Real t83 = t76 - t82;
+  const Real t84 = t43 + t83;
+  const Real t85 = t84 * t84;
+  const Real t86 = par.k1 * t80;
+  const Real t87 = t86 + t46;
+  const Real t88 = par.k2 * t74;
+  const Real t89 = t37 + t88;
+  const Real t90 = t87 + t89;
+  const Real t91 = t90 * t90;
+  const Real t92 = t85 + t91;
+  const Real t93 = sqrt(t92);
+  const Real t94 = constant<Real>(1.0L) / t93;
+  const Real t95 = t84 * t94;
+  const Real t96 = t95 * par.r_F;
+  const Real t97 = -t96;
+  const Real t98 = t55 * t60;
+  const Real t99 = t28 * t20;
+  const Real t100 = t98 - t99;
+  const Real t101 = t21 * t25;
+  const Real t102 = product_error(c_r_p_1_, par.r_F);
+  const Real t103 = t1 * t96;
+  const Real t104 = t90 * t94;
+  const Real t105 = par.r_F * t104;
+  const Real t106 = t105 * t3;
+  const Real t107 = t103 - t106;
+  const Real t108 = t1 * t105;
+  const Real t109 = t108 - t45;
+  const Real t110 = t44 * t3;
+  const Real t111 = t109 + t110;
+  const Real t112 = t105 * par.k2;
+  const Real t113 = par.k1 * t96;
+  const Real t114 = t112 + t113;
+  const Real t115 = t114 + par.k12;
+  const Real t116 = c_r_p_1_ * t44;
+  const Real t117 = c_r_p_1_ * t96;
+  const Real t118 = -t117;
+  const Real t119 = t21 * t28;
+  const Real t120 = t21 * t1;
+  const Real t121 = t96 * t3;
+  const Real t122 = t63 - t121;
+  const Real t123 = t1 * t60;
+  const Real t124 = t122 - t123;
+  const Real t125 = t3 * t60;
+  const Real t126 = t11 - t106;
+  const Real t127 = t125 + t126;
+  const Real t128 = t1 * t20;
+  const Real t129 = t125 + t128;
+  const Real t130 = s_r_p_1_ * par.k28;
+  const Real t131 = t48 + t130;
+  const Real t132 = c_r_p_1_ * t60;
+  const Real t133 = t96 * t25;
+  const Real t134 = t93 * constant<Real>(2.0L);
+  const Real t135 = t105 * c_r_p_1_;
+  const Real t136 = c_r_p_1_ * par.k28;
+  const Real t137 = t2 + t103;
+  const Real t138 = t1 * t44;
+  const Real t139 = t137 - t138;
+  const Real t140 = t52 * t60;
+  const Real t141 = t20 * t25;
+  const Real t142 = t140 - t141;
 
   // frame: acceleration
-  const Real t164 = par.g * R[7];
-  const Real t165 = par.g * R[8];
-  const Real t166 = par.g * R[6];
+  const Real t143 = par.g * R[7];
+  const Real t144 = par.g * R[8];
+  const Real t145 = par.g * R[6];
 
   // joint angles
-  const Real t167 = R[8] * nu[0];
-  const Real t168 = par.k2 * nu[0];
-  const Real t169 = par.k1 * nu[0];
-  const Real t170 = s_r_p_1_ * nu[1];
-  const Real t171 = t170 * t3;
-  const Real t172 = c_r_p_1_ * nu[1];
-  const Real t173 = t172 * R[7];
-  const Real t174 = nu[0] * R[7];
+  const Real t146 = R[8] * nu[0];
+  const Real t147 = par.k2 * nu[0];
+  const Real t148 = par.k1 * nu[0];
+  const Real t149 = s_r_p_1_ * nu[1];
+  const Real t150 = t149 * t33;
+  const Real t151 = c_r_p_1_ * nu[1];
+  const Real t152 = t151 * R[7];
+  const Real t153 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t175 = nu[0] * c_r_p_0_;
-  const Real t176 = nu[0] * s_r_p_0_;
+  const Real t154 = nu[0] * c_r_p_0_;
+  const Real t155 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t177 = nu[0] * nu[0];
+  const Real t156 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t178 = -t141;
-  const Real t179 = sum_error(t138, t178);
-  const Real t180 = product_error(t140, t122);
-  const Real t181 = t179 - t180;
-  const Real t182 = product_error(t146, t132);
-  const Real t183 = product_error(t124, t131);
-  const Real t184 = quotient_error(constant<Real>(1.0L), t130);
-  const Real t185 = -t129;
-  const Real t186 = sum_error(t128, t185);
-  const Real t187 = product_error(t111, t119);
-  const Real t188 = t186 - t187;
-  const Real t189 = t188 * t131;
-  const Real t190 = t189 / t130;
-  const Real t191 = t184 - t190;
-  const Real t192 = t191 * t124;
-  const Real t193 = -t123;
-  const Real t194 = sum_error(t116, t193);
-  const Real t195 = product_error(t119, t122);
+  const Real t157 = t149 * t71;
+  const Real t158 = t150 + t157;
+  const Real t159 = t52 * t96;
+  const Real t160 = t55 * t105;
+  const Real t161 = t159 + t160;
+  const Real t162 = t161 + t58;
+  const Real t163 = t162 - t132;
+  const Real t164 = constant<Real>(1.0L) / t163;
+  const Real t165 = t164 * t124;
+  const Real t166 = t165 * t115;
+  const Real t167 = -t166;
+  const Real t168 = t165 * t129;
+  const Real t169 = t142 - t168;
+  const Real t170 = t164 * t127;
+  const Real t171 = t170 * t115;
+  const Real t172 = -t171;
+  const Real t173 = t105 * t28;
+  const Real t174 = t173 + t133;
+  const Real t175 = t30 + t174;
+  const Real t176 = t175 - t116;
+  const Real t177 = t176 * t165;
+  const Real t178 = t139 - t177;
+  const Real t179 = -t168;
+  const Real t180 = sum_error(t142, t179);
+  const Real t181 = product_error(t129, t165);
+  const Real t182 = t180 - t181;
+  const Real t183 = t170 * t176;
+  const Real t184 = t111 - t183;
+  const Real t185 = product_error(t170, t115);
+  const Real t186 = -t177;
+  const Real t187 = sum_error(t139, t186);
+  const Real t188 = product_error(t176, t165);
+  const Real t189 = t187 - t188;
+  const Real t190 = product_error(t115, t165);
+  const Real t191 = t170 * t129;
+  const Real t192 = t100 - t191;
+  const Real t193 = -t183;
+  const Real t194 = sum_error(t111, t193);
+  const Real t195 = product_error(t170, t176);
   const Real t196 = t194 - t195;
-  const Real t197 = t196 * t131;
-  const Real t198 = t192 + t197;
-  const Real t199 = t183 + t198;
-  const Real t200 = t199 * t146;
-  const Real t201 = -t145;
-  const Real t202 = sum_error(t144, t201);
-  const Real t203 = product_error(t111, t140);
-  const Real t204 = t202 - t203;
-  const Real t205 = t204 * t132;
-  const Real t206 = t200 + t205;
-  const Real t207 = t182 + t206;
-  const Real t208 = t181 - t207;
-  const Real t209 = t208 + t148;
-  const Real t210 = -t153;
-  const Real t211 = sum_error(t150, t210);
-  const Real t212 = product_error(t152, t122);
-  const Real t213 = t211 - t212;
-  const Real t214 = product_error(t158, t132);
-  const Real t215 = t199 * t158;
-  const Real t216 = t199 * t25;
-  const Real t217 = product_error(t111, t28);
-  const Real t218 = t217 * t132;
-  const Real t219 = t199 * t112;
-  const Real t220 = t218 + t219;
-  const Real t221 = product_error(t112, t132);
-  const Real t222 = t220 + t221;
-  const Real t223 = product_error(t28, t122);
-  const Real t224 = t222 - t223;
-  const Real t225 = t135 + t224;
-
-  // accelerations
-  const Real t226 = t214 + t215;
-  const Real t227 = t213 - t226;
-  const Real t228 = t227 + t160;
+  const Real t197 = -t191;
+  const Real t198 = sum_error(t100, t197);
+  const Real t199 = product_error(t170, t129);
+  const Real t200 = t198 - t199;
 
   // rear_wheel: acceleration
-  const Real t229 = nu_dot[0] * c_r_p_0_;
-  const Real t230 = nu_dot[0] * s_r_p_0_;
+  const Real t201 = nu_dot[0] * c_r_p_0_;
+  const Real t202 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t231 = nu_dot[0] * par.k2;
-  const Real t232 = par.k1 * nu_dot[0];
+  const Real t203 = nu_dot[0] * par.k2;
+  const Real t204 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t233 = t228 * t163;
-  const Real t234 = quotient_error(constant<Real>(1.0L), t162);
-  const Real t235 = product_error(t25, t132);
-  const Real t236 = t235 + t216;
-  const Real t237 = sum_error(t161, t100);
-  const Real t238 = t236 + t237;
-  const Real t239 = t238 * t163;
-  const Real t240 = t239 / t162;
-  const Real t241 = t234 - t240;
-  const Real t242 = t228 * t241;
-  const Real t243 = t233 + t242;
-  const Real t244 = t25 * t243;
-  const Real t245 = t158 + t244;
-  const Real t246 = t245 * t131;
-  const Real t247 = t119 * t246;
-  const Real t248 = t152 - t247;
-  const Real t249 = t245 * t191;
-  const Real t250 = sum_error(t158, t244);
-  const Real t251 = t250 * t131;
-  const Real t252 = t249 + t251;
-  const Real t253 = product_error(t131, t245);
-  const Real t254 = t252 + t253;
-  const Real t255 = t119 * t254;
-  const Real t256 = product_error(t119, t246);
-  const Real t257 = t255 + t256;
-  const Real t258 = t248 - t257;
-  const Real t259 = t110 * t258;
-  const Real t260 = t102 * t259;
-  const Real t261 = t260 - t63;
-  const Real t262 = t261 * nu[0];
-  const Real t263 = t241 * t225;
-  const Real t264 = t225 * t163;
-  const Real t265 = t263 + t264;
-  const Real t266 = t25 * t265;
-  const Real t267 = t266 - t112;
-  const Real t268 = t131 * t267;
-  const Real t269 = t268 * t119;
-  const Real t270 = t28 - t269;
-  const Real t271 = product_error(t268, t119);
-  const Real t272 = sum_error(t266, t136);
-  const Real t273 = t272 - t217;
-  const Real t274 = t273 * t131;
-  const Real t275 = t191 * t267;
+  const Real t205 = t5 - t131;
+  const Real t206 = t107 + t205;
+  const Real t207 = t206 + t120;
+  const Real t208 = t207 + t125;
+  const Real t209 = product_error(c_r_p_1_, par.k23);
+  const Real t210 = t209 + t136;
+  const Real t211 = par.k1 * t210;
+  const Real t212 = t22 + t211;
+  const Real t213 = t212 + par.k21;
+  const Real t214 = t17 - t213;
+  const Real t215 = t214 - t135;
+  const Real t216 = t215 - t119;
+  const Real t217 = t216 + t98;
+  const Real t218 = t170 * t208;
+  const Real t219 = t217 - t218;
+  const Real t220 = constant<Real>(1.0L) / t219;
+  const Real t221 = t210 * par.k2;
+  const Real t222 = product_error(t6, par.k2);
+  const Real t223 = t221 + t222;
+  const Real t224 = t223 - par.k62;
+  const Real t225 = t8 + t224;
+  const Real t226 = t225 - t47;
+  const Real t227 = sum_error(t226, t118);
+  const Real t228 = sum_error(t225, t64);
+  const Real t229 = t228 - t102;
+  const Real t230 = t227 + t229;
+  const Real t231 = t226 - t117;
+  const Real t232 = t231 - t101;
+  const Real t233 = t230 + t232;
+  const Real t234 = t233 + t140;
+  const Real t235 = t165 * t208;
+  const Real t236 = t234 - t235;
+  const Real t237 = t236 * t220;
+  const Real t238 = t237 * t105;
+  const Real t239 = t238 - t96;
+  const Real t240 = constant<Real>(1.0L) / t239;
+  const Real t241 = t237 * t171;
+  const Real t242 = t241 - t166;
+  const Real t243 = t240 * t242;
+  const Real t244 = t243 * t105;
+  const Real t245 = t244 - t171;
+  const Real t246 = t220 * t245;
+  const Real t247 = t208 * t246;
+  const Real t248 = t115 - t247;
+  const Real t249 = product_error(t246, t208);
+  const Real t250 = quotient_error(constant<Real>(1.0L), t219);
+  const Real t251 = -t218;
+  const Real t252 = sum_error(t217, t251);
+  const Real t253 = product_error(t170, t208);
+  const Real t254 = t252 - t253;
+  const Real t255 = t220 * t254;
+  const Real t256 = t255 / t219;
+  const Real t257 = t250 - t256;
+  const Real t258 = t245 * t257;
+  const Real t259 = sum_error(t244, t172);
+  const Real t260 = t237 * t185;
+  const Real t261 = product_error(t236, t220);
+  const Real t262 = -t235;
+  const Real t263 = sum_error(t234, t262);
+  const Real t264 = product_error(t208, t165);
+  const Real t265 = t263 - t264;
+  const Real t266 = t220 * t265;
+  const Real t267 = t236 * t257;
+  const Real t268 = t266 + t267;
+  const Real t269 = t261 + t268;
+  const Real t270 = t269 * t171;
+  const Real t271 = t260 + t270;
+  const Real t272 = product_error(t171, t237);
+  const Real t273 = t271 + t272;
+  const Real t274 = t273 - t190;
+  const Real t275 = sum_error(t241, t167);
   const Real t276 = t274 + t275;
-  const Real t277 = product_error(t267, t131);
-  const Real t278 = t276 + t277;
-  const Real t279 = t119 * t278;
-  const Real t280 = t271 + t279;
-  const Real t281 = t270 - t280;
-  const Real t282 = t110 * t281;
-  const Real t283 = t282 * t102;
-  const Real t284 = t283 * nu[1];
-  const Real t285 = t262 + t284;
-  const Real t286 = t209 * t163;
-  const Real t287 = t209 * t241;
-  const Real t288 = t286 + t287;
-  const Real t289 = t25 * t288;
-  const Real t290 = t146 + t289;
-  const Real t291 = t290 * t131;
-  const Real t292 = t291 * t119;
-  const Real t293 = t140 - t292;
-  const Real t294 = product_error(t291, t119);
-  const Real t295 = t290 * t191;
-  const Real t296 = sum_error(t146, t289);
-  const Real t297 = t204 + t296;
-  const Real t298 = t297 * t131;
-  const Real t299 = t295 + t298;
-  const Real t300 = product_error(t290, t131);
-  const Real t301 = t299 + t300;
-  const Real t302 = t119 * t301;
-  const Real t303 = t294 + t302;
-  const Real t304 = t293 - t303;
-  const Real t305 = t110 * t304;
-  const Real t306 = t305 * t102;
-  const Real t307 = t306 * nu[2];
-  const Real t308 = t285 + t307;
-  const Real t309 = t282 * nu[1];
-  const Real t310 = nu[0] * t259;
-  const Real t311 = t309 + t310;
-  const Real t312 = t305 * nu[2];
-  const Real t313 = t311 + t312;
-  const Real t314 = t313 * par.k13;
-  const Real t315 = t308 - t314;
-  const Real t316 = t315 * t170;
-  const Real t317 = t268 * t58;
-  const Real t318 = t58 * t278;
-  const Real t319 = t317 + t318;
-  const Real t320 = t319 * nu[1];
-  const Real t321 = t58 * t254;
-  const Real t322 = t58 * t246;
-  const Real t323 = t321 + t322;
-  const Real t324 = nu[0] * t323;
-  const Real t325 = t320 + t324;
-  const Real t326 = t58 * t291;
-  const Real t327 = t58 * t301;
-  const Real t328 = t326 + t327;
-  const Real t329 = t328 - t57;
-  const Real t330 = nu[2] * t329;
-  const Real t331 = t325 + t330;
-  const Real t332 = t331 * par.k2;
-  const Real t333 = t102 * t301;
-  const Real t334 = t291 * t102;
-  const Real t335 = t333 + t334;
-  const Real t336 = t102 - t335;
-  const Real t337 = t336 * nu[2];
-  const Real t338 = t268 * t102;
-  const Real t339 = t278 * t102;
-  const Real t340 = t338 + t339;
-  const Real t341 = t340 * nu[1];
-  const Real t342 = t102 * t246;
-  const Real t343 = t254 * t102;
-  const Real t344 = t342 + t343;
-  const Real t345 = t344 * nu[0];
-  const Real t346 = t341 + t345;
-  const Real t347 = t337 - t346;
-  const Real t348 = nu[2] * t301;
-  const Real t349 = t291 * nu[2];
+  const Real t277 = t240 * t276;
+  const Real t278 = quotient_error(constant<Real>(1.0L), t239);
+  const Real t279 = t269 * t105;
+  const Real t280 = product_error(t105, t237);
+  const Real t281 = t279 + t280;
+  const Real t282 = sum_error(t238, t97);
+  const Real t283 = t281 + t282;
+  const Real t284 = t240 * t283;
+  const Real t285 = t284 / t239;
+  const Real t286 = t278 - t285;
+  const Real t287 = t286 * t242;
+  const Real t288 = t277 + t287;
+  const Real t289 = product_error(t242, t240);
+  const Real t290 = t288 + t289;
+  const Real t291 = t290 * t105;
+  const Real t292 = product_error(t243, t105);
+  const Real t293 = t291 + t292;
+  const Real t294 = t293 - t185;
+  const Real t295 = t259 + t294;
+  const Real t296 = t220 * t295;
+  const Real t297 = t258 + t296;
+  const Real t298 = product_error(t245, t220);
+  const Real t299 = t297 + t298;
+  const Real t300 = t299 * t208;
+  const Real t301 = t249 + t300;
+  const Real t302 = t248 - t301;
+  const Real t303 = t164 * t302;
+  const Real t304 = t303 * t60;
+  const Real t305 = t304 * nu[1];
+  const Real t306 = t237 * t196;
+  const Real t307 = t269 * t184;
+  const Real t308 = t306 + t307;
+  const Real t309 = product_error(t184, t237);
+  const Real t310 = t308 + t309;
+  const Real t311 = t189 - t310;
+  const Real t312 = t237 * t184;
+  const Real t313 = t178 - t312;
+  const Real t314 = t311 + t313;
+  const Real t315 = t240 * t314;
+  const Real t316 = t286 * t314;
+  const Real t317 = t315 + t316;
+  const Real t318 = t317 * t105;
+  const Real t319 = t184 + t318;
+  const Real t320 = t319 * t220;
+  const Real t321 = t320 * t208;
+  const Real t322 = t176 - t321;
+  const Real t323 = product_error(t220, t319);
+  const Real t324 = t319 * t257;
+  const Real t325 = sum_error(t184, t318);
+  const Real t326 = t325 + t196;
+  const Real t327 = t220 * t326;
+  const Real t328 = t324 + t327;
+  const Real t329 = t323 + t328;
+  const Real t330 = t329 * t208;
+  const Real t331 = product_error(t208, t320);
+  const Real t332 = t330 + t331;
+  const Real t333 = t322 - t332;
+  const Real t334 = t164 * t333;
+  const Real t335 = t334 * t60;
+  const Real t336 = t335 - t44;
+  const Real t337 = t336 * nu[0];
+  const Real t338 = t305 + t337;
+  const Real t339 = t237 * t200;
+  const Real t340 = t269 * t192;
+  const Real t341 = t339 + t340;
+  const Real t342 = product_error(t192, t237);
+  const Real t343 = t341 + t342;
+  const Real t344 = t182 - t343;
+  const Real t345 = t237 * t192;
+  const Real t346 = t169 - t345;
+  const Real t347 = t344 + t346;
+  const Real t348 = t240 * t347;
+  const Real t349 = t286 * t347;
   const Real t350 = t348 + t349;
-  const Real t351 = t268 * nu[1];
-  const Real t352 = t278 * nu[1];
-  const Real t353 = t351 + t352;
-  const Real t354 = t254 * nu[0];
-  const Real t355 = nu[0] * t246;
-  const Real t356 = t354 + t355;
-  const Real t357 = t353 + t356;
-  const Real t358 = t350 + t357;
-  const Real t359 = t358 * par.k13;
-  const Real t360 = t347 + t359;
-  const Real t361 = par.k1 * t360;
-  const Real t362 = t332 - t361;
-  const Real t363 = t172 * t362;
-  const Real t364 = t316 + t363;
-  const Real t365 = par.k1 * t313;
-  const Real t366 = t365 + t168;
-  const Real t367 = t170 * t366;
-  const Real t368 = t358 * t172;
-  const Real t369 = t367 + t368;
-  const Real t370 = t369 * par.k2;
-  const Real t371 = par.r_F * t370;
-  const Real t372 = par.k1 * t369;
-  const Real t373 = par.c * t372;
-  const Real t374 = t371 + t373;
-  const Real t375 = t364 + t374;
-  const Real t376 = t358 * R[6];
-  const Real t377 = t376 + t174;
-  const Real t378 = par.k1 * t377;
-  const Real t379 = R[8] * t358;
-  const Real t380 = t313 * R[7];
-  const Real t381 = t379 - t380;
-  const Real t382 = par.k2 * t381;
-  const Real t383 = t378 + t382;
-  const Real t384 = c_r_p_1_ * t383;
-  const Real t385 = t384 - t171;
-  const Real t386 = t313 * R[6];
-  const Real t387 = t167 + t386;
-  const Real t388 = s_r_p_1_ * t387;
-  const Real t389 = t388 + t173;
-  const Real t390 = t385 + t389;
-  const Real t391 = par.k1 * t390;
-  const Real t392 = par.k1 * t381;
-  const Real t393 = par.k2 * t377;
-  const Real t394 = t392 - t393;
-  const Real t395 = par.k2 * t394;
-  const Real t396 = t391 - t395;
-  const Real t397 = t396 * t20;
-  const Real t398 = par.k1 * t394;
-  const Real t399 = par.k2 * t390;
-  const Real t400 = t398 + t399;
-  const Real t401 = t400 * t16;
-  const Real t402 = t401 * constant<Real>(2.0L);
-  const Real t403 = t396 * t12;
-  const Real t404 = t403 * constant<Real>(2.0L);
-  const Real t405 = t402 + t404;
-  const Real t406 = t405 / t71;
-  const Real t407 = t406 * t20;
-  const Real t408 = t407 / t19;
-  const Real t409 = t408 * t12;
-  const Real t410 = t397 - t409;
-  const Real t411 = t410 * par.r_F;
-  const Real t412 = c_r_p_1_ * t366;
-  const Real t413 = s_r_p_1_ * t358;
-  const Real t414 = t412 - t413;
-  const Real t415 = t414 * par.k2;
-  const Real t416 = t313 * par.k2;
-  const Real t417 = t169 - t416;
-  const Real t418 = t417 + nu[1];
-  const Real t419 = t418 * par.k1;
-  const Real t420 = t415 + t419;
-  const Real t421 = t411 * t420;
-  const Real t422 = t22 * t370;
-  const Real t423 = t421 - t422;
-  const Real t424 = t418 * par.k2;
-  const Real t425 = t414 * par.k1;
-  const Real t426 = t424 - t425;
-  const Real t427 = t400 * t20;
-  const Real t428 = t408 * t16;
-  const Real t429 = t427 - t428;
-  const Real t430 = par.r_F * t429;
-  const Real t431 = t426 * t430;
-  const Real t432 = t25 * t372;
-  const Real t433 = t431 + t432;
-  const Real t434 = t423 + t433;
-  const Real t435 = t375 - t434;
-  const Real t436 = nu[2] - t358;
-  const Real t437 = t381 * R[6];
-  const Real t438 = t437 * constant<Real>(2.0L);
-  const Real t439 = R[8] * t377;
-  const Real t440 = t439 * constant<Real>(2.0L);
-  const Real t441 = t438 - t440;
-  const Real t442 = t441 / t54;
-  const Real t443 = t55 * t442;
-  const Real t444 = t443 / t53;
-  const Real t445 = t444 * R[8];
-  const Real t446 = t55 * t377;
-  const Real t447 = t445 + t446;
-  const Real t448 = t447 * par.r_R;
-  const Real t449 = t436 * t448;
-  const Real t450 = t59 * t449;
-  const Real t451 = t435 + t450;
-  const Real t452 = t55 * t381;
-  const Real t453 = t444 * R[6];
-  const Real t454 = t452 - t453;
-  const Real t455 = t454 * par.r_R;
-  const Real t456 = t313 * t455;
-  const Real t457 = t448 * nu[0];
-  const Real t458 = t456 - t457;
-  const Real t459 = t458 * c_r_p_1_;
-  const Real t460 = t451 - t459;
-  const Real t461 = t436 * t455;
-  const Real t462 = t461 * t45;
-  const Real t463 = t460 - t462;
-  const Real t464 = t458 * t45;
-  const Real t465 = t315 * t172;
-  const Real t466 = t170 * t362;
-  const Real t467 = t465 - t466;
-  const Real t468 = t467 * par.k1;
-  const Real t469 = t172 * t366;
-  const Real t470 = t170 * t358;
-  const Real t471 = t469 - t470;
-  const Real t472 = par.c * t471;
-  const Real t473 = t468 + t472;
-  const Real t474 = nu[2] * t288;
-  const Real t475 = t265 * nu[1];
-  const Real t476 = t243 * nu[0];
-  const Real t477 = t475 + t476;
-  const Real t478 = t474 + t477;
-  const Real t479 = t358 * c_r_p_1_;
-  const Real t480 = s_r_p_1_ * t366;
-  const Real t481 = t479 + t480;
-  const Real t482 = t478 + t481;
-  const Real t483 = t482 * t430;
-  const Real t484 = t25 * t471;
-  const Real t485 = t483 + t484;
-  const Real t486 = t473 - t485;
-  const Real t487 = t93 * t449;
-  const Real t488 = t486 - t487;
-  const Real t489 = t464 + t488;
-  const Real t490 = t31 * t461;
-  const Real t491 = t489 - t490;
-  const Real t492 = t111 * t463;
-  const Real t493 = t491 - t492;
-  const Real t494 = t458 * t59;
-  const Real t495 = t411 * t482;
-  const Real t496 = t22 * t471;
-  const Real t497 = t495 + t496;
-  const Real t498 = t467 * par.k2;
-  const Real t499 = par.r_F * t471;
-  const Real t500 = t498 + t499;
-  const Real t501 = t497 + t500;
-  const Real t502 = t449 * t90;
-  const Real t503 = t501 + t502;
-  const Real t504 = t494 + t503;
-  const Real t505 = t34 * t461;
-  const Real t506 = t504 + t505;
-  const Real t507 = t463 * t122;
+  const Real t351 = t350 * t105;
+  const Real t352 = t351 + t192;
+  const Real t353 = t220 * t352;
+  const Real t354 = t208 * t353;
+  const Real t355 = t129 - t354;
+  const Real t356 = product_error(t353, t208);
+  const Real t357 = sum_error(t192, t351);
+  const Real t358 = t357 + t200;
+  const Real t359 = t220 * t358;
+  const Real t360 = t257 * t352;
+  const Real t361 = t359 + t360;
+  const Real t362 = product_error(t352, t220);
+  const Real t363 = t361 + t362;
+  const Real t364 = t363 * t208;
+  const Real t365 = t356 + t364;
+  const Real t366 = t355 - t365;
+  const Real t367 = t164 * t366;
+  const Real t368 = t367 * t60;
+  const Real t369 = nu[2] * t368;
+  const Real t370 = t338 + t369;
+  const Real t371 = nu[0] * t370;
+  const Real t372 = nu[2] * t353;
+  const Real t373 = t363 * nu[2];
+  const Real t374 = t372 + t373;
+  const Real t375 = t246 * nu[1];
+  const Real t376 = t299 * nu[1];
+  const Real t377 = t375 + t376;
+  const Real t378 = t329 * nu[0];
+  const Real t379 = t320 * nu[0];
+  const Real t380 = t378 + t379;
+  const Real t381 = t377 + t380;
+  const Real t382 = t374 + t381;
+  const Real t383 = t21 * t329;
+  const Real t384 = t21 * t320;
+  const Real t385 = t383 + t384;
+  const Real t386 = t385 * nu[0];
+  const Real t387 = t299 * t21;
+  const Real t388 = t21 * t246;
+  const Real t389 = t387 + t388;
+  const Real t390 = t389 * nu[1];
+  const Real t391 = t386 + t390;
+  const Real t392 = t21 * t363;
+  const Real t393 = t21 * t353;
+  const Real t394 = t392 + t393;
+  const Real t395 = t394 - t20;
+  const Real t396 = t395 * nu[2];
+  const Real t397 = t391 + t396;
+  const Real t398 = t382 * t397;
+  const Real t399 = t371 + t398;
+  const Real t400 = t60 * t353;
+  const Real t401 = t363 * t60;
+  const Real t402 = t400 + t401;
+  const Real t403 = t60 - t402;
+  const Real t404 = nu_dot[2] * t403;
+  const Real t405 = t299 * t60;
+  const Real t406 = t246 * t60;
+  const Real t407 = t405 + t406;
+  const Real t408 = nu_dot[1] * t407;
+  const Real t409 = t329 * t60;
+  const Real t410 = t320 * t60;
+  const Real t411 = t409 + t410;
+  const Real t412 = nu_dot[0] * t411;
+  const Real t413 = t408 + t412;
+  const Real t414 = t404 - t413;
+  const Real t415 = R[8] * t382;
+  const Real t416 = t367 * nu[2];
+  const Real t417 = t334 * nu[0];
+  const Real t418 = t303 * nu[1];
+  const Real t419 = t417 + t418;
+  const Real t420 = t416 + t419;
+  const Real t421 = t420 * R[7];
+  const Real t422 = t415 - t421;
+  const Real t423 = t18 * t422;
+  const Real t424 = t422 * R[6];
+  const Real t425 = t424 * constant<Real>(2.0L);
+  const Real t426 = t382 * R[6];
+  const Real t427 = t426 + t153;
+  const Real t428 = R[8] * t427;
+  const Real t429 = t428 * constant<Real>(2.0L);
+  const Real t430 = t425 - t429;
+  const Real t431 = t430 / t16;
+  const Real t432 = t18 * t431;
+  const Real t433 = t432 / t15;
+  const Real t434 = t433 * R[6];
+  const Real t435 = t423 - t434;
+  const Real t436 = t435 * par.r_R;
+  const Real t437 = t436 * t420;
+  const Real t438 = t18 * t427;
+  const Real t439 = R[8] * t433;
+  const Real t440 = t438 + t439;
+  const Real t441 = t440 * par.r_R;
+  const Real t442 = t441 * nu[0];
+  const Real t443 = t437 - t442;
+  const Real t444 = t3 * t443;
+  const Real t445 = t420 * par.k13;
+  const Real t446 = t370 - t445;
+  const Real t447 = t446 * t151;
+  const Real t448 = par.k2 * t397;
+  const Real t449 = t382 * par.k13;
+  const Real t450 = nu[2] * t403;
+  const Real t451 = t407 * nu[1];
+  const Real t452 = nu[0] * t411;
+  const Real t453 = t451 + t452;
+  const Real t454 = t450 - t453;
+  const Real t455 = t449 + t454;
+  const Real t456 = par.k1 * t455;
+  const Real t457 = t448 - t456;
+  const Real t458 = t457 * t149;
+  const Real t459 = t447 - t458;
+  const Real t460 = par.k1 * t459;
+  const Real t461 = par.k1 * t420;
+  const Real t462 = t147 + t461;
+  const Real t463 = t462 * t151;
+  const Real t464 = t382 * t149;
+  const Real t465 = t463 - t464;
+  const Real t466 = t465 * par.c;
+  const Real t467 = t460 + t466;
+  const Real t468 = par.k1 * t422;
+  const Real t469 = par.k2 * t427;
+  const Real t470 = t468 - t469;
+  const Real t471 = par.k1 * t470;
+  const Real t472 = t420 * R[6];
+  const Real t473 = t472 + t146;
+  const Real t474 = s_r_p_1_ * t473;
+  const Real t475 = t474 + t152;
+  const Real t476 = par.k1 * t427;
+  const Real t477 = t422 * par.k2;
+  const Real t478 = t476 + t477;
+  const Real t479 = c_r_p_1_ * t478;
+  const Real t480 = t479 - t158;
+  const Real t481 = t475 + t480;
+  const Real t482 = par.k2 * t481;
+  const Real t483 = t471 + t482;
+  const Real t484 = t94 * t483;
+  const Real t485 = par.k1 * t481;
+  const Real t486 = par.k2 * t470;
+  const Real t487 = t485 - t486;
+  const Real t488 = t487 * t84;
+  const Real t489 = t488 * constant<Real>(2.0L);
+  const Real t490 = t90 * t483;
+  const Real t491 = constant<Real>(2.0L) * t490;
+  const Real t492 = t489 + t491;
+  const Real t493 = t492 / t134;
+  const Real t494 = t94 * t493;
+  const Real t495 = t494 / t93;
+  const Real t496 = t90 * t495;
+  const Real t497 = t484 - t496;
+  const Real t498 = t497 * par.r_F;
+  const Real t499 = t382 * c_r_p_1_;
+  const Real t500 = s_r_p_1_ * t462;
+  const Real t501 = t499 + t500;
+  const Real t502 = t317 * nu[0];
+  const Real t503 = t290 * nu[1];
+  const Real t504 = t243 * nu[1];
+  const Real t505 = t503 + t504;
+  const Real t506 = t502 + t505;
+  const Real t507 = t350 * nu[2];
   const Real t508 = t506 + t507;
-  const Real t509 = t132 * t493;
-  const Real t510 = t508 + t509;
-  const Real t511 = product_error(t463, t122);
-  const Real t512 = sum_error(t507, t506);
-  const Real t513 = t511 + t512;
-  const Real t514 = product_error(t493, t132);
-  const Real t515 = t199 * t493;
-  const Real t516 = t514 + t515;
-  const Real t517 = t513 + t516;
-  const Real t518 = t510 + t517;
-  const Real t519 = t518 * t163;
-  const Real t520 = t518 * t241;
-  const Real t521 = t519 + t520;
-  const Real t522 = t521 * t25;
-  const Real t523 = t493 - t522;
-  const Real t524 = t523 * t131;
-  const Real t525 = t524 * t119;
-  const Real t526 = t463 - t525;
-  const Real t527 = product_error(t119, t524);
-  const Real t528 = -t522;
-  const Real t529 = sum_error(t493, t528);
-  const Real t530 = t529 * t131;
-  const Real t531 = t523 * t191;
-  const Real t532 = t530 + t531;
-  const Real t533 = product_error(t523, t131);
-  const Real t534 = t532 + t533;
-  const Real t535 = t119 * t534;
-  const Real t536 = t527 + t535;
-  const Real t537 = t526 - t536;
-  const Real t538 = t110 * t537;
-  const Real t539 = nu_dot[0] * t259;
-  const Real t540 = nu_dot[1] * t282;
-  const Real t541 = t539 + t540;
-  const Real t542 = nu_dot[2] * t305;
-  const Real t543 = t541 + t542;
-  const Real t544 = t538 - t543;
-  const Real t545 = t358 * nu[0];
-  const Real t546 = t544 - t545;
-  const Real t547 = par.k13 * t546;
-  const Real t548 = t283 * nu_dot[1];
-  const Real t549 = t261 * nu_dot[0];
-  const Real t550 = t548 + t549;
-  const Real t551 = nu_dot[2] * t306;
-  const Real t552 = t550 + t551;
-  const Real t553 = t538 * t102;
-  const Real t554 = t458 - t553;
-  const Real t555 = t552 + t554;
-  const Real t556 = t347 * nu[0];
-  const Real t557 = t331 * t313;
-  const Real t558 = t556 + t557;
-  const Real t559 = t555 - t558;
-  const Real t560 = t559 - t164;
-  const Real t561 = t547 + t560;
-  const Real t562 = t561 * c_r_p_1_;
-  const Real t563 = t58 * t534;
-  const Real t564 = t524 * t58;
-  const Real t565 = t563 + t564;
-  const Real t566 = t449 - t565;
-  const Real t567 = nu_dot[2] * t329;
-  const Real t568 = nu_dot[0] * t323;
-  const Real t569 = nu_dot[1] * t319;
-  const Real t570 = t568 + t569;
-  const Real t571 = t567 + t570;
-  const Real t572 = t566 + t571;
-  const Real t573 = t313 * t308;
-  const Real t574 = t347 * t358;
-  const Real t575 = t573 - t574;
-  const Real t576 = t572 + t575;
-  const Real t577 = t576 - t166;
-  const Real t578 = t313 * t313;
-  const Real t579 = t358 * t358;
-  const Real t580 = t578 + t579;
-  const Real t581 = t580 * par.k13;
-  const Real t582 = t577 - t581;
-  const Real t583 = par.k2 * t582;
-  const Real t584 = t308 * nu[0];
-  const Real t585 = t331 * t358;
-  const Real t586 = t584 + t585;
-  const Real t587 = t534 * t102;
-  const Real t588 = t524 * t102;
+  const Real t509 = t501 + t508;
+  const Real t510 = t498 * t509;
+  const Real t511 = t105 * t465;
+  const Real t512 = t510 + t511;
+  const Real t513 = t467 - t512;
+  const Real t514 = nu[2] - t382;
+  const Real t515 = t441 * t514;
+  const Real t516 = t515 * t28;
+  const Real t517 = t513 - t516;
+  const Real t518 = t444 + t517;
+  const Real t519 = t514 * t436;
+  const Real t520 = t55 * t519;
+  const Real t521 = t518 - t520;
+  const Real t522 = t515 * t1;
+  const Real t523 = t149 * t462;
+  const Real t524 = t382 * t151;
+  const Real t525 = t523 + t524;
+  const Real t526 = par.k1 * t525;
+  const Real t527 = t526 * par.c;
+  const Real t528 = par.k2 * t525;
+  const Real t529 = t528 * par.r_F;
+  const Real t530 = t527 + t529;
+  const Real t531 = t446 * t149;
+  const Real t532 = t457 * t151;
+  const Real t533 = t531 + t532;
+  const Real t534 = t530 + t533;
+  const Real t535 = t526 * t105;
+  const Real t536 = t420 * par.k2;
+  const Real t537 = t148 - t536;
+  const Real t538 = t537 + nu[1];
+  const Real t539 = par.k2 * t538;
+  const Real t540 = c_r_p_1_ * t462;
+  const Real t541 = s_r_p_1_ * t382;
+  const Real t542 = t540 - t541;
+  const Real t543 = t542 * par.k1;
+  const Real t544 = t539 - t543;
+  const Real t545 = t544 * t498;
+  const Real t546 = t535 + t545;
+  const Real t547 = t542 * par.k2;
+  const Real t548 = par.k1 * t538;
+  const Real t549 = t547 + t548;
+  const Real t550 = t487 * t94;
+  const Real t551 = t495 * t84;
+  const Real t552 = t550 - t551;
+  const Real t553 = par.r_F * t552;
+  const Real t554 = t549 * t553;
+  const Real t555 = t528 * t96;
+  const Real t556 = t554 - t555;
+  const Real t557 = t546 + t556;
+  const Real t558 = t534 - t557;
+  const Real t559 = t522 + t558;
+  const Real t560 = c_r_p_1_ * t443;
+  const Real t561 = t559 - t560;
+  const Real t562 = t519 * t3;
+  const Real t563 = t561 - t562;
+  const Real t564 = t170 * t563;
+  const Real t565 = t521 - t564;
+  const Real t566 = t165 * t563;
+  const Real t567 = t519 * t52;
+  const Real t568 = t1 * t443;
+  const Real t569 = par.k2 * t459;
+  const Real t570 = par.r_F * t465;
+  const Real t571 = t569 + t570;
+  const Real t572 = t96 * t465;
+  const Real t573 = t509 * t553;
+  const Real t574 = t572 + t573;
+  const Real t575 = t571 + t574;
+  const Real t576 = t515 * t25;
+  const Real t577 = t575 + t576;
+  const Real t578 = t568 + t577;
+  const Real t579 = t567 + t578;
+  const Real t580 = sum_error(t566, t579);
+  const Real t581 = product_error(t563, t165);
+  const Real t582 = t580 + t581;
+  const Real t583 = product_error(t565, t237);
+  const Real t584 = t269 * t565;
+  const Real t585 = t583 + t584;
+  const Real t586 = t582 + t585;
+  const Real t587 = t565 * t237;
+  const Real t588 = t566 + t579;
   const Real t589 = t587 + t588;
-  const Real t590 = t589 + t461;
-  const Real t591 = t336 * nu_dot[2];
-  const Real t592 = nu_dot[0] * t344;
-  const Real t593 = nu_dot[1] * t340;
-  const Real t594 = t592 + t593;
-  const Real t595 = t591 - t594;
-  const Real t596 = t590 + t595;
-  const Real t597 = t586 + t596;
-  const Real t598 = t597 - t165;
-  const Real t599 = t313 * nu[0];
-  const Real t600 = nu_dot[1] * t278;
-  const Real t601 = nu_dot[1] * t268;
-  const Real t602 = t600 + t601;
-  const Real t603 = nu_dot[0] * t246;
-  const Real t604 = nu_dot[0] * t254;
-  const Real t605 = t603 + t604;
-  const Real t606 = t602 + t605;
-  const Real t607 = nu_dot[2] * t301;
-  const Real t608 = nu_dot[2] * t291;
-  const Real t609 = t607 + t608;
-  const Real t610 = t606 + t609;
-  const Real t611 = t524 - t610;
-  const Real t612 = t534 + t611;
-  const Real t613 = t599 + t612;
-  const Real t614 = t613 * par.k13;
-  const Real t615 = t598 - t614;
-  const Real t616 = t615 * par.k1;
-  const Real t617 = t583 - t616;
-  const Real t618 = t617 * s_r_p_1_;
-  const Real t619 = t562 - t618;
-  const Real t620 = t544 * par.k2;
-  const Real t621 = t232 + t620;
-  const Real t622 = nu_dot[1] + t621;
-  const Real t623 = t414 * t481;
-  const Real t624 = t622 - t623;
-  const Real t625 = t624 * par.k12;
-  const Real t626 = s_r_p_1_ * t612;
-  const Real t627 = par.k1 * t544;
-  const Real t628 = t231 - t627;
-  const Real t629 = c_r_p_1_ * t628;
-  const Real t630 = t626 + t629;
-  const Real t631 = t481 * nu[1];
-  const Real t632 = t630 - t631;
-  const Real t633 = t418 * t481;
-  const Real t634 = t632 + t633;
-  const Real t635 = t634 * par.k11;
-  const Real t636 = t625 + t635;
-  const Real t637 = t619 + t636;
-  const Real t638 = t637 * par.m_F;
-  const Real t639 = t624 * par.k10;
-  const Real t640 = t634 * par.k8;
-  const Real t641 = t639 - t640;
-  const Real t642 = t619 * par.m_H;
+  const Real t590 = t586 + t589;
+  const Real t591 = t240 * t590;
+  const Real t592 = t286 * t590;
+  const Real t593 = t591 + t592;
+  const Real t594 = t105 * t593;
+  const Real t595 = t565 - t594;
+  const Real t596 = t220 * t595;
+  const Real t597 = t596 * t60;
+  const Real t598 = product_error(t595, t220);
+  const Real t599 = -t594;
+  const Real t600 = sum_error(t565, t599);
+  const Real t601 = t600 * t220;
+  const Real t602 = t595 * t257;
+  const Real t603 = t601 + t602;
+  const Real t604 = t598 + t603;
+  const Real t605 = t604 * t60;
+  const Real t606 = t597 + t605;
+  const Real t607 = t606 + t519;
+  const Real t608 = t414 + t607;
+  const Real t609 = t399 + t608;
+  const Real t610 = t609 - t144;
+  const Real t611 = t610 * par.m_B;
+  const Real t612 = t420 * nu[0];
+  const Real t613 = nu_dot[2] * t353;
+  const Real t614 = nu_dot[2] * t363;
+  const Real t615 = t613 + t614;
+  const Real t616 = nu_dot[0] * t329;
+  const Real t617 = t320 * nu_dot[0];
+  const Real t618 = t616 + t617;
+  const Real t619 = t299 * nu_dot[1];
+  const Real t620 = nu_dot[1] * t246;
+  const Real t621 = t619 + t620;
+  const Real t622 = t618 + t621;
+  const Real t623 = t615 + t622;
+  const Real t624 = t596 - t623;
+  const Real t625 = t604 + t624;
+  const Real t626 = t612 + t625;
+  const Real t627 = t626 * par.k16;
+  const Real t628 = t382 * t382;
+  const Real t629 = t156 + t628;
+  const Real t630 = t629 * par.k15;
+  const Real t631 = t627 + t630;
+  const Real t632 = t611 - t631;
+  const Real t633 = t420 * t370;
+  const Real t634 = t382 * t454;
+  const Real t635 = t633 - t634;
+  const Real t636 = nu_dot[2] * t395;
+  const Real t637 = nu_dot[1] * t389;
+  const Real t638 = t385 * nu_dot[0];
+  const Real t639 = t637 + t638;
+  const Real t640 = t636 + t639;
+  const Real t641 = t604 * t21;
+  const Real t642 = t21 * t596;
   const Real t643 = t641 + t642;
-  const Real t644 = t638 + t643;
-  const Real t645 = t644 * c_r_p_1_;
-  const Real t646 = par.k1 * t582;
-  const Real t647 = t615 * par.k2;
-  const Real t648 = t646 + t647;
-  const Real t649 = t481 * t481;
-  const Real t650 = t414 * t414;
-  const Real t651 = t649 + t650;
-  const Real t652 = t651 * par.k11;
-  const Real t653 = t418 * t414;
-  const Real t654 = c_r_p_1_ * t612;
-  const Real t655 = s_r_p_1_ * t628;
-  const Real t656 = t654 - t655;
-  const Real t657 = t414 * nu[1];
-  const Real t658 = t656 - t657;
-  const Real t659 = t653 - t658;
-  const Real t660 = par.k12 * t659;
-  const Real t661 = t652 + t660;
-  const Real t662 = t648 + t661;
-  const Real t663 = par.k2 * t662;
-  const Real t664 = t617 * c_r_p_1_;
-  const Real t665 = t561 * s_r_p_1_;
-  const Real t666 = t664 + t665;
-  const Real t667 = t658 + t653;
-  const Real t668 = t667 * par.k11;
-  const Real t669 = t418 * t418;
-  const Real t670 = t649 + t669;
-  const Real t671 = t670 * par.k12;
-  const Real t672 = t668 + t671;
-  const Real t673 = t666 - t672;
-  const Real t674 = t673 * par.k1;
-  const Real t675 = t663 - t674;
-  const Real t676 = t675 * c_r_p_2_;
-  const Real t677 = par.k1 * t662;
-  const Real t678 = t673 * par.k2;
-  const Real t679 = t677 + t678;
-  const Real t680 = t679 * s_r_p_2_;
-  const Real t681 = t676 + t680;
-  const Real t682 = par.m_F * t681;
-  const Real t683 = t682 * s_r_p_2_;
-  const Real t684 = t679 * c_r_p_2_;
-  const Real t685 = t675 * s_r_p_2_;
-  const Real t686 = t684 - t685;
-  const Real t687 = par.m_F * t686;
-  const Real t688 = c_r_p_2_ * t687;
-  const Real t689 = t683 + t688;
-  const Real t690 = par.k2 * t689;
-  const Real t691 = c_r_p_2_ * t682;
-  const Real t692 = s_r_p_2_ * t687;
-  const Real t693 = t691 - t692;
-  const Real t694 = t693 * par.k1;
-  const Real t695 = t690 - t694;
-  const Real t696 = par.m_H * t666;
-  const Real t697 = par.k8 * t667;
-  const Real t698 = t670 * par.k10;
-  const Real t699 = t697 - t698;
-  const Real t700 = t696 + t699;
-  const Real t701 = t695 + t700;
-  const Real t702 = s_r_p_1_ * t701;
-  const Real t703 = t645 + t702;
-  const Real t704 = t560 * par.m_B;
-  const Real t705 = par.k16 * t546;
-  const Real t706 = t358 * t313;
-  const Real t707 = t706 - nu_dot[0];
-  const Real t708 = t707 * par.k15;
-  const Real t709 = t705 + t708;
-  const Real t710 = t704 + t709;
-  const Real t711 = t703 + t710;
-  const Real t712 = t707 * par.r_R;
-  const Real t713 = t560 - t712;
-  const Real t714 = par.m_R * t713;
-  const Real t715 = t711 + t714;
-  const Real t716 = nu_dot[2] + t612;
-  const Real t717 = par.I_Ryy * t716;
-  const Real t718 = t612 - t599;
-  const Real t719 = t718 * par.r_R;
-  const Real t720 = t577 - t719;
-  const Real t721 = t720 * c_r_p_0_;
-  const Real t722 = t177 + t579;
-  const Real t723 = t722 * par.r_R;
-  const Real t724 = t723 + t598;
-  const Real t725 = t724 * s_r_p_0_;
-  const Real t726 = t721 - t725;
-  const Real t727 = par.m_R * t726;
-  const Real t728 = t727 * c_r_p_0_;
-  const Real t729 = t724 * c_r_p_0_;
-  const Real t730 = t720 * s_r_p_0_;
-  const Real t731 = t729 + t730;
-  const Real t732 = t731 * par.m_R;
-  const Real t733 = t732 * s_r_p_0_;
-  const Real t734 = t728 + t733;
-  const Real t735 = t734 * par.r_R;
-  const Real t736 = t717 - t735;
-  const Real t737 = par.k11 * t638;
-  const Real t738 = t632 * par.k2;
-  const Real t739 = par.k1 * t622;
-  const Real t740 = t738 + t739;
-  const Real t741 = t740 * s_r_p_2_;
-  const Real t742 = par.k2 * t622;
-  const Real t743 = par.k1 * t632;
-  const Real t744 = t742 - t743;
-  const Real t745 = c_r_p_2_ * t744;
-  const Real t746 = t741 + t745;
-  const Real t747 = c_r_p_2_ * t420;
-  const Real t748 = t426 * s_r_p_2_;
+  const Real t644 = t515 - t643;
+  const Real t645 = t640 + t644;
+  const Real t646 = t635 + t645;
+  const Real t647 = t646 - t145;
+  const Real t648 = t420 * t420;
+  const Real t649 = t628 + t648;
+  const Real t650 = par.k13 * t649;
+  const Real t651 = t647 - t650;
+  const Real t652 = par.k2 * t651;
+  const Real t653 = t626 * par.k13;
+  const Real t654 = t610 - t653;
+  const Real t655 = par.k1 * t654;
+  const Real t656 = t652 - t655;
+  const Real t657 = c_r_p_1_ * t656;
+  const Real t658 = t596 * t208;
+  const Real t659 = t563 - t658;
+  const Real t660 = product_error(t208, t596);
+  const Real t661 = t604 * t208;
+  const Real t662 = t660 + t661;
+  const Real t663 = t659 - t662;
+  const Real t664 = t663 * t164;
+  const Real t665 = t664 * t60;
+  const Real t666 = t443 - t665;
+  const Real t667 = nu_dot[2] * t368;
+  const Real t668 = nu_dot[0] * t336;
+  const Real t669 = nu_dot[1] * t304;
+  const Real t670 = t668 + t669;
+  const Real t671 = t667 + t670;
+  const Real t672 = t666 + t671;
+  const Real t673 = t420 * t397;
+  const Real t674 = t454 * nu[0];
+  const Real t675 = t673 + t674;
+  const Real t676 = t672 - t675;
+  const Real t677 = t676 - t143;
+  const Real t678 = nu_dot[2] * t367;
+  const Real t679 = nu_dot[1] * t303;
+  const Real t680 = t334 * nu_dot[0];
+  const Real t681 = t679 + t680;
+  const Real t682 = t678 + t681;
+  const Real t683 = t664 - t682;
+  const Real t684 = t382 * nu[0];
+  const Real t685 = t683 - t684;
+  const Real t686 = t685 * par.k13;
+  const Real t687 = t677 + t686;
+  const Real t688 = s_r_p_1_ * t687;
+  const Real t689 = t657 + t688;
+  const Real t690 = t625 * c_r_p_1_;
+  const Real t691 = t683 * par.k1;
+  const Real t692 = t203 - t691;
+  const Real t693 = s_r_p_1_ * t692;
+  const Real t694 = t690 - t693;
+  const Real t695 = t542 * nu[1];
+  const Real t696 = t694 - t695;
+  const Real t697 = t542 * t538;
+  const Real t698 = t696 + t697;
+  const Real t699 = t698 * par.k11;
+  const Real t700 = t501 * t501;
+  const Real t701 = t538 * t538;
+  const Real t702 = t700 + t701;
+  const Real t703 = par.k12 * t702;
+  const Real t704 = t699 + t703;
+  const Real t705 = t689 - t704;
+  const Real t706 = par.k2 * t705;
+  const Real t707 = t697 - t696;
+  const Real t708 = par.k12 * t707;
+  const Real t709 = t542 * t542;
+  const Real t710 = t700 + t709;
+  const Real t711 = par.k11 * t710;
+  const Real t712 = t708 + t711;
+  const Real t713 = par.k2 * t654;
+  const Real t714 = par.k1 * t651;
+  const Real t715 = t713 + t714;
+  const Real t716 = t712 + t715;
+  const Real t717 = par.k1 * t716;
+  const Real t718 = t706 + t717;
+  const Real t719 = t718 * s_r_p_2_;
+  const Real t720 = t716 * par.k2;
+  const Real t721 = par.k1 * t705;
+  const Real t722 = t720 - t721;
+  const Real t723 = c_r_p_2_ * t722;
+  const Real t724 = t719 + t723;
+  const Real t725 = par.m_F * t724;
+  const Real t726 = t725 * s_r_p_2_;
+  const Real t727 = c_r_p_2_ * t718;
+  const Real t728 = s_r_p_2_ * t722;
+  const Real t729 = t727 - t728;
+  const Real t730 = t729 * par.m_F;
+  const Real t731 = t730 * c_r_p_2_;
+  const Real t732 = t726 + t731;
+  const Real t733 = t732 * par.k1;
+  const Real t734 = t725 * c_r_p_2_;
+  const Real t735 = t730 * s_r_p_2_;
+  const Real t736 = t734 - t735;
+  const Real t737 = t736 * par.k2;
+  const Real t738 = t733 + t737;
+  const Real t739 = par.k10 * t707;
+  const Real t740 = par.k8 * t710;
+  const Real t741 = t739 - t740;
+  const Real t742 = par.m_H * t715;
+  const Real t743 = t741 + t742;
+  const Real t744 = t738 + t743;
+  const Real t745 = par.k2 * t744;
+  const Real t746 = t689 * par.m_H;
+  const Real t747 = t698 * par.k8;
+  const Real t748 = par.k10 * t702;
   const Real t749 = t747 - t748;
-  const Real t750 = t478 * t749;
-  const Real t751 = t746 - t750;
-  const Real t752 = t751 * par.I_Fxx;
-  const Real t753 = t749 * t482;
-  const Real t754 = par.k37 * t753;
-  const Real t755 = t752 - t754;
-  const Real t756 = t755 * s_r_p_2_;
-  const Real t757 = c_r_p_2_ * t426;
-  const Real t758 = t420 * s_r_p_2_;
-  const Real t759 = t757 + t758;
-  const Real t760 = t478 * t759;
-  const Real t761 = c_r_p_2_ * t740;
-  const Real t762 = t744 * s_r_p_2_;
-  const Real t763 = t761 - t762;
-  const Real t764 = t760 + t763;
-  const Real t765 = t764 * par.I_Fxx;
-  const Real t766 = t482 * t759;
-  const Real t767 = par.k36 * t766;
-  const Real t768 = t765 - t767;
-  const Real t769 = c_r_p_2_ * t768;
-  const Real t770 = t756 + t769;
-  const Real t771 = t770 * par.k2;
-  const Real t772 = c_r_p_2_ * t755;
-  const Real t773 = t768 * s_r_p_2_;
-  const Real t774 = t772 - t773;
-  const Real t775 = par.k1 * t774;
-  const Real t776 = t771 - t775;
-  const Real t777 = t737 + t776;
-  const Real t778 = par.k5 * t624;
-  const Real t779 = t632 * par.k17;
-  const Real t780 = par.k31 * t633;
-  const Real t781 = t779 - t780;
-  const Real t782 = t778 + t781;
-  const Real t783 = t619 * par.k8;
-  const Real t784 = t782 - t783;
-  const Real t785 = t777 + t784;
-  const Real t786 = t785 * s_r_p_1_;
-  const Real t787 = nu_dot[1] * t265;
-  const Real t788 = nu_dot[0] * t243;
-  const Real t789 = t787 + t788;
-  const Real t790 = nu_dot[2] * t288;
-  const Real t791 = t789 + t790;
-  const Real t792 = t791 + t521;
-  const Real t793 = t658 - t792;
-  const Real t794 = par.I_Fyy * t793;
-  const Real t795 = t693 * par.k2;
-  const Real t796 = par.k1 * t689;
-  const Real t797 = t795 + t796;
-  const Real t798 = par.k12 * t797;
-  const Real t799 = t695 * par.k11;
-  const Real t800 = t798 + t799;
-  const Real t801 = t794 - t800;
-  const Real t802 = t653 * par.k32;
-  const Real t803 = t658 * par.k7;
-  const Real t804 = t802 + t803;
-  const Real t805 = t669 - t650;
-  const Real t806 = par.k5 * t805;
-  const Real t807 = t804 + t806;
-  const Real t808 = par.k8 * t666;
-  const Real t809 = t648 * par.k10;
-  const Real t810 = t808 - t809;
-  const Real t811 = t807 + t810;
-  const Real t812 = t801 + t811;
-  const Real t813 = c_r_p_1_ * t812;
-  const Real t814 = t786 + t813;
-  const Real t815 = par.k10 * t659;
-  const Real t816 = t651 * par.k8;
+  const Real t750 = t746 + t749;
+  const Real t751 = t732 * par.k2;
+  const Real t752 = par.k1 * t736;
+  const Real t753 = t751 - t752;
+  const Real t754 = t750 + t753;
+  const Real t755 = c_r_p_1_ * t754;
+  const Real t756 = c_r_p_1_ * t687;
+  const Real t757 = s_r_p_1_ * t656;
+  const Real t758 = t756 - t757;
+  const Real t759 = t501 * t538;
+  const Real t760 = s_r_p_1_ * t625;
+  const Real t761 = c_r_p_1_ * t692;
+  const Real t762 = t760 + t761;
+  const Real t763 = t501 * nu[1];
+  const Real t764 = t762 - t763;
+  const Real t765 = t759 + t764;
+  const Real t766 = t765 * par.k11;
+  const Real t767 = t683 * par.k2;
+  const Real t768 = t204 + t767;
+  const Real t769 = nu_dot[1] + t768;
+  const Real t770 = t501 * t542;
+  const Real t771 = t769 - t770;
+  const Real t772 = t771 * par.k12;
+  const Real t773 = t766 + t772;
+  const Real t774 = t758 + t773;
+  const Real t775 = t774 * par.m_F;
+  const Real t776 = t771 * par.k10;
+  const Real t777 = par.k8 * t765;
+  const Real t778 = t776 - t777;
+  const Real t779 = t758 * par.m_H;
+  const Real t780 = t778 + t779;
+  const Real t781 = t775 + t780;
+  const Real t782 = s_r_p_1_ * t781;
+  const Real t783 = t755 - t782;
+  const Real t784 = par.k1 * t783;
+  const Real t785 = t745 - t784;
+  const Real t786 = t632 + t785;
+  const Real t787 = t625 - t612;
+  const Real t788 = t787 * par.r_R;
+  const Real t789 = t647 - t788;
+  const Real t790 = t789 * s_r_p_0_;
+  const Real t791 = t629 * par.r_R;
+  const Real t792 = t791 + t610;
+  const Real t793 = t792 * c_r_p_0_;
+  const Real t794 = t790 + t793;
+  const Real t795 = par.m_R * t794;
+  const Real t796 = t795 * c_r_p_0_;
+  const Real t797 = t789 * c_r_p_0_;
+  const Real t798 = t792 * s_r_p_0_;
+  const Real t799 = t797 - t798;
+  const Real t800 = t799 * par.m_R;
+  const Real t801 = s_r_p_0_ * t800;
+  const Real t802 = t796 - t801;
+  const Real t803 = t786 + t802;
+  const Real t804 = nu_dot[2] + t625;
+  const Real t805 = par.I_Ryy * t804;
+  const Real t806 = t795 * s_r_p_0_;
+  const Real t807 = c_r_p_0_ * t800;
+  const Real t808 = t806 + t807;
+  const Real t809 = t808 * par.r_R;
+  const Real t810 = t805 - t809;
+  const Real t811 = par.k2 * t764;
+  const Real t812 = par.k1 * t769;
+  const Real t813 = t811 + t812;
+  const Real t814 = t813 * s_r_p_2_;
+  const Real t815 = par.k2 * t769;
+  const Real t816 = par.k1 * t764;
   const Real t817 = t815 - t816;
-  const Real t818 = t648 * par.m_H;
-  const Real t819 = t817 + t818;
-  const Real t820 = t819 + t797;
-  const Real t821 = par.k2 * t820;
-  const Real t822 = c_r_p_1_ * t701;
-  const Real t823 = s_r_p_1_ * t644;
-  const Real t824 = t822 - t823;
-  const Real t825 = par.k1 * t824;
-  const Real t826 = t821 - t825;
-  const Real t827 = t826 * par.k13;
-  const Real t828 = t814 - t827;
-  const Real t829 = par.k4 * t612;
-  const Real t830 = t599 * par.k28;
-  const Real t831 = t829 - t830;
-  const Real t832 = t578 - t177;
-  const Real t833 = par.k3 * t832;
-  const Real t834 = t831 + t833;
-  const Real t835 = par.k15 * t577;
-  const Real t836 = t598 * par.k16;
-  const Real t837 = t835 - t836;
-  const Real t838 = t834 + t837;
-  const Real t839 = t828 + t838;
-  const Real t840 = t736 + t839;
-  const Real t841 = t824 * par.k2;
-  const Real t842 = par.k1 * t820;
-  const Real t843 = t841 + t842;
-  const Real t844 = t577 * par.m_B;
-  const Real t845 = t718 * par.k15;
-  const Real t846 = t580 * par.k16;
+  const Real t818 = t817 * c_r_p_2_;
+  const Real t819 = t814 + t818;
+  const Real t820 = c_r_p_2_ * t549;
+  const Real t821 = t544 * s_r_p_2_;
+  const Real t822 = t820 - t821;
+  const Real t823 = t822 * t508;
+  const Real t824 = t819 - t823;
+  const Real t825 = t824 * par.I_Fxx;
+  const Real t826 = t822 * t509;
+  const Real t827 = par.k40 * t826;
+  const Real t828 = t825 - t827;
+  const Real t829 = t828 * s_r_p_2_;
+  const Real t830 = t813 * c_r_p_2_;
+  const Real t831 = t817 * s_r_p_2_;
+  const Real t832 = t830 - t831;
+  const Real t833 = t544 * c_r_p_2_;
+  const Real t834 = t549 * s_r_p_2_;
+  const Real t835 = t833 + t834;
+  const Real t836 = t835 * t508;
+  const Real t837 = t832 + t836;
+  const Real t838 = par.I_Fxx * t837;
+  const Real t839 = t835 * t509;
+  const Real t840 = t839 * par.k39;
+  const Real t841 = t838 - t840;
+  const Real t842 = c_r_p_2_ * t841;
+  const Real t843 = t829 + t842;
+  const Real t844 = par.k2 * t843;
+  const Real t845 = t828 * c_r_p_2_;
+  const Real t846 = t841 * s_r_p_2_;
   const Real t847 = t845 - t846;
-  const Real t848 = t844 + t847;
-  const Real t849 = t843 + t848;
-  const Real t850 = t734 + t849;
-  const Real t851 = t58 * t850;
-  const Real t852 = t840 - t851;
-  const Real t853 = t598 * par.m_B;
-  const Real t854 = t722 * par.k15;
-  const Real t855 = t613 * par.k16;
-  const Real t856 = t854 + t855;
-  const Real t857 = t853 - t856;
-  const Real t858 = t826 + t857;
-  const Real t859 = t732 * c_r_p_0_;
-  const Real t860 = t727 * s_r_p_0_;
-  const Real t861 = t859 - t860;
-  const Real t862 = t858 + t861;
-  const Real t863 = t862 * t102;
-  const Real t864 = t852 + t863;
-  const Real t865 = t313 * s_r_p_0_;
-  const Real t866 = t175 + t865;
-  const Real t867 = t866 * nu[2];
-  const Real t868 = t544 * c_r_p_0_;
-  const Real t869 = t868 + t230;
-  const Real t870 = t867 + t869;
-  const Real t871 = t870 * par.I_Rxx;
-  const Real t872 = t866 * t436;
-  const Real t873 = par.k29 * t872;
-  const Real t874 = t871 + t873;
-  const Real t875 = t874 * c_r_p_0_;
-  const Real t876 = t544 * s_r_p_0_;
-  const Real t877 = t229 - t876;
-  const Real t878 = t313 * c_r_p_0_;
-  const Real t879 = t176 - t878;
-  const Real t880 = t879 * nu[2];
-  const Real t881 = t877 - t880;
-  const Real t882 = par.I_Rxx * t881;
-  const Real t883 = t436 * t879;
-  const Real t884 = t883 * par.k30;
-  const Real t885 = t882 + t884;
-  const Real t886 = t885 * s_r_p_0_;
-  const Real t887 = t875 - t886;
-  const Real t888 = par.k13 * t703;
-  const Real t889 = t619 * par.k10;
-  const Real t890 = t634 * par.k5;
-  const Real t891 = par.k6 * t622;
-  const Real t892 = t623 * par.k33;
-  const Real t893 = t891 - t892;
-  const Real t894 = t890 + t893;
-  const Real t895 = t889 + t894;
-  const Real t896 = par.k12 * t638;
-  const Real t897 = t770 * par.k1;
-  const Real t898 = t774 * par.k2;
-  const Real t899 = t897 + t898;
-  const Real t900 = t896 + t899;
-  const Real t901 = t895 + t900;
-  const Real t902 = par.k2 * t901;
-  const Real t903 = t785 * c_r_p_1_;
-  const Real t904 = s_r_p_1_ * t812;
+  const Real t848 = par.k1 * t847;
+  const Real t849 = t844 - t848;
+  const Real t850 = t775 * par.k11;
+  const Real t851 = t849 + t850;
+  const Real t852 = par.k5 * t771;
+  const Real t853 = t764 * par.k17;
+  const Real t854 = t759 * par.k34;
+  const Real t855 = t853 - t854;
+  const Real t856 = t852 + t855;
+  const Real t857 = t758 * par.k8;
+  const Real t858 = t856 - t857;
+  const Real t859 = t851 + t858;
+  const Real t860 = s_r_p_1_ * t859;
+  const Real t861 = t696 * par.k7;
+  const Real t862 = t697 * par.k35;
+  const Real t863 = t861 + t862;
+  const Real t864 = t701 - t709;
+  const Real t865 = par.k5 * t864;
+  const Real t866 = t863 + t865;
+  const Real t867 = t689 * par.k8;
+  const Real t868 = par.k10 * t715;
+  const Real t869 = t867 - t868;
+  const Real t870 = t866 + t869;
+  const Real t871 = t290 * nu_dot[1];
+  const Real t872 = t243 * nu_dot[1];
+  const Real t873 = t871 + t872;
+  const Real t874 = t317 * nu_dot[0];
+  const Real t875 = t873 + t874;
+  const Real t876 = nu_dot[2] * t350;
+  const Real t877 = t875 + t876;
+  const Real t878 = t593 + t877;
+  const Real t879 = t696 - t878;
+  const Real t880 = par.I_Fyy * t879;
+  const Real t881 = t738 * par.k12;
+  const Real t882 = par.k11 * t753;
+  const Real t883 = t881 + t882;
+  const Real t884 = t880 - t883;
+  const Real t885 = t870 + t884;
+  const Real t886 = t885 * c_r_p_1_;
+  const Real t887 = t860 + t886;
+  const Real t888 = par.k13 * t785;
+  const Real t889 = t887 - t888;
+  const Real t890 = par.k15 * t647;
+  const Real t891 = t610 * par.k16;
+  const Real t892 = t890 - t891;
+  const Real t893 = par.k4 * t625;
+  const Real t894 = t612 * par.k31;
+  const Real t895 = t893 - t894;
+  const Real t896 = t648 - t156;
+  const Real t897 = par.k3 * t896;
+  const Real t898 = t895 + t897;
+  const Real t899 = t892 + t898;
+  const Real t900 = t889 + t899;
+  const Real t901 = t810 + t900;
+  const Real t902 = t647 * par.m_B;
+  const Real t903 = t787 * par.k15;
+  const Real t904 = par.k16 * t649;
   const Real t905 = t903 - t904;
-  const Real t906 = par.k1 * t905;
-  const Real t907 = t902 - t906;
-  const Real t908 = t888 + t907;
-  const Real t909 = t560 * par.k16;
-  const Real t910 = t544 * par.k14;
-  const Real t911 = t545 * par.k26;
-  const Real t912 = t910 - t911;
-  const Real t913 = par.k3 * t707;
-  const Real t914 = t912 - t913;
-  const Real t915 = t909 + t914;
-  const Real t916 = t908 + t915;
-  const Real t917 = t887 + t916;
-  const Real t918 = t715 * t102;
-  const Real t919 = t917 - t918;
-  const Real t920 = t110 * t919;
-  const Real t921 = t920 * t119;
-  const Real t922 = t864 - t921;
-  const Real t923 = t191 * t922;
-  const Real t924 = -t921;
-  const Real t925 = sum_error(t864, t924);
-  const Real t926 = product_error(t119, t920);
-  const Real t927 = t925 - t926;
-  const Real t928 = t927 * t131;
-  const Real t929 = t923 + t928;
-  const Real t930 = product_error(t922, t131);
-  const Real t931 = t929 + t930;
-  const Real t932 = t25 * t931;
-  const Real t933 = t131 * t922;
-  const Real t934 = t25 * t933;
-  const Real t935 = t932 + t934;
-  const Real t936 = t935 + t794;
-  const Real t937 = t936 * t163;
-  const Real t938 = t241 * t936;
-  const Real t939 = t937 + t938;
-  const Real t940 = product_error(t939, t132);
-  const Real t941 = t199 * t939;
-  const Real t942 = t940 + t941;
-  const Real t943 = t931 - t942;
-  const Real t944 = t132 * t939;
-  const Real t945 = -t944;
-  const Real t946 = sum_error(t933, t945);
-  const Real t947 = t943 + t946;
-  const Real t948 = t947 * t45;
-  const Real t949 = t933 - t944;
-  const Real t950 = t949 * t45;
-  const Real t951 = t948 + t950;
-  const Real t952 = t715 + t951;
-  const Real t953 = t111 * t949;
-  const Real t954 = t920 - t953;
-  const Real t955 = t939 * t122;
-  const Real t956 = t954 - t955;
-  const Real t957 = -t953;
-  const Real t958 = sum_error(t920, t957);
-  const Real t959 = product_error(t111, t949);
-  const Real t960 = t947 * t111;
-  const Real t961 = t959 + t960;
-  const Real t962 = t958 - t961;
-  const Real t963 = product_error(t939, t122);
-  const Real t964 = t962 - t963;
-  const Real t965 = t956 + t964;
-  const Real t966 = t965 * c_r_p_1_;
-  const Real t967 = t952 - t966;
-  const Real t968 = t59 * t939;
-  const Real t969 = t967 - t968;
-  const Real t970 = t59 * t965;
-  const Real t971 = t949 * t93;
-  const Real t972 = t947 * t93;
-  const Real t973 = t971 + t972;
-  const Real t974 = t850 - t973;
-  const Real t975 = t970 + t974;
-  const Real t976 = t939 * t90;
-  const Real t977 = t975 - t976;
-  const Real t978 = t31 * t949;
-  const Real t979 = t31 * t947;
+  const Real t906 = t902 + t905;
+  const Real t907 = par.k1 * t744;
+  const Real t908 = par.k2 * t783;
+  const Real t909 = t907 + t908;
+  const Real t910 = t906 + t909;
+  const Real t911 = t910 + t808;
+  const Real t912 = t21 * t911;
+  const Real t913 = t901 - t912;
+  const Real t914 = t803 * t60;
+  const Real t915 = t913 + t914;
+  const Real t916 = t420 * s_r_p_0_;
+  const Real t917 = t154 + t916;
+  const Real t918 = t917 * t514;
+  const Real t919 = t918 * par.k32;
+  const Real t920 = t683 * c_r_p_0_;
+  const Real t921 = t920 + t202;
+  const Real t922 = t917 * nu[2];
+  const Real t923 = t921 + t922;
+  const Real t924 = par.I_Rxx * t923;
+  const Real t925 = t919 + t924;
+  const Real t926 = t925 * c_r_p_0_;
+  const Real t927 = t420 * c_r_p_0_;
+  const Real t928 = t155 - t927;
+  const Real t929 = t514 * t928;
+  const Real t930 = t929 * par.k33;
+  const Real t931 = t683 * s_r_p_0_;
+  const Real t932 = t201 - t931;
+  const Real t933 = nu[2] * t928;
+  const Real t934 = t932 - t933;
+  const Real t935 = t934 * par.I_Rxx;
+  const Real t936 = t930 + t935;
+  const Real t937 = t936 * s_r_p_0_;
+  const Real t938 = t926 - t937;
+  const Real t939 = t683 * par.k14;
+  const Real t940 = t684 * par.k29;
+  const Real t941 = t939 - t940;
+  const Real t942 = t382 * t420;
+  const Real t943 = t942 - nu_dot[0];
+  const Real t944 = par.k3 * t943;
+  const Real t945 = t941 - t944;
+  const Real t946 = t677 * par.k16;
+  const Real t947 = t945 + t946;
+  const Real t948 = s_r_p_1_ * t754;
+  const Real t949 = c_r_p_1_ * t781;
+  const Real t950 = t948 + t949;
+  const Real t951 = par.k13 * t950;
+  const Real t952 = par.k2 * t847;
+  const Real t953 = par.k1 * t843;
+  const Real t954 = t952 + t953;
+  const Real t955 = t775 * par.k12;
+  const Real t956 = t954 + t955;
+  const Real t957 = par.k5 * t765;
+  const Real t958 = par.k6 * t769;
+  const Real t959 = par.k36 * t770;
+  const Real t960 = t958 - t959;
+  const Real t961 = t957 + t960;
+  const Real t962 = t758 * par.k10;
+  const Real t963 = t961 + t962;
+  const Real t964 = t956 + t963;
+  const Real t965 = par.k2 * t964;
+  const Real t966 = c_r_p_1_ * t859;
+  const Real t967 = s_r_p_1_ * t885;
+  const Real t968 = t966 - t967;
+  const Real t969 = t968 * par.k1;
+  const Real t970 = t965 - t969;
+  const Real t971 = t951 + t970;
+  const Real t972 = t947 + t971;
+  const Real t973 = t938 + t972;
+  const Real t974 = t943 * par.r_R;
+  const Real t975 = t677 - t974;
+  const Real t976 = par.m_R * t975;
+  const Real t977 = t677 * par.m_B;
+  const Real t978 = t685 * par.k16;
+  const Real t979 = t943 * par.k15;
   const Real t980 = t978 + t979;
-  const Real t981 = t862 - t980;
-  const Real t982 = t965 * t45;
-  const Real t983 = t981 - t982;
-  const Real t984 = t34 * t939;
-  const Real t985 = t983 - t984;
-  const Real t986 = t947 + t949;
+  const Real t981 = t977 + t980;
+  const Real t982 = t981 + t950;
+  const Real t983 = t976 + t982;
+  const Real t984 = t60 * t983;
+  const Real t985 = t973 - t984;
+  const Real t986 = t985 * t164;
+  const Real t987 = t208 * t986;
+  const Real t988 = t915 - t987;
+  const Real t989 = product_error(t988, t220);
+  const Real t990 = t988 * t257;
+  const Real t991 = -t987;
+  const Real t992 = sum_error(t915, t991);
+  const Real t993 = product_error(t208, t986);
+  const Real t994 = t992 - t993;
+  const Real t995 = t994 * t220;
+  const Real t996 = t990 + t995;
+  const Real t997 = t989 + t996;
+  const Real t998 = t988 * t220;
+  const Real t999 = t105 * t998;
+  const Real t1000 = t880 + t999;
+  const Real t1001 = t240 * t1000;
+  const Real t1002 = product_error(t1001, t237);
+  const Real t1003 = t269 * t1001;
+  const Real t1004 = product_error(t1000, t240);
+  const Real t1005 = t286 * t1000;
+  const Real t1006 = t105 * t997;
+  const Real t1007 = product_error(t105, t998);
+  const Real t1008 = t1006 + t1007;
+  const Real t1009 = sum_error(t999, t880);
+  const Real t1010 = t1008 + t1009;
+  const Real t1011 = t240 * t1010;
+  const Real t1012 = t1005 + t1011;
+  const Real t1013 = t1004 + t1012;
+  const Real t1014 = t237 * t1013;
+  const Real t1015 = t1003 + t1014;
+  const Real t1016 = t1002 + t1015;
+  const Real t1017 = t997 - t1016;
+  const Real t1018 = t237 * t1001;
+  const Real t1019 = -t1018;
+  const Real t1020 = sum_error(t998, t1019);
+  const Real t1021 = t1017 + t1020;
+  const Real t1022 = t55 * t1021;
+  const Real t1023 = t998 - t1018;
+  const Real t1024 = t55 * t1023;
+  const Real t1025 = t1022 + t1024;
+  const Real t1026 = t803 - t1025;
+  const Real t1027 = t170 * t1023;
+  const Real t1028 = t986 - t1027;
+  const Real t1029 = t165 * t1001;
+  const Real t1030 = t1028 - t1029;
+  const Real t1031 = -t1027;
+  const Real t1032 = sum_error(t986, t1031);
+  const Real t1033 = t170 * t1021;
+  const Real t1034 = product_error(t170, t1023);
+  const Real t1035 = t1033 + t1034;
+  const Real t1036 = t1032 - t1035;
+  const Real t1037 = product_error(t1001, t165);
+  const Real t1038 = t165 * t1013;
+  const Real t1039 = t1037 + t1038;
+  const Real t1040 = t1036 - t1039;
+  const Real t1041 = t1030 + t1040;
+  const Real t1042 = t3 * t1041;
+  const Real t1043 = t1026 - t1042;
+  const Real t1044 = t52 * t1013;
+  const Real t1045 = t52 * t1001;
+  const Real t1046 = t1044 + t1045;
+  const Real t1047 = t1043 - t1046;
+  const Real t1048 = t1023 + t1021;
+  const Real t1049 = t1 * t1041;
+  const Real t1050 = t1023 * t28;
+  const Real t1051 = t28 * t1021;
+  const Real t1052 = t1050 + t1051;
+  const Real t1053 = t911 - t1052;
+  const Real t1054 = t1049 + t1053;
+  const Real t1055 = t1001 * t25;
+  const Real t1056 = t1013 * t25;
+  const Real t1057 = t1055 + t1056;
+  const Real t1058 = t1054 - t1057;
+  const Real t1059 = t1023 * t3;
+  const Real t1060 = t1021 * t3;
+  const Real t1061 = t1059 + t1060;
+  const Real t1062 = t1061 + t983;
+  const Real t1063 = c_r_p_1_ * t1041;
+  const Real t1064 = t1062 - t1063;
+  const Real t1065 = t1 * t1001;
+  const Real t1066 = t1 * t1013;
+  const Real t1067 = t1065 + t1066;
+  const Real t1068 = t1064 - t1067;
+  const Real t1069 = t1013 + t1001;
 
-  lambda[0] = t977;
-  lambda[1] = t969;
-  lambda[2] = t985;
-  lambda[3] = t939;
-  lambda[4] = t965;
-  lambda[5] = t986;
+  lambda[0] = t1058;
+  lambda[1] = t1068;
+  lambda[2] = t1047;
+  lambda[3] = t1069;
+  lambda[4] = t1041;
+  lambda[5] = t1048;
 }
 
 /// Conditions on the position that the constraint rows keep: zero, or their value where the contact began.

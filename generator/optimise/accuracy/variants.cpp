@@ -40,7 +40,7 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
 
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
                      OptimiseFor mode, const MeasuredStates& at, std::size_t derived) {
-  constexpr double root_of_two = 1.4142135623730951, least_share = 0.35, most_spread = 30;
+  constexpr double root_of_two = 1.4142135623730951, least_share = 0.35, most_spread = 60;
   constexpr std::size_t steps = 4;     // over which a bound falls to a quarter,
   constexpr double improvement = 1.5;  // and the error by this much, or the inputs' own rounding is reached
   measure(tape, candidates, at);
