@@ -27,8 +27,8 @@ inline constexpr int estimated_states = 2048, hard_states = 32;
 /// So many where those leave open whether a program is good enough.
 inline constexpr int many_estimated_states = 8192;
 
-/// Balanced: ulps that the worst of the measured states may show without further question. Generated code is
-/// to stay below 50 ulps at 1e5 states; the worst of so many is seldom more than three times the worst of 32.
+/// Balanced: ulps that the worst of the measured states may show where nothing is estimated. The worst of 1e5
+/// states is seldom more than three times the worst of 32.
 inline constexpr double tolerated_ulps = 16;
 /// What is to be expected at most at the worst of 1e5 states, as verify has it.
 inline constexpr double allowed_ulps = 50;
