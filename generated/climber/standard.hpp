@@ -19,7 +19,7 @@
 //   multipliers                49 add, 79 mul, 3 sin, 3 cos
 //   torque_driven_kinematics   none
 //   torque_driven_velocities   none
-//   torque_driven_dynamics     129 add, 110 mul, 4 div, 3 neg, 3 sin, 3 cos
+//   torque_driven_dynamics     200 add, 140 mul, 4 div, 3 neg, 3 sin, 3 cos
 //   torque_driven_multipliers  47 add, 79 mul, 3 sin, 3 cos
 //   position_conditions        4 add, 2 mul, 3 neg, 1 sin, 1 cos
 //   energies                   41 add, 81 mul, 3 sin, 3 cos
@@ -1421,8 +1421,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: projected recursion, compensated beyond 5.7 ulps
-/// operations: 129 add, 110 mul, 4 div, 3 neg, 3 sin, 3 cos
+/// route: all blocks, (66)-(68), compensated beyond 5.7 ulps
+/// operations: 200 add, 140 mul, 4 div, 3 neg, 3 sin, 3 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  g             (3) m, m, rad: x, y, theta of the reference body in the world
 /// @param[in]  r_p           (1) rad or m: e1
@@ -1490,196 +1490,217 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t25 = par.m_t * t23;
 
   // bob: joint force
-  const Real t26 = t25 * t2;
-  const Real t27 = t3 * t24;
-  const Real t28 = t26 + t27;
-  const Real t29 = t17 * t28;
-  const Real t30 = t3 * t25;
-  const Real t31 = t24 * t2;
-  const Real t32 = t30 - t31;
-  const Real t33 = t32 * r_p[0];
-  const Real t34 = t29 - t33;
-  const Real t35 = t34 + par.J_t;
-  const Real t36 = t35 + t13;
+  const Real t26 = t24 * t2;
+  const Real t27 = t3 * t25;
+  const Real t28 = t25 * t2;
+  const Real t29 = t3 * t24;
+  const Real t30 = t28 + t29;
+  const Real t31 = t17 * t30;
 
   // bob: acceleration
-  const Real t37 = t14 * t2;
-  const Real t38 = t3 + t37;
-  const Real t39 = t14 * t3;
-  const Real t40 = t2 - t39;
+  const Real t32 = t14 * t2;
+  const Real t33 = t3 + t32;
+  const Real t34 = t14 * t3;
+  const Real t35 = t2 - t34;
 
   // bob: wrench
-  const Real t41 = t38 * par.m_t;
-  const Real t42 = par.m_t * t40;
+  const Real t36 = t33 * par.m_t;
+  const Real t37 = par.m_t * t35;
 
   // bob: joint force
-  const Real t43 = t3 * t42;
-  const Real t44 = t41 * t2;
-  const Real t45 = t43 - t44;
-  const Real t46 = t14 * t45;
-  const Real t47 = -t46;
-  const Real t48 = t2 * t42;
-  const Real t49 = t3 * t41;
-  const Real t50 = t48 + t49;
-  const Real t51 = t50 - t46;
-  const Real t52 = par.k16 + t51;
-  const Real t53 = t52 + par.k7;
-  const Real t54 = t17 * t50;
-  const Real t55 = t45 * r_p[0];
-  const Real t56 = t54 - t55;
-  const Real t57 = t56 + par.k15;
-  const Real t58 = t57 + par.k11;
+  const Real t38 = t3 * t37;
+  const Real t39 = t2 * t37;
+  const Real t40 = t3 * t36;
+  const Real t41 = t39 + t40;
+  const Real t42 = t36 * t2;
 
   // body: acceleration
-  const Real t59 = constant<Real>(9.81L) * c_g_2_;
-  const Real t60 = constant<Real>(9.81L) * s_g_2_;
+  const Real t43 = constant<Real>(9.81L) * c_g_2_;
+  const Real t44 = constant<Real>(9.81L) * s_g_2_;
 
   // springs, dampers and generalised forces
-  const Real t61 = r_p[0] * constant<Real>(2.0L);
-  const Real t62 = t61 * par.k20;
+  const Real t45 = r_p[0] * constant<Real>(2.0L);
+  const Real t46 = t45 * par.k20;
 
   // tail: acceleration
-  const Real t63 = c_r_a_0_ * t60;
-  const Real t64 = t59 * s_r_a_0_;
-  const Real t65 = t63 + t64;
-  const Real t66 = s_r_a_0_ * t60;
-  const Real t67 = t59 * c_r_a_0_;
-  const Real t68 = t66 - t67;
+  const Real t47 = c_r_a_0_ * t44;
+  const Real t48 = t43 * s_r_a_0_;
+  const Real t49 = t47 + t48;
+  const Real t50 = s_r_a_0_ * t44;
+  const Real t51 = t43 * c_r_a_0_;
+  const Real t52 = t50 - t51;
 
   // tail: wrench
-  const Real t69 = t8 * t65;
-  const Real t70 = t4 * t68;
-  const Real t71 = t69 - t70;
-  const Real t72 = par.k8 * t65;
-  const Real t73 = t5 * t68;
-  const Real t74 = t72 - t73;
-
-  // reduced accelerations
-  const Real t75 = constant<Real>(1.0L) / t53;
+  const Real t53 = t8 * t49;
+  const Real t54 = t4 * t52;
+  const Real t55 = t53 - t54;
+  const Real t56 = par.k8 * t49;
+  const Real t57 = t5 * t52;
+  const Real t58 = t56 - t57;
 
   // bob: twist
-  const Real t76 = t14 * w[0];
+  const Real t59 = t14 * w[0];
 
   // tail: acceleration
-  const Real t77 = w[1] * w[1];
+  const Real t60 = w[1] * w[1];
 
   // bob: acceleration
-  const Real t78 = t77 * r_p[0];
-  const Real t79 = t65 - t78;
-  const Real t80 = t76 * w[1];
-  const Real t81 = constant<Real>(2.0L) * t80;
-  const Real t82 = t79 - t81;
-  const Real t83 = t2 * t82;
-  const Real t84 = t17 * t77;
-  const Real t85 = t68 - t84;
-  const Real t86 = w[0] * w[1];
-  const Real t87 = t86 * constant<Real>(2.0L);
-  const Real t88 = t85 - t87;
-  const Real t89 = w[0] * w[0];
-  const Real t90 = t89 * par.k10;
-  const Real t91 = t88 - t90;
-  const Real t92 = t3 * t91;
-  const Real t93 = t83 + t92;
-  const Real t94 = t3 * t82;
-  const Real t95 = t91 * t2;
-  const Real t96 = t94 - t95;
+  const Real t61 = t60 * r_p[0];
+  const Real t62 = t49 - t61;
+  const Real t63 = t59 * w[1];
+  const Real t64 = constant<Real>(2.0L) * t63;
+  const Real t65 = t62 - t64;
+  const Real t66 = t2 * t65;
+  const Real t67 = t17 * t60;
+  const Real t68 = t52 - t67;
+  const Real t69 = w[0] * w[1];
+  const Real t70 = t69 * constant<Real>(2.0L);
+  const Real t71 = t68 - t70;
+  const Real t72 = w[0] * w[0];
+  const Real t73 = t72 * par.k10;
+  const Real t74 = t71 - t73;
+  const Real t75 = t3 * t74;
+  const Real t76 = t66 + t75;
+  const Real t77 = t3 * t65;
+  const Real t78 = t74 * t2;
+  const Real t79 = t77 - t78;
 
   // tail: wrench
-  const Real t97 = t10 * t77;
-  const Real t98 = t74 + t97;
-  const Real t99 = t77 * t9;
-  const Real t100 = t98 - t99;
-  const Real t101 = t9 * w[0];
-  const Real t102 = t10 * w[0];
-  const Real t103 = t101 - t102;
-  const Real t104 = t103 * w[1];
-  const Real t105 = t104 * constant<Real>(2.0L);
-  const Real t106 = t71 + t105;
+  const Real t80 = t10 * t60;
+  const Real t81 = t58 + t80;
+  const Real t82 = t60 * t9;
+  const Real t83 = t81 - t82;
+  const Real t84 = t9 * w[0];
+  const Real t85 = t10 * w[0];
+  const Real t86 = t84 - t85;
+  const Real t87 = t86 * w[1];
+  const Real t88 = t87 * constant<Real>(2.0L);
+  const Real t89 = t55 + t88;
 
   // bob: wrench
-  const Real t107 = t93 * par.m_t;
-  const Real t108 = t96 * par.m_t;
+  const Real t90 = t76 * par.m_t;
+  const Real t91 = t79 * par.m_t;
 
   // bob: joint force
-  const Real t109 = t3 * t108;
-  const Real t110 = t107 * t2;
-  const Real t111 = t109 + t110;
-  const Real t112 = t17 * t111;
-  const Real t113 = t3 * t107;
-  const Real t114 = t2 * t108;
-  const Real t115 = t113 - t114;
-  const Real t116 = r_p[0] * t115;
-  const Real t117 = t112 - t116;
-  const Real t118 = t117 + t106;
-  const Real t119 = t14 * t115;
-  const Real t120 = t111 - t119;
-  const Real t121 = t120 + t100;
+  const Real t92 = t3 * t91;
+  const Real t93 = t90 * t2;
+  const Real t94 = t92 + t93;
+  const Real t95 = t17 * t94;
+  const Real t96 = t3 * t90;
+  const Real t97 = t2 * t91;
+  const Real t98 = t96 - t97;
+  const Real t99 = r_p[0] * t98;
+  const Real t100 = t95 - t99;
+  const Real t101 = t100 + t89;
+  const Real t102 = t14 * t98;
+  const Real t103 = t94 - t102;
+  const Real t104 = t103 + t83;
 
   // springs, dampers and generalised forces
-  const Real t122 = w[0] * constant<Real>(2.0L);
-  const Real t123 = par.k21 * t122;
-  const Real t124 = t62 + t123;
-  const Real t125 = t121 + t124;
+  const Real t105 = w[0] * constant<Real>(2.0L);
+  const Real t106 = par.k21 * t105;
+  const Real t107 = t46 + t106;
+  const Real t108 = t104 + t107;
 
   // reduced forces
-  const Real t126 = tau_a[0] - t118;
-
-  // reduced accelerations
-  const Real t127 = t125 * t75;
-  const Real t128 = t75 * t58;
-  const Real t129 = t125 * t128;
-  const Real t130 = t128 * t58;
+  const Real t109 = tau_a[0] - t101;
 
   // accelerations
-  const Real t131 = sum_error(t57, par.k11);
-  const Real t132 = product_error(t17, t50);
-  const Real t133 = -t55;
-  const Real t134 = sum_error(t54, t133);
-  const Real t135 = t132 + t134;
-  const Real t136 = sum_error(t56, par.k15);
-  const Real t137 = t135 + t136;
-  const Real t138 = t131 + t137;
-  const Real t139 = t75 * t138;
-  const Real t140 = quotient_error(constant<Real>(1.0L), t53);
-  const Real t141 = sum_error(par.k16, t51);
-  const Real t142 = sum_error(t50, t47);
-  const Real t143 = t141 + t142;
-  const Real t144 = sum_error(t52, par.k7);
-  const Real t145 = t143 + t144;
-  const Real t146 = t75 * t145;
-  const Real t147 = t146 / t53;
-  const Real t148 = t140 - t147;
-  const Real t149 = t148 * t58;
-  const Real t150 = t139 + t149;
-  const Real t151 = product_error(t75, t58);
-  const Real t152 = t150 + t151;
-  const Real t153 = t125 * t152;
-  const Real t154 = t129 + t153;
-  const Real t155 = t154 + t126;
-  const Real t156 = t138 * t128;
-  const Real t157 = t152 * t58;
-  const Real t158 = t156 + t157;
-  const Real t159 = t130 + t158;
-  const Real t160 = t36 - t159;
-  const Real t161 = sum_error(t35, t13);
-  const Real t162 = t160 + t161;
-  const Real t163 = constant<Real>(1.0L) / t162;
-  const Real t164 = t155 * t163;
-  const Real t165 = t164 * t128;
-  const Real t166 = t164 * t152;
-  const Real t167 = t165 + t166;
-  const Real t168 = t125 * t148;
-  const Real t169 = t127 + t168;
-  const Real t170 = t167 + t169;
-  const Real t171 = -t170;
+  const Real t110 = product_error(t33, par.m_t);
+  const Real t111 = sum_error(t3, t32);
+  const Real t112 = par.m_t * t111;
+  const Real t113 = t110 + t112;
+  const Real t114 = t113 * t2;
+  const Real t115 = t114 + t42;
+  const Real t116 = t38 - t115;
+  const Real t117 = t14 * t116;
+  const Real t118 = t41 - t117;
+  const Real t119 = par.k16 + t118;
+  const Real t120 = t119 + par.k7;
+  const Real t121 = quotient_error(constant<Real>(1.0L), t120);
+  const Real t122 = constant<Real>(1.0L) / t120;
+  const Real t123 = sum_error(t119, par.k7);
+  const Real t124 = sum_error(par.k16, t118);
+  const Real t125 = t3 * t113;
+  const Real t126 = product_error(t3, t36);
+  const Real t127 = t125 + t126;
+  const Real t128 = sum_error(t39, t40);
+  const Real t129 = t127 + t128;
+  const Real t130 = -t117;
+  const Real t131 = sum_error(t41, t130);
+  const Real t132 = t129 + t131;
+  const Real t133 = t124 + t132;
+  const Real t134 = t123 + t133;
+  const Real t135 = t122 * t134;
+  const Real t136 = t135 / t120;
+  const Real t137 = t121 - t136;
+  const Real t138 = t108 * t137;
+  const Real t139 = t122 * t108;
+  const Real t140 = t138 + t139;
+  const Real t141 = product_error(t3, t24);
+  const Real t142 = product_error(t17, t3);
+  const Real t143 = sum_error(t18, t19);
+  const Real t144 = t142 + t143;
+  const Real t145 = t144 * par.m_t;
+  const Real t146 = product_error(t20, par.m_t);
+  const Real t147 = t145 + t146;
+  const Real t148 = t147 * t3;
+  const Real t149 = t141 + t148;
+  const Real t150 = sum_error(t28, t29);
+  const Real t151 = t149 + t150;
+  const Real t152 = t17 * t151;
+  const Real t153 = t152 + t31;
+  const Real t154 = t147 * t2;
+  const Real t155 = t26 + t154;
+  const Real t156 = t27 - t155;
+  const Real t157 = t156 * r_p[0];
+  const Real t158 = t153 - t157;
+  const Real t159 = t158 + par.J_t;
+  const Real t160 = sum_error(t159, t13);
+  const Real t161 = t159 + t13;
+  const Real t162 = t14 * t156;
+  const Real t163 = t30 - t162;
+  const Real t164 = t163 + par.k15;
+  const Real t165 = par.k11 + t164;
+  const Real t166 = t122 * t165;
+  const Real t167 = t166 * t165;
+  const Real t168 = t165 * t137;
+  const Real t169 = sum_error(t163, par.k15);
+  const Real t170 = -t162;
+  const Real t171 = sum_error(t30, t170);
+  const Real t172 = t151 + t171;
+  const Real t173 = t169 + t172;
+  const Real t174 = sum_error(t164, par.k11);
+  const Real t175 = t173 + t174;
+  const Real t176 = t122 * t175;
+  const Real t177 = t168 + t176;
+  const Real t178 = product_error(t165, t122);
+  const Real t179 = t177 + t178;
+  const Real t180 = t179 * t165;
+  const Real t181 = t166 * t175;
+  const Real t182 = t180 + t181;
+  const Real t183 = t167 + t182;
+  const Real t184 = t161 - t183;
+  const Real t185 = t160 + t184;
+  const Real t186 = constant<Real>(1.0L) / t185;
+  const Real t187 = t179 * t108;
+  const Real t188 = t166 * t108;
+  const Real t189 = t187 + t188;
+  const Real t190 = t109 + t189;
+  const Real t191 = t186 * t190;
+  const Real t192 = t191 * t179;
+  const Real t193 = t191 * t166;
+  const Real t194 = t192 + t193;
+  const Real t195 = t140 + t194;
+  const Real t196 = -t195;
 
-  w_dot_out[0] = t171;
-  w_dot_out[1] = t164;
+  w_dot_out[0] = t196;
+  w_dot_out[1] = t191;
   eta_dot[0] = constant<Real>(0.0L);
   eta_dot[1] = constant<Real>(0.0L);
   eta_dot[2] = constant<Real>(0.0L);
-  r_p_ddot[0] = t171;
-  r_a_ddot_out[0] = t164;
+  r_p_ddot[0] = t196;
+  r_a_ddot_out[0] = t191;
 }
 
 /// Constraint forces with the torques given, least norm.

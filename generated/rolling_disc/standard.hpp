@@ -11,7 +11,7 @@
 // Operations per call, each shared value once (a - b is one addition):
 //   kinematics           2 add, 10 mul, 1 div, 3 neg, 1 sqrt
 //   reduced_velocities   none
-//   constraints          7 add, 26 mul, 3 div, 3 neg, 1 sqrt
+//   constraints          11 add, 30 mul, 2 div, 3 neg, 1 sqrt
 //   free_dynamics        6 add, 16 mul, 5 neg
 //   reduced_dynamics     11 add, 34 mul, 2 div, 1 neg, 1 sqrt
 //   forward_dynamics     31 add, 66 mul, 6 div, 1 neg, 1 sqrt
@@ -220,8 +220,8 @@ inline void reduced_velocities(const Prepared<Real>&, const Real (&eta)[6], Real
 
 /// Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot +
 /// B_a_dot r_a_dot).
-/// route: recursion
-/// operations: 7 add, 26 mul, 3 div, 3 neg, 1 sqrt
+/// route: closed form
+/// operations: 11 add, 30 mul, 2 div, 3 neg, 1 sqrt
 /// @param[in]  par   made by prepare()
 /// @param[in]  R     (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  eta   (6) m/s, rad/s: twist of the reference body in its own axes, linear part first
@@ -240,55 +240,64 @@ inline void constraints(const Prepared<Real>& par,
   const Real t2 = R[6] * R[6];
   const Real t3 = t1 + t2;
   const Real t4 = sqrt(t3);
-  const Real t5 = constant<Real>(2.0L) * t4;
-  const Real t6 = constant<Real>(1.0L) / t4;
-  const Real t7 = R[6] * t6;
-  const Real t8 = t7 * par.R;
+
+  // kernel
+  const Real t5 = par.R / t4;
+  const Real t6 = t5 * R[8];
+  const Real t7 = -t6;
+  const Real t8 = t5 * R[6];
   const Real t9 = -t8;
-  const Real t10 = R[8] * t6;
-  const Real t11 = par.R * t10;
-  const Real t12 = -t11;
 
   // joint angles
-  const Real t13 = R[7] * eta[5];
-  const Real t14 = eta[4] * R[8];
-  const Real t15 = t13 - t14;
-  const Real t16 = t15 * t6;
-  const Real t17 = t15 * R[6];
-  const Real t18 = t17 * constant<Real>(2.0L);
-  const Real t19 = eta[4] * R[6];
-  const Real t20 = R[7] * eta[3];
-  const Real t21 = t19 - t20;
-  const Real t22 = R[8] * t21;
-  const Real t23 = t22 * constant<Real>(2.0L);
-  const Real t24 = t18 + t23;
-  const Real t25 = t24 / t5;
-  const Real t26 = t25 * t6;
-  const Real t27 = t26 / t4;
-  const Real t28 = R[6] * t27;
-  const Real t29 = t16 - t28;
-  const Real t30 = t29 * par.R;
-  const Real t31 = t30 * eta[4];
-  const Real t32 = t21 * t6;
-  const Real t33 = R[8] * t27;
-  const Real t34 = t32 - t33;
-  const Real t35 = par.R * t34;
-  const Real t36 = t35 * eta[3];
-  const Real t37 = eta[5] * t30;
-  const Real t38 = t36 - t37;
-  const Real t39 = t35 * eta[4];
-  const Real t40 = -t39;
+  const Real t10 = eta[4] * t3;
+  const Real t11 = t10 * R[8];
+  const Real t12 = eta[5] * R[6];
+  const Real t13 = eta[3] * R[8];
+  const Real t14 = t12 - t13;
+  const Real t15 = R[6] * t14;
+  const Real t16 = eta[5] * t3;
+  const Real t17 = t15 - t16;
+  const Real t18 = t17 * R[7];
+  const Real t19 = t11 + t18;
+  const Real t20 = t19 * eta[4];
+  const Real t21 = t3 * t4;
+  const Real t22 = par.R / t21;
+  const Real t23 = t20 * t22;
+  const Real t24 = -t23;
+  const Real t25 = eta[5] * R[8];
+  const Real t26 = eta[3] * R[6];
+  const Real t27 = t25 + t26;
+  const Real t28 = t10 * t27;
+  const Real t29 = eta[5] * eta[5];
+  const Real t30 = t29 * t1;
+  const Real t31 = eta[3] * t3;
+  const Real t32 = constant<Real>(2.0L) * t12;
+  const Real t33 = t32 - t13;
+  const Real t34 = t33 * R[8];
+  const Real t35 = t31 + t34;
+  const Real t36 = eta[3] * t35;
+  const Real t37 = t30 + t36;
+  const Real t38 = R[7] * t37;
+  const Real t39 = t28 - t38;
+  const Real t40 = t22 * t39;
+  const Real t41 = R[8] * t14;
+  const Real t42 = t31 + t41;
+  const Real t43 = R[7] * t42;
+  const Real t44 = t10 * R[6];
+  const Real t45 = t43 - t44;
+  const Real t46 = eta[4] * t45;
+  const Real t47 = t22 * t46;
 
   A[0] = constant<Real>(1.0L);
   A[1] = constant<Real>(0.0L);
   A[2] = constant<Real>(0.0L);
   A[3] = constant<Real>(0.0L);
-  A[4] = t12;
+  A[4] = t7;
   A[5] = constant<Real>(0.0L);
   A[6] = constant<Real>(0.0L);
   A[7] = constant<Real>(1.0L);
   A[8] = constant<Real>(0.0L);
-  A[9] = t11;
+  A[9] = t6;
   A[10] = constant<Real>(0.0L);
   A[11] = t9;
   A[12] = constant<Real>(0.0L);
@@ -297,9 +306,9 @@ inline void constraints(const Prepared<Real>& par,
   A[15] = constant<Real>(0.0L);
   A[16] = t8;
   A[17] = constant<Real>(0.0L);
-  bias[0] = t40;
-  bias[1] = t38;
-  bias[2] = t31;
+  bias[0] = t47;
+  bias[1] = t40;
+  bias[2] = t24;
 }
 
 /// Blocks of eq. (1) with lambda = 0 and tau_a = 0, by sweeps of the recursion (section V.B).

@@ -19,12 +19,12 @@
 //   multipliers                406 add, 503 mul, 8 div, 2 neg, 5 sin, 5 cos
 //   torque_driven_kinematics   155 add, 181 mul, 6 div, 3 neg, 1 sin, 1 cos
 //   torque_driven_velocities   none
-//   torque_driven_dynamics     397 add, 564 mul, 9 div, 5 sin, 5 cos
+//   torque_driven_dynamics     406 add, 558 mul, 10 div, 5 sin, 5 cos
 //   torque_driven_multipliers  404 add, 503 mul, 8 div, 2 neg, 5 sin, 5 cos
 //   position_conditions        8 add, 15 mul, 4 neg, 1 sin, 1 cos
 //   energies                   94 add, 124 mul, 2 sin, 2 cos
 //   body_poses                 57 add, 75 mul, 5 sin, 5 cos
-//   prepare                    55 add, 42 mul, 3 neg, once per set of parameters
+//   prepare                    56 add, 43 mul, 3 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -199,44 +199,46 @@ struct Prepared {
   Real k12;  // w * w
   Real k13;  // J_d - J_a
   Real k14;  // J_a - J_d
-  Real k15;  // m_w * c
-  Real k16;  // m_w * c * c + J_a - J_d
-  Real k17;  // k9 + (m + m_c + 3 * m_w) * R
-  Real k18;  // J_c + J_z + L * L * m_c + m * a * a + 3 * J_d
-  Real k19;  // L * m_c * h_c
-  Real k20;  // J_c + m_c * h_c * h_c + J_x + m_w * k12 * 2 + k7 + 3 * J_d
-  Real k21;  // J_d - (m_w * c * c + J_a)
-  Real k22;  // m_w * c * R
-  Real k23;  // J_d + k8 - J_x - m_c * h_c * h_c - J_a
-  Real k24;  // J_a - J_c
-  Real k25;  // k12 * 2 + c * c
-  Real k26;  // a_r * a_r
-  Real k27;  // (m_w + m_c) * L
-  Real k28;  // L * k27
-  Real k29;  // L * L - k12 * 2
-  Real k30;  // J_c - J_a
-  Real k31;  // m_r + m + m_c + 3 * m_w
-  Real k32;  // k31 * R
-  Real k33;  // m_r * a_r
-  Real k34;  // J_z + m_w * k12 * 2 - J_y - m_c * h_c * h_c + 3 * k13
-  Real k35;  // L * k15
-  Real k36;  // k35 * 2
-  Real k37;  // L * L * m_c + m * a * a + J_y - J_x
-  Real k38;  // L * m_c + k4
-  Real k39;  // J_d + m_w * c * c + J_c
-  Real k40;  // a_r * k2
-  Real k41;  // m_w * L * c
-  Real k42;  // J_d + J_a * 2 + m_c * h_c * h_c + m * a * a + J_y + J_c
-  Real k43;  // J_d + J_c
-  Real k44;  // J_d + m_w * k12
-  Real k45;  // J_c + m_w * c * c + J_x + m_c * h_c * h_c + k7 + J_a
-  Real k46;  // m_c * h_c * h_c + m * a * a + J_y + J_c + J_d
-  Real k47;  // J_c + J_z + m_w * c * c + m * a * a + k28
-  Real k48;  // (m_r + m + m_c) * R * R
+  Real k15;  // m_r + m
+  Real k16;  // m_w * c
+  Real k17;  // c * k16
+  Real k18;  // m_w * c * c + J_a - J_d
+  Real k19;  // k9 + (m + m_c + 3 * m_w) * R
+  Real k20;  // J_c + J_z + L * L * m_c + m * a * a + 3 * J_d
+  Real k21;  // L * m_c * h_c
+  Real k22;  // J_c + m_c * h_c * h_c + J_x + m_w * k12 * 2 + k7 + 3 * J_d
+  Real k23;  // J_d - (m_w * c * c + J_a)
+  Real k24;  // m_w * c * R
+  Real k25;  // J_d + k8 - J_x - m_c * h_c * h_c - J_a
+  Real k26;  // J_a - J_c
+  Real k27;  // k12 * 2 + c * c
+  Real k28;  // a_r * a_r
+  Real k29;  // (m_w + m_c) * L
+  Real k30;  // L * k29
+  Real k31;  // L * L - k12 * 2
+  Real k32;  // J_c - J_a
+  Real k33;  // m_r + m + m_c + 3 * m_w
+  Real k34;  // k33 * R
+  Real k35;  // m_r * a_r
+  Real k36;  // J_z + m_w * k12 * 2 - J_y - m_c * h_c * h_c + 3 * k13
+  Real k37;  // L * k16
+  Real k38;  // k37 * 2
+  Real k39;  // L * L * m_c + m * a * a + J_y - J_x
+  Real k40;  // L * m_c + k4
+  Real k41;  // J_d + m_w * c * c + J_c
+  Real k42;  // a_r * k2
+  Real k43;  // m_w * L * c
+  Real k44;  // J_d + J_a * 2 + m_c * h_c * h_c + m * a * a + J_y + J_c
+  Real k45;  // J_d + J_c
+  Real k46;  // J_d + m_w * k12
+  Real k47;  // J_c + m_w * c * c + J_x + m_c * h_c * h_c + k7 + J_a
+  Real k48;  // m_c * h_c * h_c + m * a * a + J_y + J_c + J_d
+  Real k49;  // J_c + J_z + m_w * c * c + m * a * a + k30
+  Real k50;  // (m_r + m + m_c) * R * R
 };
 
 /// To be called once per set of parameter values.
-/// operations: 55 add, 42 mul, 3 neg
+/// operations: 56 add, 43 mul, 3 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -268,93 +270,99 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t19 = par.J_d - par.J_a;
   const Real t20 = par.J_a - par.J_d;
 
+  // rider: joint force
+  const Real t21 = par.m_r + par.m;
+
   // column: wrench
-  const Real t21 = par.L * par.m_c;
+  const Real t22 = par.L * par.m_c;
 
   // front_wheel: wrench
-  const Real t22 = par.m_w * par.c;
+  const Real t23 = par.m_w * par.c;
+
+  // front_wheel: joint force
+  const Real t24 = par.c * t23;
 
   // rear_left_wheel: joint force
-  const Real t23 = par.c * par.c;
-  const Real t24 = par.m_w * t23;
-  const Real t25 = t24 + par.J_a;
-  const Real t26 = t25 - par.J_d;
-  const Real t27 = par.m + par.m_c;
-  const Real t28 = constant<Real>(3.0L) * par.m_w;
-  const Real t29 = t27 + t28;
-  const Real t30 = t29 * par.R;
-  const Real t31 = t14 + t30;
-  const Real t32 = t17 * par.m_c;
-  const Real t33 = t32 + t12;
-  const Real t34 = par.J_z + t33;
-  const Real t35 = par.J_c + t34;
-  const Real t36 = constant<Real>(3.0L) * par.J_d;
-  const Real t37 = t35 + t36;
-  const Real t38 = t21 * par.h_c;
-  const Real t39 = par.m_w * t18;
-  const Real t40 = t39 * constant<Real>(2.0L);
-  const Real t41 = par.J_x + t40;
-  const Real t42 = t5 + t41;
-  const Real t43 = par.J_c + t42;
-  const Real t44 = t43 + t10;
-  const Real t45 = t44 + t36;
-  const Real t46 = par.J_d - t25;
-  const Real t47 = par.c * par.R;
-  const Real t48 = par.m_w * t47;
-  const Real t49 = par.J_d + t13;
-  const Real t50 = t49 - par.J_x;
-  const Real t51 = t50 - t5;
-  const Real t52 = t51 - par.J_a;
-  const Real t53 = par.J_a - par.J_c;
-  const Real t54 = t18 * constant<Real>(2.0L);
-  const Real t55 = t54 + t23;
-  const Real t56 = par.a_r * par.a_r;
-  const Real t57 = par.m_w + par.m_c;
-  const Real t58 = t57 * par.L;
-  const Real t59 = par.L * t58;
-  const Real t60 = t17 - t54;
-  const Real t61 = par.J_c - par.J_a;
-  const Real t62 = par.m_r + t27;
-  const Real t63 = t62 + t28;
-  const Real t64 = t63 * par.R;
-  const Real t65 = par.m_r * par.a_r;
-  const Real t66 = par.J_z + t40;
-  const Real t67 = t66 - par.J_y;
-  const Real t68 = t67 - t5;
-  const Real t69 = constant<Real>(3.0L) * t19;
-  const Real t70 = t68 + t69;
-  const Real t71 = par.L * t22;
-  const Real t72 = t71 * constant<Real>(2.0L);
-  const Real t73 = t33 + par.J_y;
-  const Real t74 = t73 - par.J_x;
-  const Real t75 = t21 + t7;
-  const Real t76 = t24 + par.J_c;
-  const Real t77 = par.J_d + t76;
-  const Real t78 = par.a_r * t3;
-  const Real t79 = par.L * par.c;
-  const Real t80 = par.m_w * t79;
-  const Real t81 = par.J_a * constant<Real>(2.0L);
-  const Real t82 = t12 + par.J_y;
-  const Real t83 = t5 + t82;
-  const Real t84 = t83 + par.J_c;
-  const Real t85 = t81 + t84;
-  const Real t86 = par.J_d + t85;
-  const Real t87 = par.J_d + par.J_c;
-  const Real t88 = par.J_d + t39;
+  const Real t25 = par.c * par.c;
+  const Real t26 = par.m_w * t25;
+  const Real t27 = t26 + par.J_a;
+  const Real t28 = t27 - par.J_d;
+  const Real t29 = par.m + par.m_c;
+  const Real t30 = constant<Real>(3.0L) * par.m_w;
+  const Real t31 = t29 + t30;
+  const Real t32 = t31 * par.R;
+  const Real t33 = t14 + t32;
+  const Real t34 = t17 * par.m_c;
+  const Real t35 = t34 + t12;
+  const Real t36 = par.J_z + t35;
+  const Real t37 = par.J_c + t36;
+  const Real t38 = constant<Real>(3.0L) * par.J_d;
+  const Real t39 = t37 + t38;
+  const Real t40 = t22 * par.h_c;
+  const Real t41 = par.m_w * t18;
+  const Real t42 = t41 * constant<Real>(2.0L);
+  const Real t43 = par.J_x + t42;
+  const Real t44 = t5 + t43;
+  const Real t45 = par.J_c + t44;
+  const Real t46 = t45 + t10;
+  const Real t47 = t46 + t38;
+  const Real t48 = par.J_d - t27;
+  const Real t49 = par.c * par.R;
+  const Real t50 = par.m_w * t49;
+  const Real t51 = par.J_d + t13;
+  const Real t52 = t51 - par.J_x;
+  const Real t53 = t52 - t5;
+  const Real t54 = t53 - par.J_a;
+  const Real t55 = par.J_a - par.J_c;
+  const Real t56 = t18 * constant<Real>(2.0L);
+  const Real t57 = t56 + t25;
+  const Real t58 = par.a_r * par.a_r;
+  const Real t59 = par.m_w + par.m_c;
+  const Real t60 = t59 * par.L;
+  const Real t61 = par.L * t60;
+  const Real t62 = t17 - t56;
+  const Real t63 = par.J_c - par.J_a;
+  const Real t64 = par.m_r + t29;
+  const Real t65 = t64 + t30;
+  const Real t66 = t65 * par.R;
+  const Real t67 = par.m_r * par.a_r;
+  const Real t68 = par.J_z + t42;
+  const Real t69 = t68 - par.J_y;
+  const Real t70 = t69 - t5;
+  const Real t71 = constant<Real>(3.0L) * t19;
+  const Real t72 = t70 + t71;
+  const Real t73 = par.L * t23;
+  const Real t74 = t73 * constant<Real>(2.0L);
+  const Real t75 = t35 + par.J_y;
+  const Real t76 = t75 - par.J_x;
+  const Real t77 = t22 + t7;
+  const Real t78 = t26 + par.J_c;
+  const Real t79 = par.J_d + t78;
+  const Real t80 = par.a_r * t3;
+  const Real t81 = par.L * par.c;
+  const Real t82 = par.m_w * t81;
+  const Real t83 = par.J_a * constant<Real>(2.0L);
+  const Real t84 = t12 + par.J_y;
+  const Real t85 = t5 + t84;
+  const Real t86 = t85 + par.J_c;
+  const Real t87 = t83 + t86;
+  const Real t88 = par.J_d + t87;
+  const Real t89 = par.J_d + par.J_c;
+  const Real t90 = par.J_d + t41;
 
   // rider: energy
-  const Real t89 = t24 + par.J_x;
-  const Real t90 = t89 + t5;
-  const Real t91 = par.J_c + t90;
-  const Real t92 = t91 + t10;
-  const Real t93 = t92 + par.J_a;
-  const Real t94 = t84 + par.J_d;
-  const Real t95 = t24 + t12;
-  const Real t96 = par.J_z + t95;
-  const Real t97 = par.J_c + t96;
-  const Real t98 = t97 + t59;
-  const Real t99 = t62 * par.R;
-  const Real t100 = t99 * par.R;
+  const Real t91 = t26 + par.J_x;
+  const Real t92 = t91 + t5;
+  const Real t93 = par.J_c + t92;
+  const Real t94 = t93 + t10;
+  const Real t95 = t94 + par.J_a;
+  const Real t96 = t86 + par.J_d;
+  const Real t97 = t26 + t12;
+  const Real t98 = par.J_z + t97;
+  const Real t99 = par.J_c + t98;
+  const Real t100 = t99 + t61;
+  const Real t101 = t64 * par.R;
+  const Real t102 = t101 * par.R;
 
   result.g = par.g;
   result.L = par.L;
@@ -386,40 +394,42 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k12 = t18;
   result.k13 = t19;
   result.k14 = t20;
-  result.k15 = t22;
-  result.k16 = t26;
-  result.k17 = t31;
-  result.k18 = t37;
-  result.k19 = t38;
-  result.k20 = t45;
-  result.k21 = t46;
-  result.k22 = t48;
-  result.k23 = t52;
-  result.k24 = t53;
-  result.k25 = t55;
-  result.k26 = t56;
-  result.k27 = t58;
-  result.k28 = t59;
+  result.k15 = t21;
+  result.k16 = t23;
+  result.k17 = t24;
+  result.k18 = t28;
+  result.k19 = t33;
+  result.k20 = t39;
+  result.k21 = t40;
+  result.k22 = t47;
+  result.k23 = t48;
+  result.k24 = t50;
+  result.k25 = t54;
+  result.k26 = t55;
+  result.k27 = t57;
+  result.k28 = t58;
   result.k29 = t60;
   result.k30 = t61;
-  result.k31 = t63;
-  result.k32 = t64;
+  result.k31 = t62;
+  result.k32 = t63;
   result.k33 = t65;
-  result.k34 = t70;
-  result.k35 = t71;
+  result.k34 = t66;
+  result.k35 = t67;
   result.k36 = t72;
-  result.k37 = t74;
-  result.k38 = t75;
-  result.k39 = t77;
-  result.k40 = t78;
-  result.k41 = t80;
-  result.k42 = t86;
-  result.k43 = t87;
+  result.k37 = t73;
+  result.k38 = t74;
+  result.k39 = t76;
+  result.k40 = t77;
+  result.k41 = t79;
+  result.k42 = t80;
+  result.k43 = t82;
   result.k44 = t88;
-  result.k45 = t93;
-  result.k46 = t94;
-  result.k47 = t98;
-  result.k48 = t100;
+  result.k45 = t89;
+  result.k46 = t90;
+  result.k47 = t95;
+  result.k48 = t96;
+  result.k49 = t100;
+  result.k50 = t102;
   return result;
 }
 
@@ -1128,8 +1138,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t32 = t31 * par.c;
 
   // column: joint force
-  const Real t33 = s_r_a_0_ * par.k15;
-  const Real t34 = c_r_a_0_ * par.k15;
+  const Real t33 = s_r_a_0_ * par.k16;
+  const Real t34 = c_r_a_0_ * par.k16;
 
   // column: twist
   const Real t35 = c_r_a_0_ * eta[4];
@@ -1189,7 +1199,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t83 = c_r_a_0_ * t82;
   const Real t84 = t83 * par.m_w;
   const Real t85 = t84 * par.c;
-  const Real t86 = R[6] * par.k31;
+  const Real t86 = R[6] * par.k33;
   const Real t87 = par.g * t86;
   const Real t88 = t85 + t87;
   const Real t89 = par.m_w * t38;
@@ -1200,21 +1210,21 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t94 = t92 * t93;
   const Real t95 = par.m_r * t94;
   const Real t96 = t90 + t95;
-  const Real t97 = eta[2] * par.k31;
+  const Real t97 = eta[2] * par.k33;
   const Real t98 = t96 - t97;
   const Real t99 = t34 - par.k4;
-  const Real t100 = par.k33 - t99;
-  const Real t101 = t100 + par.k27;
+  const Real t100 = par.k35 - t99;
+  const Real t101 = t100 + par.k29;
   const Real t102 = eta[4] * t101;
   const Real t103 = t98 + t102;
   const Real t104 = t103 * eta[4];
   const Real t105 = t88 - t104;
   const Real t106 = t19 + par.k9;
-  const Real t107 = par.k32 + t106;
+  const Real t107 = par.k34 + t106;
   const Real t108 = eta[3] * t107;
   const Real t109 = eta[5] * t101;
-  const Real t110 = eta[1] * par.k31;
-  const Real t111 = r_a_dot[0] * par.k15;
+  const Real t110 = eta[1] * par.k33;
+  const Real t111 = r_a_dot[0] * par.k16;
   const Real t112 = c_r_a_0_ * t111;
   const Real t113 = par.k2 * r_a_dot[1];
   const Real t114 = t113 * c_r_a_1_;
@@ -1229,15 +1239,15 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t123 = par.m_r * t93;
   const Real t124 = -t123;
   const Real t125 = t106 * constant<Real>(2.0L);
-  const Real t126 = par.k32 + t125;
+  const Real t126 = par.k34 + t125;
   const Real t127 = t126 * par.R;
   const Real t128 = c_r_a_1_ * c_r_a_1_;
   const Real t129 = constant<Real>(2.0L) * t128;
   const Real t130 = t129 - constant<Real>(1.0L);
   const Real t131 = par.k6 * t130;
   const Real t132 = par.m_r * t131;
-  const Real t133 = par.k34 - t132;
-  const Real t134 = par.k16 * s_r_a_0_;
+  const Real t133 = par.k36 - t132;
+  const Real t134 = par.k18 * s_r_a_0_;
   const Real t135 = s_r_a_0_ * t134;
   const Real t136 = t133 + t135;
   const Real t137 = t127 - t136;
@@ -1247,8 +1257,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t141 = t140 * eta[4];
   const Real t142 = t139 - t141;
   const Real t143 = t142 * par.R;
-  const Real t144 = par.k19 * eta[3];
-  const Real t145 = eta[0] * par.k15;
+  const Real t144 = par.k21 * eta[3];
+  const Real t145 = eta[0] * par.k16;
   const Real t146 = s_r_a_0_ * t145;
   const Real t147 = t144 - t146;
   const Real t148 = s_r_a_1_ * eta[0];
@@ -1262,7 +1272,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t156 = t147 - t155;
   const Real t157 = par.J_d + t135;
   const Real t158 = t157 * constant<Real>(2.0L);
-  const Real t159 = t158 + par.k30;
+  const Real t159 = t158 + par.k32;
   const Real t160 = t159 * r_a_dot[0];
   const Real t161 = t156 - t160;
   const Real t162 = t143 + t161;
@@ -1277,10 +1287,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t171 = eta[2] * par.h_c;
   const Real t172 = t171 * par.m_c;
   const Real t173 = t170 - t172;
-  const Real t174 = t12 * par.k15;
+  const Real t174 = t12 * par.k16;
   const Real t175 = r_a_dot[0] * constant<Real>(2.0L);
   const Real t176 = eta[5] + t175;
-  const Real t177 = par.k16 * t176;
+  const Real t177 = par.k18 * t176;
   const Real t178 = t177 * c_r_a_0_;
   const Real t179 = t174 - t178;
   const Real t180 = t179 * s_r_a_0_;
@@ -1306,7 +1316,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t200 = par.h_r * t199;
   const Real t201 = par.m_r * t200;
   const Real t202 = R[7] * par.k9;
-  const Real t203 = par.k15 * R[8];
+  const Real t203 = par.k16 * R[8];
   const Real t204 = s_r_a_0_ * t203;
   const Real t205 = t202 + t204;
   const Real t206 = t201 + t205;
@@ -1314,13 +1324,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t208 = t196 + t207;
   const Real t209 = t194 + t208;
   const Real t210 = t182 + t209;
-  const Real t211 = t82 * par.k15;
+  const Real t211 = t82 * par.k16;
   const Real t212 = s_r_a_0_ * t211;
   const Real t213 = r_a_dot[1] * r_a_dot[1];
   const Real t214 = par.k2 * t213;
   const Real t215 = s_r_a_1_ * t214;
   const Real t216 = t212 + t215;
-  const Real t217 = R[7] * par.k31;
+  const Real t217 = R[7] * par.k33;
   const Real t218 = par.g * t217;
   const Real t219 = t216 + t218;
   const Real t220 = s_r_a_1_ * r_a_dot[1];
@@ -1330,7 +1340,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t224 = t223 - t97;
   const Real t225 = eta[3] * t224;
   const Real t226 = t219 + t225;
-  const Real t227 = par.k31 * eta[0];
+  const Real t227 = par.k33 * eta[0];
   const Real t228 = t39 * par.h_r;
   const Real t229 = par.m_r * t228;
   const Real t230 = t18 * t176;
@@ -1369,15 +1379,15 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t263 = R[7] * t101;
   const Real t264 = t262 + t263;
   const Real t265 = par.g * t264;
-  const Real t266 = t82 * par.k41;
+  const Real t266 = t82 * par.k43;
   const Real t267 = s_r_a_0_ * t266;
-  const Real t268 = t213 * par.k40;
+  const Real t268 = t213 * par.k42;
   const Real t269 = s_r_a_1_ * t268;
   const Real t270 = t267 + t269;
   const Real t271 = t265 + t270;
   const Real t272 = t261 + t271;
-  const Real t273 = par.k40 * c_r_a_1_;
-  const Real t274 = t273 + par.k19;
+  const Real t273 = par.k42 * c_r_a_1_;
+  const Real t274 = t273 + par.k21;
   const Real t275 = par.R * t101;
   const Real t276 = t274 + t275;
   const Real t277 = t276 * eta[5];
@@ -1386,10 +1396,10 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t280 = t42 + t279;
   const Real t281 = t280 - eta[2];
   const Real t282 = t281 * t123;
-  const Real t283 = c_r_a_0_ * par.k21;
-  const Real t284 = par.k35 + t283;
+  const Real t283 = c_r_a_0_ * par.k23;
+  const Real t284 = par.k37 + t283;
   const Real t285 = t284 * eta[4];
-  const Real t286 = eta[2] * par.k15;
+  const Real t286 = eta[2] * par.k16;
   const Real t287 = par.J_a * r_p_dot[2];
   const Real t288 = t286 + t287;
   const Real t289 = t285 - t288;
@@ -1403,14 +1413,14 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t297 = t296 * par.c;
   const Real t298 = t297 + t8;
   const Real t299 = par.c * t298;
-  const Real t300 = par.k29 - t299;
+  const Real t300 = par.k31 - t299;
   const Real t301 = t300 * par.m_w;
   const Real t302 = t93 * t93;
-  const Real t303 = par.k26 - t302;
+  const Real t303 = par.k28 - t302;
   const Real t304 = par.m_r * t303;
   const Real t305 = t295 + constant<Real>(1.0L);
   const Real t306 = t305 * par.J_d;
-  const Real t307 = par.k37 - t306;
+  const Real t307 = par.k39 - t306;
   const Real t308 = t305 * par.J_a;
   const Real t309 = t307 + t308;
   const Real t310 = t304 + t309;
@@ -1438,7 +1448,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t332 = t331 * c_r_a_0_;
   const Real t333 = t332 - t190;
   const Real t334 = par.J_a * t333;
-  const Real t335 = par.k38 * eta[2];
+  const Real t335 = par.k40 * eta[2];
   const Real t336 = eta[3] * t9;
   const Real t337 = t336 * par.J_d;
   const Real t338 = t335 - t337;
@@ -1451,7 +1461,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t345 = -t344;
   const Real t346 = t118 - t108;
   const Real t347 = eta[3] * t346;
-  const Real t348 = par.k31 * R[8];
+  const Real t348 = par.k33 * R[8];
   const Real t349 = par.g * t348;
   const Real t350 = t213 * c_r_a_1_;
   const Real t351 = par.h_r * t350;
@@ -1514,8 +1524,8 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t408 = par.m_r * t407;
   const Real t409 = t406 + t408;
   const Real t410 = -t140;
-  const Real t411 = par.k43 - t32;
-  const Real t412 = par.k20 + t135;
+  const Real t411 = par.k45 - t32;
+  const Real t412 = par.k22 + t135;
   const Real t413 = t127 + t412;
   const Real t414 = par.h_r + t25;
   const Real t415 = par.k2 * t414;
@@ -1525,32 +1535,32 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t419 = -t107;
   const Real t420 = -t101;
   const Real t421 = par.L * t7;
-  const Real t422 = t421 + par.k25;
+  const Real t422 = t421 + par.k27;
   const Real t423 = t422 * par.m_w;
-  const Real t424 = t302 + par.k26;
+  const Real t424 = t302 + par.k28;
   const Real t425 = par.m_r * t424;
-  const Real t426 = par.k18 + t425;
+  const Real t426 = par.k20 + t425;
   const Real t427 = t423 + t426;
   const Real t428 = t183 * t183;
-  const Real t429 = par.k26 + t428;
+  const Real t429 = par.k28 + t428;
   const Real t430 = par.m_r * t429;
-  const Real t431 = t430 + par.k42;
-  const Real t432 = t431 + par.k28;
-  const Real t433 = par.k36 + t283;
+  const Real t431 = t430 + par.k44;
+  const Real t432 = t431 + par.k30;
+  const Real t433 = par.k38 + t283;
   const Real t434 = c_r_a_0_ * t433;
   const Real t435 = t432 - t434;
   const Real t436 = t435 + t127;
-  const Real t437 = par.k26 - t428;
+  const Real t437 = par.k28 - t428;
   const Real t438 = par.m_r * t437;
-  const Real t439 = par.k23 + t438;
-  const Real t440 = t439 + par.k28;
+  const Real t439 = par.k25 + t438;
+  const Real t440 = t439 + par.k30;
   const Real t441 = t440 - t434;
   const Real t442 = t441 - t127;
   const Real t443 = t442 * eta[5];
   const Real t444 = t284 * c_r_a_0_;
   const Real t445 = t444 - par.J_d;
   const Real t446 = t445 * constant<Real>(2.0L);
-  const Real t447 = t446 + par.k24;
+  const Real t447 = t446 + par.k26;
   const Real t448 = r_a_dot[0] * t447;
   const Real t449 = eta[3] * par.h_c;
   const Real t450 = t449 * par.m_c;
@@ -1573,7 +1583,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t467 = par.a_r * t350;
   const Real t468 = t467 * par.h_r;
   const Real t469 = par.m_r * t468;
-  const Real t470 = par.k22 * r_a_dot[0];
+  const Real t470 = par.k24 * r_a_dot[0];
   const Real t471 = c_r_a_0_ * t470;
   const Real t472 = s_r_a_0_ * t287;
   const Real t473 = t471 - t472;
@@ -1596,9 +1606,9 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t490 = t476 + t489;
   const Real t491 = t284 * t176;
   const Real t492 = s_r_a_0_ * t491;
-  const Real t493 = par.k17 * eta[2];
+  const Real t493 = par.k19 * eta[2];
   const Real t494 = par.k4 - t34;
-  const Real t495 = t494 + par.k27;
+  const Real t495 = t494 + par.k29;
   const Real t496 = t495 * eta[0];
   const Real t497 = t493 + t496;
   const Real t498 = par.a_r * eta[0];
@@ -1619,21 +1629,21 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t513 = t462 + t512;
   const Real t514 = -t276;
 
-  M_eta_eta[0] = par.k31;
+  M_eta_eta[0] = par.k33;
   M_eta_eta[1] = constant<Real>(0.0L);
   M_eta_eta[2] = constant<Real>(0.0L);
   M_eta_eta[3] = constant<Real>(0.0L);
   M_eta_eta[4] = t107;
   M_eta_eta[5] = t140;
   M_eta_eta[6] = constant<Real>(0.0L);
-  M_eta_eta[7] = par.k31;
+  M_eta_eta[7] = par.k33;
   M_eta_eta[8] = constant<Real>(0.0L);
   M_eta_eta[9] = t419;
   M_eta_eta[10] = constant<Real>(0.0L);
   M_eta_eta[11] = t101;
   M_eta_eta[12] = constant<Real>(0.0L);
   M_eta_eta[13] = constant<Real>(0.0L);
-  M_eta_eta[14] = par.k31;
+  M_eta_eta[14] = par.k33;
   M_eta_eta[15] = t410;
   M_eta_eta[16] = t420;
   M_eta_eta[17] = constant<Real>(0.0L);
@@ -1700,7 +1710,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   m_pa[3] = constant<Real>(0.0L);
   m_pa[4] = constant<Real>(0.0L);
   m_pa[5] = constant<Real>(0.0L);
-  m_aa[0] = par.k39;
+  m_aa[0] = par.k41;
   m_aa[1] = constant<Real>(0.0L);
   m_aa[2] = constant<Real>(0.0L);
   m_aa[3] = par.k7;
@@ -5893,8 +5903,8 @@ inline void torque_driven_velocities(const Prepared<Real>&,
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
-/// route: projected recursion
-/// operations: 397 add, 564 mul, 9 div, 5 sin, 5 cos
+/// route: orthogonal basis, all blocks
+/// operations: 406 add, 558 mul, 10 div, 5 sin, 5 cos
 /// @param[in]  par           made by prepare()
 /// @param[in]  R             (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p           (3) rad or m: rear_left_spin, rear_right_spin, front_spin
@@ -6263,801 +6273,869 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t326 = t292 - t287;
   const Real t327 = t302 - t301;
 
-  // deck: acceleration
-  const Real t328 = par.g * R[8];
-  const Real t329 = par.g * R[6];
-  const Real t330 = par.g * R[7];
-
-  // rear_left_wheel: acceleration
-  const Real t331 = t328 * c_r_p_0_;
-  const Real t332 = t328 * s_r_p_0_;
-
-  // rear_right_wheel: acceleration
-  const Real t333 = t328 * s_r_p_1_;
-  const Real t334 = t328 * c_r_p_1_;
-
   // front_wheel: acceleration
-  const Real t335 = t328 * s_r_p_2_;
-  const Real t336 = t328 * c_r_p_2_;
-
-  // rider: acceleration
-  const Real t337 = t328 * s_r_a_1_;
-  const Real t338 = t328 * c_r_a_1_;
-
-  // rear_left_wheel: acceleration
-  const Real t339 = t319 * par.w;
-  const Real t340 = constant<Real>(1.0L) + t339;
-  const Real t341 = t340 * c_r_p_0_;
-  const Real t342 = s_r_p_0_ * t324;
-  const Real t343 = t340 * s_r_p_0_;
-  const Real t344 = c_r_p_0_ * t324;
-
-  // rear_right_wheel: acceleration
-  const Real t345 = constant<Real>(1.0L) - t339;
-  const Real t346 = s_r_p_1_ * t345;
-  const Real t347 = c_r_p_1_ * t324;
-  const Real t348 = c_r_p_1_ * t345;
-  const Real t349 = s_r_p_1_ * t324;
-
-  // column: acceleration
-  const Real t350 = par.L * t324;
-  const Real t351 = t350 + t323;
-  const Real t352 = t351 * c_r_a_0_;
-  const Real t353 = t352 - s_r_a_0_;
-  const Real t354 = s_r_a_0_ * t351;
-  const Real t355 = c_r_a_0_ + t354;
-
-  // front_wheel: acceleration
-  const Real t356 = s_r_p_2_ * t355;
-  const Real t357 = c_r_p_2_ * t324;
-  const Real t358 = par.c * t324;
-  const Real t359 = t353 - t358;
-  const Real t360 = c_r_p_2_ * t355;
-  const Real t361 = s_r_p_2_ * t324;
-
-  // rider: acceleration
-  const Real t362 = par.a_r * t324;
-  const Real t363 = t323 + t362;
-  const Real t364 = t363 * c_r_a_1_;
-  const Real t365 = s_r_a_1_ * t324;
-  const Real t366 = s_r_a_1_ * t363;
-
-  // deck: wrench
-  const Real t367 = t324 * par.k8;
-  const Real t368 = par.k4 * t323;
-  const Real t369 = t367 + t368;
-  const Real t370 = par.m * t323;
-  const Real t371 = par.k4 * t324;
-  const Real t372 = t370 + t371;
+  const Real t328 = c_r_a_0_ * s_r_p_2_;
+  const Real t329 = c_r_p_2_ * c_r_a_0_;
 
   // rear_left_wheel: wrench
-  const Real t373 = t341 * par.m_w;
-  const Real t374 = par.m_w * t323;
-  const Real t375 = t214 * par.J_a;
-  const Real t376 = t342 * par.J_d;
-  const Real t377 = par.J_d * t344;
-  const Real t378 = t343 * par.m_w;
+  const Real t330 = par.m_w * s_r_p_0_;
+  const Real t331 = c_r_p_0_ * par.m_w;
 
   // rear_right_wheel: wrench
-  const Real t379 = par.J_d * t349;
-  const Real t380 = t348 * par.m_w;
-  const Real t381 = t346 * par.m_w;
-  const Real t382 = t218 * par.J_a;
-  const Real t383 = t347 * par.J_d;
+  const Real t332 = s_r_p_1_ * par.m_w;
+  const Real t333 = c_r_p_1_ * par.m_w;
 
   // column: wrench
-  const Real t384 = t355 * par.m_c;
-  const Real t385 = t353 * par.m_c;
-  const Real t386 = par.J_c * t324;
+  const Real t334 = c_r_a_0_ * par.m_c;
+  const Real t335 = s_r_a_0_ * par.m_c;
 
   // front_wheel: wrench
-  const Real t387 = t360 * par.m_w;
-  const Real t388 = t356 * par.m_w;
-  const Real t389 = par.J_d * t361;
-  const Real t390 = t359 * par.m_w;
-  const Real t391 = t357 * par.J_d;
-  const Real t392 = t216 * par.J_a;
-
-  // rider: wrench
-  const Real t393 = par.k2 * t365;
-  const Real t394 = par.m_r + t393;
-  const Real t395 = t364 * par.m_r;
-  const Real t396 = t364 * par.k2;
-  const Real t397 = par.m_r * t366;
-  const Real t398 = par.k7 * t365;
-  const Real t399 = par.k2 + t398;
+  const Real t336 = par.m_w * t329;
+  const Real t337 = t328 * par.m_w;
+  const Real t338 = s_r_a_0_ * par.m_w;
 
   // rider: joint force
-  const Real t400 = t394 + par.m;
-  const Real t401 = t395 * c_r_a_1_;
-  const Real t402 = s_r_a_1_ * t397;
-  const Real t403 = t401 + t402;
-  const Real t404 = t403 + t372;
-  const Real t405 = par.a_r * t403;
-  const Real t406 = s_r_a_1_ * t399;
-  const Real t407 = t405 + t406;
-  const Real t408 = t369 + t407;
+  const Real t339 = par.k2 * c_r_a_1_;
+  const Real t340 = par.k2 * s_r_a_1_;
 
   // front_wheel: joint force
-  const Real t409 = t385 + t390;
-  const Real t410 = c_r_p_2_ * t391;
-  const Real t411 = t389 * s_r_p_2_;
-  const Real t412 = t410 + t411;
-  const Real t413 = t390 * par.c;
-  const Real t414 = t412 - t413;
-  const Real t415 = t386 + t414;
-  const Real t416 = t388 * s_r_p_2_;
-  const Real t417 = c_r_p_2_ * t387;
-  const Real t418 = t416 + t417;
-  const Real t419 = t384 + t418;
+  const Real t341 = c_r_p_2_ * t336;
+  const Real t342 = t337 * s_r_p_2_;
+  const Real t343 = t341 + t342;
+  const Real t344 = t343 + t334;
+  const Real t345 = par.c * t338;
+  const Real t346 = t335 + t338;
 
   // column: joint force
-  const Real t420 = s_r_a_0_ * t419;
-  const Real t421 = t409 * c_r_a_0_;
-  const Real t422 = t420 + t421;
-  const Real t423 = t422 + t404;
-  const Real t424 = t422 * par.L;
-  const Real t425 = t424 + t415;
-  const Real t426 = t425 + t408;
-  const Real t427 = c_r_a_0_ * t419;
-  const Real t428 = s_r_a_0_ * t409;
-  const Real t429 = t427 - t428;
-  const Real t430 = t429 + t400;
+  const Real t347 = t344 * c_r_a_0_;
+  const Real t348 = s_r_a_0_ * t346;
+  const Real t349 = t347 + t348;
+  const Real t350 = par.k15 + t349;
+  const Real t351 = s_r_a_0_ * t344;
+  const Real t352 = c_r_a_0_ * t346;
+  const Real t353 = t351 - t352;
+  const Real t354 = t353 * par.L;
+  const Real t355 = t345 + t354;
+  const Real t356 = t355 + t340;
 
   // rear_right_wheel: joint force
-  const Real t431 = t423 + t374;
-  const Real t432 = t379 * s_r_p_1_;
-  const Real t433 = c_r_p_1_ * t383;
-  const Real t434 = t432 + t433;
-  const Real t435 = c_r_p_1_ * t380;
-  const Real t436 = s_r_p_1_ * t381;
-  const Real t437 = t435 + t436;
-  const Real t438 = t437 * par.w;
-  const Real t439 = t434 + t438;
-  const Real t440 = t426 + t439;
-  const Real t441 = t437 + t430;
+  const Real t357 = c_r_p_1_ * t333;
+  const Real t358 = t332 * s_r_p_1_;
+  const Real t359 = t357 + t358;
+  const Real t360 = t350 + t359;
+  const Real t361 = par.w * t359;
+  const Real t362 = t361 + t356;
 
   // rear_left_wheel: joint force
-  const Real t442 = c_r_p_0_ * t377;
-  const Real t443 = t376 * s_r_p_0_;
-  const Real t444 = t442 + t443;
-  const Real t445 = s_r_p_0_ * t378;
-  const Real t446 = t373 * c_r_p_0_;
-  const Real t447 = t445 + t446;
-  const Real t448 = par.w * t447;
-  const Real t449 = t444 - t448;
-  const Real t450 = t440 + t449;
-  const Real t451 = t441 + t447;
-  const Real t452 = t431 + t374;
+  const Real t363 = c_r_p_0_ * t331;
+  const Real t364 = t330 * s_r_p_0_;
+  const Real t365 = t363 + t364;
+  const Real t366 = t365 * par.w;
+  const Real t367 = t362 - t366;
+  const Real t368 = t360 + t365;
+
+  // front_wheel: acceleration
+  const Real t369 = c_r_p_2_ * s_r_a_0_;
+  const Real t370 = s_r_a_0_ * s_r_p_2_;
+
+  // front_wheel: wrench
+  const Real t371 = c_r_a_0_ * par.m_w;
+  const Real t372 = t370 * par.m_w;
+  const Real t373 = t369 * par.m_w;
+
+  // rider: wrench
+  const Real t374 = par.m_r * s_r_a_1_;
+  const Real t375 = par.m_r * c_r_a_1_;
+
+  // rider: joint force
+  const Real t376 = t375 * c_r_a_1_;
+  const Real t377 = s_r_a_1_ * t374;
+  const Real t378 = t376 + t377;
+  const Real t379 = par.a_r * t378;
+  const Real t380 = t379 + par.k4;
+  const Real t381 = t378 + par.m;
+
+  // front_wheel: joint force
+  const Real t382 = t371 + t334;
+  const Real t383 = c_r_p_2_ * t373;
+  const Real t384 = t372 * s_r_p_2_;
+  const Real t385 = t383 + t384;
+  const Real t386 = t385 + t335;
+  const Real t387 = t371 * par.c;
+
+  // column: joint force
+  const Real t388 = t382 * c_r_a_0_;
+  const Real t389 = s_r_a_0_ * t386;
+  const Real t390 = t388 + t389;
+  const Real t391 = t390 + t381;
+  const Real t392 = par.L * t390;
+  const Real t393 = t392 - t387;
+  const Real t394 = t393 + t380;
+
+  // rear_right_wheel: joint force
+  const Real t395 = t391 + par.m_w;
+
+  // rear_left_wheel: joint force
+  const Real t396 = par.m_w + t395;
+
+  // rear_left_wheel: acceleration
+  const Real t397 = par.w * s_r_p_0_;
+  const Real t398 = c_r_p_0_ * par.w;
+
+  // rear_right_wheel: acceleration
+  const Real t399 = s_r_p_1_ * par.w;
+  const Real t400 = c_r_p_1_ * par.w;
+
+  // rear_left_wheel: wrench
+  const Real t401 = t397 * par.m_w;
+  const Real t402 = c_r_p_0_ * par.J_d;
+  const Real t403 = par.m_w * t398;
+  const Real t404 = par.J_d * s_r_p_0_;
+
+  // rear_right_wheel: wrench
+  const Real t405 = t400 * par.m_w;
+  const Real t406 = s_r_p_1_ * par.J_d;
+  const Real t407 = c_r_p_1_ * par.J_d;
+  const Real t408 = t399 * par.m_w;
+
+  // rear_right_wheel: joint force
+  const Real t409 = c_r_p_1_ * t407;
+  const Real t410 = s_r_p_1_ * t406;
+  const Real t411 = t409 + t410;
+  const Real t412 = c_r_p_1_ * t405;
+  const Real t413 = s_r_p_1_ * t408;
+  const Real t414 = t412 + t413;
+  const Real t415 = t414 * par.w;
+
+  // rear_left_wheel: joint force
+  const Real t416 = t402 * c_r_p_0_;
+  const Real t417 = t404 * s_r_p_0_;
+  const Real t418 = t416 + t417;
+  const Real t419 = t403 * c_r_p_0_;
+  const Real t420 = t401 * s_r_p_0_;
+  const Real t421 = t419 + t420;
+  const Real t422 = par.w * t421;
+
+  // rider: acceleration
+  const Real t423 = par.a_r * s_r_a_1_;
+  const Real t424 = par.a_r * c_r_a_1_;
+
+  // rider: wrench
+  const Real t425 = par.m_r * t424;
+  const Real t426 = par.m_r * t423;
+
+  // rider: joint force
+  const Real t427 = s_r_a_1_ * t426;
+  const Real t428 = t425 * c_r_a_1_;
+  const Real t429 = t427 + t428;
+  const Real t430 = par.a_r * t429;
+
+  // front_wheel: acceleration
+  const Real t431 = c_r_p_2_ * t1;
+  const Real t432 = t1 * s_r_p_2_;
+
+  // column: wrench
+  const Real t433 = t1 * par.m_c;
+  const Real t434 = par.m_c * t2;
+
+  // front_wheel: wrench
+  const Real t435 = par.m_w * t431;
+  const Real t436 = t3 * par.m_w;
+  const Real t437 = c_r_p_2_ * par.J_d;
+  const Real t438 = par.J_d * s_r_p_2_;
+  const Real t439 = par.m_w * t432;
+
+  // rider: wrench
+  const Real t440 = s_r_a_1_ * par.k7;
+  const Real t441 = par.k2 * t424;
+
+  // rider: joint force
+  const Real t442 = t440 * s_r_a_1_;
+  const Real t443 = t442 + t430;
+  const Real t444 = par.k8 + t443;
+
+  // front_wheel: joint force
+  const Real t445 = t436 + t434;
+  const Real t446 = s_r_p_2_ * t438;
+  const Real t447 = c_r_p_2_ * t437;
+  const Real t448 = t446 + t447;
+  const Real t449 = t436 * par.c;
+  const Real t450 = t448 - t449;
+  const Real t451 = t450 + par.J_c;
+  const Real t452 = s_r_p_2_ * t439;
+  const Real t453 = t435 * c_r_p_2_;
+  const Real t454 = t452 + t453;
+  const Real t455 = t433 + t454;
+
+  // column: joint force
+  const Real t456 = c_r_a_0_ * t445;
+  const Real t457 = s_r_a_0_ * t455;
+  const Real t458 = t456 + t457;
+  const Real t459 = par.L * t458;
+  const Real t460 = t451 + t459;
+  const Real t461 = t444 + t460;
+
+  // rear_right_wheel: joint force
+  const Real t462 = t411 + t415;
+  const Real t463 = t461 + t462;
+
+  // rear_left_wheel: joint force
+  const Real t464 = t418 + t422;
+  const Real t465 = t463 + t464;
+
+  // front_wheel: joint force
+  const Real t466 = par.k17 + t448;
+  const Real t467 = t466 + par.J_c;
+
+  // deck: acceleration
+  const Real t468 = par.g * R[8];
+  const Real t469 = par.g * R[6];
+  const Real t470 = par.g * R[7];
+
+  // rear_left_wheel: acceleration
+  const Real t471 = t468 * c_r_p_0_;
+  const Real t472 = t468 * s_r_p_0_;
+
+  // rear_right_wheel: acceleration
+  const Real t473 = t468 * s_r_p_1_;
+  const Real t474 = t468 * c_r_p_1_;
+
+  // front_wheel: acceleration
+  const Real t475 = t468 * s_r_p_2_;
+  const Real t476 = t468 * c_r_p_2_;
+
+  // rider: acceleration
+  const Real t477 = t468 * s_r_a_1_;
+  const Real t478 = t468 * c_r_a_1_;
+
+  // rear_left_wheel: wrench
+  const Real t479 = t214 * par.J_a;
+
+  // rear_right_wheel: wrench
+  const Real t480 = t218 * par.J_a;
+
+  // front_wheel: wrench
+  const Real t481 = t216 * par.J_a;
 
   // reduced mass matrix
-  const Real t453 = t218 * t382;
-  const Real t454 = t214 * t375;
-  const Real t455 = t450 * t324;
-  const Real t456 = t323 * t452;
-  const Real t457 = t451 + t456;
-  const Real t458 = t455 + t457;
-  const Real t459 = t454 + t458;
-  const Real t460 = t453 + t459;
-  const Real t461 = t216 * t392;
-  const Real t462 = t460 + t461;
+  const Real t482 = t218 * t480;
+  const Real t483 = t214 * t479;
+  const Real t484 = t216 * t481;
+
+  // reduced mass matrix
+  const Real t485 = t367 * t324;
+  const Real t486 = t353 * t323;
+  const Real t487 = t486 + t368;
+  const Real t488 = t485 + t487;
+  const Real t489 = t396 * t323;
+  const Real t490 = t353 + t489;
+  const Real t491 = t324 * t394;
+  const Real t492 = t490 + t491;
+  const Real t493 = t492 * t323;
+  const Real t494 = t488 + t493;
+  const Real t495 = t323 * t394;
+  const Real t496 = t367 + t495;
+  const Real t497 = t465 * t324;
+  const Real t498 = t496 + t497;
+  const Real t499 = t498 * t324;
+  const Real t500 = t494 + t499;
+  const Real t501 = t483 + t500;
+  const Real t502 = t482 + t501;
+  const Real t503 = t502 + t484;
 
   // reduced accelerations
-  const Real t463 = constant<Real>(1.0L) / t462;
+  const Real t504 = constant<Real>(1.0L) / t503;
 
   // kernel
-  const Real t464 = t218 * w[0];
-  const Real t465 = w[1] * t325;
-  const Real t466 = t464 + t465;
-  const Real t467 = t214 * w[0];
-  const Real t468 = w[1] * t290;
-  const Real t469 = t467 + t468;
-  const Real t470 = w[1] * t327;
-  const Real t471 = w[0] * t324;
-  const Real t472 = t470 + t471;
-  const Real t473 = w[1] * t310;
-  const Real t474 = w[0] * t323;
-  const Real t475 = t473 + t474;
-  const Real t476 = w[1] * t326;
-  const Real t477 = t216 * w[0];
-  const Real t478 = t476 + t477;
+  const Real t505 = t218 * w[0];
+  const Real t506 = w[1] * t325;
+  const Real t507 = t505 + t506;
+  const Real t508 = t214 * w[0];
+  const Real t509 = w[1] * t290;
+  const Real t510 = t508 + t509;
+  const Real t511 = w[1] * t327;
+  const Real t512 = w[0] * t324;
+  const Real t513 = t511 + t512;
+  const Real t514 = w[1] * t310;
+  const Real t515 = w[0] * t323;
+  const Real t516 = t514 + t515;
+  const Real t517 = w[1] * t326;
+  const Real t518 = t216 * w[0];
+  const Real t519 = t517 + t518;
 
   // joint angles
-  const Real t479 = par.L * t472;
-  const Real t480 = t475 + t479;
-  const Real t481 = s_r_a_0_ * w[1];
-  const Real t482 = t480 * t481;
-  const Real t483 = c_r_a_0_ * w[1];
-  const Real t484 = t483 * w[0];
-  const Real t485 = t482 + t484;
-  const Real t486 = t480 * t483;
-  const Real t487 = t481 * w[0];
-  const Real t488 = t486 - t487;
+  const Real t520 = par.L * t513;
+  const Real t521 = t516 + t520;
+  const Real t522 = s_r_a_0_ * w[1];
+  const Real t523 = t521 * t522;
+  const Real t524 = c_r_a_0_ * w[1];
+  const Real t525 = t524 * w[0];
+  const Real t526 = t523 + t525;
+  const Real t527 = t521 * t524;
+  const Real t528 = t522 * w[0];
+  const Real t529 = t527 - t528;
 
   // drift of the kernel
-  const Real t489 = c_r_a_0_ * t488;
-  const Real t490 = s_r_a_0_ * t485;
-  const Real t491 = t489 + t490;
-  const Real t492 = t9 * t491;
-  const Real t493 = t492 * c_r_a_0_;
-  const Real t494 = t488 - t493;
-  const Real t495 = t492 * s_r_a_0_;
-  const Real t496 = t495 - t485;
-  const Real t497 = c_r_a_0_ * t496;
-  const Real t498 = s_r_a_0_ * t494;
-  const Real t499 = t497 + t498;
-  const Real t500 = t499 * t18;
-  const Real t501 = s_r_a_0_ * t500;
-  const Real t502 = t494 - t501;
-  const Real t503 = t502 * t37;
-  const Real t504 = t500 * t33;
-  const Real t505 = t492 * t42;
-  const Real t506 = t505 + t504;
-  const Real t507 = t492 * t46;
-  const Real t508 = t506 - t507;
-  const Real t509 = t504 + t508;
-  const Real t510 = t503 + t509;
-  const Real t511 = c_r_a_0_ * t500;
-  const Real t512 = t496 - t511;
-  const Real t513 = t35 * t512;
-  const Real t514 = t510 + t513;
-  const Real t515 = t514 * t63;
-  const Real t516 = t515 * t33;
-  const Real t517 = t516 - t500;
-  const Real t518 = t72 * t517;
-  const Real t519 = t515 * t42;
-  const Real t520 = t519 - t492;
-  const Real t521 = t75 * t520;
-  const Real t522 = t518 + t521;
-  const Real t523 = t46 * t515;
-  const Real t524 = t492 + t523;
-  const Real t525 = t524 * t69;
-  const Real t526 = t522 - t525;
-  const Real t527 = t518 + t526;
-  const Real t528 = t37 * t515;
-  const Real t529 = t502 - t528;
-  const Real t530 = t81 * t529;
-  const Real t531 = t527 + t530;
-  const Real t532 = t35 * t515;
-  const Real t533 = t512 - t532;
-  const Real t534 = t66 * t533;
-  const Real t535 = t531 - t534;
-  const Real t536 = t85 * t535;
-  const Real t537 = t536 * t66;
-  const Real t538 = t537 + t533;
-  const Real t539 = t538 * t169;
-  const Real t540 = t536 * t75;
-  const Real t541 = t520 - t540;
-  const Real t542 = t541 * t174;
-  const Real t543 = t536 * t72;
-  const Real t544 = t517 - t543;
-  const Real t545 = t544 * t179;
-  const Real t546 = t542 + t545;
-  const Real t547 = t536 * t69;
-  const Real t548 = t547 + t524;
-  const Real t549 = t183 * t548;
-  const Real t550 = t546 - t549;
-  const Real t551 = t550 + t545;
-  const Real t552 = t536 * t81;
-  const Real t553 = t529 - t552;
-  const Real t554 = t190 * t553;
+  const Real t530 = c_r_a_0_ * t529;
+  const Real t531 = s_r_a_0_ * t526;
+  const Real t532 = t530 + t531;
+  const Real t533 = t9 * t532;
+  const Real t534 = t533 * c_r_a_0_;
+  const Real t535 = t529 - t534;
+  const Real t536 = t533 * s_r_a_0_;
+  const Real t537 = t536 - t526;
+  const Real t538 = c_r_a_0_ * t537;
+  const Real t539 = s_r_a_0_ * t535;
+  const Real t540 = t538 + t539;
+  const Real t541 = t540 * t18;
+  const Real t542 = s_r_a_0_ * t541;
+  const Real t543 = t535 - t542;
+  const Real t544 = t543 * t37;
+  const Real t545 = t541 * t33;
+  const Real t546 = t533 * t42;
+  const Real t547 = t546 + t545;
+  const Real t548 = t533 * t46;
+  const Real t549 = t547 - t548;
+  const Real t550 = t545 + t549;
+  const Real t551 = t544 + t550;
+  const Real t552 = c_r_a_0_ * t541;
+  const Real t553 = t537 - t552;
+  const Real t554 = t35 * t553;
   const Real t555 = t551 + t554;
-  const Real t556 = t539 + t555;
-  const Real t557 = t556 * t206;
-  const Real t558 = t25 * t515;
-  const Real t559 = t558 - t492;
-  const Real t560 = t536 * t116;
-  const Real t561 = t559 - t560;
-  const Real t562 = t557 * t211;
-  const Real t563 = t561 + t562;
-  const Real t564 = t214 * t563;
-  const Real t565 = t564 * t207;
-  const Real t566 = t557 + t565;
-  const Real t567 = t566 * t131;
-  const Real t568 = t146 * t566;
-  const Real t569 = t566 * t167;
-  const Real t570 = t569 - t536;
-  const Real t571 = t564 * t114;
-  const Real t572 = t570 - t571;
-  const Real t573 = t572 * t64;
-  const Real t574 = t515 + t573;
-  const Real t575 = t568 - t574;
-  const Real t576 = t564 * t93;
-  const Real t577 = t575 - t576;
-  const Real t578 = t577 * t33;
-  const Real t579 = t578 + t500;
-  const Real t580 = t572 * t19;
-  const Real t581 = t579 + t580;
-  const Real t582 = t567 - t581;
-  const Real t583 = t564 * t19;
-  const Real t584 = t582 - t583;
+  const Real t556 = t555 * t63;
+  const Real t557 = t556 * t33;
+  const Real t558 = t557 - t541;
+  const Real t559 = t72 * t558;
+  const Real t560 = t556 * t42;
+  const Real t561 = t560 - t533;
+  const Real t562 = t75 * t561;
+  const Real t563 = t559 + t562;
+  const Real t564 = t46 * t556;
+  const Real t565 = t533 + t564;
+  const Real t566 = t565 * t69;
+  const Real t567 = t563 - t566;
+  const Real t568 = t559 + t567;
+  const Real t569 = t37 * t556;
+  const Real t570 = t543 - t569;
+  const Real t571 = t81 * t570;
+  const Real t572 = t568 + t571;
+  const Real t573 = t35 * t556;
+  const Real t574 = t553 - t573;
+  const Real t575 = t66 * t574;
+  const Real t576 = t572 - t575;
+  const Real t577 = t85 * t576;
+  const Real t578 = t577 * t66;
+  const Real t579 = t578 + t574;
+  const Real t580 = t579 * t169;
+  const Real t581 = t577 * t75;
+  const Real t582 = t561 - t581;
+  const Real t583 = t582 * t174;
+  const Real t584 = t577 * t72;
+  const Real t585 = t558 - t584;
+  const Real t586 = t585 * t179;
+  const Real t587 = t583 + t586;
+  const Real t588 = t577 * t69;
+  const Real t589 = t588 + t565;
+  const Real t590 = t183 * t589;
+  const Real t591 = t587 - t590;
+  const Real t592 = t591 + t586;
+  const Real t593 = t577 * t81;
+  const Real t594 = t570 - t593;
+  const Real t595 = t190 * t594;
+  const Real t596 = t592 + t595;
+  const Real t597 = t580 + t596;
+  const Real t598 = t597 * t206;
+  const Real t599 = t25 * t556;
+  const Real t600 = t599 - t533;
+  const Real t601 = t577 * t116;
+  const Real t602 = t600 - t601;
+  const Real t603 = t598 * t211;
+  const Real t604 = t602 + t603;
+  const Real t605 = t214 * t604;
+  const Real t606 = t605 * t207;
+  const Real t607 = t598 + t606;
+  const Real t608 = t607 * t131;
+  const Real t609 = t146 * t607;
+  const Real t610 = t607 * t167;
+  const Real t611 = t610 - t577;
+  const Real t612 = t605 * t114;
+  const Real t613 = t611 - t612;
+  const Real t614 = t613 * t64;
+  const Real t615 = t556 + t614;
+  const Real t616 = t609 - t615;
+  const Real t617 = t605 * t93;
+  const Real t618 = t616 - t617;
+  const Real t619 = t618 * t33;
+  const Real t620 = t619 + t541;
+  const Real t621 = t613 * t19;
+  const Real t622 = t620 + t621;
+  const Real t623 = t608 - t622;
+  const Real t624 = t605 * t19;
+  const Real t625 = t623 - t624;
 
   // rear_left_wheel: twist
-  const Real t585 = c_r_p_0_ * t472;
-  const Real t586 = t472 * s_r_p_0_;
+  const Real t626 = c_r_p_0_ * t513;
+  const Real t627 = t513 * s_r_p_0_;
 
   // rear_right_wheel: twist
-  const Real t587 = s_r_p_1_ * t472;
-  const Real t588 = c_r_p_1_ * t472;
+  const Real t628 = s_r_p_1_ * t513;
+  const Real t629 = c_r_p_1_ * t513;
 
   // column: twist
-  const Real t589 = w[1] + t472;
+  const Real t630 = w[1] + t513;
 
   // front_wheel: twist
-  const Real t590 = t589 * s_r_p_2_;
-  const Real t591 = c_r_p_2_ * t589;
+  const Real t631 = t630 * s_r_p_2_;
+  const Real t632 = c_r_p_2_ * t630;
 
   // rider: twist
-  const Real t592 = s_r_a_1_ * t472;
-  const Real t593 = t472 * c_r_a_1_;
+  const Real t633 = s_r_a_1_ * t513;
+  const Real t634 = t513 * c_r_a_1_;
 
   // deck: acceleration
-  const Real t594 = w[0] * t472;
-  const Real t595 = t584 + t594;
-  const Real t596 = t330 + t595;
-  const Real t597 = t472 * t472;
-  const Real t598 = t472 * t475;
-  const Real t599 = t329 - t598;
-  const Real t600 = t576 - t575;
+  const Real t635 = t513 * t513;
+  const Real t636 = t513 * t516;
+  const Real t637 = t469 - t636;
+  const Real t638 = w[0] * t513;
 
   // rear_left_wheel: acceleration
-  const Real t601 = par.w * t600;
-  const Real t602 = t601 + t599;
-  const Real t603 = t602 * c_r_p_0_;
-  const Real t604 = t603 - t332;
-  const Real t605 = t597 * par.w;
-  const Real t606 = t596 - t605;
-  const Real t607 = t469 * t586;
-  const Real t608 = c_r_p_0_ * t577;
-  const Real t609 = t607 + t608;
-  const Real t610 = t585 * t469;
-  const Real t611 = t577 * s_r_p_0_;
-  const Real t612 = t610 - t611;
-  const Real t613 = t602 * s_r_p_0_;
-  const Real t614 = t613 + t331;
+  const Real t639 = t635 * par.w;
+  const Real t640 = t510 * t627;
+  const Real t641 = t626 * t510;
 
   // rear_right_wheel: acceleration
-  const Real t615 = c_r_p_1_ * t577;
-  const Real t616 = t587 * t466;
-  const Real t617 = t615 - t616;
-  const Real t618 = t599 - t601;
-  const Real t619 = s_r_p_1_ * t618;
-  const Real t620 = t619 + t334;
-  const Real t621 = t466 * t588;
-  const Real t622 = s_r_p_1_ * t577;
-  const Real t623 = t621 + t622;
-  const Real t624 = t596 + t605;
-  const Real t625 = c_r_p_1_ * t618;
-  const Real t626 = t625 - t333;
+  const Real t642 = t507 * t629;
+  const Real t643 = t628 * t507;
 
   // column: acceleration
-  const Real t627 = par.L * t597;
-  const Real t628 = t599 - t627;
-  const Real t629 = c_r_a_0_ * t628;
-  const Real t630 = par.L * t577;
-  const Real t631 = t596 + t630;
-  const Real t632 = s_r_a_0_ * t631;
-  const Real t633 = t629 + t632;
-  const Real t634 = t589 * t589;
-  const Real t635 = c_r_a_0_ * t631;
-  const Real t636 = s_r_a_0_ * t628;
-  const Real t637 = t635 - t636;
+  const Real t644 = par.L * t635;
+  const Real t645 = t637 - t644;
+  const Real t646 = s_r_a_0_ * t645;
+  const Real t647 = t630 * t630;
+  const Real t648 = c_r_a_0_ * t645;
 
   // front_wheel: acceleration
-  const Real t638 = t577 * par.c;
-  const Real t639 = t637 - t638;
-  const Real t640 = c_r_p_2_ * t577;
-  const Real t641 = t590 * t478;
-  const Real t642 = t640 - t641;
-  const Real t643 = t634 * par.c;
-  const Real t644 = t643 + t633;
-  const Real t645 = c_r_p_2_ * t644;
-  const Real t646 = t645 - t335;
-  const Real t647 = t577 * s_r_p_2_;
-  const Real t648 = t591 * t478;
-  const Real t649 = t647 + t648;
-  const Real t650 = t644 * s_r_p_2_;
-  const Real t651 = t336 + t650;
+  const Real t649 = t647 * par.c;
+  const Real t650 = t631 * t519;
+  const Real t651 = t632 * t519;
 
   // rider: acceleration
-  const Real t652 = t592 * t593;
-  const Real t653 = par.a_r * t577;
-  const Real t654 = t596 + t653;
-  const Real t655 = t654 * c_r_a_1_;
-  const Real t656 = t337 + t655;
-  const Real t657 = w[2] * t593;
-  const Real t658 = s_r_a_1_ * t577;
-  const Real t659 = t657 + t658;
-  const Real t660 = t657 + t659;
-  const Real t661 = par.a_r * t597;
-  const Real t662 = t599 - t661;
-  const Real t663 = w[2] * w[2];
-  const Real t664 = t592 * t592;
-  const Real t665 = t663 + t664;
-  const Real t666 = s_r_a_1_ * t654;
-  const Real t667 = t338 - t666;
+  const Real t652 = t633 * t634;
+  const Real t653 = par.a_r * t635;
+  const Real t654 = t637 - t653;
+  const Real t655 = w[2] * t634;
+  const Real t656 = w[2] * w[2];
+  const Real t657 = t633 * t633;
+  const Real t658 = t656 + t657;
 
   // deck: wrench
-  const Real t668 = t596 * par.k4;
-  const Real t669 = t577 * par.k8;
-  const Real t670 = t668 + t669;
-  const Real t671 = t599 * par.m;
-  const Real t672 = par.k4 * t597;
-  const Real t673 = t671 - t672;
-  const Real t674 = par.k4 * t577;
-  const Real t675 = t596 * par.m;
-  const Real t676 = t674 + t675;
+  const Real t659 = t637 * par.m;
+  const Real t660 = par.k4 * t635;
+  const Real t661 = t659 - t660;
 
   // rear_left_wheel: wrench
-  const Real t677 = t564 * par.J_a;
-  const Real t678 = par.J_d * t612;
-  const Real t679 = par.k13 * t610;
-  const Real t680 = t678 - t679;
-  const Real t681 = par.m_w * t614;
-  const Real t682 = t607 * par.k14;
-  const Real t683 = par.J_d * t609;
-  const Real t684 = t682 + t683;
-  const Real t685 = t606 * par.m_w;
-  const Real t686 = t604 * par.m_w;
+  const Real t662 = t640 * par.k14;
+  const Real t663 = t605 * par.J_a;
+  const Real t664 = par.k13 * t641;
 
   // rear_right_wheel: wrench
-  const Real t687 = par.m_w * t626;
-  const Real t688 = par.m_w * t620;
-  const Real t689 = t617 * par.J_d;
-  const Real t690 = par.k14 * t616;
-  const Real t691 = t689 - t690;
-  const Real t692 = par.m_w * t624;
-  const Real t693 = t572 * par.J_a;
-  const Real t694 = t621 * par.k13;
-  const Real t695 = par.J_d * t623;
-  const Real t696 = t694 - t695;
-
-  // column: wrench
-  const Real t697 = t577 * par.J_c;
-  const Real t698 = t633 * par.m_c;
-  const Real t699 = par.m_c * t637;
+  const Real t665 = par.k14 * t643;
+  const Real t666 = t642 * par.k13;
+  const Real t667 = t613 * par.J_a;
 
   // front_wheel: wrench
-  const Real t700 = par.k13 * t648;
-  const Real t701 = par.J_d * t649;
-  const Real t702 = t700 - t701;
-  const Real t703 = t639 * par.m_w;
-  const Real t704 = t646 * par.m_w;
-  const Real t705 = t642 * par.J_d;
-  const Real t706 = t641 * par.k14;
-  const Real t707 = t705 - t706;
-  const Real t708 = par.m_w * t651;
-  const Real t709 = par.J_a * t566;
+  const Real t668 = t650 * par.k14;
+  const Real t669 = par.J_a * t607;
+  const Real t670 = par.k13 * t651;
 
   // rider: wrench
-  const Real t710 = t660 * par.k2;
-  const Real t711 = t662 * par.m_r;
-  const Real t712 = t710 + t711;
-  const Real t713 = par.m_r * t667;
-  const Real t714 = par.k2 * t665;
-  const Real t715 = t713 - t714;
-  const Real t716 = t662 * par.k2;
-  const Real t717 = t657 * par.k7;
-  const Real t718 = t659 * par.k7;
-  const Real t719 = t717 + t718;
-  const Real t720 = t716 + t719;
-  const Real t721 = t656 * par.k2;
-  const Real t722 = t652 * par.k7;
-  const Real t723 = t721 + t722;
-  const Real t724 = t656 * par.m_r;
-  const Real t725 = t652 * par.k2;
-  const Real t726 = t724 + t725;
-
-  // rider: joint force
-  const Real t727 = t712 + t673;
-  const Real t728 = c_r_a_1_ * t726;
-  const Real t729 = s_r_a_1_ * t715;
-  const Real t730 = t728 - t729;
-  const Real t731 = t730 + t676;
-  const Real t732 = s_r_a_1_ * t720;
-  const Real t733 = par.a_r * t730;
-  const Real t734 = t732 + t733;
-  const Real t735 = t670 + t734;
-
-  // front_wheel: joint force
-  const Real t736 = t703 + t699;
-  const Real t737 = c_r_p_2_ * t707;
-  const Real t738 = t702 * s_r_p_2_;
-  const Real t739 = t737 - t738;
-  const Real t740 = t703 * par.c;
-  const Real t741 = t739 - t740;
-  const Real t742 = t741 + t697;
-  const Real t743 = s_r_p_2_ * t708;
-  const Real t744 = c_r_p_2_ * t704;
-  const Real t745 = t743 + t744;
-  const Real t746 = t698 + t745;
-
-  // column: joint force
-  const Real t747 = c_r_a_0_ * t746;
-  const Real t748 = t736 * s_r_a_0_;
-  const Real t749 = t747 - t748;
-  const Real t750 = t727 + t749;
-  const Real t751 = s_r_a_0_ * t746;
-  const Real t752 = t736 * c_r_a_0_;
-  const Real t753 = t751 + t752;
-  const Real t754 = t753 * par.L;
-  const Real t755 = t742 + t754;
-  const Real t756 = t735 + t755;
-  const Real t757 = t753 + t731;
-
-  // rear_right_wheel: joint force
-  const Real t758 = c_r_p_1_ * t691;
-  const Real t759 = s_r_p_1_ * t696;
-  const Real t760 = t758 - t759;
-  const Real t761 = t687 * c_r_p_1_;
-  const Real t762 = s_r_p_1_ * t688;
-  const Real t763 = t761 + t762;
-  const Real t764 = t763 * par.w;
-  const Real t765 = t760 + t764;
-  const Real t766 = t756 + t765;
-  const Real t767 = t750 + t763;
-  const Real t768 = t757 + t692;
-
-  // rear_left_wheel: joint force
-  const Real t769 = t768 + t685;
-  const Real t770 = t684 * c_r_p_0_;
-  const Real t771 = t680 * s_r_p_0_;
-  const Real t772 = t770 - t771;
-  const Real t773 = c_r_p_0_ * t686;
-  const Real t774 = t681 * s_r_p_0_;
-  const Real t775 = t773 + t774;
-  const Real t776 = t775 * par.w;
-  const Real t777 = t772 - t776;
-  const Real t778 = t766 + t777;
-  const Real t779 = t767 + t775;
+  const Real t671 = t655 * par.k7;
+  const Real t672 = t654 * par.k2;
+  const Real t673 = t654 * par.m_r;
+  const Real t674 = par.k2 * t658;
+  const Real t675 = t652 * par.k2;
+  const Real t676 = t652 * par.k7;
 
   // reduced forces
-  const Real t780 = t677 * t214;
-  const Real t781 = t769 * t323;
-  const Real t782 = t781 + t779;
-  const Real t783 = t778 * t324;
-  const Real t784 = t782 + t783;
-  const Real t785 = t780 - t784;
-  const Real t786 = t218 * t693;
-  const Real t787 = t785 - t786;
-  const Real t788 = t216 * t709;
-  const Real t789 = t787 + t788;
-  const Real t790 = t326 * t709;
-  const Real t791 = t677 * t290;
-  const Real t792 = t769 * t310;
-  const Real t793 = t778 * t327;
-  const Real t794 = t792 + t793;
-  const Real t795 = t791 - t794;
-  const Real t796 = t325 * t693;
-  const Real t797 = t795 - t796;
-  const Real t798 = t790 + t797;
-  const Real t799 = tau_a[0] - t742;
-  const Real t800 = t798 + t799;
-  const Real t801 = tau_a[1] + t723;
+  const Real t677 = t663 * t214;
+  const Real t678 = t218 * t667;
+  const Real t679 = t216 * t669;
 
   // reduced mass matrix
-  const Real t802 = t326 * t392;
-  const Real t803 = t375 * t290;
-  const Real t804 = t310 * t452;
-  const Real t805 = t450 * t327;
-  const Real t806 = t804 + t805;
-  const Real t807 = t803 + t806;
-  const Real t808 = t325 * t382;
-  const Real t809 = t807 + t808;
-  const Real t810 = t802 + t809;
-  const Real t811 = t810 + t415;
+  const Real t680 = t323 * t339;
+
+  // deck: acceleration
+  const Real t681 = t638 + t470;
 
   // rear_left_wheel: acceleration
-  const Real t812 = s_r_p_0_ * t327;
-  const Real t813 = t303 * par.w;
-  const Real t814 = s_r_p_0_ * t813;
-  const Real t815 = c_r_p_0_ * t327;
-  const Real t816 = c_r_p_0_ * t813;
+  const Real t682 = t681 - t639;
+  const Real t683 = t637 * c_r_p_0_;
+  const Real t684 = t683 - t472;
+  const Real t685 = t637 * s_r_p_0_;
+  const Real t686 = t471 + t685;
 
   // rear_right_wheel: acceleration
-  const Real t817 = s_r_p_1_ * t327;
-  const Real t818 = s_r_p_1_ * t813;
-  const Real t819 = c_r_p_1_ * t813;
-  const Real t820 = c_r_p_1_ * t327;
+  const Real t687 = t639 + t681;
+  const Real t688 = s_r_p_1_ * t637;
+  const Real t689 = t474 + t688;
+  const Real t690 = c_r_p_1_ * t637;
+  const Real t691 = t690 - t473;
 
   // column: acceleration
-  const Real t821 = par.L * t327;
-  const Real t822 = t310 + t821;
-  const Real t823 = c_r_a_0_ * t822;
-  const Real t824 = s_r_a_0_ * t822;
-  const Real t825 = constant<Real>(1.0L) + t327;
+  const Real t692 = s_r_a_0_ * t681;
+  const Real t693 = t692 + t648;
+  const Real t694 = c_r_a_0_ * t681;
+  const Real t695 = t694 - t646;
 
   // front_wheel: acceleration
-  const Real t826 = s_r_p_2_ * t825;
-  const Real t827 = c_r_p_2_ * t824;
-  const Real t828 = par.c * t825;
-  const Real t829 = t823 - t828;
-  const Real t830 = c_r_p_2_ * t825;
-  const Real t831 = t824 * s_r_p_2_;
+  const Real t696 = t693 + t649;
+  const Real t697 = t696 * c_r_p_2_;
+  const Real t698 = t697 - t475;
+  const Real t699 = t696 * s_r_p_2_;
+  const Real t700 = t476 + t699;
 
   // rider: acceleration
-  const Real t832 = par.a_r * t327;
-  const Real t833 = t832 + t310;
-  const Real t834 = s_r_a_1_ * t833;
-  const Real t835 = s_r_a_1_ * t327;
-  const Real t836 = c_r_a_1_ * t833;
+  const Real t701 = t655 * constant<Real>(2.0L);
+  const Real t702 = t681 * c_r_a_1_;
+  const Real t703 = t702 + t477;
+  const Real t704 = s_r_a_1_ * t681;
+  const Real t705 = t478 - t704;
 
   // deck: wrench
-  const Real t837 = par.m * t310;
-  const Real t838 = par.k4 * t327;
-  const Real t839 = t837 + t838;
-  const Real t840 = par.k8 * t327;
-  const Real t841 = par.k4 * t310;
-  const Real t842 = t840 + t841;
+  const Real t706 = t681 * par.k4;
+  const Real t707 = t681 * par.m;
 
   // rear_left_wheel: wrench
-  const Real t843 = t814 * par.m_w;
-  const Real t844 = par.m_w * t310;
-  const Real t845 = t812 * par.J_d;
-  const Real t846 = par.J_d * t815;
-  const Real t847 = par.m_w * t816;
-  const Real t848 = par.J_a * t290;
+  const Real t708 = t686 * par.m_w;
+  const Real t709 = t640 * par.J_d;
+  const Real t710 = t662 + t709;
+  const Real t711 = par.J_d * t641;
+  const Real t712 = t711 - t664;
+  const Real t713 = t682 * par.m_w;
+  const Real t714 = t684 * par.m_w;
 
   // rear_right_wheel: wrench
-  const Real t849 = par.J_d * t820;
-  const Real t850 = t818 * par.m_w;
-  const Real t851 = par.J_a * t325;
-  const Real t852 = t817 * par.J_d;
-  const Real t853 = par.m_w * t819;
+  const Real t715 = par.J_d * t643;
+  const Real t716 = t665 + t715;
+  const Real t717 = par.m_w * t689;
+  const Real t718 = t642 * par.J_d;
+  const Real t719 = t666 - t718;
+  const Real t720 = t687 * par.m_w;
+  const Real t721 = par.m_w * t691;
 
   // column: wrench
-  const Real t854 = t824 * par.m_c;
-  const Real t855 = t823 * par.m_c;
-  const Real t856 = par.J_c * t825;
+  const Real t722 = t695 * par.m_c;
+  const Real t723 = t693 * par.m_c;
 
   // front_wheel: wrench
-  const Real t857 = par.m_w * t831;
-  const Real t858 = t826 * par.J_d;
-  const Real t859 = par.J_a * t326;
-  const Real t860 = par.J_d * t830;
-  const Real t861 = t827 * par.m_w;
-  const Real t862 = t829 * par.m_w;
+  const Real t724 = t698 * par.m_w;
+  const Real t725 = par.m_w * t700;
+  const Real t726 = par.J_d * t650;
+  const Real t727 = t668 + t726;
+  const Real t728 = t695 * par.m_w;
+  const Real t729 = par.J_d * t651;
+  const Real t730 = t670 - t729;
 
   // rider: wrench
-  const Real t863 = t835 * par.k7;
-  const Real t864 = par.m_r * t834;
-  const Real t865 = par.m_r * t836;
-  const Real t866 = par.k2 * t836;
+  const Real t731 = t703 * par.k2;
+  const Real t732 = t731 + t676;
+  const Real t733 = t701 * par.k2;
+  const Real t734 = t733 + t673;
+  const Real t735 = t703 * par.m_r;
+  const Real t736 = t675 + t735;
+  const Real t737 = t671 * constant<Real>(2.0L);
+  const Real t738 = t737 + t672;
+  const Real t739 = par.m_r * t705;
+  const Real t740 = t739 - t674;
 
   // rider: joint force
-  const Real t867 = t864 * s_r_a_1_;
-  const Real t868 = t865 * c_r_a_1_;
-  const Real t869 = t867 + t868;
-  const Real t870 = t869 + t839;
-  const Real t871 = par.a_r * t869;
-  const Real t872 = t863 * s_r_a_1_;
-  const Real t873 = t871 + t872;
-  const Real t874 = t873 + t842;
+  const Real t741 = t736 * c_r_a_1_;
+  const Real t742 = s_r_a_1_ * t740;
+  const Real t743 = t741 - t742;
+  const Real t744 = t707 + t743;
+  const Real t745 = t661 + t734;
+  const Real t746 = par.a_r * t743;
+  const Real t747 = s_r_a_1_ * t738;
+  const Real t748 = t746 + t747;
+  const Real t749 = t706 + t748;
 
   // front_wheel: joint force
-  const Real t875 = c_r_p_2_ * t860;
-  const Real t876 = t858 * s_r_p_2_;
-  const Real t877 = t875 + t876;
-  const Real t878 = par.c * t862;
-  const Real t879 = t877 - t878;
-  const Real t880 = t856 + t879;
-  const Real t881 = t855 + t862;
-  const Real t882 = c_r_p_2_ * t861;
-  const Real t883 = t857 * s_r_p_2_;
-  const Real t884 = t882 + t883;
-  const Real t885 = t884 + t854;
+  const Real t750 = t722 + t728;
+  const Real t751 = par.c * t728;
+  const Real t752 = c_r_p_2_ * t727;
+  const Real t753 = s_r_p_2_ * t730;
+  const Real t754 = t752 + t753;
+  const Real t755 = t751 + t754;
+  const Real t756 = t725 * s_r_p_2_;
+  const Real t757 = c_r_p_2_ * t724;
+  const Real t758 = t756 + t757;
+  const Real t759 = t758 + t723;
 
   // column: joint force
-  const Real t886 = c_r_a_0_ * t881;
-  const Real t887 = s_r_a_0_ * t885;
-  const Real t888 = t886 + t887;
-  const Real t889 = t888 * par.L;
-  const Real t890 = t880 + t889;
-  const Real t891 = t874 + t890;
-  const Real t892 = t870 + t888;
+  const Real t760 = c_r_a_0_ * t759;
+  const Real t761 = s_r_a_0_ * t750;
+  const Real t762 = t760 - t761;
+  const Real t763 = t762 + t745;
+  const Real t764 = s_r_a_0_ * t759;
+  const Real t765 = c_r_a_0_ * t750;
+  const Real t766 = t764 + t765;
+  const Real t767 = par.L * t766;
+  const Real t768 = t767 - t755;
+  const Real t769 = t749 + t768;
+  const Real t770 = t744 + t766;
 
   // rear_right_wheel: joint force
-  const Real t893 = t849 * c_r_p_1_;
-  const Real t894 = s_r_p_1_ * t852;
-  const Real t895 = t893 + t894;
-  const Real t896 = s_r_p_1_ * t850;
-  const Real t897 = c_r_p_1_ * t853;
-  const Real t898 = t896 + t897;
-  const Real t899 = t898 * par.w;
-  const Real t900 = t895 - t899;
-  const Real t901 = t900 + t891;
-  const Real t902 = t844 + t892;
+  const Real t771 = s_r_p_1_ * t717;
+  const Real t772 = c_r_p_1_ * t721;
+  const Real t773 = t771 + t772;
+  const Real t774 = t763 + t773;
+  const Real t775 = t773 * par.w;
+  const Real t776 = s_r_p_1_ * t719;
+  const Real t777 = t716 * c_r_p_1_;
+  const Real t778 = t776 + t777;
+  const Real t779 = t775 - t778;
+  const Real t780 = t779 + t769;
+  const Real t781 = t770 + t720;
 
   // rear_left_wheel: joint force
-  const Real t903 = t845 * s_r_p_0_;
-  const Real t904 = c_r_p_0_ * t846;
-  const Real t905 = t903 + t904;
-  const Real t906 = c_r_p_0_ * t847;
-  const Real t907 = t843 * s_r_p_0_;
-  const Real t908 = t906 + t907;
-  const Real t909 = t908 * par.w;
-  const Real t910 = t905 - t909;
-  const Real t911 = t901 + t910;
-  const Real t912 = t902 + t844;
+  const Real t782 = t781 + t713;
+  const Real t783 = t710 * c_r_p_0_;
+  const Real t784 = t712 * s_r_p_0_;
+  const Real t785 = t783 - t784;
+  const Real t786 = t708 * s_r_p_0_;
+  const Real t787 = c_r_p_0_ * t714;
+  const Real t788 = t786 + t787;
+  const Real t789 = t788 * par.w;
+  const Real t790 = t785 - t789;
+  const Real t791 = t780 + t790;
+  const Real t792 = t788 + t774;
 
   // reduced mass matrix
-  const Real t913 = t859 * t326;
-  const Real t914 = t290 * t848;
-  const Real t915 = t310 * t912;
-  const Real t916 = t911 * t327;
-  const Real t917 = t915 + t916;
-  const Real t918 = t914 + t917;
-  const Real t919 = t851 * t325;
-  const Real t920 = t918 + t919;
-  const Real t921 = t913 + t920;
-  const Real t922 = t880 + t921;
+  const Real t793 = t387 * t323;
+  const Real t794 = t345 - t793;
+  const Real t795 = t451 * t324;
+  const Real t796 = t794 + t795;
+  const Real t797 = t324 * t441;
+  const Real t798 = t797 + t680;
+
+  // reduced forces
+  const Real t799 = t625 * t339;
+  const Real t800 = t618 * t441;
+  const Real t801 = t799 + t800;
+  const Real t802 = t732 + t801;
+  const Real t803 = tau_a[1] + t802;
+  const Real t804 = t451 * t618;
+  const Real t805 = t625 * t387;
+  const Real t806 = t804 - t805;
+  const Real t807 = t755 - t806;
+  const Real t808 = t807 + tau_a[0];
+  const Real t809 = t618 * t394;
+  const Real t810 = t396 * t625;
+  const Real t811 = t809 + t810;
+  const Real t812 = t811 + t782;
+  const Real t813 = t812 * t323;
+  const Real t814 = t353 * t625;
+  const Real t815 = t367 * t618;
+  const Real t816 = t814 + t815;
+  const Real t817 = t816 + t792;
+  const Real t818 = t813 + t817;
+  const Real t819 = t465 * t618;
+  const Real t820 = t625 * t394;
+  const Real t821 = t819 + t820;
+  const Real t822 = t821 + t791;
+  const Real t823 = t822 * t324;
+  const Real t824 = t818 + t823;
+  const Real t825 = t677 - t824;
+  const Real t826 = t825 - t678;
+  const Real t827 = t826 + t679;
 
   // reduced accelerations
-  const Real t923 = t396 * t463;
-  const Real t924 = t789 * t923;
-  const Real t925 = t801 + t924;
-  const Real t926 = t811 * t463;
-  const Real t927 = t396 * t926;
+  const Real t828 = t504 * t798;
+  const Real t829 = t828 * t827;
+  const Real t830 = t803 + t829;
+  const Real t831 = t828 * t798;
+  const Real t832 = par.k7 - t831;
+  const Real t833 = t504 * t827;
+
+  // orthogonal basis
+  const Real t834 = t218 * t325;
+  const Real t835 = t310 * t323;
+  const Real t836 = t324 * t327;
+  const Real t837 = t835 + t836;
+  const Real t838 = t214 * t290;
+  const Real t839 = t837 + t838;
+  const Real t840 = t834 + t839;
+  const Real t841 = t216 * t326;
+  const Real t842 = t840 + t841;
+  const Real t843 = t218 * t218;
+  const Real t844 = t214 * t214;
+  const Real t845 = t323 * t323;
+  const Real t846 = t845 + constant<Real>(1.0L);
+  const Real t847 = t324 * t324;
+  const Real t848 = t846 + t847;
+  const Real t849 = t844 + t848;
+  const Real t850 = t843 + t849;
+  const Real t851 = t216 * t216;
+  const Real t852 = t850 + t851;
+  const Real t853 = constant<Real>(1.0L) / t852;
+  const Real t854 = t842 * t853;
+  const Real t855 = t854 * t324;
+  const Real t856 = t327 - t855;
+  const Real t857 = t218 * t854;
+  const Real t858 = t325 - t857;
+  const Real t859 = t214 * t854;
+  const Real t860 = t859 - t290;
+  const Real t861 = t854 * t216;
+  const Real t862 = t326 - t861;
+  const Real t863 = t854 * t323;
+  const Real t864 = t310 - t863;
+
+  // reduced forces
+  const Real t865 = t663 * t860;
+  const Real t866 = t858 * t667;
+  const Real t867 = t862 * t669;
+
+  // reduced mass matrix
+  const Real t868 = t862 * t481;
+  const Real t869 = t479 * t860;
+  const Real t870 = t858 * t480;
+
+  // rear_left_wheel: wrench
+  const Real t871 = par.J_a * t860;
+
+  // rear_right_wheel: wrench
+  const Real t872 = t858 * par.J_a;
+
+  // front_wheel: wrench
+  const Real t873 = par.J_a * t862;
+
+  // reduced mass matrix
+  const Real t874 = t873 * t862;
+  const Real t875 = t858 * t872;
+  const Real t876 = t860 * t871;
+
+  // reduced mass matrix
+  const Real t877 = t339 * t864;
+
+  // reduced mass matrix
+  const Real t878 = t856 * t441;
+  const Real t879 = t878 + t877;
+  const Real t880 = t856 * t451;
+  const Real t881 = t387 * t864;
+  const Real t882 = t854 * t345;
+  const Real t883 = t881 + t882;
+  const Real t884 = t880 - t883;
+  const Real t885 = t884 + t467;
+  const Real t886 = t856 * t465;
+  const Real t887 = t864 * t394;
+  const Real t888 = t367 * t854;
+  const Real t889 = t887 - t888;
+  const Real t890 = t886 + t889;
+  const Real t891 = t890 + t451;
+  const Real t892 = t856 * t891;
+  const Real t893 = t396 * t864;
+  const Real t894 = t353 * t854;
+  const Real t895 = t893 - t894;
+  const Real t896 = t856 * t394;
+  const Real t897 = t895 + t896;
+  const Real t898 = t897 - t387;
+  const Real t899 = t864 * t898;
+  const Real t900 = t353 * t864;
+  const Real t901 = t854 * t368;
+  const Real t902 = t900 - t901;
+  const Real t903 = t856 * t367;
+  const Real t904 = t902 + t903;
+  const Real t905 = t904 + t345;
+  const Real t906 = t854 * t905;
+  const Real t907 = t899 - t906;
+  const Real t908 = t892 + t907;
+  const Real t909 = t876 + t908;
+  const Real t910 = t875 + t909;
+  const Real t911 = t910 + t874;
+  const Real t912 = t885 + t911;
+  const Real t913 = t492 * t864;
+  const Real t914 = t488 * t854;
+  const Real t915 = t913 - t914;
+  const Real t916 = t856 * t498;
+  const Real t917 = t915 + t916;
+  const Real t918 = t917 - t869;
+  const Real t919 = t918 + t870;
+  const Real t920 = t919 + t868;
+  const Real t921 = t920 + t796;
+
+  // reduced forces
+  const Real t922 = t854 * t817;
+  const Real t923 = t812 * t864;
+  const Real t924 = t922 - t923;
+  const Real t925 = t856 * t822;
+  const Real t926 = t924 - t925;
+  const Real t927 = t926 - t865;
   const Real t928 = t927 - t866;
-  const Real t929 = t926 * t811;
-  const Real t930 = t922 - t929;
-  const Real t931 = constant<Real>(1.0L) / t930;
-  const Real t932 = t928 * t931;
-  const Real t933 = t789 * t926;
-  const Real t934 = t800 - t933;
-  const Real t935 = t932 * t934;
-  const Real t936 = t925 - t935;
-  const Real t937 = t396 * t923;
-  const Real t938 = par.k7 - t937;
-  const Real t939 = t932 * t928;
-  const Real t940 = t938 - t939;
-  const Real t941 = constant<Real>(1.0L) / t940;
-  const Real t942 = t936 * t941;
-  const Real t943 = t942 * t923;
-  const Real t944 = t789 * t463;
-  const Real t945 = t934 * t931;
-  const Real t946 = t932 * t942;
-  const Real t947 = t945 - t946;
-  const Real t948 = t947 * t926;
-  const Real t949 = t944 - t948;
-  const Real t950 = t943 + t949;
+  const Real t929 = t928 + t867;
+  const Real t930 = t929 + t808;
+
+  // reduced accelerations
+  const Real t931 = t504 * t921;
+  const Real t932 = t931 * t827;
+  const Real t933 = t930 - t932;
+  const Real t934 = t931 * t921;
+  const Real t935 = t912 - t934;
+  const Real t936 = constant<Real>(1.0L) / t935;
+  const Real t937 = t931 * t798;
+  const Real t938 = t937 - t879;
+  const Real t939 = t936 * t938;
+  const Real t940 = t933 * t939;
+  const Real t941 = t830 - t940;
+  const Real t942 = t938 * t939;
+  const Real t943 = t832 - t942;
+  const Real t944 = constant<Real>(1.0L) / t943;
+  const Real t945 = t941 * t944;
+  const Real t946 = t828 * t945;
+  const Real t947 = t933 * t936;
+  const Real t948 = t945 * t939;
+  const Real t949 = t947 - t948;
+  const Real t950 = t931 * t949;
+  const Real t951 = t833 - t950;
+  const Real t952 = t946 + t951;
+  const Real t953 = t854 * t949;
+  const Real t954 = t952 - t953;
 
   // accelerations
-  const Real t951 = t947 * t290;
-  const Real t952 = t214 * t950;
-  const Real t953 = t951 + t952;
-  const Real t954 = t564 - t953;
-  const Real t955 = t947 * t326;
-  const Real t956 = t216 * t950;
-  const Real t957 = t955 + t956;
-  const Real t958 = t957 - t566;
-  const Real t959 = t310 * t947;
-  const Real t960 = t950 * t323;
+  const Real t955 = t860 * t949;
+  const Real t956 = t952 * t214;
+  const Real t957 = t955 - t956;
+  const Real t958 = t605 + t957;
+  const Real t959 = t952 * t323;
+  const Real t960 = t864 * t949;
   const Real t961 = t959 + t960;
-  const Real t962 = t961 + t584;
-  const Real t963 = t947 * t325;
-  const Real t964 = t218 * t950;
+  const Real t962 = t625 + t961;
+  const Real t963 = t856 * t949;
+  const Real t964 = t952 * t324;
   const Real t965 = t963 + t964;
-  const Real t966 = t572 + t965;
-  const Real t967 = t950 * t324;
-  const Real t968 = t947 * t327;
+  const Real t966 = t618 + t965;
+  const Real t967 = t952 * t216;
+  const Real t968 = t862 * t949;
   const Real t969 = t967 + t968;
-  const Real t970 = t577 + t969;
+  const Real t970 = t969 - t607;
+  const Real t971 = t952 * t218;
+  const Real t972 = t858 * t949;
+  const Real t973 = t971 + t972;
+  const Real t974 = t613 + t973;
 
-  w_dot_out[0] = t950;
-  w_dot_out[1] = t947;
-  w_dot_out[2] = t942;
-  eta_dot[0] = t950;
+  w_dot_out[0] = t954;
+  w_dot_out[1] = t949;
+  w_dot_out[2] = t945;
+  eta_dot[0] = t954;
   eta_dot[1] = t962;
   eta_dot[2] = constant<Real>(0.0L);
   eta_dot[3] = constant<Real>(0.0L);
   eta_dot[4] = constant<Real>(0.0L);
-  eta_dot[5] = t970;
-  r_p_ddot[0] = t954;
-  r_p_ddot[1] = t966;
-  r_p_ddot[2] = t958;
-  r_a_ddot_out[0] = t947;
-  r_a_ddot_out[1] = t942;
+  eta_dot[5] = t966;
+  r_p_ddot[0] = t958;
+  r_p_ddot[1] = t974;
+  r_p_ddot[2] = t970;
+  r_a_ddot_out[0] = t949;
+  r_a_ddot_out[1] = t945;
 }
 
 /// Constraint forces with the torques given, least norm.
@@ -8260,8 +8338,8 @@ inline void energies(const Prepared<Real>& par,
   const Real t8 = par.k2 * s_r_a_1_;
 
   // column: joint force
-  const Real t9 = s_r_a_0_ * par.k15;
-  const Real t10 = c_r_a_0_ * par.k15;
+  const Real t9 = s_r_a_0_ * par.k16;
+  const Real t10 = c_r_a_0_ * par.k16;
 
   // rear_left_wheel: twist
   const Real t11 = eta[4] + r_p_dot[0];
@@ -8285,15 +8363,15 @@ inline void energies(const Prepared<Real>& par,
   const Real t23 = t9 + t8;
   const Real t24 = t13 + eta[1];
   const Real t25 = r_a_dot[0] * r_a_dot[0];
-  const Real t26 = par.k16 * c_r_a_0_;
+  const Real t26 = par.k18 * c_r_a_0_;
   const Real t27 = c_r_a_0_ * t26;
   const Real t28 = eta[5] * par.h_r;
   const Real t29 = t28 * s_r_a_1_;
   const Real t30 = t29 + eta[0];
-  const Real t31 = c_r_a_0_ * par.k21;
-  const Real t32 = par.k35 + t31;
+  const Real t31 = c_r_a_0_ * par.k23;
+  const Real t32 = par.k37 + t31;
   const Real t33 = t32 * eta[4];
-  const Real t34 = eta[2] * par.k15;
+  const Real t34 = eta[2] * par.k16;
   const Real t35 = par.J_a * r_p_dot[2];
   const Real t36 = t34 + t35;
   const Real t37 = t33 - t36;
@@ -8301,24 +8379,24 @@ inline void energies(const Prepared<Real>& par,
   const Real t39 = s_r_a_1_ * s_r_a_1_;
   const Real t40 = t39 * par.h_r;
   const Real t41 = par.h_r * t40;
-  const Real t42 = par.k26 + t41;
+  const Real t42 = par.k28 + t41;
   const Real t43 = par.m_r * t42;
   const Real t44 = r_a_dot[1] * par.h_r;
   const Real t45 = s_r_a_1_ * r_a_dot[1];
   const Real t46 = par.h_r * c_r_a_1_;
   const Real t47 = t46 * t46;
-  const Real t48 = par.k26 + t47;
+  const Real t48 = par.k28 + t47;
   const Real t49 = par.m_r * t48;
   const Real t50 = t5 * par.h_c;
   const Real t51 = t50 * par.m_c;
   const Real t52 = t7 + par.k9;
-  const Real t53 = par.k32 + t52;
+  const Real t53 = par.k34 + t52;
   const Real t54 = t14 - t15;
   const Real t55 = par.a_r * t54;
   const Real t56 = eta[3] * par.h_c;
   const Real t57 = t10 - par.k4;
-  const Real t58 = par.k33 - t57;
-  const Real t59 = t58 + par.k27;
+  const Real t58 = par.k35 - t57;
+  const Real t59 = t58 + par.k29;
   const Real t60 = eta[1] * c_r_a_1_;
 
   // deck: energy
@@ -8330,7 +8408,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t66 = par.m * t65;
 
   // rider: energy
-  const Real t67 = t43 + par.k47;
+  const Real t67 = t43 + par.k49;
   const Real t68 = t67 * eta[5];
   const Real t69 = t68 * eta[5];
   const Real t70 = r_p_dot[1] * r_p_dot[1];
@@ -8339,7 +8417,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t73 = r_p_dot[2] * r_p_dot[2];
   const Real t74 = t72 + t73;
   const Real t75 = par.J_a * t74;
-  const Real t76 = t25 * par.k39;
+  const Real t76 = t25 * par.k41;
   const Real t77 = t75 + t76;
   const Real t78 = t65 * par.m_c;
   const Real t79 = t77 + t78;
@@ -8351,21 +8429,21 @@ inline void energies(const Prepared<Real>& par,
   const Real t85 = par.m_r * t84;
   const Real t86 = t80 + t85;
   const Real t87 = t69 + t86;
-  const Real t88 = t27 - par.k45;
-  const Real t89 = t88 - par.k48;
+  const Real t88 = t27 - par.k47;
+  const Real t89 = t88 - par.k50;
   const Real t90 = eta[3] * t89;
   const Real t91 = eta[3] * t90;
   const Real t92 = t87 - t91;
-  const Real t93 = t49 + par.k46;
-  const Real t94 = t93 + par.k28;
+  const Real t93 = t49 + par.k48;
+  const Real t94 = t93 + par.k30;
   const Real t95 = t27 + t94;
-  const Real t96 = t95 + par.k48;
+  const Real t96 = t95 + par.k50;
   const Real t97 = t96 * eta[4];
   const Real t98 = t97 * eta[4];
   const Real t99 = t92 + t98;
   const Real t100 = constant<Real>(0.5L) * t99;
   const Real t101 = eta[2] * t59;
-  const Real t102 = eta[4] * par.k41;
+  const Real t102 = eta[4] * par.k43;
   const Real t103 = c_r_a_0_ * t102;
   const Real t104 = par.k9 * eta[0];
   const Real t105 = t103 - t104;
@@ -8431,7 +8509,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t165 = eta[5] * constant<Real>(1.5L);
   const Real t166 = t165 + r_a_dot[0];
   const Real t167 = t166 * par.J_d;
-  const Real t168 = par.k38 * eta[1];
+  const Real t168 = par.k40 * eta[1];
   const Real t169 = par.J_c * r_a_dot[0];
   const Real t170 = t168 + t169;
   const Real t171 = t167 + t170;
@@ -8466,7 +8544,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t200 = t199 + t55;
   const Real t201 = par.h_r * t200;
   const Real t202 = par.m_r * t201;
-  const Real t203 = eta[3] * par.k44;
+  const Real t203 = eta[3] * par.k46;
   const Real t204 = t51 - t203;
   const Real t205 = t202 - t204;
   const Real t206 = t205 + t38;
@@ -8474,7 +8552,7 @@ inline void energies(const Prepared<Real>& par,
   const Real t208 = eta[3] * t207;
   const Real t209 = t176 + t208;
   const Real t210 = t100 - t209;
-  const Real t211 = par.k31 * p[2];
+  const Real t211 = par.k33 * p[2];
   const Real t212 = t23 * R[7];
   const Real t213 = t211 - t212;
   const Real t214 = R[6] * t59;

@@ -9,7 +9,7 @@
 //   kernel: pivoted basis, nu = (Omega_X, steer, rear_spin)
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics           682 add, 420 mul, 9 div, 28 neg, 2 sqrt, 1 sin, 1 cos
+//   kinematics           734 add, 458 mul, 9 div, 29 neg, 2 sqrt, 1 sin, 1 cos
 //   reduced_velocities   none
 //   constraints          83 add, 148 mul, 6 div, 7 neg, 2 sqrt, 1 sin, 1 cos
 //   free_dynamics        350 add, 526 mul, 8 neg, 3 sin, 3 cos
@@ -19,7 +19,7 @@
 //   position_conditions  59 add, 138 mul, 14 div, 9 neg, 2 sqrt, 1 sin, 1 cos
 //   energies             80 add, 134 mul, 1 neg, 3 sin, 3 cos
 //   body_poses           42 add, 72 mul, 3 sin, 3 cos
-//   prepare              120 add, 107 mul, 1 neg, 1 sin, 1 cos, once per set of parameters
+//   prepare              158 add, 129 mul, 2 neg, 1 sin, 1 cos, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   R (9) 1: orientation of the reference body in the world, row-major
@@ -216,53 +216,59 @@ struct Prepared {
   Real k22;  // k1 * k2
   Real k23;  // k1 * k13
   Real k24;  // k1 * k20
-  Real k25;  // product_error(k1, k2)
-  Real k26;  // k1 * (product_error(k2, k13)) + k24
-  Real k27;  // k2 * (product_error(k2, k13)) + k21
-  Real k28;  // product_error(k1, k13)
-  Real k29;  // k4 - k9
-  Real k30;  // k14 - k4
-  Real k31;  // k9 - k14
-  Real k32;  // I_Ryy - I_Rxx
-  Real k33;  // I_Rxx - I_Ryy
-  Real k34;  // k6 - k7
-  Real k35;  // k17 - k6
-  Real k36;  // k7 - k17
-  Real k37;  // k1 * k10
-  Real k38;  // k1 * m_H
-  Real k39;  // I_Fxx - I_Fyy
-  Real k40;  // I_Fyy - I_Fxx
-  Real k41;  // -k15
-  Real k42;  // m_R * r_R
-  Real k43;  // m_H * k2
-  Real k44;  // k2 * k10
-  Real k45;  // k1 * k12
-  Real k46;  // z_B * x_B * m_B - I_Bxz
-  Real k47;  // k1 * k6
-  Real k48;  // k5 * k1
-  Real k49;  // k42 * r_R
-  Real k50;  // m_H * k20
-  Real k51;  // k10 * k20
-  Real k52;  // k2 * k12
-  Real k53;  // k5 * k2
-  Real k54;  // k6 * k2
-  Real k55;  // m_F * k12 * k12
-  Real k56;  // (z_B * z_B + x_B * x_B + product_error(z_B, z_B)) * m_B + I_Byy
-  Real k57;
-  Real k58;  // k56 - k9 - k57
-  Real k59;  // product_error(z_B, m_B)
-  Real k60;  // k57 + k31
-  Real k61;  // k14 - k56
-  Real k62;  // product_error(k1, k20)
+  Real k25;
+  Real k26;  // k1 * r_F - (c * k25 + k2 * c)
+  Real k27;  // k1 * (k13 * k25 + product_error(k2, k13)) + k24
+  Real k28;  // k18 + k2 * k25 * 2
+  Real k29;  // product_error(k1, k2) + k1 * k25
+  Real k30;  // k21 + k2 * (k13 * k25 + product_error(k2, k13)) + k20 * k25
+  Real k31;  // product_error(k1, k13)
+  Real k32;  // k4 - k9
+  Real k33;  // k14 - k4
+  Real k34;  // k9 - k14
+  Real k35;  // I_Ryy - I_Rxx
+  Real k36;  // I_Rxx - I_Ryy
+  Real k37;  // k6 - k7
+  Real k38;  // k17 - k6
+  Real k39;  // k7 - k17
+  Real k40;  // k1 * k10
+  Real k41;  // k1 * m_H
+  Real k42;  // I_Fxx - I_Fyy
+  Real k43;  // I_Fyy - I_Fxx
+  Real k44;  // -k15
+  Real k45;  // m_R * r_R
+  Real k46;  // m_H * k2
+  Real k47;  // k2 * k10
+  Real k48;  // k1 * k12
+  Real k49;  // z_B * x_B * m_B - I_Bxz
+  Real k50;  // k1 * k6
+  Real k51;  // k5 * k1
+  Real k52;  // k45 * r_R
+  Real k53;  // m_H * k20
+  Real k54;  // k10 * k20
+  Real k55;  // k2 * k12
+  Real k56;  // k5 * k2
+  Real k57;  // k6 * k2
+  Real k58;  // m_F * k12 * k12
+  Real k59;  // (z_B * z_B + x_B * x_B + product_error(z_B, z_B)) * m_B + I_Byy
+  Real k60;
+  Real k61;  // k59 - k9 - k60
+  Real k62;  // product_error(z_B, m_B)
+  Real k63;  // k1 * (product_error(k2, k13)) + k24
+  Real k64;  // k60 + k34
+  Real k65;  // k2 * (product_error(k2, k13)) + k21
+  Real k66;  // k14 - k59
+  Real k67;  // product_error(k1, k20)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 120 add, 107 mul, 1 neg, 1 sin, 1 cos
+/// operations: 158 add, 129 mul, 2 neg, 1 sin, 1 cos
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
   using std::cos;
   using std::sin;
+  using detail::constant;
   using detail::product_error;
   using detail::sum_error;
   const Real s_tilt = sin(par.tilt);
@@ -340,92 +346,119 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t69 = s_tilt * t65;
 
   // kernel
-  const Real t70 = product_error(s_tilt, c_tilt);
-  const Real t71 = product_error(c_tilt, t55);
-  const Real t72 = s_tilt * t71;
-  const Real t73 = t72 + t69;
-  const Real t74 = c_tilt * t71;
-  const Real t75 = t74 + t66;
-  const Real t76 = product_error(s_tilt, t55);
+  const Real t70 = -t64;
+  const Real t71 = sum_error(constant<Real>(1.0L), t70);
+  const Real t72 = constant<Real>(1.0L) - t64;
+  const Real t73 = t72 - t63;
+  const Real t74 = t71 + t73;
+  const Real t75 = product_error(s_tilt, s_tilt);
+  const Real t76 = t74 - t75;
+  const Real t77 = product_error(c_tilt, c_tilt);
+  const Real t78 = t76 - t77;
+  const Real t79 = t78 * constant<Real>(0.5L);
+  const Real t80 = t79 * c_tilt;
+  const Real t81 = par.c * t80;
+  const Real t82 = t81 + t53;
+  const Real t83 = t52 - t82;
+  const Real t84 = t55 * t80;
+  const Real t85 = product_error(c_tilt, t55);
+  const Real t86 = t84 + t85;
+  const Real t87 = s_tilt * t86;
+  const Real t88 = t87 + t69;
+  const Real t89 = c_tilt * t80;
+  const Real t90 = t89 * constant<Real>(2.0L);
+  const Real t91 = t63 + t90;
+  const Real t92 = product_error(s_tilt, c_tilt);
+  const Real t93 = s_tilt * t80;
+  const Real t94 = t92 + t93;
+  const Real t95 = c_tilt * t86;
+  const Real t96 = t65 * t80;
+  const Real t97 = t95 + t96;
+  const Real t98 = t66 + t97;
+  const Real t99 = product_error(s_tilt, t55);
 
   // frame: wrench
-  const Real t77 = t8 - t45;
-  const Real t78 = t57 - t8;
-  const Real t79 = t45 - t57;
+  const Real t100 = t8 - t45;
+  const Real t101 = t57 - t8;
+  const Real t102 = t45 - t57;
 
   // rear_wheel: wrench
-  const Real t80 = par.I_Ryy - par.I_Rxx;
-  const Real t81 = par.I_Rxx - par.I_Ryy;
+  const Real t103 = par.I_Ryy - par.I_Rxx;
+  const Real t104 = par.I_Rxx - par.I_Ryy;
 
   // fork: wrench
-  const Real t82 = t35 - t38;
-  const Real t83 = t62 - t35;
-  const Real t84 = t38 - t62;
-  const Real t85 = s_tilt * t48;
-  const Real t86 = s_tilt * par.m_H;
+  const Real t105 = t35 - t38;
+  const Real t106 = t62 - t35;
+  const Real t107 = t38 - t62;
+  const Real t108 = s_tilt * t48;
+  const Real t109 = s_tilt * par.m_H;
 
   // front_wheel: wrench
-  const Real t87 = par.I_Fxx - par.I_Fyy;
-  const Real t88 = par.I_Fyy - par.I_Fxx;
+  const Real t110 = par.I_Fxx - par.I_Fyy;
+  const Real t111 = par.I_Fyy - par.I_Fxx;
 
   // frame: wrench
-  const Real t89 = -t58;
+  const Real t112 = -t58;
 
   // rear_wheel: joint force
-  const Real t90 = par.m_R * par.r_R;
+  const Real t113 = par.m_R * par.r_R;
 
   // fork: wrench
-  const Real t91 = par.m_H * c_tilt;
-  const Real t92 = c_tilt * t48;
+  const Real t114 = par.m_H * c_tilt;
+  const Real t115 = c_tilt * t48;
 
   // front_wheel: acceleration
-  const Real t93 = s_tilt * t54;
+  const Real t116 = s_tilt * t54;
 
   // frame: wrench
-  const Real t94 = t2 - par.I_Bxz;
+  const Real t117 = t2 - par.I_Bxz;
 
   // fork: wrench
-  const Real t95 = s_tilt * t35;
-  const Real t96 = t28 * s_tilt;
+  const Real t118 = s_tilt * t35;
+  const Real t119 = t28 * s_tilt;
 
   // rear_wheel: joint force
-  const Real t97 = t90 * par.r_R;
+  const Real t120 = t113 * par.r_R;
 
   // fork: wrench
-  const Real t98 = par.m_H * t65;
-  const Real t99 = t48 * t65;
+  const Real t121 = par.m_H * t65;
+  const Real t122 = t48 * t65;
 
   // front_wheel: acceleration
-  const Real t100 = c_tilt * t54;
+  const Real t123 = c_tilt * t54;
 
   // fork: wrench
-  const Real t101 = t28 * c_tilt;
-  const Real t102 = t35 * c_tilt;
+  const Real t124 = t28 * c_tilt;
+  const Real t125 = t35 * c_tilt;
 
   // front_wheel: wrench
-  const Real t103 = par.m_F * t54;
+  const Real t126 = par.m_F * t54;
 
   // front_wheel: joint force
-  const Real t104 = t103 * t54;
+  const Real t127 = t126 * t54;
 
   // passive accelerations
-  const Real t105 = product_error(par.z_B, par.z_B);
-  const Real t106 = t6 + t105;
-  const Real t107 = t106 * par.m_B;
-  const Real t108 = t107 + par.I_Byy;
-  const Real t109 = t108 - t45;
-  const Real t110 = sum_error(t44, par.I_Bxx);
-  const Real t111 = product_error(t4, par.m_B);
-  const Real t112 = t105 * par.m_B;
-  const Real t113 = t111 + t112;
-  const Real t114 = t110 + t113;
-  const Real t115 = t109 - t114;
-  const Real t116 = product_error(par.z_B, par.m_B);
-  const Real t117 = t114 + t79;
-  const Real t118 = t57 - t108;
+  const Real t128 = product_error(par.z_B, par.z_B);
+  const Real t129 = t6 + t128;
+  const Real t130 = t129 * par.m_B;
+  const Real t131 = t130 + par.I_Byy;
+  const Real t132 = t131 - t45;
+  const Real t133 = sum_error(t44, par.I_Bxx);
+  const Real t134 = product_error(t4, par.m_B);
+  const Real t135 = t128 * par.m_B;
+  const Real t136 = t134 + t135;
+  const Real t137 = t133 + t136;
+  const Real t138 = t132 - t137;
+  const Real t139 = product_error(par.z_B, par.m_B);
+  const Real t140 = s_tilt * t85;
+  const Real t141 = t140 + t69;
+  const Real t142 = t137 + t102;
+  const Real t143 = c_tilt * t85;
+  const Real t144 = t143 + t66;
+  const Real t145 = t57 - t131;
 
   // multipliers
-  const Real t119 = product_error(s_tilt, t65);
+  const Real t146 = product_error(s_tilt, t65);
 
   result.g = par.g;
   result.c = par.c;
@@ -463,50 +496,55 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k22 = t67;
   result.k23 = t68;
   result.k24 = t69;
-  result.k25 = t70;
-  result.k26 = t73;
-  result.k27 = t75;
-  result.k28 = t76;
-  result.k29 = t77;
-  result.k30 = t78;
-  result.k31 = t79;
-  result.k32 = t80;
-  result.k33 = t81;
-  result.k34 = t82;
-  result.k35 = t83;
-  result.k36 = t84;
-  result.k37 = t85;
-  result.k38 = t86;
-  result.k39 = t87;
-  result.k40 = t88;
-  result.k41 = t89;
-  result.k42 = t90;
-  result.k43 = t91;
-  result.k44 = t92;
-  result.k45 = t93;
-  result.k46 = t94;
-  result.k47 = t95;
-  result.k48 = t96;
-  result.k49 = t97;
-  result.k50 = t98;
-  result.k51 = t99;
-  result.k52 = t100;
-  result.k53 = t101;
-  result.k54 = t102;
-  result.k55 = t104;
-  result.k56 = t108;
-  result.k57 = t114;
-  result.k58 = t115;
-  result.k59 = t116;
-  result.k60 = t117;
-  result.k61 = t118;
-  result.k62 = t119;
+  result.k25 = t80;
+  result.k26 = t83;
+  result.k27 = t88;
+  result.k28 = t91;
+  result.k29 = t94;
+  result.k30 = t98;
+  result.k31 = t99;
+  result.k32 = t100;
+  result.k33 = t101;
+  result.k34 = t102;
+  result.k35 = t103;
+  result.k36 = t104;
+  result.k37 = t105;
+  result.k38 = t106;
+  result.k39 = t107;
+  result.k40 = t108;
+  result.k41 = t109;
+  result.k42 = t110;
+  result.k43 = t111;
+  result.k44 = t112;
+  result.k45 = t113;
+  result.k46 = t114;
+  result.k47 = t115;
+  result.k48 = t116;
+  result.k49 = t117;
+  result.k50 = t118;
+  result.k51 = t119;
+  result.k52 = t120;
+  result.k53 = t121;
+  result.k54 = t122;
+  result.k55 = t123;
+  result.k56 = t124;
+  result.k57 = t125;
+  result.k58 = t127;
+  result.k59 = t131;
+  result.k60 = t137;
+  result.k61 = t138;
+  result.k62 = t139;
+  result.k63 = t141;
+  result.k64 = t142;
+  result.k65 = t144;
+  result.k66 = t145;
+  result.k67 = t146;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
 /// route: kernel, compensated beyond 1 ulps
-/// operations: 682 add, 420 mul, 9 div, 28 neg, 2 sqrt, 1 sin, 1 cos
+/// operations: 734 add, 458 mul, 9 div, 29 neg, 2 sqrt, 1 sin, 1 cos
 /// @param[in]  par          made by prepare()
 /// @param[in]  R            (9) 1: orientation of the reference body in the world, row-major
 /// @param[in]  r_p          (3) rad or m: rear_spin, steer, front_spin
@@ -534,508 +572,565 @@ inline void kinematics(const Prepared<Real>& par,
 
   // joint angles
   const Real t1 = c_r_p_1_ * par.k23;
-  const Real t2 = s_r_p_1_ * par.k2;
-  const Real t3 = t2 * par.r_F;
-  const Real t4 = s_r_p_1_ * par.k1;
-  const Real t5 = par.c * t4;
-  const Real t6 = t3 + t5;
-  const Real t7 = s_r_p_1_ * par.k13;
-  const Real t8 = par.k1 * t7;
-  const Real t9 = t5 - t8;
-  const Real t10 = c_r_p_1_ * par.c;
-  const Real t11 = R[6] * R[6];
-  const Real t12 = R[8] * R[8];
+  const Real t2 = s_r_p_1_ * par.k1;
+  const Real t3 = par.c * t2;
+  const Real t4 = s_r_p_1_ * par.k13;
+  const Real t5 = par.k1 * t4;
+  const Real t6 = t3 - t5;
+  const Real t7 = par.k2 * t4;
+  const Real t8 = par.k2 * R[6];
+  const Real t9 = R[8] * par.k1;
+  const Real t10 = t8 - t9;
+  const Real t11 = c_r_p_1_ * t10;
+  const Real t12 = s_r_p_1_ * R[7];
   const Real t13 = t11 + t12;
-  const Real t14 = sqrt(t13);
-  const Real t15 = constant<Real>(1.0L) / t14;
-  const Real t16 = R[8] * t15;
-  const Real t17 = t16 * par.r_R;
-  const Real t18 = t17 - par.r_R;
-  const Real t19 = par.k1 * c_r_p_1_;
-  const Real t20 = t19 * par.k2;
-  const Real t21 = par.k22 - t20;
-  const Real t22 = par.k2 * R[6];
-  const Real t23 = R[8] * par.k1;
-  const Real t24 = t22 - t23;
-  const Real t25 = c_r_p_1_ * t24;
-  const Real t26 = s_r_p_1_ * R[7];
-  const Real t27 = t25 + t26;
-  const Real t28 = par.k2 * t27;
-  const Real t29 = par.k1 * t27;
-  const Real t30 = par.k1 * R[6];
-  const Real t31 = R[8] * par.k2;
-  const Real t32 = t30 + t31;
-  const Real t33 = t32 * par.k2;
-  const Real t34 = t29 - t33;
-  const Real t35 = par.r_R - t17;
-  const Real t36 = c_r_p_1_ * par.k13;
-  const Real t37 = c_r_p_1_ * par.k2;
-  const Real t38 = par.k2 * t37;
-  const Real t39 = par.k19 + t38;
-  const Real t40 = par.r_F * t39;
-  const Real t41 = t2 * par.c;
-  const Real t42 = par.k1 * t32;
-  const Real t43 = c_r_p_1_ * par.r_F;
-  const Real t44 = s_r_p_1_ * par.k23;
-  const Real t45 = par.k1 * t19;
-  const Real t46 = t15 * R[6];
-  const Real t47 = t46 * par.r_R;
-  const Real t48 = par.k2 * t7;
-  const Real t49 = par.r_F * t4;
-  const Real t50 = t48 - t49;
-  const Real t51 = par.k1 * t37;
+  const Real t14 = par.k1 * t13;
+  const Real t15 = c_r_p_1_ * par.c;
+  const Real t16 = R[6] * R[6];
+  const Real t17 = R[8] * R[8];
+  const Real t18 = t16 + t17;
+  const Real t19 = sqrt(t18);
+  const Real t20 = constant<Real>(1.0L) / t19;
+  const Real t21 = R[8] * t20;
+  const Real t22 = t21 * par.r_R;
+  const Real t23 = t22 - par.r_R;
+  const Real t24 = par.k1 * c_r_p_1_;
+  const Real t25 = t24 * par.k2;
+  const Real t26 = par.k22 - t25;
+  const Real t27 = s_r_p_1_ * par.k2;
+  const Real t28 = par.k2 * t13;
+  const Real t29 = par.r_R - t22;
+  const Real t30 = c_r_p_1_ * par.k13;
+  const Real t31 = c_r_p_1_ * par.k2;
+  const Real t32 = par.k2 * t31;
+  const Real t33 = par.k19 + t32;
+  const Real t34 = par.r_F * t33;
+  const Real t35 = par.k1 * R[6];
+  const Real t36 = c_r_p_1_ * par.r_F;
+  const Real t37 = s_r_p_1_ * par.k23;
+  const Real t38 = par.r_F * t2;
+  const Real t39 = R[8] * par.k2;
+  const Real t40 = par.k1 * t24;
+  const Real t41 = t20 * R[6];
+  const Real t42 = t41 * par.r_R;
+  const Real t43 = par.k1 * t31;
 
   // kernel
-  const Real t52 = product_error(par.k1, R[6]);
-  const Real t53 = sum_error(t30, t31);
-  const Real t54 = t52 + t53;
-  const Real t55 = par.k1 * t54;
-  const Real t56 = t55 + t42;
-  const Real t57 = sum_error(t25, t26);
-  const Real t58 = product_error(c_r_p_1_, t24);
-  const Real t59 = -t23;
-  const Real t60 = sum_error(t22, t59);
-  const Real t61 = product_error(par.k2, R[6]);
-  const Real t62 = t60 + t61;
-  const Real t63 = t62 * c_r_p_1_;
-  const Real t64 = t58 + t63;
-  const Real t65 = t57 + t64;
-  const Real t66 = par.k2 * t65;
-  const Real t67 = t28 + t66;
-  const Real t68 = t56 + t67;
-  const Real t69 = product_error(par.k1, t27);
-  const Real t70 = par.k1 * t65;
-  const Real t71 = t69 + t70;
-  const Real t72 = product_error(t32, par.k2);
-  const Real t73 = par.k2 * t54;
-  const Real t74 = t72 + t73;
-  const Real t75 = t71 - t74;
-  const Real t76 = t34 + t75;
-  const Real t77 = t76 * t76;
-  const Real t78 = t68 * t68;
-  const Real t79 = t77 + t78;
-  const Real t80 = sqrt(t79);
-  const Real t81 = constant<Real>(1.0L) / t80;
-  const Real t82 = t68 * t81;
-  const Real t83 = par.r_F * t82;
-  const Real t84 = product_error(t19, par.k2);
-  const Real t85 = product_error(par.k1, c_r_p_1_);
-  const Real t86 = par.k2 * t85;
-  const Real t87 = t84 + t86;
-  const Real t88 = par.k25 - t87;
-  const Real t89 = t21 + t88;
-  const Real t90 = t89 * t47;
-  const Real t91 = sum_error(par.k19, t38);
-  const Real t92 = product_error(c_r_p_1_, par.k2);
-  const Real t93 = t92 * par.k2;
-  const Real t94 = product_error(par.k2, t37);
-  const Real t95 = t93 + t94;
-  const Real t96 = t91 + t95;
-  const Real t97 = t17 * t96;
-  const Real t98 = t17 * t39;
+  const Real t44 = product_error(par.k1, c_r_p_1_);
+  const Real t45 = s_r_p_1_ * s_r_p_1_;
+  const Real t46 = constant<Real>(1.0L) - t45;
+  const Real t47 = c_r_p_1_ * c_r_p_1_;
+  const Real t48 = t46 - t47;
+  const Real t49 = -t45;
+  const Real t50 = sum_error(constant<Real>(1.0L), t49);
+  const Real t51 = t48 + t50;
+  const Real t52 = product_error(s_r_p_1_, s_r_p_1_);
+  const Real t53 = t51 - t52;
+  const Real t54 = product_error(c_r_p_1_, c_r_p_1_);
+  const Real t55 = t53 - t54;
+  const Real t56 = constant<Real>(0.5L) * t55;
+  const Real t57 = c_r_p_1_ * t56;
+  const Real t58 = t57 * par.k1;
+  const Real t59 = t44 + t58;
+  const Real t60 = t59 * par.k1;
+  const Real t61 = t60 + t40;
+  const Real t62 = par.k28 + t61;
+  const Real t63 = t62 * t42;
+  const Real t64 = t57 * par.c;
+  const Real t65 = t64 + t15;
+  const Real t66 = c_r_p_1_ * par.k31;
+  const Real t67 = t57 * par.k23;
+  const Real t68 = t66 + t67;
+  const Real t69 = t1 + t68;
+  const Real t70 = par.k1 * t69;
+  const Real t71 = t70 + par.k30;
+  const Real t72 = t65 - t71;
+  const Real t73 = R[8] * par.k25;
+  const Real t74 = t39 + t73;
+  const Real t75 = t74 + t35;
+  const Real t76 = t75 * par.k2;
+  const Real t77 = t14 - t76;
+  const Real t78 = product_error(par.k1, t13);
+  const Real t79 = sum_error(t11, t12);
+  const Real t80 = product_error(c_r_p_1_, t10);
+  const Real t81 = -t9;
+  const Real t82 = sum_error(t8, t81);
+  const Real t83 = product_error(par.k2, R[6]);
+  const Real t84 = R[6] * par.k25;
+  const Real t85 = t83 + t84;
+  const Real t86 = t82 + t85;
+  const Real t87 = c_r_p_1_ * t86;
+  const Real t88 = t57 * t10;
+  const Real t89 = t87 + t88;
+  const Real t90 = t80 + t89;
+  const Real t91 = t79 + t90;
+  const Real t92 = par.k1 * t91;
+  const Real t93 = t78 + t92;
+  const Real t94 = product_error(par.k1, R[6]);
+  const Real t95 = sum_error(t35, t74);
+  const Real t96 = t94 + t95;
+  const Real t97 = t96 * par.k2;
+  const Real t98 = t75 * par.k25;
   const Real t99 = t97 + t98;
-  const Real t100 = t90 - t99;
-  const Real t101 = t76 * t81;
-  const Real t102 = t101 * par.r_F;
-  const Real t103 = t102 * t4;
-  const Real t104 = t50 - t103;
-  const Real t105 = t2 * t47;
-  const Real t106 = t104 - t105;
-  const Real t107 = t89 * t102;
-  const Real t108 = par.k1 * t85;
-  const Real t109 = t108 + t45;
-  const Real t110 = par.k18 + t109;
-  const Real t111 = t83 * t110;
+  const Real t100 = product_error(t75, par.k2);
+  const Real t101 = t99 + t100;
+  const Real t102 = t93 - t101;
+  const Real t103 = t77 + t102;
+  const Real t104 = t103 * t103;
+  const Real t105 = t96 * par.k1;
+  const Real t106 = t75 * par.k1;
+  const Real t107 = t105 + t106;
+  const Real t108 = par.k2 * t91;
+  const Real t109 = t13 * par.k25;
+  const Real t110 = t108 + t109;
+  const Real t111 = t28 + t110;
   const Real t112 = t107 + t111;
-  const Real t113 = t89 * par.r_F;
-  const Real t114 = t110 * par.c;
-  const Real t115 = t113 - t114;
-  const Real t116 = t115 + t36;
-  const Real t117 = t112 + t116;
-  const Real t118 = c_r_p_1_ * t47;
-  const Real t119 = t117 - t118;
-  const Real t120 = constant<Real>(1.0L) / t119;
-  const Real t121 = t106 * t120;
-  const Real t122 = t4 * t47;
-  const Real t123 = t2 * t17;
-  const Real t124 = t122 + t123;
-  const Real t125 = t121 * t124;
-  const Real t126 = t100 - t125;
-  const Real t127 = c_r_p_1_ * par.k28;
-  const Real t128 = t1 + t127;
-  const Real t129 = par.k1 * t128;
-  const Real t130 = t129 + par.k27;
-  const Real t131 = t10 - t130;
-  const Real t132 = t83 * c_r_p_1_;
-  const Real t133 = t131 - t132;
-  const Real t134 = par.k1 * t92;
-  const Real t135 = t134 + t51;
-  const Real t136 = par.k22 - t135;
-  const Real t137 = t136 + par.k25;
-  const Real t138 = t18 * t137;
-  const Real t139 = t133 - t138;
-  const Real t140 = t110 * t47;
+  const Real t113 = t112 * t112;
+  const Real t114 = t104 + t113;
+  const Real t115 = sqrt(t114);
+  const Real t116 = constant<Real>(1.0L) / t115;
+  const Real t117 = t116 * t112;
+  const Real t118 = t117 * par.r_F;
+  const Real t119 = c_r_p_1_ * t118;
+  const Real t120 = t57 * t118;
+  const Real t121 = t119 + t120;
+  const Real t122 = t72 - t121;
+  const Real t123 = c_r_p_1_ * par.k25;
+  const Real t124 = t57 * par.k2;
+  const Real t125 = t123 + t124;
+  const Real t126 = product_error(c_r_p_1_, par.k2);
+  const Real t127 = t125 + t126;
+  const Real t128 = par.k1 * t127;
+  const Real t129 = t128 + t43;
+  const Real t130 = par.k22 - t129;
+  const Real t131 = t130 + par.k29;
+  const Real t132 = t23 * t131;
+  const Real t133 = t122 - t132;
+  const Real t134 = t63 + t133;
+  const Real t135 = t2 * t42;
+  const Real t136 = s_r_p_1_ * par.k25;
+  const Real t137 = t136 + t27;
+  const Real t138 = t137 * par.r_F;
+  const Real t139 = t138 + t3;
+  const Real t140 = product_error(t137, par.r_F);
   const Real t141 = t139 + t140;
-  const Real t142 = t83 * t4;
-  const Real t143 = t9 - t142;
-  const Real t144 = t122 + t143;
-  const Real t145 = t144 * t120;
-  const Real t146 = t18 * t2;
-  const Real t147 = product_error(t2, par.r_F);
-  const Real t148 = t6 + t147;
-  const Real t149 = s_r_p_1_ * par.k28;
-  const Real t150 = t44 + t149;
-  const Real t151 = t148 - t150;
-  const Real t152 = t2 * t102;
-  const Real t153 = t152 - t142;
-  const Real t154 = t151 + t153;
-  const Real t155 = t146 + t154;
-  const Real t156 = t122 + t155;
-  const Real t157 = t145 * t156;
-  const Real t158 = t141 - t157;
-  const Real t159 = constant<Real>(1.0L) / t158;
-  const Real t160 = par.k2 * t128;
-  const Real t161 = t160 - par.k26;
-  const Real t162 = -t43;
-  const Real t163 = sum_error(t161, t162);
-  const Real t164 = product_error(c_r_p_1_, par.r_F);
-  const Real t165 = t163 - t164;
-  const Real t166 = t161 - t43;
-  const Real t167 = c_r_p_1_ * t102;
-  const Real t168 = -t167;
-  const Real t169 = sum_error(t166, t168);
-  const Real t170 = t165 + t169;
-  const Real t171 = t166 - t167;
-  const Real t172 = t18 * t39;
-  const Real t173 = t18 * t96;
-  const Real t174 = t172 + t173;
-  const Real t175 = t171 - t174;
-  const Real t176 = t170 + t175;
-  const Real t177 = t176 + t90;
-  const Real t178 = t156 * t121;
-  const Real t179 = t177 - t178;
-  const Real t180 = t159 * t179;
-  const Real t181 = t137 * t17;
-  const Real t182 = t140 - t181;
-  const Real t183 = t145 * t124;
-  const Real t184 = t182 - t183;
-  const Real t185 = t180 * t184;
-  const Real t186 = t126 - t185;
-  const Real t187 = t180 * t83;
-  const Real t188 = t187 - t102;
-  const Real t189 = constant<Real>(1.0L) / t188;
-  const Real t190 = t186 * t189;
-  const Real t191 = product_error(t83, t190);
-  const Real t192 = product_error(t186, t189);
-  const Real t193 = quotient_error(constant<Real>(1.0L), t188);
-  const Real t194 = product_error(t83, t180);
-  const Real t195 = quotient_error(constant<Real>(1.0L), t158);
-  const Real t196 = -t157;
-  const Real t197 = sum_error(t141, t196);
-  const Real t198 = product_error(t145, t156);
-  const Real t199 = t197 - t198;
-  const Real t200 = t159 * t199;
-  const Real t201 = t200 / t158;
-  const Real t202 = t195 - t201;
-  const Real t203 = t202 * t179;
-  const Real t204 = -t178;
-  const Real t205 = sum_error(t177, t204);
-  const Real t206 = product_error(t156, t121);
-  const Real t207 = t205 - t206;
-  const Real t208 = t207 * t159;
-  const Real t209 = t203 + t208;
-  const Real t210 = product_error(t179, t159);
-  const Real t211 = t209 + t210;
-  const Real t212 = t83 * t211;
-  const Real t213 = t194 + t212;
-  const Real t214 = -t102;
-  const Real t215 = sum_error(t187, t214);
-  const Real t216 = t213 + t215;
-  const Real t217 = t216 * t189;
-  const Real t218 = t217 / t188;
-  const Real t219 = t193 - t218;
-  const Real t220 = t186 * t219;
-  const Real t221 = -t125;
-  const Real t222 = sum_error(t100, t221);
-  const Real t223 = product_error(t124, t121);
-  const Real t224 = t222 - t223;
-  const Real t225 = t211 * t184;
-  const Real t226 = -t183;
-  const Real t227 = sum_error(t182, t226);
-  const Real t228 = product_error(t145, t124);
-  const Real t229 = t227 - t228;
-  const Real t230 = t180 * t229;
-  const Real t231 = t225 + t230;
-  const Real t232 = product_error(t184, t180);
-  const Real t233 = t231 + t232;
-  const Real t234 = t224 - t233;
-  const Real t235 = -t185;
-  const Real t236 = sum_error(t126, t235);
-  const Real t237 = t234 + t236;
-  const Real t238 = t237 * t189;
-  const Real t239 = t220 + t238;
-  const Real t240 = t192 + t239;
-  const Real t241 = t83 * t240;
-  const Real t242 = t191 + t241;
-  const Real t243 = t242 + t229;
-  const Real t244 = t83 * t190;
-  const Real t245 = sum_error(t184, t244);
-  const Real t246 = t243 + t245;
-  const Real t247 = t246 * t159;
-  const Real t248 = t244 + t184;
-  const Real t249 = t202 * t248;
-  const Real t250 = t247 + t249;
-  const Real t251 = product_error(t248, t159);
-  const Real t252 = t250 + t251;
-  const Real t253 = t252 * nu[2];
-  const Real t254 = t159 * t248;
-  const Real t255 = nu[2] * t254;
-  const Real t256 = t253 + t255;
-  const Real t257 = t83 * par.k2;
-  const Real t258 = par.k1 * t102;
+  const Real t142 = s_r_p_1_ * par.k31;
+  const Real t143 = t37 + t142;
+  const Real t144 = t141 - t143;
+  const Real t145 = t103 * t116;
+  const Real t146 = par.r_F * t145;
+  const Real t147 = t137 * t146;
+  const Real t148 = t118 * t2;
+  const Real t149 = t147 - t148;
+  const Real t150 = t144 + t149;
+  const Real t151 = t137 * t23;
+  const Real t152 = t150 + t151;
+  const Real t153 = t135 + t152;
+  const Real t154 = t6 - t148;
+  const Real t155 = t135 + t154;
+  const Real t156 = t62 * t118;
+  const Real t157 = product_error(t24, par.k2);
+  const Real t158 = t59 * par.k2;
+  const Real t159 = t24 * par.k25;
+  const Real t160 = t158 + t159;
+  const Real t161 = t157 + t160;
+  const Real t162 = par.k29 - t161;
+  const Real t163 = t162 + t26;
+  const Real t164 = t146 * t163;
+  const Real t165 = t156 + t164;
+  const Real t166 = t57 * par.k13;
+  const Real t167 = t166 + t30;
+  const Real t168 = t163 * par.r_F;
+  const Real t169 = t62 * par.c;
+  const Real t170 = t168 - t169;
+  const Real t171 = t167 + t170;
+  const Real t172 = t165 + t171;
+  const Real t173 = c_r_p_1_ * t42;
+  const Real t174 = t57 * t42;
+  const Real t175 = t173 + t174;
+  const Real t176 = t172 - t175;
+  const Real t177 = constant<Real>(1.0L) / t176;
+  const Real t178 = t155 * t177;
+  const Real t179 = t153 * t178;
+  const Real t180 = t134 - t179;
+  const Real t181 = constant<Real>(1.0L) / t180;
+  const Real t182 = t163 * t42;
+  const Real t183 = t69 * par.k2;
+  const Real t184 = t69 * par.k25;
+  const Real t185 = t183 + t184;
+  const Real t186 = t185 - par.k27;
+  const Real t187 = t186 - t36;
+  const Real t188 = t57 * t146;
+  const Real t189 = t146 * c_r_p_1_;
+  const Real t190 = t188 + t189;
+  const Real t191 = t187 - t190;
+  const Real t192 = t23 * t33;
+  const Real t193 = sum_error(par.k19, t32);
+  const Real t194 = product_error(par.k2, t31);
+  const Real t195 = t127 * par.k2;
+  const Real t196 = t31 * par.k25;
+  const Real t197 = t195 + t196;
+  const Real t198 = t194 + t197;
+  const Real t199 = t193 + t198;
+  const Real t200 = t199 * t23;
+  const Real t201 = t192 + t200;
+  const Real t202 = t191 - t201;
+  const Real t203 = -t190;
+  const Real t204 = sum_error(t187, t203);
+  const Real t205 = -t36;
+  const Real t206 = sum_error(t186, t205);
+  const Real t207 = product_error(c_r_p_1_, par.r_F);
+  const Real t208 = t57 * par.r_F;
+  const Real t209 = t207 + t208;
+  const Real t210 = t206 - t209;
+  const Real t211 = t204 + t210;
+  const Real t212 = t202 + t211;
+  const Real t213 = t182 + t212;
+  const Real t214 = t4 * par.k25;
+  const Real t215 = t7 + t214;
+  const Real t216 = t215 - t38;
+  const Real t217 = t146 * t2;
+  const Real t218 = t216 - t217;
+  const Real t219 = t137 * t42;
+  const Real t220 = t218 - t219;
+  const Real t221 = t177 * t220;
+  const Real t222 = t221 * t153;
+  const Real t223 = t213 - t222;
+  const Real t224 = t181 * t223;
+  const Real t225 = t224 * t118;
+  const Real t226 = t225 - t146;
+  const Real t227 = quotient_error(constant<Real>(1.0L), t226);
+  const Real t228 = constant<Real>(1.0L) / t226;
+  const Real t229 = product_error(t118, t224);
+  const Real t230 = product_error(t223, t181);
+  const Real t231 = quotient_error(constant<Real>(1.0L), t180);
+  const Real t232 = -t179;
+  const Real t233 = sum_error(t134, t232);
+  const Real t234 = product_error(t178, t153);
+  const Real t235 = t233 - t234;
+  const Real t236 = t235 * t181;
+  const Real t237 = t236 / t180;
+  const Real t238 = t231 - t237;
+  const Real t239 = t238 * t223;
+  const Real t240 = -t222;
+  const Real t241 = sum_error(t213, t240);
+  const Real t242 = product_error(t153, t221);
+  const Real t243 = t241 - t242;
+  const Real t244 = t181 * t243;
+  const Real t245 = t239 + t244;
+  const Real t246 = t230 + t245;
+  const Real t247 = t118 * t246;
+  const Real t248 = t229 + t247;
+  const Real t249 = -t146;
+  const Real t250 = sum_error(t225, t249);
+  const Real t251 = t248 + t250;
+  const Real t252 = t228 * t251;
+  const Real t253 = t252 / t226;
+  const Real t254 = t227 - t253;
+  const Real t255 = t118 * par.k25;
+  const Real t256 = par.k2 * t118;
+  const Real t257 = t255 + t256;
+  const Real t258 = t146 * par.k1;
   const Real t259 = t257 + t258;
-  const Real t260 = t259 + par.k12;
-  const Real t261 = t145 * t260;
-  const Real t262 = t180 * t261;
-  const Real t263 = t260 * t121;
+  const Real t260 = par.k26 + t259;
+  const Real t261 = t260 * t178;
+  const Real t262 = t224 * t261;
+  const Real t263 = t221 * t260;
   const Real t264 = t262 - t263;
-  const Real t265 = t264 * t189;
-  const Real t266 = t265 * t83;
-  const Real t267 = t266 - t261;
-  const Real t268 = t267 * t159;
-  const Real t269 = t268 * nu[1];
-  const Real t270 = product_error(t265, t83);
-  const Real t271 = product_error(t264, t189);
-  const Real t272 = product_error(t261, t180);
-  const Real t273 = t261 * t211;
-  const Real t274 = product_error(t145, t260);
-  const Real t275 = t180 * t274;
-  const Real t276 = t273 + t275;
-  const Real t277 = t272 + t276;
-  const Real t278 = product_error(t260, t121);
-  const Real t279 = t277 - t278;
-  const Real t280 = -t263;
-  const Real t281 = sum_error(t262, t280);
-  const Real t282 = t279 + t281;
-  const Real t283 = t282 * t189;
-  const Real t284 = t264 * t219;
-  const Real t285 = t283 + t284;
-  const Real t286 = t271 + t285;
-  const Real t287 = t286 * t83;
-  const Real t288 = t270 + t287;
-  const Real t289 = t288 - t274;
-  const Real t290 = -t261;
-  const Real t291 = sum_error(t266, t290);
-  const Real t292 = t289 + t291;
-  const Real t293 = t292 * t159;
-  const Real t294 = t202 * t267;
-  const Real t295 = t293 + t294;
-  const Real t296 = product_error(t267, t159);
-  const Real t297 = t295 + t296;
-  const Real t298 = t297 * nu[1];
-  const Real t299 = t269 + t298;
-  const Real t300 = sum_error(t3, t152);
-  const Real t301 = t147 + t300;
-  const Real t302 = product_error(t2, t35);
-  const Real t303 = t301 - t302;
-  const Real t304 = t3 + t152;
-  const Real t305 = t2 * t35;
-  const Real t306 = t304 - t305;
-  const Real t307 = t303 + t306;
-  const Real t308 = t137 * par.c;
-  const Real t309 = t40 - t308;
-  const Real t310 = t102 * t96;
-  const Real t311 = t102 * t39;
-  const Real t312 = t310 + t311;
-  const Real t313 = t137 * t83;
-  const Real t314 = t312 + t313;
-  const Real t315 = t309 + t314;
-  const Real t316 = c_r_p_1_ * t35;
-  const Real t317 = t315 - t316;
-  const Real t318 = sum_error(t309, t314);
-  const Real t319 = product_error(par.r_F, t39);
-  const Real t320 = par.r_F * t96;
+  const Real t265 = t254 * t264;
+  const Real t266 = -t263;
+  const Real t267 = sum_error(t262, t266);
+  const Real t268 = product_error(t261, t224);
+  const Real t269 = product_error(t178, t260);
+  const Real t270 = t269 * t224;
+  const Real t271 = t246 * t261;
+  const Real t272 = t270 + t271;
+  const Real t273 = t268 + t272;
+  const Real t274 = product_error(t260, t221);
+  const Real t275 = t273 - t274;
+  const Real t276 = t267 + t275;
+  const Real t277 = t228 * t276;
+  const Real t278 = t265 + t277;
+  const Real t279 = product_error(t264, t228);
+  const Real t280 = t278 + t279;
+  const Real t281 = t228 * t264;
+  const Real t282 = t280 + t281;
+  const Real t283 = -t282;
+  const Real t284 = t199 * t22;
+  const Real t285 = t22 * t33;
+  const Real t286 = t284 + t285;
+  const Real t287 = t182 - t286;
+  const Real t288 = t137 * t22;
+  const Real t289 = t135 + t288;
+  const Real t290 = t221 * t289;
+  const Real t291 = t287 - t290;
+  const Real t292 = t22 * t131;
+  const Real t293 = t63 - t292;
+  const Real t294 = t289 * t178;
+  const Real t295 = t293 - t294;
+  const Real t296 = t295 * t224;
+  const Real t297 = t291 - t296;
+  const Real t298 = product_error(t297, t228);
+  const Real t299 = -t290;
+  const Real t300 = sum_error(t287, t299);
+  const Real t301 = product_error(t289, t221);
+  const Real t302 = t300 - t301;
+  const Real t303 = product_error(t295, t224);
+  const Real t304 = -t294;
+  const Real t305 = sum_error(t293, t304);
+  const Real t306 = product_error(t178, t289);
+  const Real t307 = t305 - t306;
+  const Real t308 = t224 * t307;
+  const Real t309 = t295 * t246;
+  const Real t310 = t308 + t309;
+  const Real t311 = t303 + t310;
+  const Real t312 = t302 - t311;
+  const Real t313 = -t296;
+  const Real t314 = sum_error(t291, t313);
+  const Real t315 = t312 + t314;
+  const Real t316 = t228 * t315;
+  const Real t317 = t297 * t254;
+  const Real t318 = t316 + t317;
+  const Real t319 = t298 + t318;
+  const Real t320 = t297 * t228;
   const Real t321 = t319 + t320;
-  const Real t322 = -t308;
-  const Real t323 = sum_error(t40, t322);
-  const Real t324 = t321 + t323;
-  const Real t325 = t318 + t324;
-  const Real t326 = product_error(c_r_p_1_, t35);
-  const Real t327 = t325 - t326;
-  const Real t328 = t317 + t327;
-  const Real t329 = t328 * t121;
-  const Real t330 = t307 - t329;
-  const Real t331 = t2 * t83;
-  const Real t332 = t331 - t41;
-  const Real t333 = t35 * t4;
-  const Real t334 = t332 + t333;
-  const Real t335 = t145 * t328;
-  const Real t336 = t334 - t335;
-  const Real t337 = t180 * t336;
-  const Real t338 = t330 - t337;
-  const Real t339 = -t329;
-  const Real t340 = sum_error(t307, t339);
-  const Real t341 = product_error(t328, t121);
-  const Real t342 = t340 - t341;
-  const Real t343 = t211 * t336;
-  const Real t344 = -t335;
-  const Real t345 = sum_error(t334, t344);
-  const Real t346 = product_error(t145, t328);
-  const Real t347 = t345 - t346;
-  const Real t348 = t180 * t347;
-  const Real t349 = t343 + t348;
-  const Real t350 = product_error(t336, t180);
-  const Real t351 = t349 + t350;
-  const Real t352 = t342 - t351;
-  const Real t353 = t338 + t352;
-  const Real t354 = t353 * t189;
-  const Real t355 = t219 * t353;
-  const Real t356 = t354 + t355;
-  const Real t357 = t356 * t83;
-  const Real t358 = t357 + t336;
-  const Real t359 = t358 * t159;
-  const Real t360 = t359 * nu[0];
-  const Real t361 = t358 * t202;
-  const Real t362 = sum_error(t336, t357);
-  const Real t363 = t347 + t362;
-  const Real t364 = t363 * t159;
-  const Real t365 = t361 + t364;
-  const Real t366 = product_error(t159, t358);
-  const Real t367 = t365 + t366;
-  const Real t368 = t367 * nu[0];
-  const Real t369 = t360 + t368;
-  const Real t370 = t299 + t369;
-  const Real t371 = t256 + t370;
-  const Real t372 = -t371;
-  const Real t373 = t265 + t286;
+  const Real t322 = -t321;
+  const Real t323 = t281 * t118;
+  const Real t324 = t323 - t261;
+  const Real t325 = product_error(t324, t181);
+  const Real t326 = t238 * t324;
+  const Real t327 = -t261;
+  const Real t328 = sum_error(t323, t327);
+  const Real t329 = t280 * t118;
+  const Real t330 = product_error(t281, t118);
+  const Real t331 = t329 + t330;
+  const Real t332 = t331 - t269;
+  const Real t333 = t328 + t332;
+  const Real t334 = t333 * t181;
+  const Real t335 = t326 + t334;
+  const Real t336 = t325 + t335;
+  const Real t337 = t42 * t336;
+  const Real t338 = t181 * t324;
+  const Real t339 = t338 * t42;
+  const Real t340 = t337 + t339;
+  const Real t341 = -t340;
+  const Real t342 = product_error(par.r_F, t33);
+  const Real t343 = t199 * par.r_F;
+  const Real t344 = t342 + t343;
+  const Real t345 = t131 * par.c;
+  const Real t346 = -t345;
+  const Real t347 = sum_error(t34, t346);
+  const Real t348 = t344 + t347;
+  const Real t349 = t34 - t345;
+  const Real t350 = t146 * t199;
+  const Real t351 = t146 * t33;
+  const Real t352 = t350 + t351;
+  const Real t353 = t131 * t118;
+  const Real t354 = t352 + t353;
+  const Real t355 = sum_error(t349, t354);
+  const Real t356 = t348 + t355;
+  const Real t357 = t57 * t29;
+  const Real t358 = product_error(c_r_p_1_, t29);
+  const Real t359 = t357 + t358;
+  const Real t360 = t356 - t359;
+  const Real t361 = t354 + t349;
+  const Real t362 = c_r_p_1_ * t29;
+  const Real t363 = t361 - t362;
+  const Real t364 = t360 + t363;
+  const Real t365 = t138 + t147;
+  const Real t366 = t137 * t29;
+  const Real t367 = t365 - t366;
+  const Real t368 = sum_error(t138, t147);
+  const Real t369 = t368 + t140;
+  const Real t370 = product_error(t137, t29);
+  const Real t371 = t369 - t370;
+  const Real t372 = t367 + t371;
+  const Real t373 = t221 * t364;
   const Real t374 = -t373;
-  const Real t375 = t156 * t359;
-  const Real t376 = t328 - t375;
-  const Real t377 = t367 * t156;
-  const Real t378 = product_error(t156, t359);
-  const Real t379 = t377 + t378;
-  const Real t380 = t376 - t379;
-  const Real t381 = t380 * t120;
-  const Real t382 = t381 * t47;
-  const Real t383 = t382 - t35;
-  const Real t384 = t383 * nu[0];
-  const Real t385 = t156 * t268;
-  const Real t386 = t260 - t385;
-  const Real t387 = t156 * t297;
-  const Real t388 = product_error(t268, t156);
-  const Real t389 = t387 + t388;
-  const Real t390 = t386 - t389;
-  const Real t391 = t390 * t120;
-  const Real t392 = t47 * t391;
-  const Real t393 = t392 * nu[1];
-  const Real t394 = t384 + t393;
-  const Real t395 = t156 * t254;
-  const Real t396 = t124 - t395;
-  const Real t397 = product_error(t254, t156);
-  const Real t398 = t156 * t252;
-  const Real t399 = t397 + t398;
-  const Real t400 = t396 - t399;
-  const Real t401 = t120 * t400;
-  const Real t402 = t401 * t47;
-  const Real t403 = t402 * nu[2];
-  const Real t404 = t394 + t403;
-  const Real t405 = t18 * t254;
-  const Real t406 = t18 * t252;
-  const Real t407 = t405 + t406;
-  const Real t408 = t407 - t17;
-  const Real t409 = t408 * nu[2];
-  const Real t410 = t18 * t297;
-  const Real t411 = t18 * t268;
+  const Real t375 = sum_error(t372, t374);
+  const Real t376 = product_error(t364, t221);
+  const Real t377 = t375 - t376;
+  const Real t378 = t137 * t118;
+  const Real t379 = t137 * par.c;
+  const Real t380 = t378 - t379;
+  const Real t381 = t29 * t2;
+  const Real t382 = t380 + t381;
+  const Real t383 = t178 * t364;
+  const Real t384 = t382 - t383;
+  const Real t385 = product_error(t384, t224);
+  const Real t386 = t246 * t384;
+  const Real t387 = -t383;
+  const Real t388 = sum_error(t382, t387);
+  const Real t389 = product_error(t178, t364);
+  const Real t390 = t388 - t389;
+  const Real t391 = t390 * t224;
+  const Real t392 = t386 + t391;
+  const Real t393 = t385 + t392;
+  const Real t394 = t377 - t393;
+  const Real t395 = t372 - t373;
+  const Real t396 = t224 * t384;
+  const Real t397 = t395 - t396;
+  const Real t398 = t394 + t397;
+  const Real t399 = t228 * t398;
+  const Real t400 = t254 * t398;
+  const Real t401 = t399 + t400;
+  const Real t402 = t401 * t118;
+  const Real t403 = t402 + t384;
+  const Real t404 = t403 * t181;
+  const Real t405 = t153 * t404;
+  const Real t406 = t364 - t405;
+  const Real t407 = product_error(t153, t404);
+  const Real t408 = sum_error(t384, t402);
+  const Real t409 = t390 + t408;
+  const Real t410 = t181 * t409;
+  const Real t411 = t403 * t238;
   const Real t412 = t410 + t411;
-  const Real t413 = t412 * nu[1];
-  const Real t414 = t367 * t18;
-  const Real t415 = t18 * t359;
-  const Real t416 = t414 + t415;
-  const Real t417 = t416 * nu[0];
-  const Real t418 = t413 + t417;
-  const Real t419 = t409 + t418;
-  const Real t420 = t367 + t359;
-  const Real t421 = -t420;
-  const Real t422 = t47 * t254;
-  const Real t423 = t252 * t47;
-  const Real t424 = t422 + t423;
-  const Real t425 = t47 - t424;
-  const Real t426 = t425 * nu[2];
-  const Real t427 = t297 * t47;
-  const Real t428 = t47 * t268;
+  const Real t413 = product_error(t181, t403);
+  const Real t414 = t412 + t413;
+  const Real t415 = t153 * t414;
+  const Real t416 = t407 + t415;
+  const Real t417 = t406 - t416;
+  const Real t418 = t177 * t417;
+  const Real t419 = -t418;
+  const Real t420 = -t401;
+  const Real t421 = t118 * t320;
+  const Real t422 = t421 + t295;
+  const Real t423 = t181 * t422;
+  const Real t424 = nu[2] * t423;
+  const Real t425 = t238 * t422;
+  const Real t426 = sum_error(t295, t421);
+  const Real t427 = t319 * t118;
+  const Real t428 = product_error(t118, t320);
   const Real t429 = t427 + t428;
-  const Real t430 = t429 * nu[1];
-  const Real t431 = t367 * t47;
-  const Real t432 = t359 * t47;
-  const Real t433 = t431 + t432;
-  const Real t434 = t433 * nu[0];
-  const Real t435 = t430 + t434;
-  const Real t436 = t426 - t435;
-  const Real t437 = t252 + t254;
-  const Real t438 = -t437;
-  const Real t439 = t297 + t268;
-  const Real t440 = -t439;
-  const Real t441 = t190 + t240;
-  const Real t442 = -t441;
-  const Real t443 = t381 * nu[0];
-  const Real t444 = nu[1] * t391;
-  const Real t445 = t443 + t444;
-  const Real t446 = t401 * nu[2];
-  const Real t447 = t445 + t446;
+  const Real t430 = t307 + t429;
+  const Real t431 = t426 + t430;
+  const Real t432 = t181 * t431;
+  const Real t433 = t425 + t432;
+  const Real t434 = product_error(t422, t181);
+  const Real t435 = t433 + t434;
+  const Real t436 = t435 * nu[2];
+  const Real t437 = t424 + t436;
+  const Real t438 = t336 * nu[1];
+  const Real t439 = t338 * nu[1];
+  const Real t440 = t438 + t439;
+  const Real t441 = t414 * nu[0];
+  const Real t442 = t404 * nu[0];
+  const Real t443 = t441 + t442;
+  const Real t444 = t440 + t443;
+  const Real t445 = t437 + t444;
+  const Real t446 = -t445;
+  const Real t447 = t435 + t423;
   const Real t448 = -t447;
-  const Real t449 = -t433;
-  const Real t450 = -t429;
-  const Real t451 = -t381;
-  const Real t452 = -t391;
-  const Real t453 = -t356;
-  const Real t454 = -t401;
-  const Real t455 = t356 * nu[0];
-  const Real t456 = t265 * nu[1];
-  const Real t457 = t286 * nu[1];
-  const Real t458 = t456 + t457;
-  const Real t459 = t455 + t458;
-  const Real t460 = t190 * nu[2];
-  const Real t461 = t240 * nu[2];
-  const Real t462 = t460 + t461;
-  const Real t463 = t459 + t462;
-  const Real t464 = -t463;
+  const Real t449 = t414 + t404;
+  const Real t450 = -t449;
+  const Real t451 = t153 * t423;
+  const Real t452 = t289 - t451;
+  const Real t453 = t435 * t153;
+  const Real t454 = product_error(t423, t153);
+  const Real t455 = t453 + t454;
+  const Real t456 = t452 - t455;
+  const Real t457 = t177 * t456;
+  const Real t458 = -t457;
+  const Real t459 = t153 * t338;
+  const Real t460 = t260 - t459;
+  const Real t461 = product_error(t338, t153);
+  const Real t462 = t153 * t336;
+  const Real t463 = t461 + t462;
+  const Real t464 = t460 - t463;
+  const Real t465 = t177 * t464;
+  const Real t466 = -t465;
+  const Real t467 = t42 * t423;
+  const Real t468 = t435 * t42;
+  const Real t469 = t467 + t468;
+  const Real t470 = t42 - t469;
+  const Real t471 = t470 * nu[2];
+  const Real t472 = t340 * nu[1];
+  const Real t473 = t414 * t42;
+  const Real t474 = t404 * t42;
+  const Real t475 = t473 + t474;
+  const Real t476 = nu[0] * t475;
+  const Real t477 = t472 + t476;
+  const Real t478 = t471 - t477;
+  const Real t479 = t42 * t457;
+  const Real t480 = t479 * nu[2];
+  const Real t481 = t465 * t42;
+  const Real t482 = t481 * nu[1];
+  const Real t483 = t418 * t42;
+  const Real t484 = t483 - t29;
+  const Real t485 = t484 * nu[0];
+  const Real t486 = t482 + t485;
+  const Real t487 = t480 + t486;
+  const Real t488 = t338 + t336;
+  const Real t489 = -t488;
+  const Real t490 = nu[2] * t457;
+  const Real t491 = t418 * nu[0];
+  const Real t492 = t465 * nu[1];
+  const Real t493 = t491 + t492;
+  const Real t494 = t490 + t493;
+  const Real t495 = -t494;
+  const Real t496 = -t475;
+  const Real t497 = t319 * nu[2];
+  const Real t498 = t320 * nu[2];
+  const Real t499 = t497 + t498;
+  const Real t500 = t281 * nu[1];
+  const Real t501 = t280 * nu[1];
+  const Real t502 = t500 + t501;
+  const Real t503 = t401 * nu[0];
+  const Real t504 = t502 + t503;
+  const Real t505 = t499 + t504;
+  const Real t506 = -t505;
+  const Real t507 = t23 * t404;
+  const Real t508 = t23 * t414;
+  const Real t509 = t507 + t508;
+  const Real t510 = t509 * nu[0];
+  const Real t511 = t23 * t338;
+  const Real t512 = t23 * t336;
+  const Real t513 = t511 + t512;
+  const Real t514 = t513 * nu[1];
+  const Real t515 = t510 + t514;
+  const Real t516 = t435 * t23;
+  const Real t517 = t23 * t423;
+  const Real t518 = t516 + t517;
+  const Real t519 = t518 - t22;
+  const Real t520 = t519 * nu[2];
+  const Real t521 = t515 + t520;
 
-  eta_out[0] = t419;
-  eta_out[1] = t404;
-  eta_out[2] = t436;
+  eta_out[0] = t521;
+  eta_out[1] = t487;
+  eta_out[2] = t478;
   eta_out[3] = nu[0];
-  eta_out[4] = t372;
-  eta_out[5] = t448;
+  eta_out[4] = t446;
+  eta_out[5] = t495;
   r_p_dot_out[0] = nu[2];
   r_p_dot_out[1] = nu[1];
-  r_p_dot_out[2] = t464;
-  H[0] = t416;
-  H[1] = t412;
-  H[2] = t408;
-  H[3] = t383;
-  H[4] = t392;
-  H[5] = t402;
-  H[6] = t449;
-  H[7] = t450;
-  H[8] = t425;
+  r_p_dot_out[2] = t506;
+  H[0] = t509;
+  H[1] = t513;
+  H[2] = t519;
+  H[3] = t484;
+  H[4] = t481;
+  H[5] = t479;
+  H[6] = t496;
+  H[7] = t341;
+  H[8] = t470;
   H[9] = constant<Real>(1.0L);
   H[10] = constant<Real>(0.0L);
   H[11] = constant<Real>(0.0L);
-  H[12] = t421;
-  H[13] = t440;
-  H[14] = t438;
-  H[15] = t451;
-  H[16] = t452;
-  H[17] = t454;
+  H[12] = t450;
+  H[13] = t489;
+  H[14] = t448;
+  H[15] = t419;
+  H[16] = t466;
+  H[17] = t458;
   H[18] = constant<Real>(0.0L);
   H[19] = constant<Real>(0.0L);
   H[20] = constant<Real>(1.0L);
   H[21] = constant<Real>(0.0L);
   H[22] = constant<Real>(1.0L);
   H[23] = constant<Real>(0.0L);
-  H[24] = t453;
-  H[25] = t374;
-  H[26] = t442;
+  H[24] = t420;
+  H[25] = t283;
+  H[26] = t322;
 }
 
 /// Reduced velocities of admissible ones: the inverse of eq. (11) on its range.
@@ -1487,7 +1582,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t47 = t7 * par.k10;
   const Real t48 = par.k8 * t7;
   const Real t49 = par.k8 * t8;
-  const Real t50 = t49 - par.k37;
+  const Real t50 = t49 - par.k40;
   const Real t51 = par.m_H * t8;
 
   // front_wheel: wrench
@@ -1517,7 +1612,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t73 = par.k12 * t72;
   const Real t74 = t69 + t73;
   const Real t75 = t50 - t74;
-  const Real t76 = t72 + par.k38;
+  const Real t76 = t72 + par.k41;
   const Real t77 = t46 + t53;
   const Real t78 = t68 + t51;
 
@@ -1640,7 +1735,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t182 = t174 - t181;
 
   // rear_wheel: joint force
-  const Real t183 = par.k42 + t165;
+  const Real t183 = par.k45 + t165;
   const Real t184 = t158 + par.m_R;
 
   // front_wheel: acceleration
@@ -1655,7 +1750,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t191 = par.k8 * t14;
   const Real t192 = par.k10 * t14;
   const Real t193 = par.k8 * t1;
-  const Real t194 = par.k44 + t193;
+  const Real t194 = par.k47 + t193;
   const Real t195 = par.m_H * t1;
   const Real t196 = par.m_H * t14;
 
@@ -1674,7 +1769,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t206 = t204 - t205;
   const Real t207 = t206 * par.k2;
   const Real t208 = t203 + t207;
-  const Real t209 = par.k43 + t208;
+  const Real t209 = par.k46 + t208;
   const Real t210 = t202 * par.k2;
   const Real t211 = par.k1 * t206;
   const Real t212 = t210 - t211;
@@ -1737,7 +1832,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t263 = t262 * s_r_p_2_;
   const Real t264 = t259 + t263;
   const Real t265 = par.k11 * t8;
-  const Real t266 = par.k45 + t265;
+  const Real t266 = par.k48 + t265;
   const Real t267 = c_r_p_2_ * t262;
   const Real t268 = s_r_p_2_ * t258;
   const Real t269 = t267 - t268;
@@ -1747,11 +1842,11 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t271 = par.I_Rxx * c_r_p_0_;
 
   // fork: wrench
-  const Real t272 = par.k37 - t49;
+  const Real t272 = par.k40 - t49;
   const Real t273 = t8 * par.k17;
-  const Real t274 = t273 + par.k48;
+  const Real t274 = t273 + par.k51;
   const Real t275 = par.k5 * t8;
-  const Real t276 = par.k47 + t275;
+  const Real t276 = par.k50 + t275;
   const Real t277 = par.k7 * t7;
 
   // front_wheel: wrench
@@ -1836,7 +1931,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t350 = t270 * s_r_p_0_;
   const Real t351 = t271 * c_r_p_0_;
   const Real t352 = t350 + t351;
-  const Real t353 = par.k49 + t352;
+  const Real t353 = par.k52 + t352;
   const Real t354 = t329 + t353;
   const Real t355 = t270 * c_r_p_0_;
   const Real t356 = t271 * s_r_p_0_;
@@ -1881,12 +1976,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t387 = t127 + t386;
   const Real t388 = par.k7 * c_r_p_1_;
   const Real t389 = t4 * par.k8;
-  const Real t390 = t389 + par.k51;
+  const Real t390 = t389 + par.k54;
   const Real t391 = t388 + t390;
   const Real t392 = par.k8 * t13;
   const Real t393 = s_r_p_1_ * par.k17;
   const Real t394 = t392 + t393;
-  const Real t395 = par.k50 + t129;
+  const Real t395 = par.k53 + t129;
 
   // front_wheel: wrench
   const Real t396 = c_r_p_1_ * par.I_Fyy;
@@ -1971,7 +2066,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // front_wheel: acceleration
   const Real t469 = t1 * par.k11;
-  const Real t470 = par.k52 - t469;
+  const Real t470 = par.k55 - t469;
   const Real t471 = t11 + t470;
   const Real t472 = par.k11 * t14;
   const Real t473 = t12 - t472;
@@ -1991,14 +2086,14 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t487 = t1 * par.k17;
-  const Real t488 = par.k53 - t487;
+  const Real t488 = par.k56 - t487;
   const Real t489 = par.k8 * t11;
   const Real t490 = t488 - t489;
   const Real t491 = par.m_H * t12;
   const Real t492 = t191 + t491;
   const Real t493 = t11 * par.k10;
   const Real t494 = par.k5 * t1;
-  const Real t495 = par.k54 - t494;
+  const Real t495 = par.k57 - t494;
   const Real t496 = t493 + t495;
   const Real t497 = par.k7 * t14;
   const Real t498 = par.k8 * t12;
@@ -2092,7 +2187,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t572 = t570 - t571;
   const Real t573 = par.k2 * t572;
   const Real t574 = t569 + t573;
-  const Real t575 = par.k55 + t574;
+  const Real t575 = par.k58 + t574;
   const Real t576 = par.k6 + t575;
 
   // rear_wheel: twist
@@ -2233,7 +2328,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t699 = par.k15 * t611;
   const Real t700 = t698 - t699;
   const Real t701 = t697 + t700;
-  const Real t702 = par.k29 * t608;
+  const Real t702 = par.k32 * t608;
   const Real t703 = par.k3 * t609;
   const Real t704 = t702 - t703;
   const Real t705 = t604 * par.k16;
@@ -2248,7 +2343,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t714 = t712 - t713;
   const Real t715 = t605 - t610;
   const Real t716 = par.k3 * t715;
-  const Real t717 = t589 * par.k31;
+  const Real t717 = t589 * par.k34;
   const Real t718 = t716 + t717;
   const Real t719 = t714 + t718;
   const Real t720 = t604 * par.m_B;
@@ -2256,7 +2351,7 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t722 = par.k15 * t609;
   const Real t723 = t721 + t722;
   const Real t724 = t720 + t723;
-  const Real t725 = par.k30 * t609;
+  const Real t725 = par.k33 * t609;
   const Real t726 = par.k3 * t608;
   const Real t727 = t725 + t726;
   const Real t728 = t604 * par.k15;
@@ -2264,18 +2359,18 @@ inline void free_dynamics(const Prepared<Real>& par,
 
   // rear_wheel: wrench
   const Real t730 = t613 * par.I_Rxx;
-  const Real t731 = t612 * par.k32;
+  const Real t731 = t612 * par.k35;
   const Real t732 = t730 + t731;
   const Real t733 = t622 * par.m_R;
   const Real t734 = t615 * par.m_R;
   const Real t735 = t625 * par.m_R;
-  const Real t736 = par.k33 * t627;
+  const Real t736 = par.k36 * t627;
   const Real t737 = par.I_Rxx * t626;
   const Real t738 = t736 - t737;
 
   // fork: wrench
   const Real t739 = t629 * par.k17;
-  const Real t740 = t628 * par.k34;
+  const Real t740 = t628 * par.k37;
   const Real t741 = t739 + t740;
   const Real t742 = par.k5 * t646;
   const Real t743 = t741 + t742;
@@ -2301,13 +2396,13 @@ inline void free_dynamics(const Prepared<Real>& par,
   const Real t763 = t761 - t762;
   const Real t764 = t657 - t648;
   const Real t765 = par.k5 * t764;
-  const Real t766 = t631 * par.k35;
+  const Real t766 = t631 * par.k38;
   const Real t767 = par.k7 * t632;
   const Real t768 = t766 - t767;
   const Real t769 = t765 + t768;
   const Real t770 = t763 + t769;
   const Real t771 = par.k10 * t656;
-  const Real t772 = t646 * par.k36;
+  const Real t772 = t646 * par.k39;
   const Real t773 = t630 * par.k5;
   const Real t774 = t772 - t773;
   const Real t775 = t771 + t774;
@@ -2315,12 +2410,12 @@ inline void free_dynamics(const Prepared<Real>& par,
   // front_wheel: wrench
   const Real t776 = par.I_Fyy * t632;
   const Real t777 = t666 * par.I_Fxx;
-  const Real t778 = t659 * par.k39;
+  const Real t778 = t659 * par.k42;
   const Real t779 = t777 + t778;
   const Real t780 = t671 * par.m_F;
   const Real t781 = par.m_F * t691;
   const Real t782 = par.I_Fxx * t696;
-  const Real t783 = par.k40 * t667;
+  const Real t783 = par.k43 * t667;
   const Real t784 = t782 + t783;
   const Real t785 = par.m_F * t688;
 
@@ -2545,6 +2640,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // kernel
   const Real t4 = sum_error(t3, t2);
   const Real t5 = product_error(par.k2, R[6]);
+
+  // passive accelerations
   const Real t6 = t4 + t5;
   const Real t7 = t6 * c_r_p_1_;
 
@@ -2553,6 +2650,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // kernel
   const Real t9 = product_error(c_r_p_1_, t8);
+
+  // passive accelerations
   const Real t10 = t9 + t7;
 
   // joint angles
@@ -2561,6 +2660,8 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // kernel
   const Real t13 = sum_error(t11, t12);
+
+  // passive accelerations
   const Real t14 = t13 + t10;
   const Real t15 = par.k1 * t14;
 
@@ -2569,22 +2670,28 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // kernel
   const Real t17 = product_error(par.k1, t16);
+
+  // passive accelerations
   const Real t18 = t17 + t15;
 
   // joint angles
   const Real t19 = par.k1 * R[6];
   const Real t20 = R[8] * par.k2;
 
-  // kernel
+  // passive accelerations
   const Real t21 = sum_error(t19, t20);
+
+  // kernel
   const Real t22 = product_error(par.k1, R[6]);
+
+  // passive accelerations
   const Real t23 = t22 + t21;
   const Real t24 = par.k2 * t23;
 
   // joint angles
   const Real t25 = t19 + t20;
 
-  // kernel
+  // passive accelerations
   const Real t26 = product_error(t25, par.k2);
   const Real t27 = t26 + t24;
   const Real t28 = t18 - t27;
@@ -2594,7 +2701,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t30 = t25 * par.k2;
   const Real t31 = t29 - t30;
 
-  // kernel
+  // passive accelerations
   const Real t32 = t31 + t28;
   const Real t33 = t32 * t32;
   const Real t34 = par.k2 * t14;
@@ -2602,14 +2709,14 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // joint angles
   const Real t35 = par.k2 * t16;
 
-  // kernel
+  // passive accelerations
   const Real t36 = t35 + t34;
   const Real t37 = par.k1 * t23;
 
   // joint angles
   const Real t38 = par.k1 * t25;
 
-  // kernel
+  // passive accelerations
   const Real t39 = t37 + t38;
   const Real t40 = t39 + t36;
   const Real t41 = t40 * t40;
@@ -2626,8 +2733,6 @@ inline void reduced_dynamics(const Prepared<Real>& par,
 
   // passive accelerations
   const Real t50 = t49 * t46;
-
-  // kernel
   const Real t51 = t40 * t44;
   const Real t52 = par.r_F * t51;
 
@@ -2668,7 +2773,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // joint angles
   const Real t73 = s_r_p_1_ * par.k1;
 
-  // kernel
+  // passive accelerations
   const Real t74 = t52 * t73;
 
   // joint angles
@@ -2677,18 +2782,20 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t77 = par.k1 * t76;
   const Real t78 = t75 - t77;
 
-  // kernel
+  // passive accelerations
   const Real t79 = t78 - t74;
+
+  // kernel
   const Real t80 = t73 * t69;
-  const Real t81 = t80 + t79;
 
   // passive accelerations
+  const Real t81 = t80 + t79;
   const Real t82 = t72 * t81;
 
   // joint angles
   const Real t83 = s_r_p_1_ * par.k2;
 
-  // kernel
+  // passive accelerations
   const Real t84 = t83 * t46;
   const Real t85 = t84 - t74;
 
@@ -2714,8 +2821,6 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t96 = t80 + t95;
   const Real t97 = t82 * t96;
   const Real t98 = -t97;
-
-  // kernel
   const Real t99 = t52 * c_r_p_1_;
 
   // joint angles
@@ -2723,7 +2828,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t101 = t100 * par.k1;
 
   // passive accelerations
-  const Real t102 = t101 + par.k27;
+  const Real t102 = t101 + par.k65;
 
   // joint angles
   const Real t103 = c_r_p_1_ * par.c;
@@ -2757,8 +2862,6 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t119 = t118 / t116;
   const Real t120 = quotient_error(constant<Real>(1.0L), t116);
   const Real t121 = t120 - t119;
-
-  // kernel
   const Real t122 = t46 * t73;
 
   // joint angles
@@ -2766,23 +2869,23 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t124 = par.r_F * t73;
   const Real t125 = t123 - t124;
 
-  // kernel
+  // passive accelerations
   const Real t126 = t125 - t122;
+
+  // kernel
   const Real t127 = t83 * t69;
-  const Real t128 = t126 - t127;
 
   // passive accelerations
+  const Real t128 = t126 - t127;
   const Real t129 = t72 * t128;
   const Real t130 = t129 * t96;
-
-  // kernel
   const Real t131 = c_r_p_1_ * t46;
 
   // joint angles
   const Real t132 = t100 * par.k2;
 
   // passive accelerations
-  const Real t133 = t132 - par.k26;
+  const Real t133 = t132 - par.k63;
 
   // joint angles
   const Real t134 = c_r_p_1_ * par.r_F;
@@ -2821,11 +2924,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t155 = product_error(t52, t154);
   const Real t156 = t153 + t155;
   const Real t157 = t52 * t154;
-
-  // kernel
   const Real t158 = -t46;
-
-  // passive accelerations
   const Real t159 = sum_error(t157, t158);
   const Real t160 = t156 + t159;
   const Real t161 = t157 - t46;
@@ -2834,14 +2933,10 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t164 = t163 / t161;
   const Real t165 = quotient_error(constant<Real>(1.0L), t161);
   const Real t166 = t165 - t164;
-
-  // kernel
   const Real t167 = t52 * par.k2;
   const Real t168 = par.k1 * t46;
   const Real t169 = t167 + t168;
   const Real t170 = t169 + par.k12;
-
-  // passive accelerations
   const Real t171 = t82 * t170;
   const Real t172 = t171 * t154;
   const Real t173 = t129 * t170;
@@ -2887,11 +2982,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t213 = t72 * t212;
   const Real t214 = t213 * nu[1];
   const Real t215 = t52 * t108;
-
-  // kernel
   const Real t216 = t46 * t138;
-
-  // passive accelerations
   const Real t217 = t215 + t216;
 
   // joint angles
@@ -2911,19 +3002,19 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   // passive accelerations
   const Real t224 = t221 - t223;
   const Real t225 = t82 * t224;
-
-  // kernel
   const Real t226 = t83 * t52;
 
   // joint angles
   const Real t227 = t83 * par.c;
 
-  // kernel
+  // passive accelerations
   const Real t228 = t226 - t227;
+
+  // kernel
   const Real t229 = t222 * t73;
-  const Real t230 = t228 + t229;
 
   // passive accelerations
+  const Real t230 = t228 + t229;
   const Real t231 = t230 - t225;
   const Real t232 = t231 * t152;
   const Real t233 = -t225;
@@ -2936,13 +3027,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t240 = t239 + t238;
   const Real t241 = t224 * t129;
   const Real t242 = -t241;
+  const Real t243 = t86 + t84;
 
   // kernel
-  const Real t243 = t86 + t84;
   const Real t244 = t83 * t222;
-  const Real t245 = t243 - t244;
 
   // passive accelerations
+  const Real t245 = t243 - t244;
   const Real t246 = sum_error(t245, t242);
   const Real t247 = product_error(t224, t129);
   const Real t248 = t246 - t247;
@@ -3102,11 +3193,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t370 = t32 * t369;
   const Real t371 = t370 * constant<Real>(2.0L);
   const Real t372 = t366 + t371;
-
-  // kernel
   const Real t373 = t43 * constant<Real>(2.0L);
-
-  // passive accelerations
   const Real t374 = t372 / t373;
   const Real t375 = t374 * t44;
   const Real t376 = t375 / t43;
@@ -3448,7 +3535,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t688 = t654 * par.k10;
   const Real t689 = t687 - t688;
   const Real t690 = par.k7 * t635;
-  const Real t691 = par.k35 * t636;
+  const Real t691 = par.k38 * t636;
   const Real t692 = t690 + t691;
   const Real t693 = t640 - t648;
   const Real t694 = par.k5 * t693;
@@ -3480,7 +3567,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t720 = t715 - t719;
   const Real t721 = par.I_Fxx * t720;
   const Real t722 = t718 * t508;
-  const Real t723 = par.k40 * t722;
+  const Real t723 = par.k43 * t722;
   const Real t724 = t721 - t723;
   const Real t725 = t724 * s_r_p_2_;
   const Real t726 = c_r_p_2_ * t713;
@@ -3493,7 +3580,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t733 = t728 + t732;
   const Real t734 = par.I_Fxx * t733;
   const Real t735 = t508 * t731;
-  const Real t736 = t735 * par.k39;
+  const Real t736 = t735 * par.k42;
   const Real t737 = t734 - t736;
   const Real t738 = c_r_p_2_ * t737;
   const Real t739 = t725 + t738;
@@ -3519,7 +3606,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t759 = t758 + t745;
   const Real t760 = par.k8 * t748;
   const Real t761 = t705 * par.k17;
-  const Real t762 = t749 * par.k34;
+  const Real t762 = t749 * par.k37;
   const Real t763 = t761 - t762;
   const Real t764 = par.k5 * t753;
   const Real t765 = t764 + t763;
@@ -3536,7 +3623,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t776 = par.k10 * t748;
   const Real t777 = par.k5 * t750;
   const Real t778 = par.k6 * t707;
-  const Real t779 = t752 * par.k36;
+  const Real t779 = t752 * par.k39;
   const Real t780 = t778 - t779;
   const Real t781 = t777 + t780;
   const Real t782 = t781 + t776;
@@ -3562,7 +3649,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t802 = t801 + t785;
   const Real t803 = t587 * par.k16;
   const Real t804 = t579 * par.k14;
-  const Real t805 = par.k58 * t588;
+  const Real t805 = par.k61 * t588;
   const Real t806 = t804 - t805;
   const Real t807 = t336 * t324;
   const Real t808 = par.k3 * t807;
@@ -3581,7 +3668,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t817 = t812 + t816;
   const Real t818 = par.I_Rxx * t817;
   const Real t819 = t815 * t480;
-  const Real t820 = par.k32 * t819;
+  const Real t820 = par.k35 * t819;
   const Real t821 = t818 + t820;
   const Real t822 = t821 * c_r_p_0_;
   const Real t823 = t579 * s_r_p_0_;
@@ -3596,7 +3683,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t828 = t823 + t827;
   const Real t829 = t828 * par.I_Rxx;
   const Real t830 = t480 * t826;
-  const Real t831 = t830 * par.k33;
+  const Real t831 = t830 * par.k36;
   const Real t832 = t831 - t829;
   const Real t833 = t832 * s_r_p_0_;
   const Real t834 = t822 - t833;
@@ -3619,15 +3706,15 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t851 = t850 - t843;
   const Real t852 = t851 * par.k13;
   const Real t853 = t839 - t852;
-  const Real t854 = t602 * par.k59;
+  const Real t854 = t602 * par.k62;
   const Real t855 = t602 * par.k15;
   const Real t856 = t854 + t855;
   const Real t857 = t618 * par.k16;
   const Real t858 = t856 - t857;
-  const Real t859 = par.k56 * t571;
-  const Real t860 = t573 * par.k56;
+  const Real t859 = par.k59 * t571;
+  const Real t860 = t573 * par.k59;
   const Real t861 = t860 + t859;
-  const Real t862 = par.k60 * t619;
+  const Real t862 = par.k64 * t619;
   const Real t863 = t861 - t862;
 
   // frame: acceleration
@@ -3671,7 +3758,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t899 = t897 + t898;
   const Real t900 = t602 * par.m_B;
   const Real t901 = par.k15 * t875;
-  const Real t902 = par.k59 * t875;
+  const Real t902 = par.k62 * t875;
   const Real t903 = t901 + t902;
   const Real t904 = t605 * par.k16;
   const Real t905 = t903 - t904;
@@ -3681,7 +3768,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t909 = t458 * t908;
   const Real t910 = t587 * par.m_B;
   const Real t911 = t589 * par.k16;
-  const Real t912 = par.k59 * t807;
+  const Real t912 = par.k62 * t807;
   const Real t913 = par.k15 * t807;
   const Real t914 = t912 + t913;
   const Real t915 = t911 + t914;
@@ -3695,7 +3782,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t923 = t909 + t922;
   const Real t924 = t618 * par.m_B;
   const Real t925 = t621 * par.k16;
-  const Real t926 = par.k59 * t870;
+  const Real t926 = par.k62 * t870;
   const Real t927 = t870 * par.k15;
   const Real t928 = t926 + t927;
   const Real t929 = t925 + t928;
@@ -3738,10 +3825,10 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t966 = t783 * par.k1;
   const Real t967 = t966 + t965;
   const Real t968 = par.k15 * t587;
-  const Real t969 = par.k59 * t587;
+  const Real t969 = par.k62 * t587;
   const Real t970 = t968 + t969;
   const Real t971 = par.k3 * t589;
-  const Real t972 = par.k61 * t807;
+  const Real t972 = par.k66 * t807;
   const Real t973 = t972 + t971;
   const Real t974 = t973 - t970;
   const Real t975 = t967 + t974;
@@ -3893,13 +3980,13 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1121 = t1120 - t1115;
   const Real t1122 = par.k13 * t1121;
   const Real t1123 = t1101 - t1122;
-  const Real t1124 = t458 * par.k59;
+  const Real t1124 = t458 * par.k62;
   const Real t1125 = t458 * par.k15;
   const Real t1126 = t1124 + t1125;
   const Real t1127 = t441 * par.k16;
   const Real t1128 = t1126 - t1127;
-  const Real t1129 = t314 * par.k56;
-  const Real t1130 = par.k56 * t316;
+  const Real t1129 = t314 * par.k59;
+  const Real t1130 = par.k59 * t316;
   const Real t1131 = t1129 + t1130;
   const Real t1132 = t1128 - t1131;
   const Real t1133 = t1132 + t1123;
@@ -3932,7 +4019,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1160 = t1159 + t1158;
   const Real t1161 = t458 * par.m_B;
   const Real t1162 = t314 * par.k15;
-  const Real t1163 = par.k59 * t316;
+  const Real t1163 = par.k62 * t316;
   const Real t1164 = t1163 + t1162;
   const Real t1165 = t316 * par.k15;
   const Real t1166 = t1165 + t1164;
@@ -4137,12 +4224,12 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1365 = t1364 * par.k13;
   const Real t1366 = t1344 - t1365;
   const Real t1367 = par.k15 * t448;
-  const Real t1368 = par.k59 * t448;
+  const Real t1368 = par.k62 * t448;
   const Real t1369 = t1367 + t1368;
   const Real t1370 = t431 * par.k16;
   const Real t1371 = t1370 + t1369;
-  const Real t1372 = t205 * par.k56;
-  const Real t1373 = par.k56 * t207;
+  const Real t1372 = t205 * par.k59;
+  const Real t1373 = par.k59 * t207;
   const Real t1374 = t1372 + t1373;
   const Real t1375 = t1371 - t1374;
   const Real t1376 = t1375 + t1366;
@@ -4175,7 +4262,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1403 = t1401 + t1402;
   const Real t1404 = t448 * par.m_B;
   const Real t1405 = t205 * par.k15;
-  const Real t1406 = t207 * par.k59;
+  const Real t1406 = t207 * par.k62;
   const Real t1407 = t1406 + t1405;
   const Real t1408 = t207 * par.k15;
   const Real t1409 = t1407 + t1408;
@@ -4380,12 +4467,12 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1608 = t1607 * par.k13;
   const Real t1609 = t1587 - t1608;
   const Real t1610 = par.k15 * t452;
-  const Real t1611 = par.k59 * t452;
+  const Real t1611 = par.k62 * t452;
   const Real t1612 = t1610 + t1611;
   const Real t1613 = t435 * par.k16;
   const Real t1614 = t1613 + t1612;
-  const Real t1615 = par.k56 * t265;
-  const Real t1616 = par.k56 * t267;
+  const Real t1615 = par.k59 * t265;
+  const Real t1616 = par.k59 * t267;
   const Real t1617 = t1615 + t1616;
   const Real t1618 = t1614 - t1617;
   const Real t1619 = t1609 + t1618;
@@ -4418,7 +4505,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1646 = t1645 + t1644;
   const Real t1647 = t452 * par.m_B;
   const Real t1648 = par.k15 * t265;
-  const Real t1649 = par.k59 * t267;
+  const Real t1649 = par.k62 * t267;
   const Real t1650 = t1649 + t1648;
   const Real t1651 = par.k15 * t267;
   const Real t1652 = t1650 + t1651;
@@ -4432,7 +4519,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1660 = t419 * par.m_B;
   const Real t1661 = t273 * par.k16;
   const Real t1662 = t1661 + par.k15;
-  const Real t1663 = par.k59 + t1662;
+  const Real t1663 = par.k62 + t1662;
   const Real t1664 = t1660 - t1663;
   const Real t1665 = t1664 + t1659;
   const Real t1666 = t419 + par.r_R;
@@ -4474,7 +4561,7 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1702 = t1701 + t1700;
   const Real t1703 = t419 * par.k16;
   const Real t1704 = t273 * par.k14;
-  const Real t1705 = t1704 + par.k46;
+  const Real t1705 = t1704 + par.k49;
   const Real t1706 = t1703 - t1705;
   const Real t1707 = t1706 + t1702;
   const Real t1708 = t273 * c_r_p_0_;
@@ -4533,14 +4620,14 @@ inline void reduced_dynamics(const Prepared<Real>& par,
   const Real t1761 = t1698 * par.k1;
   const Real t1762 = t1761 + t1760;
   const Real t1763 = t419 * par.k15;
-  const Real t1764 = par.k59 * t419;
+  const Real t1764 = par.k62 * t419;
   const Real t1765 = t1763 + t1764;
   const Real t1766 = par.k3 * t273;
   const Real t1767 = par.k9 - t1766;
   const Real t1768 = t1767 - t1765;
   const Real t1769 = -t1766;
   const Real t1770 = sum_error(par.k9, t1769);
-  const Real t1771 = t1770 + par.k57;
+  const Real t1771 = t1770 + par.k60;
   const Real t1772 = t1771 + t1768;
   const Real t1773 = t1762 + t1772;
   const Real t1774 = par.r_R * t1667;
@@ -5405,7 +5492,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t601 = t581 * par.k2;
   const Real t602 = par.k1 * t577;
   const Real t603 = t601 + t602;
-  const Real t604 = t603 + par.k38;
+  const Real t604 = t603 + par.k41;
 
   // fork: joint force
   const Real t605 = par.k1 * t604;
@@ -5459,7 +5546,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t633 = par.k8 * t82;
-  const Real t634 = t633 - par.k37;
+  const Real t634 = t633 - par.k40;
 
   // front_wheel: joint force
   const Real t635 = t634 - t632;
@@ -5483,7 +5570,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t643 = t642 + par.k15;
 
   // passive accelerations
-  const Real t644 = par.k59 + t643;
+  const Real t644 = par.k62 + t643;
 
   // rear_wheel: joint force
   const Real t645 = t612 * par.r_R;
@@ -5655,7 +5742,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t783 = t673 * par.m_B;
   const Real t784 = t676 * par.k16;
   const Real t785 = t685 * par.k15;
-  const Real t786 = par.k59 * t685;
+  const Real t786 = par.k62 * t685;
   const Real t787 = t785 + t786;
   const Real t788 = t784 + t787;
   const Real t789 = t783 - t788;
@@ -5878,7 +5965,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t932 = t931 + t930;
   const Real t933 = t314 * t302;
   const Real t934 = t933 * par.k15;
-  const Real t935 = t933 * par.k59;
+  const Real t935 = t933 * par.k62;
   const Real t936 = t934 + t935;
   const Real t937 = t696 * par.k16;
   const Real t938 = t936 - t937;
@@ -5954,7 +6041,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t980 = t964 * par.k1;
   const Real t981 = t968 * par.k2;
   const Real t982 = t980 + t981;
-  const Real t983 = par.k43 + t982;
+  const Real t983 = par.k46 + t982;
 
   // fork: joint force
   const Real t984 = t983 * par.k2;
@@ -5978,7 +6065,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t994 = par.k8 * t23;
-  const Real t995 = par.k44 + t994;
+  const Real t995 = par.k47 + t994;
 
   // front_wheel: joint force
   const Real t996 = t993 + t995;
@@ -6044,7 +6131,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1030 = t1029 - t1028;
   const Real t1031 = t684 * par.m_B;
   const Real t1032 = t685 * par.k16;
-  const Real t1033 = par.k59 * t795;
+  const Real t1033 = par.k62 * t795;
   const Real t1034 = t795 * par.k15;
   const Real t1035 = t1033 + t1034;
   const Real t1036 = t1032 + t1035;
@@ -6066,21 +6153,21 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1050 = t1048 + t1049;
 
   // passive accelerations
-  const Real t1051 = sum_error(t1050, par.k41);
-  const Real t1052 = t1051 - par.k59;
+  const Real t1051 = sum_error(t1050, par.k44);
+  const Real t1052 = t1051 - par.k62;
 
   // fork: joint force
   const Real t1053 = t1050 - par.k15;
 
   // passive accelerations
-  const Real t1054 = sum_error(par.k42, t1053);
+  const Real t1054 = sum_error(par.k45, t1053);
   const Real t1055 = t1052 + t1054;
 
   // accelerations
   const Real t1056 = t566 * t1055;
 
   // rear_wheel: joint force
-  const Real t1057 = par.k42 + t1053;
+  const Real t1057 = par.k45 + t1053;
 
   // accelerations
   const Real t1058 = t1057 * t566;
@@ -6183,7 +6270,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // front_wheel: acceleration
   const Real t1117 = par.k11 * t82;
-  const Real t1118 = par.k45 + t1117;
+  const Real t1118 = par.k48 + t1117;
 
   // front_wheel: wrench
   const Real t1119 = t1118 * par.m_F;
@@ -6194,7 +6281,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t1122 = t82 * par.k17;
-  const Real t1123 = t1122 + par.k48;
+  const Real t1123 = t1122 + par.k51;
 
   // front_wheel: joint force
   const Real t1124 = t1121 + t1123;
@@ -6210,7 +6297,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1128 = t1127 * c_r_p_1_;
 
   // fork: wrench
-  const Real t1129 = par.k37 - t633;
+  const Real t1129 = par.k40 - t633;
 
   // front_wheel: joint force
   const Real t1130 = t1129 + t1119;
@@ -6250,7 +6337,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t1152 = par.k5 * t82;
-  const Real t1153 = par.k47 + t1152;
+  const Real t1153 = par.k50 + t1152;
 
   // front_wheel: joint force
   const Real t1154 = t1153 + t1151;
@@ -6292,7 +6379,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1178 = par.k8 * t700;
   const Real t1179 = t720 * par.k10;
   const Real t1180 = t1178 - t1179;
-  const Real t1181 = t705 * par.k35;
+  const Real t1181 = t705 * par.k38;
   const Real t1182 = par.k7 * t706;
   const Real t1183 = t1181 - t1182;
   const Real t1184 = t702 - t714;
@@ -6313,7 +6400,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1199 = t1198 - t1193;
   const Real t1200 = t1199 * par.I_Fxx;
   const Real t1201 = t493 * t1192;
-  const Real t1202 = par.k40 * t1201;
+  const Real t1202 = par.k43 * t1201;
   const Real t1203 = t1200 - t1202;
   const Real t1204 = t1203 * s_r_p_2_;
   const Real t1205 = c_r_p_2_ * t383;
@@ -6326,7 +6413,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1212 = t1208 - t1211;
   const Real t1213 = t1212 * par.I_Fxx;
   const Real t1214 = t493 * t1207;
-  const Real t1215 = par.k39 * t1214;
+  const Real t1215 = par.k42 * t1214;
   const Real t1216 = t1213 - t1215;
   const Real t1217 = c_r_p_2_ * t1216;
   const Real t1218 = t1204 + t1217;
@@ -6340,7 +6427,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1226 = t1224 - t1225;
   const Real t1227 = t753 * par.k8;
   const Real t1228 = t755 * par.k17;
-  const Real t1229 = t756 * par.k34;
+  const Real t1229 = t756 * par.k37;
   const Real t1230 = t1228 + t1229;
   const Real t1231 = par.k5 * t759;
   const Real t1232 = t1230 + t1231;
@@ -6356,14 +6443,14 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1242 = t1240 - t1241;
   const Real t1243 = t753 * par.k10;
   const Real t1244 = t757 * par.k5;
-  const Real t1245 = t759 * par.k36;
+  const Real t1245 = t759 * par.k39;
   const Real t1246 = t1244 + t1245;
   const Real t1247 = t1246 + t1243;
   const Real t1248 = t1242 - t1247;
   const Real t1249 = par.k1 * t1248;
   const Real t1250 = t1237 + t1249;
   const Real t1251 = t695 * par.k15;
-  const Real t1252 = t933 * par.k61;
+  const Real t1252 = t933 * par.k66;
   const Real t1253 = par.k3 * t696;
   const Real t1254 = t1252 - t1253;
   const Real t1255 = t1251 + t1254;
@@ -6376,7 +6463,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // accelerations
   const Real t1259 = t1258 - t1257;
   const Real t1260 = t1259 * t465;
-  const Real t1261 = t1260 * par.k33;
+  const Real t1261 = t1260 * par.k36;
   const Real t1262 = t1259 * nu[2];
   const Real t1263 = t1262 * par.I_Rxx;
   const Real t1264 = t1261 - t1263;
@@ -6389,7 +6476,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   // accelerations
   const Real t1268 = t1267 + t1266;
   const Real t1269 = t1268 * t465;
-  const Real t1270 = par.k32 * t1269;
+  const Real t1270 = par.k35 * t1269;
   const Real t1271 = t1268 * nu[2];
   const Real t1272 = par.I_Rxx * t1271;
   const Real t1273 = t1270 + t1272;
@@ -6402,7 +6489,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1280 = sum_error(t1255, t1250);
   const Real t1281 = sum_error(t1254, t1251);
   const Real t1282 = product_error(t695, par.k15);
-  const Real t1283 = par.k59 * t695;
+  const Real t1283 = par.k62 * t695;
   const Real t1284 = t1282 + t1283;
   const Real t1285 = t1281 + t1284;
   const Real t1286 = t1285 + t1280;
@@ -6473,7 +6560,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t1335 = t76 * par.k8;
-  const Real t1336 = t1335 + par.k51;
+  const Real t1336 = t1335 + par.k54;
   const Real t1337 = par.k7 * c_r_p_1_;
   const Real t1338 = t1337 + t1336;
 
@@ -6548,7 +6635,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1372 = t1371 * par.k1;
 
   // fork: wrench
-  const Real t1373 = par.k50 + t921;
+  const Real t1373 = par.k53 + t921;
 
   // front_wheel: joint force
   const Real t1374 = t1330 - t1373;
@@ -6560,7 +6647,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1378 = t1362 - t1377;
 
   // passive accelerations
-  const Real t1379 = par.k56 + t1378;
+  const Real t1379 = par.k59 + t1378;
 
   // rear_wheel: acceleration
   const Real t1380 = par.r_R * c_r_p_0_;
@@ -6631,13 +6718,13 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1419 = t1030 * par.k13;
   const Real t1420 = t1418 - t1419;
   const Real t1421 = par.k15 * t673;
-  const Real t1422 = par.k59 * t673;
+  const Real t1422 = par.k62 * t673;
   const Real t1423 = t1421 + t1422;
   const Real t1424 = t684 * par.k16;
   const Real t1425 = t1423 - t1424;
   const Real t1426 = t674 - t794;
   const Real t1427 = par.k3 * t1426;
-  const Real t1428 = t685 * par.k60;
+  const Real t1428 = t685 * par.k64;
   const Real t1429 = t1427 - t1428;
   const Real t1430 = t1425 + t1429;
   const Real t1431 = t1430 + t1420;
@@ -6656,7 +6743,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1444 = sum_error(t1299, t1390);
   const Real t1445 = t1389 * t556;
   const Real t1446 = sum_error(t1379, t1388);
-  const Real t1447 = sum_error(par.k56, t1378);
+  const Real t1447 = sum_error(par.k59, t1378);
   const Real t1448 = t1447 + t1446;
   const Real t1449 = t558 * t1448;
   const Real t1450 = t1445 + t1449;
@@ -6773,7 +6860,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // front_wheel: acceleration
   const Real t1527 = t23 * par.k11;
-  const Real t1528 = par.k52 - t1527;
+  const Real t1528 = par.k55 - t1527;
   const Real t1529 = t36 + t1528;
 
   // front_wheel: wrench
@@ -6785,7 +6872,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t1533 = t23 * par.k17;
-  const Real t1534 = par.k53 - t1533;
+  const Real t1534 = par.k56 - t1533;
   const Real t1535 = par.k8 * t36;
   const Real t1536 = t1534 - t1535;
 
@@ -6806,7 +6893,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // fork: wrench
   const Real t1546 = par.k5 * t23;
-  const Real t1547 = par.k54 - t1546;
+  const Real t1547 = par.k57 - t1546;
   const Real t1548 = t36 * par.k10;
   const Real t1549 = t1548 + t1547;
 
@@ -6861,7 +6948,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1577 = t1576 + t1575;
   const Real t1578 = t695 * par.k16;
   const Real t1579 = par.k3 * t933;
-  const Real t1580 = par.k58 * t696;
+  const Real t1580 = par.k61 * t696;
   const Real t1581 = t1580 + t1579;
   const Real t1582 = t1581 + t1578;
   const Real t1583 = t1577 - t1582;
@@ -7015,7 +7102,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1725 = par.k9 + t1724;
 
   // rear_wheel: joint force
-  const Real t1726 = par.k49 + t1567;
+  const Real t1726 = par.k52 + t1567;
   const Real t1727 = t1725 + t1726;
 
   // accelerations
@@ -7034,7 +7121,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
 
   // passive accelerations
   const Real t1740 = sum_error(par.k9, t1724);
-  const Real t1741 = t1740 + par.k57;
+  const Real t1741 = t1740 + par.k60;
   const Real t1742 = sum_error(t1725, t1726);
   const Real t1743 = t1741 + t1742;
 
@@ -7511,7 +7598,7 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t2197 = t2195 - t2196;
   const Real t2198 = par.k2 * t2197;
   const Real t2199 = t2194 + t2198;
-  const Real t2200 = par.k55 + t2199;
+  const Real t2200 = par.k58 + t2199;
   const Real t2201 = par.k6 + t2200;
 
   // accelerations
@@ -7977,239 +8064,239 @@ inline void multipliers(const Prepared<Real>& par,
   // kernel
   const Real t64 = -t47;
   const Real t65 = product_error(par.k1, t36);
-  const Real t66 = sum_error(t34, t35);
-  const Real t67 = product_error(c_r_p_1_, t33);
-  const Real t68 = -t32;
-  const Real t69 = sum_error(t31, t68);
-  const Real t70 = product_error(par.k2, R[6]);
-  const Real t71 = t69 + t70;
-  const Real t72 = t71 * c_r_p_1_;
-  const Real t73 = t67 + t72;
-  const Real t74 = t66 + t73;
-  const Real t75 = par.k1 * t74;
-  const Real t76 = t65 + t75;
-  const Real t77 = product_error(t41, par.k2);
-  const Real t78 = product_error(par.k1, R[6]);
-  const Real t79 = sum_error(t39, t40);
-  const Real t80 = t78 + t79;
-  const Real t81 = par.k2 * t80;
-  const Real t82 = t77 + t81;
-  const Real t83 = t76 - t82;
-  const Real t84 = t43 + t83;
-  const Real t85 = t84 * t84;
-  const Real t86 = par.k1 * t80;
-  const Real t87 = t86 + t46;
-  const Real t88 = par.k2 * t74;
-  const Real t89 = t37 + t88;
-  const Real t90 = t87 + t89;
-  const Real t91 = t90 * t90;
-  const Real t92 = t85 + t91;
-  const Real t93 = sqrt(t92);
-  const Real t94 = constant<Real>(1.0L) / t93;
-  const Real t95 = t84 * t94;
-  const Real t96 = t95 * par.r_F;
-  const Real t97 = -t96;
-  const Real t98 = t55 * t60;
-  const Real t99 = t28 * t20;
-  const Real t100 = t98 - t99;
-  const Real t101 = t21 * t25;
-  const Real t102 = product_error(c_r_p_1_, par.r_F);
-  const Real t103 = t1 * t96;
-  const Real t104 = t90 * t94;
-  const Real t105 = par.r_F * t104;
-  const Real t106 = t105 * t3;
-  const Real t107 = t103 - t106;
-  const Real t108 = t1 * t105;
-  const Real t109 = t108 - t45;
-  const Real t110 = t44 * t3;
-  const Real t111 = t109 + t110;
-  const Real t112 = t105 * par.k2;
-  const Real t113 = par.k1 * t96;
-  const Real t114 = t112 + t113;
-  const Real t115 = t114 + par.k12;
-  const Real t116 = c_r_p_1_ * t44;
-  const Real t117 = c_r_p_1_ * t96;
-  const Real t118 = -t117;
-  const Real t119 = t21 * t28;
-  const Real t120 = t21 * t1;
-  const Real t121 = t96 * t3;
-  const Real t122 = t63 - t121;
-  const Real t123 = t1 * t60;
-  const Real t124 = t122 - t123;
-  const Real t125 = t3 * t60;
-  const Real t126 = t11 - t106;
-  const Real t127 = t125 + t126;
-  const Real t128 = t1 * t20;
-  const Real t129 = t125 + t128;
-  const Real t130 = s_r_p_1_ * par.k28;
-  const Real t131 = t48 + t130;
-  const Real t132 = c_r_p_1_ * t60;
-  const Real t133 = t96 * t25;
-  const Real t134 = t93 * constant<Real>(2.0L);
-  const Real t135 = t105 * c_r_p_1_;
-  const Real t136 = c_r_p_1_ * par.k28;
-  const Real t137 = t2 + t103;
-  const Real t138 = t1 * t44;
-  const Real t139 = t137 - t138;
-  const Real t140 = t52 * t60;
-  const Real t141 = t20 * t25;
-  const Real t142 = t140 - t141;
+  const Real t66 = t55 * t60;
+  const Real t67 = t28 * t20;
+  const Real t68 = t66 - t67;
+  const Real t69 = t21 * t25;
+  const Real t70 = -t32;
+  const Real t71 = sum_error(t31, t70);
+  const Real t72 = product_error(c_r_p_1_, par.r_F);
+  const Real t73 = product_error(par.k2, R[6]);
+  const Real t74 = t1 * t60;
+  const Real t75 = product_error(c_r_p_1_, t33);
+  const Real t76 = c_r_p_1_ * t44;
+  const Real t77 = t21 * t28;
+  const Real t78 = t21 * t1;
+  const Real t79 = product_error(par.k1, R[6]);
+  const Real t80 = t3 * t60;
+  const Real t81 = t1 * t20;
+  const Real t82 = t80 + t81;
+  const Real t83 = s_r_p_1_ * par.k31;
+  const Real t84 = t48 + t83;
+  const Real t85 = c_r_p_1_ * t60;
+  const Real t86 = sum_error(t34, t35);
+  const Real t87 = t1 * t44;
+  const Real t88 = c_r_p_1_ * par.k31;
+  const Real t89 = t52 * t60;
+  const Real t90 = t20 * t25;
+  const Real t91 = t89 - t90;
+  const Real t92 = t44 * t3;
 
   // frame: acceleration
-  const Real t143 = par.g * R[7];
-  const Real t144 = par.g * R[8];
-  const Real t145 = par.g * R[6];
+  const Real t93 = par.g * R[7];
+  const Real t94 = par.g * R[8];
+  const Real t95 = par.g * R[6];
 
   // joint angles
-  const Real t146 = R[8] * nu[0];
-  const Real t147 = par.k2 * nu[0];
-  const Real t148 = par.k1 * nu[0];
-  const Real t149 = s_r_p_1_ * nu[1];
-  const Real t150 = t149 * t33;
-  const Real t151 = c_r_p_1_ * nu[1];
-  const Real t152 = t151 * R[7];
-  const Real t153 = nu[0] * R[7];
+  const Real t96 = R[8] * nu[0];
+  const Real t97 = par.k2 * nu[0];
+  const Real t98 = par.k1 * nu[0];
+  const Real t99 = s_r_p_1_ * nu[1];
+  const Real t100 = t99 * t33;
+  const Real t101 = c_r_p_1_ * nu[1];
+  const Real t102 = t101 * R[7];
+  const Real t103 = nu[0] * R[7];
 
   // rear_wheel: twist
-  const Real t154 = nu[0] * c_r_p_0_;
-  const Real t155 = nu[0] * s_r_p_0_;
+  const Real t104 = nu[0] * c_r_p_0_;
+  const Real t105 = nu[0] * s_r_p_0_;
 
   // frame: acceleration
-  const Real t156 = nu[0] * nu[0];
+  const Real t106 = nu[0] * nu[0];
 
   // passive accelerations
-  const Real t157 = t149 * t71;
-  const Real t158 = t150 + t157;
-  const Real t159 = t52 * t96;
-  const Real t160 = t55 * t105;
-  const Real t161 = t159 + t160;
-  const Real t162 = t161 + t58;
-  const Real t163 = t162 - t132;
-  const Real t164 = constant<Real>(1.0L) / t163;
-  const Real t165 = t164 * t124;
-  const Real t166 = t165 * t115;
-  const Real t167 = -t166;
-  const Real t168 = t165 * t129;
-  const Real t169 = t142 - t168;
-  const Real t170 = t164 * t127;
-  const Real t171 = t170 * t115;
-  const Real t172 = -t171;
-  const Real t173 = t105 * t28;
-  const Real t174 = t173 + t133;
-  const Real t175 = t30 + t174;
-  const Real t176 = t175 - t116;
-  const Real t177 = t176 * t165;
-  const Real t178 = t139 - t177;
-  const Real t179 = -t168;
-  const Real t180 = sum_error(t142, t179);
-  const Real t181 = product_error(t129, t165);
-  const Real t182 = t180 - t181;
-  const Real t183 = t170 * t176;
-  const Real t184 = t111 - t183;
-  const Real t185 = product_error(t170, t115);
-  const Real t186 = -t177;
-  const Real t187 = sum_error(t139, t186);
-  const Real t188 = product_error(t176, t165);
-  const Real t189 = t187 - t188;
-  const Real t190 = product_error(t115, t165);
-  const Real t191 = t170 * t129;
-  const Real t192 = t100 - t191;
-  const Real t193 = -t183;
-  const Real t194 = sum_error(t111, t193);
-  const Real t195 = product_error(t170, t176);
-  const Real t196 = t194 - t195;
-  const Real t197 = -t191;
-  const Real t198 = sum_error(t100, t197);
-  const Real t199 = product_error(t170, t129);
-  const Real t200 = t198 - t199;
+  const Real t107 = t71 + t73;
+  const Real t108 = t99 * t107;
+  const Real t109 = t100 + t108;
+  const Real t110 = t107 * c_r_p_1_;
+  const Real t111 = t75 + t110;
+  const Real t112 = t86 + t111;
+  const Real t113 = par.k1 * t112;
+  const Real t114 = t65 + t113;
+  const Real t115 = product_error(t41, par.k2);
+  const Real t116 = sum_error(t39, t40);
+  const Real t117 = t79 + t116;
+  const Real t118 = par.k2 * t117;
+  const Real t119 = t115 + t118;
+  const Real t120 = t114 - t119;
+  const Real t121 = t43 + t120;
+  const Real t122 = t121 * t121;
+  const Real t123 = par.k1 * t117;
+  const Real t124 = t123 + t46;
+  const Real t125 = par.k2 * t112;
+  const Real t126 = t37 + t125;
+  const Real t127 = t124 + t126;
+  const Real t128 = t127 * t127;
+  const Real t129 = t122 + t128;
+  const Real t130 = sqrt(t129);
+  const Real t131 = constant<Real>(1.0L) / t130;
+  const Real t132 = t121 * t131;
+  const Real t133 = t132 * par.r_F;
+  const Real t134 = -t133;
+  const Real t135 = c_r_p_1_ * t133;
+  const Real t136 = t1 * t133;
+  const Real t137 = t127 * t131;
+  const Real t138 = par.r_F * t137;
+  const Real t139 = t138 * t3;
+  const Real t140 = t136 - t139;
+  const Real t141 = t52 * t133;
+  const Real t142 = t55 * t138;
+  const Real t143 = t141 + t142;
+  const Real t144 = t143 + t58;
+  const Real t145 = t144 - t85;
+  const Real t146 = constant<Real>(1.0L) / t145;
+  const Real t147 = t133 * t3;
+  const Real t148 = t63 - t147;
+  const Real t149 = t148 - t74;
+  const Real t150 = t146 * t149;
+  const Real t151 = t138 * par.k2;
+  const Real t152 = par.k1 * t133;
+  const Real t153 = t151 + t152;
+  const Real t154 = t153 + par.k12;
+  const Real t155 = t150 * t154;
+  const Real t156 = -t155;
+  const Real t157 = t150 * t82;
+  const Real t158 = t91 - t157;
+  const Real t159 = t11 - t139;
+  const Real t160 = t80 + t159;
+  const Real t161 = t146 * t160;
+  const Real t162 = t161 * t154;
+  const Real t163 = -t162;
+  const Real t164 = t2 + t136;
+  const Real t165 = t164 - t87;
+  const Real t166 = t138 * t28;
+  const Real t167 = t133 * t25;
+  const Real t168 = t166 + t167;
+  const Real t169 = t30 + t168;
+  const Real t170 = t169 - t76;
+  const Real t171 = t170 * t150;
+  const Real t172 = t165 - t171;
+  const Real t173 = -t157;
+  const Real t174 = sum_error(t91, t173);
+  const Real t175 = product_error(t82, t150);
+  const Real t176 = t174 - t175;
+  const Real t177 = t1 * t138;
+  const Real t178 = t177 - t45;
+  const Real t179 = t178 + t92;
+  const Real t180 = t161 * t170;
+  const Real t181 = t179 - t180;
+  const Real t182 = product_error(t161, t154);
+  const Real t183 = -t171;
+  const Real t184 = sum_error(t165, t183);
+  const Real t185 = product_error(t170, t150);
+  const Real t186 = t184 - t185;
+  const Real t187 = product_error(t154, t150);
+  const Real t188 = t161 * t82;
+  const Real t189 = t68 - t188;
+  const Real t190 = t130 * constant<Real>(2.0L);
+  const Real t191 = -t180;
+  const Real t192 = sum_error(t179, t191);
+  const Real t193 = product_error(t161, t170);
+  const Real t194 = t192 - t193;
+  const Real t195 = t138 * c_r_p_1_;
+  const Real t196 = -t188;
+  const Real t197 = sum_error(t68, t196);
+  const Real t198 = product_error(t161, t82);
+  const Real t199 = t197 - t198;
 
   // rear_wheel: acceleration
-  const Real t201 = nu_dot[0] * c_r_p_0_;
-  const Real t202 = nu_dot[0] * s_r_p_0_;
+  const Real t200 = nu_dot[0] * c_r_p_0_;
+  const Real t201 = nu_dot[0] * s_r_p_0_;
 
   // fork: acceleration
-  const Real t203 = nu_dot[0] * par.k2;
-  const Real t204 = par.k1 * nu_dot[0];
+  const Real t202 = nu_dot[0] * par.k2;
+  const Real t203 = par.k1 * nu_dot[0];
 
   // multipliers
-  const Real t205 = t5 - t131;
-  const Real t206 = t107 + t205;
-  const Real t207 = t206 + t120;
-  const Real t208 = t207 + t125;
-  const Real t209 = product_error(c_r_p_1_, par.k23);
-  const Real t210 = t209 + t136;
-  const Real t211 = par.k1 * t210;
-  const Real t212 = t22 + t211;
-  const Real t213 = t212 + par.k21;
-  const Real t214 = t17 - t213;
-  const Real t215 = t214 - t135;
-  const Real t216 = t215 - t119;
-  const Real t217 = t216 + t98;
-  const Real t218 = t170 * t208;
-  const Real t219 = t217 - t218;
-  const Real t220 = constant<Real>(1.0L) / t219;
-  const Real t221 = t210 * par.k2;
-  const Real t222 = product_error(t6, par.k2);
-  const Real t223 = t221 + t222;
-  const Real t224 = t223 - par.k62;
-  const Real t225 = t8 + t224;
-  const Real t226 = t225 - t47;
-  const Real t227 = sum_error(t226, t118);
-  const Real t228 = sum_error(t225, t64);
-  const Real t229 = t228 - t102;
+  const Real t204 = t5 - t84;
+  const Real t205 = t140 + t204;
+  const Real t206 = t205 + t78;
+  const Real t207 = t206 + t80;
+  const Real t208 = product_error(c_r_p_1_, par.k23);
+  const Real t209 = t208 + t88;
+  const Real t210 = par.k1 * t209;
+  const Real t211 = t22 + t210;
+  const Real t212 = t211 + par.k21;
+  const Real t213 = t17 - t212;
+  const Real t214 = t213 - t195;
+  const Real t215 = t214 - t77;
+  const Real t216 = t215 + t66;
+  const Real t217 = t161 * t207;
+  const Real t218 = t216 - t217;
+  const Real t219 = constant<Real>(1.0L) / t218;
+  const Real t220 = t209 * par.k2;
+  const Real t221 = product_error(t6, par.k2);
+  const Real t222 = t220 + t221;
+  const Real t223 = t222 - par.k67;
+  const Real t224 = t8 + t223;
+  const Real t225 = t224 - t47;
+  const Real t226 = -t135;
+  const Real t227 = sum_error(t225, t226);
+  const Real t228 = sum_error(t224, t64);
+  const Real t229 = t228 - t72;
   const Real t230 = t227 + t229;
-  const Real t231 = t226 - t117;
-  const Real t232 = t231 - t101;
+  const Real t231 = t225 - t135;
+  const Real t232 = t231 - t69;
   const Real t233 = t230 + t232;
-  const Real t234 = t233 + t140;
-  const Real t235 = t165 * t208;
+  const Real t234 = t233 + t89;
+  const Real t235 = t150 * t207;
   const Real t236 = t234 - t235;
-  const Real t237 = t236 * t220;
-  const Real t238 = t237 * t105;
-  const Real t239 = t238 - t96;
+  const Real t237 = t236 * t219;
+  const Real t238 = t237 * t138;
+  const Real t239 = t238 - t133;
   const Real t240 = constant<Real>(1.0L) / t239;
-  const Real t241 = t237 * t171;
-  const Real t242 = t241 - t166;
+  const Real t241 = t237 * t162;
+  const Real t242 = t241 - t155;
   const Real t243 = t240 * t242;
-  const Real t244 = t243 * t105;
-  const Real t245 = t244 - t171;
-  const Real t246 = t220 * t245;
-  const Real t247 = t208 * t246;
-  const Real t248 = t115 - t247;
-  const Real t249 = product_error(t246, t208);
-  const Real t250 = quotient_error(constant<Real>(1.0L), t219);
-  const Real t251 = -t218;
-  const Real t252 = sum_error(t217, t251);
-  const Real t253 = product_error(t170, t208);
+  const Real t244 = t243 * t138;
+  const Real t245 = t244 - t162;
+  const Real t246 = t219 * t245;
+  const Real t247 = t207 * t246;
+  const Real t248 = t154 - t247;
+  const Real t249 = product_error(t246, t207);
+  const Real t250 = quotient_error(constant<Real>(1.0L), t218);
+  const Real t251 = -t217;
+  const Real t252 = sum_error(t216, t251);
+  const Real t253 = product_error(t161, t207);
   const Real t254 = t252 - t253;
-  const Real t255 = t220 * t254;
-  const Real t256 = t255 / t219;
+  const Real t255 = t219 * t254;
+  const Real t256 = t255 / t218;
   const Real t257 = t250 - t256;
   const Real t258 = t245 * t257;
-  const Real t259 = sum_error(t244, t172);
-  const Real t260 = t237 * t185;
-  const Real t261 = product_error(t236, t220);
+  const Real t259 = sum_error(t244, t163);
+  const Real t260 = t237 * t182;
+  const Real t261 = product_error(t236, t219);
   const Real t262 = -t235;
   const Real t263 = sum_error(t234, t262);
-  const Real t264 = product_error(t208, t165);
+  const Real t264 = product_error(t207, t150);
   const Real t265 = t263 - t264;
-  const Real t266 = t220 * t265;
+  const Real t266 = t219 * t265;
   const Real t267 = t236 * t257;
   const Real t268 = t266 + t267;
   const Real t269 = t261 + t268;
-  const Real t270 = t269 * t171;
+  const Real t270 = t269 * t162;
   const Real t271 = t260 + t270;
-  const Real t272 = product_error(t171, t237);
+  const Real t272 = product_error(t162, t237);
   const Real t273 = t271 + t272;
-  const Real t274 = t273 - t190;
-  const Real t275 = sum_error(t241, t167);
+  const Real t274 = t273 - t187;
+  const Real t275 = sum_error(t241, t156);
   const Real t276 = t274 + t275;
   const Real t277 = t240 * t276;
   const Real t278 = quotient_error(constant<Real>(1.0L), t239);
-  const Real t279 = t269 * t105;
-  const Real t280 = product_error(t105, t237);
+  const Real t279 = t269 * t138;
+  const Real t280 = product_error(t138, t237);
   const Real t281 = t279 + t280;
-  const Real t282 = sum_error(t238, t97);
+  const Real t282 = sum_error(t238, t134);
   const Real t283 = t281 + t282;
   const Real t284 = t240 * t283;
   const Real t285 = t284 / t239;
@@ -8218,83 +8305,83 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t288 = t277 + t287;
   const Real t289 = product_error(t242, t240);
   const Real t290 = t288 + t289;
-  const Real t291 = t290 * t105;
-  const Real t292 = product_error(t243, t105);
+  const Real t291 = t290 * t138;
+  const Real t292 = product_error(t243, t138);
   const Real t293 = t291 + t292;
-  const Real t294 = t293 - t185;
+  const Real t294 = t293 - t182;
   const Real t295 = t259 + t294;
-  const Real t296 = t220 * t295;
+  const Real t296 = t219 * t295;
   const Real t297 = t258 + t296;
-  const Real t298 = product_error(t245, t220);
+  const Real t298 = product_error(t245, t219);
   const Real t299 = t297 + t298;
-  const Real t300 = t299 * t208;
+  const Real t300 = t299 * t207;
   const Real t301 = t249 + t300;
   const Real t302 = t248 - t301;
-  const Real t303 = t164 * t302;
+  const Real t303 = t146 * t302;
   const Real t304 = t303 * t60;
   const Real t305 = t304 * nu[1];
-  const Real t306 = t237 * t196;
-  const Real t307 = t269 * t184;
+  const Real t306 = t237 * t194;
+  const Real t307 = t269 * t181;
   const Real t308 = t306 + t307;
-  const Real t309 = product_error(t184, t237);
+  const Real t309 = product_error(t181, t237);
   const Real t310 = t308 + t309;
-  const Real t311 = t189 - t310;
-  const Real t312 = t237 * t184;
-  const Real t313 = t178 - t312;
+  const Real t311 = t186 - t310;
+  const Real t312 = t237 * t181;
+  const Real t313 = t172 - t312;
   const Real t314 = t311 + t313;
   const Real t315 = t240 * t314;
   const Real t316 = t286 * t314;
   const Real t317 = t315 + t316;
-  const Real t318 = t317 * t105;
-  const Real t319 = t184 + t318;
-  const Real t320 = t319 * t220;
-  const Real t321 = t320 * t208;
-  const Real t322 = t176 - t321;
-  const Real t323 = product_error(t220, t319);
+  const Real t318 = t317 * t138;
+  const Real t319 = t181 + t318;
+  const Real t320 = t319 * t219;
+  const Real t321 = t320 * t207;
+  const Real t322 = t170 - t321;
+  const Real t323 = product_error(t219, t319);
   const Real t324 = t319 * t257;
-  const Real t325 = sum_error(t184, t318);
-  const Real t326 = t325 + t196;
-  const Real t327 = t220 * t326;
+  const Real t325 = sum_error(t181, t318);
+  const Real t326 = t325 + t194;
+  const Real t327 = t219 * t326;
   const Real t328 = t324 + t327;
   const Real t329 = t323 + t328;
-  const Real t330 = t329 * t208;
-  const Real t331 = product_error(t208, t320);
+  const Real t330 = t329 * t207;
+  const Real t331 = product_error(t207, t320);
   const Real t332 = t330 + t331;
   const Real t333 = t322 - t332;
-  const Real t334 = t164 * t333;
+  const Real t334 = t146 * t333;
   const Real t335 = t334 * t60;
   const Real t336 = t335 - t44;
   const Real t337 = t336 * nu[0];
   const Real t338 = t305 + t337;
-  const Real t339 = t237 * t200;
-  const Real t340 = t269 * t192;
+  const Real t339 = t237 * t199;
+  const Real t340 = t269 * t189;
   const Real t341 = t339 + t340;
-  const Real t342 = product_error(t192, t237);
+  const Real t342 = product_error(t189, t237);
   const Real t343 = t341 + t342;
-  const Real t344 = t182 - t343;
-  const Real t345 = t237 * t192;
-  const Real t346 = t169 - t345;
+  const Real t344 = t176 - t343;
+  const Real t345 = t237 * t189;
+  const Real t346 = t158 - t345;
   const Real t347 = t344 + t346;
   const Real t348 = t240 * t347;
   const Real t349 = t286 * t347;
   const Real t350 = t348 + t349;
-  const Real t351 = t350 * t105;
-  const Real t352 = t351 + t192;
-  const Real t353 = t220 * t352;
-  const Real t354 = t208 * t353;
-  const Real t355 = t129 - t354;
-  const Real t356 = product_error(t353, t208);
-  const Real t357 = sum_error(t192, t351);
-  const Real t358 = t357 + t200;
-  const Real t359 = t220 * t358;
+  const Real t351 = t350 * t138;
+  const Real t352 = t351 + t189;
+  const Real t353 = t219 * t352;
+  const Real t354 = t207 * t353;
+  const Real t355 = t82 - t354;
+  const Real t356 = product_error(t353, t207);
+  const Real t357 = sum_error(t189, t351);
+  const Real t358 = t357 + t199;
+  const Real t359 = t219 * t358;
   const Real t360 = t257 * t352;
   const Real t361 = t359 + t360;
-  const Real t362 = product_error(t352, t220);
+  const Real t362 = product_error(t352, t219);
   const Real t363 = t361 + t362;
-  const Real t364 = t363 * t208;
+  const Real t364 = t363 * t207;
   const Real t365 = t356 + t364;
   const Real t366 = t355 - t365;
-  const Real t367 = t164 * t366;
+  const Real t367 = t146 * t366;
   const Real t368 = t367 * t60;
   const Real t369 = nu[2] * t368;
   const Real t370 = t338 + t369;
@@ -8354,7 +8441,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t424 = t422 * R[6];
   const Real t425 = t424 * constant<Real>(2.0L);
   const Real t426 = t382 * R[6];
-  const Real t427 = t426 + t153;
+  const Real t427 = t426 + t103;
   const Real t428 = R[8] * t427;
   const Real t429 = t428 * constant<Real>(2.0L);
   const Real t430 = t425 - t429;
@@ -8374,7 +8461,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t444 = t3 * t443;
   const Real t445 = t420 * par.k13;
   const Real t446 = t370 - t445;
-  const Real t447 = t446 * t151;
+  const Real t447 = t446 * t101;
   const Real t448 = par.k2 * t397;
   const Real t449 = t382 * par.k13;
   const Real t450 = nu[2] * t403;
@@ -8385,13 +8472,13 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t455 = t449 + t454;
   const Real t456 = par.k1 * t455;
   const Real t457 = t448 - t456;
-  const Real t458 = t457 * t149;
+  const Real t458 = t457 * t99;
   const Real t459 = t447 - t458;
   const Real t460 = par.k1 * t459;
   const Real t461 = par.k1 * t420;
-  const Real t462 = t147 + t461;
-  const Real t463 = t462 * t151;
-  const Real t464 = t382 * t149;
+  const Real t462 = t97 + t461;
+  const Real t463 = t462 * t101;
+  const Real t464 = t382 * t99;
   const Real t465 = t463 - t464;
   const Real t466 = t465 * par.c;
   const Real t467 = t460 + t466;
@@ -8400,30 +8487,30 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t470 = t468 - t469;
   const Real t471 = par.k1 * t470;
   const Real t472 = t420 * R[6];
-  const Real t473 = t472 + t146;
+  const Real t473 = t472 + t96;
   const Real t474 = s_r_p_1_ * t473;
-  const Real t475 = t474 + t152;
+  const Real t475 = t474 + t102;
   const Real t476 = par.k1 * t427;
   const Real t477 = t422 * par.k2;
   const Real t478 = t476 + t477;
   const Real t479 = c_r_p_1_ * t478;
-  const Real t480 = t479 - t158;
+  const Real t480 = t479 - t109;
   const Real t481 = t475 + t480;
   const Real t482 = par.k2 * t481;
   const Real t483 = t471 + t482;
-  const Real t484 = t94 * t483;
+  const Real t484 = t131 * t483;
   const Real t485 = par.k1 * t481;
   const Real t486 = par.k2 * t470;
   const Real t487 = t485 - t486;
-  const Real t488 = t487 * t84;
+  const Real t488 = t487 * t121;
   const Real t489 = t488 * constant<Real>(2.0L);
-  const Real t490 = t90 * t483;
+  const Real t490 = t127 * t483;
   const Real t491 = constant<Real>(2.0L) * t490;
   const Real t492 = t489 + t491;
-  const Real t493 = t492 / t134;
-  const Real t494 = t94 * t493;
-  const Real t495 = t494 / t93;
-  const Real t496 = t90 * t495;
+  const Real t493 = t492 / t190;
+  const Real t494 = t131 * t493;
+  const Real t495 = t494 / t130;
+  const Real t496 = t127 * t495;
   const Real t497 = t484 - t496;
   const Real t498 = t497 * par.r_F;
   const Real t499 = t382 * c_r_p_1_;
@@ -8438,7 +8525,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t508 = t506 + t507;
   const Real t509 = t501 + t508;
   const Real t510 = t498 * t509;
-  const Real t511 = t105 * t465;
+  const Real t511 = t138 * t465;
   const Real t512 = t510 + t511;
   const Real t513 = t467 - t512;
   const Real t514 = nu[2] - t382;
@@ -8450,21 +8537,21 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t520 = t55 * t519;
   const Real t521 = t518 - t520;
   const Real t522 = t515 * t1;
-  const Real t523 = t149 * t462;
-  const Real t524 = t382 * t151;
+  const Real t523 = t99 * t462;
+  const Real t524 = t382 * t101;
   const Real t525 = t523 + t524;
   const Real t526 = par.k1 * t525;
   const Real t527 = t526 * par.c;
   const Real t528 = par.k2 * t525;
   const Real t529 = t528 * par.r_F;
   const Real t530 = t527 + t529;
-  const Real t531 = t446 * t149;
-  const Real t532 = t457 * t151;
+  const Real t531 = t446 * t99;
+  const Real t532 = t457 * t101;
   const Real t533 = t531 + t532;
   const Real t534 = t530 + t533;
-  const Real t535 = t526 * t105;
+  const Real t535 = t526 * t138;
   const Real t536 = t420 * par.k2;
-  const Real t537 = t148 - t536;
+  const Real t537 = t98 - t536;
   const Real t538 = t537 + nu[1];
   const Real t539 = par.k2 * t538;
   const Real t540 = c_r_p_1_ * t462;
@@ -8477,12 +8564,12 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t547 = t542 * par.k2;
   const Real t548 = par.k1 * t538;
   const Real t549 = t547 + t548;
-  const Real t550 = t487 * t94;
-  const Real t551 = t495 * t84;
+  const Real t550 = t487 * t131;
+  const Real t551 = t495 * t121;
   const Real t552 = t550 - t551;
   const Real t553 = par.r_F * t552;
   const Real t554 = t549 * t553;
-  const Real t555 = t528 * t96;
+  const Real t555 = t528 * t133;
   const Real t556 = t554 - t555;
   const Real t557 = t546 + t556;
   const Real t558 = t534 - t557;
@@ -8491,15 +8578,15 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t561 = t559 - t560;
   const Real t562 = t519 * t3;
   const Real t563 = t561 - t562;
-  const Real t564 = t170 * t563;
+  const Real t564 = t161 * t563;
   const Real t565 = t521 - t564;
-  const Real t566 = t165 * t563;
+  const Real t566 = t150 * t563;
   const Real t567 = t519 * t52;
   const Real t568 = t1 * t443;
   const Real t569 = par.k2 * t459;
   const Real t570 = par.r_F * t465;
   const Real t571 = t569 + t570;
-  const Real t572 = t96 * t465;
+  const Real t572 = t133 * t465;
   const Real t573 = t509 * t553;
   const Real t574 = t572 + t573;
   const Real t575 = t571 + t574;
@@ -8508,7 +8595,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t578 = t568 + t577;
   const Real t579 = t567 + t578;
   const Real t580 = sum_error(t566, t579);
-  const Real t581 = product_error(t563, t165);
+  const Real t581 = product_error(t563, t150);
   const Real t582 = t580 + t581;
   const Real t583 = product_error(t565, t237);
   const Real t584 = t269 * t565;
@@ -8521,14 +8608,14 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t591 = t240 * t590;
   const Real t592 = t286 * t590;
   const Real t593 = t591 + t592;
-  const Real t594 = t105 * t593;
+  const Real t594 = t138 * t593;
   const Real t595 = t565 - t594;
-  const Real t596 = t220 * t595;
+  const Real t596 = t219 * t595;
   const Real t597 = t596 * t60;
-  const Real t598 = product_error(t595, t220);
+  const Real t598 = product_error(t595, t219);
   const Real t599 = -t594;
   const Real t600 = sum_error(t565, t599);
-  const Real t601 = t600 * t220;
+  const Real t601 = t600 * t219;
   const Real t602 = t595 * t257;
   const Real t603 = t601 + t602;
   const Real t604 = t598 + t603;
@@ -8537,7 +8624,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t607 = t606 + t519;
   const Real t608 = t414 + t607;
   const Real t609 = t399 + t608;
-  const Real t610 = t609 - t144;
+  const Real t610 = t609 - t94;
   const Real t611 = t610 * par.m_B;
   const Real t612 = t420 * nu[0];
   const Real t613 = nu_dot[2] * t353;
@@ -8556,7 +8643,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t626 = t612 + t625;
   const Real t627 = t626 * par.k16;
   const Real t628 = t382 * t382;
-  const Real t629 = t156 + t628;
+  const Real t629 = t106 + t628;
   const Real t630 = t629 * par.k15;
   const Real t631 = t627 + t630;
   const Real t632 = t611 - t631;
@@ -8574,7 +8661,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t644 = t515 - t643;
   const Real t645 = t640 + t644;
   const Real t646 = t635 + t645;
-  const Real t647 = t646 - t145;
+  const Real t647 = t646 - t95;
   const Real t648 = t420 * t420;
   const Real t649 = t628 + t648;
   const Real t650 = par.k13 * t649;
@@ -8585,13 +8672,13 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t655 = par.k1 * t654;
   const Real t656 = t652 - t655;
   const Real t657 = c_r_p_1_ * t656;
-  const Real t658 = t596 * t208;
+  const Real t658 = t596 * t207;
   const Real t659 = t563 - t658;
-  const Real t660 = product_error(t208, t596);
-  const Real t661 = t604 * t208;
+  const Real t660 = product_error(t207, t596);
+  const Real t661 = t604 * t207;
   const Real t662 = t660 + t661;
   const Real t663 = t659 - t662;
-  const Real t664 = t663 * t164;
+  const Real t664 = t663 * t146;
   const Real t665 = t664 * t60;
   const Real t666 = t443 - t665;
   const Real t667 = nu_dot[2] * t368;
@@ -8604,7 +8691,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t674 = t454 * nu[0];
   const Real t675 = t673 + t674;
   const Real t676 = t672 - t675;
-  const Real t677 = t676 - t143;
+  const Real t677 = t676 - t93;
   const Real t678 = nu_dot[2] * t367;
   const Real t679 = nu_dot[1] * t303;
   const Real t680 = t334 * nu_dot[0];
@@ -8619,7 +8706,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t689 = t657 + t688;
   const Real t690 = t625 * c_r_p_1_;
   const Real t691 = t683 * par.k1;
-  const Real t692 = t203 - t691;
+  const Real t692 = t202 - t691;
   const Real t693 = s_r_p_1_ * t692;
   const Real t694 = t690 - t693;
   const Real t695 = t542 * nu[1];
@@ -8695,7 +8782,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t765 = t759 + t764;
   const Real t766 = t765 * par.k11;
   const Real t767 = t683 * par.k2;
-  const Real t768 = t204 + t767;
+  const Real t768 = t203 + t767;
   const Real t769 = nu_dot[1] + t768;
   const Real t770 = t501 * t542;
   const Real t771 = t769 - t770;
@@ -8754,7 +8841,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t824 = t819 - t823;
   const Real t825 = t824 * par.I_Fxx;
   const Real t826 = t822 * t509;
-  const Real t827 = par.k40 * t826;
+  const Real t827 = par.k43 * t826;
   const Real t828 = t825 - t827;
   const Real t829 = t828 * s_r_p_2_;
   const Real t830 = t813 * c_r_p_2_;
@@ -8767,7 +8854,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t837 = t832 + t836;
   const Real t838 = par.I_Fxx * t837;
   const Real t839 = t835 * t509;
-  const Real t840 = t839 * par.k39;
+  const Real t840 = t839 * par.k42;
   const Real t841 = t838 - t840;
   const Real t842 = c_r_p_2_ * t841;
   const Real t843 = t829 + t842;
@@ -8781,7 +8868,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t851 = t849 + t850;
   const Real t852 = par.k5 * t771;
   const Real t853 = t764 * par.k17;
-  const Real t854 = t759 * par.k34;
+  const Real t854 = t759 * par.k37;
   const Real t855 = t853 - t854;
   const Real t856 = t852 + t855;
   const Real t857 = t758 * par.k8;
@@ -8789,7 +8876,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t859 = t851 + t858;
   const Real t860 = s_r_p_1_ * t859;
   const Real t861 = t696 * par.k7;
-  const Real t862 = t697 * par.k35;
+  const Real t862 = t697 * par.k38;
   const Real t863 = t861 + t862;
   const Real t864 = t701 - t709;
   const Real t865 = par.k5 * t864;
@@ -8821,9 +8908,9 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t891 = t610 * par.k16;
   const Real t892 = t890 - t891;
   const Real t893 = par.k4 * t625;
-  const Real t894 = t612 * par.k31;
+  const Real t894 = t612 * par.k34;
   const Real t895 = t893 - t894;
-  const Real t896 = t648 - t156;
+  const Real t896 = t648 - t106;
   const Real t897 = par.k3 * t896;
   const Real t898 = t895 + t897;
   const Real t899 = t892 + t898;
@@ -8844,22 +8931,22 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t914 = t803 * t60;
   const Real t915 = t913 + t914;
   const Real t916 = t420 * s_r_p_0_;
-  const Real t917 = t154 + t916;
+  const Real t917 = t104 + t916;
   const Real t918 = t917 * t514;
-  const Real t919 = t918 * par.k32;
+  const Real t919 = t918 * par.k35;
   const Real t920 = t683 * c_r_p_0_;
-  const Real t921 = t920 + t202;
+  const Real t921 = t920 + t201;
   const Real t922 = t917 * nu[2];
   const Real t923 = t921 + t922;
   const Real t924 = par.I_Rxx * t923;
   const Real t925 = t919 + t924;
   const Real t926 = t925 * c_r_p_0_;
   const Real t927 = t420 * c_r_p_0_;
-  const Real t928 = t155 - t927;
+  const Real t928 = t105 - t927;
   const Real t929 = t514 * t928;
-  const Real t930 = t929 * par.k33;
+  const Real t930 = t929 * par.k36;
   const Real t931 = t683 * s_r_p_0_;
-  const Real t932 = t201 - t931;
+  const Real t932 = t200 - t931;
   const Real t933 = nu[2] * t928;
   const Real t934 = t932 - t933;
   const Real t935 = t934 * par.I_Rxx;
@@ -8867,7 +8954,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t937 = t936 * s_r_p_0_;
   const Real t938 = t926 - t937;
   const Real t939 = t683 * par.k14;
-  const Real t940 = t684 * par.k29;
+  const Real t940 = t684 * par.k32;
   const Real t941 = t939 - t940;
   const Real t942 = t382 * t420;
   const Real t943 = t942 - nu_dot[0];
@@ -8886,7 +8973,7 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t956 = t954 + t955;
   const Real t957 = par.k5 * t765;
   const Real t958 = par.k6 * t769;
-  const Real t959 = par.k36 * t770;
+  const Real t959 = par.k39 * t770;
   const Real t960 = t958 - t959;
   const Real t961 = t957 + t960;
   const Real t962 = t758 * par.k10;
@@ -8913,28 +9000,28 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t983 = t976 + t982;
   const Real t984 = t60 * t983;
   const Real t985 = t973 - t984;
-  const Real t986 = t985 * t164;
-  const Real t987 = t208 * t986;
+  const Real t986 = t985 * t146;
+  const Real t987 = t207 * t986;
   const Real t988 = t915 - t987;
-  const Real t989 = product_error(t988, t220);
+  const Real t989 = product_error(t988, t219);
   const Real t990 = t988 * t257;
   const Real t991 = -t987;
   const Real t992 = sum_error(t915, t991);
-  const Real t993 = product_error(t208, t986);
+  const Real t993 = product_error(t207, t986);
   const Real t994 = t992 - t993;
-  const Real t995 = t994 * t220;
+  const Real t995 = t994 * t219;
   const Real t996 = t990 + t995;
   const Real t997 = t989 + t996;
-  const Real t998 = t988 * t220;
-  const Real t999 = t105 * t998;
+  const Real t998 = t988 * t219;
+  const Real t999 = t138 * t998;
   const Real t1000 = t880 + t999;
   const Real t1001 = t240 * t1000;
   const Real t1002 = product_error(t1001, t237);
   const Real t1003 = t269 * t1001;
   const Real t1004 = product_error(t1000, t240);
   const Real t1005 = t286 * t1000;
-  const Real t1006 = t105 * t997;
-  const Real t1007 = product_error(t105, t998);
+  const Real t1006 = t138 * t997;
+  const Real t1007 = product_error(t138, t998);
   const Real t1008 = t1006 + t1007;
   const Real t1009 = sum_error(t999, t880);
   const Real t1010 = t1008 + t1009;
@@ -8954,18 +9041,18 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t1024 = t55 * t1023;
   const Real t1025 = t1022 + t1024;
   const Real t1026 = t803 - t1025;
-  const Real t1027 = t170 * t1023;
+  const Real t1027 = t161 * t1023;
   const Real t1028 = t986 - t1027;
-  const Real t1029 = t165 * t1001;
+  const Real t1029 = t150 * t1001;
   const Real t1030 = t1028 - t1029;
   const Real t1031 = -t1027;
   const Real t1032 = sum_error(t986, t1031);
-  const Real t1033 = t170 * t1021;
-  const Real t1034 = product_error(t170, t1023);
+  const Real t1033 = t161 * t1021;
+  const Real t1034 = product_error(t161, t1023);
   const Real t1035 = t1033 + t1034;
   const Real t1036 = t1032 - t1035;
-  const Real t1037 = product_error(t1001, t165);
-  const Real t1038 = t165 * t1013;
+  const Real t1037 = product_error(t1001, t150);
+  const Real t1038 = t150 * t1013;
   const Real t1039 = t1037 + t1038;
   const Real t1040 = t1036 - t1039;
   const Real t1041 = t1030 + t1040;

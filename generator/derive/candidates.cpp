@@ -45,9 +45,8 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
   }
   if (request_.optimise == OptimiseFor::speed) add_after_passes(candidates);
   const auto states = [this](int count) { return states_of(atlas_, chart_, count); };
-  const std::size_t best = choose(
-      tape_, candidates, request_.optimise, states,
-      [&](const MeasuredStates& at) {
+  const std::size_t best =
+      choose(tape_, candidates, request_.optimise, states, [&](const MeasuredStates& at) {
         if (accurate) {
           for (const Route& r : accurate()) add(r.name, without_empty_blocks(r).outputs);
         }
@@ -55,8 +54,7 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
         const std::size_t derived = candidates.size();
         if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
         add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at, derived);
-      },
-      Estimates::hard_states);
+      });
   const std::string full_name = prefix_ + name;
   const std::size_t first_report = result_->candidates.size();
   for (std::size_t i = 0; i < candidates.size(); ++i) {

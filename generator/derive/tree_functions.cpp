@@ -290,7 +290,7 @@ class TreeDeriver {
     }
     const std::size_t best = choose(
         tape_, candidates, request_.optimise, [this](int count) { return states(count); },
-        [&](const MeasuredStates&) {
+        [&](const MeasuredStates& at) {
           for (const std::size_t i : order) {
             if (!passes[i].empty()) {
               candidates.push_back(derived[i]);
@@ -303,8 +303,8 @@ class TreeDeriver {
               candidates.insert(candidates.end(), steps.begin(), steps.end());
             }
           }
-        },
-        Estimates::none);
+          add_compensated(tape_, candidates, parameters_, request_.optimise, at, candidates.size());
+        });
     const std::size_t first_report = result_->candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& c = candidates[i];

@@ -137,7 +137,7 @@ class Choice : public ::testing::Test {
     for (Candidate& c : candidates) c.error = {};
     return choose(
         tape, candidates, mode, [x](int) { return std::vector<std::vector<double>>{{x}}; },
-        [](const MeasuredStates&) {}, Estimates::none);
+        [](const MeasuredStates&) {});
   }
   Tape tape;
   std::vector<Candidate> candidates;
@@ -167,7 +167,7 @@ TEST_F(Choice, AsksForMoreOnlyWhereItIsNeeded) {
     bool more = false;
     choose(
         tape, candidates, mode, [x](int) { return std::vector<std::vector<double>>{{x}}; },
-        [&](const MeasuredStates&) { more = true; }, Estimates::none);
+        [&](const MeasuredStates&) { more = true; });
     return more;
   };
   EXPECT_FALSE(asked(OptimiseFor::speed, 1e-4));

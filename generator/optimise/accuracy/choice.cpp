@@ -96,8 +96,8 @@ std::vector<Outlook> EstimatedStates::outlooks(
 }
 
 std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
-  constexpr double random_states = 1e5, most = allowed_ulps / 2;  // beyond it no program would be good enough
-  constexpr std::size_t least_tail = 8;                           // fewer say nothing
+  constexpr double most = allowed_ulps / 2;  // beyond it no program would be good enough
+  constexpr std::size_t least_tail = 8;      // fewer say nothing
   std::vector<Outlook> result;
   for (std::vector<double>& of_program : errors) {
     std::ranges::sort(of_program, std::greater<>());
@@ -110,7 +110,7 @@ std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
     double exponent = 0;
     for (std::size_t i = 0; i < tail; ++i)
       exponent += std::log(of_program[i] / of_program[tail]) / static_cast<double>(tail);
-    const double states = random_states / static_cast<double>(of_program.size());
+    const double states = expected_states / static_cast<double>(of_program.size());
     outlook.growth = std::min(std::pow(states, exponent), most);
   }
   return result;
@@ -138,8 +138,7 @@ void measure(const Tape& tape, std::vector<Candidate>& candidates, const Measure
 }
 
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
-                   const StateSource& states, const std::function<void(const MeasuredStates&)>& more,
-                   Estimates estimates) {
+                   const StateSource& states, const std::function<void(const MeasuredStates&)>& more) {
   const auto shortest = [&](const auto& acceptable) {
     std::size_t best = candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -152,26 +151,23 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
   const std::size_t fast = shortest([](const Candidate&) { return true; });
   if (mode == OptimiseFor::nothing) return 0;
   if (mode == OptimiseFor::speed) return fast;
-  MeasuredStates at{states(measured_states), {}, {}};
   bool is_fine = false;
   if (mode == OptimiseFor::balanced) {
-    // the worst of all is seldom more than twice the worst of so many
-    const auto few = static_cast<std::ptrdiff_t>(std::min<std::size_t>(at.states.size(), 8));
+    constexpr int few = 8;  // the worst of all is seldom more than twice the worst of so many
     std::vector<Candidate> one = {candidates[fast]};
-    measure(tape, one, {{at.states.begin(), at.states.begin() + few}, {}, {}});
+    measure(tape, one, {states(few), {}, {}});
     if (!one[0].error.is_measured()) return fast;
     is_fine = one[0].error.worst <= tolerated_ulps / 2;
-    if (is_fine && estimates == Estimates::none) return fast;
   }
-  if (estimates == Estimates::hard_states) {
-    const std::vector<OutputBlock>& program = candidates[fast].outputs;
-    EstimatedStates random(states, program.size() * tape.reachable(roots_of(program)).size());
-    const std::vector<double> errors = first_order_errors(tape, program, random.few()).front();
-    if (is_fine && (errors.empty() || *std::ranges::max_element(errors) <= tolerated_ulps / 2)) return fast;
-    at = {with_hard_states(random.few(), errors), {}, std::move(random)};
-    at.allowance = rounding_shares(tape, program, at.states).allowance;
+  const std::vector<OutputBlock>& program = candidates[fast].outputs;
+  EstimatedStates random(states, program.size() * tape.reachable(roots_of(program)).size());
+  const std::vector<double> errors = first_order_errors(tape, program, random.few()).front();
+  if (is_fine && (errors.empty() || *std::ranges::max_element(errors) <= tolerated_ulps / 2)) return fast;
+  MeasuredStates at{with_hard_states(random.few(), errors), {}, std::move(random)};
+  at.allowance = rounding_shares(tape, program, at.states).allowance;
+  if (mode == OptimiseFor::balanced) {
     std::vector<Candidate> one = {candidates[fast]};
-    if (mode == OptimiseFor::balanced) measure(tape, one, at);
+    measure(tape, one, at);
     if (one[0].error.is_measured() && one[0].worst_to_expect() <= allowed_ulps) return fast;
   }
   more(at);

@@ -48,12 +48,40 @@ Expr rounding_error_of(Op op, const Expr& a, const Expr& b) {
       return is_power_of_two(a) || is_power_of_two(b) ? Expr(0) : product_error(a, b);
     case Op::div:
       return quotient_error(a, b);
-    default:  // of sines and cosines it is not known
+    default:
       return 0;
   }
 }
 
+/// Half of what the squares of sine and cosine lack of 1: either lacks that part of itself, to first order
+/// and along the radius. Their sum would be folded to 1.
+Expr missing_to_circle(const Expr& sine, const Expr& cosine) {
+  const Expr s2 = sine * sine, c2 = cosine * cosine;
+  const Expr missing = (Expr(1) - s2) - c2 + sum_error(Expr(1), -s2) - product_error(sine, sine) -
+                       product_error(cosine, cosine);
+  return missing / Expr(2);
+}
+
 }  // namespace
+
+bool is_beyond(Op op, double share, double tolerated) {
+  return share > (op == Op::sin || op == Op::cos ? 3 : 1) * tolerated;
+}
+
+std::unordered_map<NodeId, NodeId> partners_on_circle(const Tape& tape, const std::vector<NodeId>& nodes) {
+  std::unordered_map<NodeId, NodeId> sine_of, partners;
+  for (const NodeId id : nodes) {
+    if (tape.node(id).op == Op::sin) sine_of.emplace(tape.node(id).a, id);
+  }
+  for (const NodeId id : nodes) {
+    if (tape.node(id).op != Op::cos) continue;
+    const auto sine = sine_of.find(tape.node(id).a);
+    if (sine == sine_of.end()) continue;
+    partners.emplace(id, sine->second);
+    partners.emplace(sine->second, id);
+  }
+  return partners;
+}
 
 bool has_known_error(Op op) {
   return op == Op::constant || op == Op::add || op == Op::sub || op == Op::mul || op == Op::div;
@@ -63,9 +91,11 @@ std::optional<std::vector<NodeId>> compensated(Tape& tape, const std::vector<Nod
                                                const std::vector<double>& shares, double tolerated) {
   std::unordered_map<NodeId, Pair> pairs;
   bool is_compensated = false;
-  for (const NodeId id : tape.reachable(roots)) {
+  const std::vector<NodeId> nodes = tape.reachable(roots);
+  const std::unordered_map<NodeId, NodeId> partners = partners_on_circle(tape, nodes);
+  for (const NodeId id : nodes) {
     const Node n = tape.node(id);
-    const bool is_kept = shares[id] > tolerated && keeps_rest(n.op);
+    const bool is_kept = is_beyond(n.op, shares[id], tolerated) && keeps_rest(n.op);
     if (info(n.op).arity == 0) {
       Pair value{Expr(tape, id), 0};
       if (is_kept && n.op == Op::constant) {
@@ -80,6 +110,7 @@ std::optional<std::vector<NodeId>> compensated(Tape& tape, const std::vector<Nod
     const Expr y(tape, tape.apply(n.op, a.rounded.id(tape), b.rounded.id(tape)));
     Expr rest = tangent(n.op, y, a.rounded, b.rounded, a.rest, b.rest);
     if (is_kept) rest += rounding_error_of(n.op, a.rounded, b.rounded);
+    if (is_kept && partners.contains(id)) rest += y * missing_to_circle(sin(a.rounded), cos(a.rounded));
     is_compensated = is_compensated || !rest.is_zero();
     pairs.emplace(id, is_kept ? Pair{y, rest} : Pair{y + rest, 0});
   }

@@ -7,6 +7,7 @@
 // 2015).
 
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "tape/tape.hpp"
@@ -20,7 +21,15 @@ namespace anholon {
 std::optional<std::vector<NodeId>> compensated(Tape& tape, const std::vector<NodeId>& roots,
                                                const std::vector<double>& shares, double tolerated);
 
+/// Whether an operation with such a share is compensated: sines and cosines, which cost as much as three
+/// products, beyond three times of what is tolerated.
+bool is_beyond(Op op, double share, double tolerated);
+
 /// Whether what such an operation loses can be computed: then nothing of it is left where it is compensated.
 bool has_known_error(Op op);
+
+/// Sines and cosines of one angle among some nodes, each with the other. What they lose is known in one
+/// direction: by how much the two miss the unit circle. Along the circle their error is one of the angle.
+std::unordered_map<NodeId, NodeId> partners_on_circle(const Tape& tape, const std::vector<NodeId>& nodes);
 
 }  // namespace anholon

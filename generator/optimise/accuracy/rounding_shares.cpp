@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
+#include <utility>
 
 #include "optimise/accuracy/choice.hpp"
 #include "optimise/accuracy/compensation.hpp"
@@ -32,6 +34,10 @@ class Evaluation {
       step.value = tape.value(nodes_[i]).to_double();
       step.lost = (tape.value(nodes_[i]) - Exact::from_double(step.value)).to_double();
     }
+    for (const auto& [id, partner] : partners_on_circle(tape, nodes_)) {
+      if (tape.node(id).op == Op::sin) circles_.emplace_back(slot_[id], slot_[partner]);
+    }
+    std::ranges::sort(circles_);
     adjoint_.resize(nodes_.size());
   }
 
@@ -63,6 +69,11 @@ class Evaluation {
         }
       }
     }
+    for (const auto& [sine, cosine] : circles_) {
+      Step &s = steps_[sine], &c = steps_[cosine];
+      const double off_circle = s.value * s.lost + c.value * c.lost;
+      s.left = s.lost - s.value * off_circle, c.left = c.lost - c.value * off_circle;
+    }
   }
 
   /// Errors of all nodes to first order, from what each operation lost in `run`: in one go for several
@@ -73,7 +84,7 @@ class Evaluation {
     for (std::size_t i = 0; i < steps_.size(); ++i) {
       const Step& s = steps_[i];
       double* const error = &errors_[i * programs];
-      for (std::size_t k = 0; k < programs; ++k) error[k] = k < kept[i] ? s.lost : 0.0;
+      for (std::size_t k = 0; k < programs; ++k) error[k] = k < kept[i] ? s.lost : s.left;
       if (s.arity >= 1) add(error, s.by_a, &errors_[s.a * programs], programs);
       if (s.arity == 2) add(error, s.by_b, &errors_[s.b * programs], programs);
     }
@@ -101,7 +112,8 @@ class Evaluation {
     Op op;
     int arity;
     std::uint32_t a, b;
-    double value = 0, lost = 0, by_a = 0, by_b = 0;
+    double value = 0, by_a = 0, by_b = 0;
+    double lost = 0, left = 0;  // by rounding, and what of it compensation leaves
     void set(double y, double error, double derivative_by_a, double derivative_by_b) {
       value = y, lost = error, by_a = derivative_by_a, by_b = derivative_by_b;
     }
@@ -113,6 +125,7 @@ class Evaluation {
   std::vector<NodeId> nodes_;
   std::vector<std::uint32_t> slot_;
   std::vector<Step> steps_;
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> circles_;  // sine and cosine of one angle
   std::vector<double> adjoint_, errors_;
 };
 
@@ -186,13 +199,14 @@ std::vector<std::vector<double>> first_order_errors(const Tape& tape, const std:
   constexpr double unquestioned = 5;  // ulps; what the inputs excuse matters beyond it only
   const std::size_t programs = bounds.size();
   Evaluation evaluation(tape, roots_of(outputs));
+  const std::unordered_map<NodeId, NodeId> partners = partners_on_circle(tape, evaluation.nodes());
   std::vector<std::uint8_t> kept;
   for (const NodeId id : evaluation.nodes()) {
-    const bool is_certain = shares.empty() || !has_known_error(tape.node(id).op);
-    kept.push_back(
-        static_cast<std::uint8_t>(is_certain ? programs : std::ranges::find_if(bounds, [&](double b) {
-                                                            return shares[id] > b;
-                                                          }) - bounds.begin()));
+    const Op op = tape.node(id).op;
+    const bool is_certain = shares.empty() || !(has_known_error(op) || partners.contains(id));
+    const auto first_beyond =
+        std::ranges::find_if(bounds, [&](double b) { return !is_certain && is_beyond(op, shares[id], b); });
+    kept.push_back(static_cast<std::uint8_t>(is_certain ? programs : first_beyond - bounds.begin()));
   }
   // largest error and entry of each block at each state
   std::vector<std::vector<std::vector<double>>> errors(programs,
