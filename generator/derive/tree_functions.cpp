@@ -291,6 +291,11 @@ class TreeDeriver {
     const std::size_t best = choose(
         tape_, candidates, request_.optimise, [this](int count) { return states(count); },
         [&](const MeasuredStates& at) {
+          const auto least = std::ranges::min_element(candidates, {}, &Candidate::operations);
+          const std::size_t route = least->route;
+          std::vector<Candidate> shortest = {*least};
+          shortest[0].route = 0;
+          add_compensated(tape_, shortest, parameters_, request_.optimise, at, 1);
           for (const std::size_t i : order) {
             if (!passes[i].empty()) {
               candidates.push_back(derived[i]);
@@ -303,7 +308,10 @@ class TreeDeriver {
               candidates.insert(candidates.end(), steps.begin(), steps.end());
             }
           }
-          add_compensated(tape_, candidates, parameters_, request_.optimise, at, candidates.size());
+          for (std::size_t i = 1; i < shortest.size(); ++i) {
+            candidates.push_back(std::move(shortest[i]));
+            candidates.back().route = route;
+          }
         });
     const std::size_t first_report = result_->candidates.size();
     for (std::size_t i = 0; i < candidates.size(); ++i) {

@@ -143,10 +143,14 @@ Exact Exact::as_float() const {
 }
 
 double Exact::to_double() const {
-  // most numbers that are asked for come from doubles
-  if (const double near = cln::double_approx(value_); std::isnormal(near) && from_double(near) == *this)
-    return near;
-  // through 25 correct decimal digits: rounds to nearest for all but one value in 1e8, and keeps subnormals
+  if (const double near = cln::double_approx(value_); std::isnormal(near)) {
+    const double rest = cln::double_approx((*this - from_double(near)).value_);
+    const double next = std::nextafter(near, std::copysign(std::numeric_limits<double>::infinity(), rest));
+    const double way = rest / (next - near);
+    if (rest == 0 || std::abs(way) < 0.5 - 1e-9) return near;
+    if (way > 0.5 + 1e-9 && way < 1 && std::isnormal(next)) return next;
+  }
+  // through 25 correct decimal digits: halves, and subnormals
   return std::strtod(decimal(25).c_str(), nullptr);
 }
 

@@ -6,13 +6,16 @@
 #include <cmath>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "derive/derive.hpp"
 #include "describe/read_model.hpp"
 #include "emit/header.hpp"
 #include "optimise/accuracy/choice.hpp"
+#include "optimise/accuracy/sine_and_cosine.hpp"
 #include "optimise/tape/stable_forms.hpp"
+#include "reduce/samples.hpp"
 #include "tape/interpret.hpp"
 
 namespace anholon::accuracy_test {
@@ -122,6 +125,24 @@ TEST(StableForms, LeavesSumsAloneThatDoNotCancel) {
                                      (sin(x) * cos(y) + cos(x) * sin(y)).id(tape),
                                      (Expr(2) - cos(x)).id(tape)};
   EXPECT_EQ(stable_forms(tape, roots), roots);
+}
+
+TEST(SineAndCosine, HaveThirtyDigitsAndTheFirstSixteenRoundedToNearest) {
+  const WorkingDigits precision(60);
+  SampleSource source;
+  const auto compare = [](double x) {
+    const auto [sine, cosine] = sine_and_cosine(x);
+    const Exact angle = Exact::from_double(x);
+    for (const auto& [got, expected] : {std::pair{sine, sin(angle)}, std::pair{cosine, cos(angle)}}) {
+      EXPECT_EQ(got.rounded, expected.to_double()) << x;
+      const Exact sum = Exact::from_double(got.rounded) + Exact::from_double(got.rest);
+      EXPECT_LT(std::abs((sum - expected).to_double()), 1e-30) << x;
+    }
+  };
+  for (int i = 0; i < 2000; ++i) compare(8 * source.uniform() - 4);
+  for (int i = 0; i < 200; ++i) compare(largest_angle * (2 * source.uniform() - 1));
+  for (int i = -8; i <= 8; ++i) compare(i * 0.78539816339744831);
+  for (const double x : {1e-300, 1e-20, 1e-9, 1e-3}) compare(x);
 }
 
 /// Two candidates: a short one that loses digits where x is small, and a longer one.

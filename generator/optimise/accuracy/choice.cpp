@@ -137,6 +137,20 @@ void measure(const Tape& tape, std::vector<Candidate>& candidates, const Measure
   }
 }
 
+std::size_t first_acceptable(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at,
+                             const std::function<bool(const Candidate&)>& acceptable) {
+  std::vector<std::size_t> order(candidates.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return candidates[i].operations; });
+  for (const std::size_t i : order) {
+    std::vector<Candidate> one = {std::move(candidates[i])};
+    measure(tape, one, at);
+    candidates[i] = std::move(one[0]);
+    if (candidates[i].error.is_measured() && acceptable(candidates[i])) return i;
+  }
+  return candidates.size();
+}
+
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
                    const StateSource& states, const std::function<void(const MeasuredStates&)>& more) {
   const auto shortest = [&](const auto& acceptable) {
@@ -168,9 +182,16 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
   if (mode == OptimiseFor::balanced) {
     std::vector<Candidate> one = {candidates[fast]};
     measure(tape, one, at);
-    if (one[0].error.is_measured() && one[0].worst_to_expect() <= allowed_ulps) return fast;
+    candidates[fast] = std::move(one[0]);
+    if (candidates[fast].error.is_measured() && candidates[fast].worst_to_expect() <= allowed_ulps)
+      return fast;
   }
   more(at);
+  if (mode == OptimiseFor::balanced) {
+    const std::size_t first = first_acceptable(
+        tape, candidates, at, [](const Candidate& c) { return c.worst_to_expect() <= allowed_ulps; });
+    if (first < candidates.size()) return first;
+  }
   measure(tape, candidates, at);
   if (std::ranges::none_of(candidates, [](const Candidate& c) { return c.error.is_measured(); })) return fast;
   const auto least = [&](const auto& of) {
@@ -185,8 +206,7 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
     return shortest([&](const Candidate& c) { return is_as_small(c.error.worst, worst); });
   }
   const double reached = least([](const Candidate& c) { return c.worst_to_expect(); });
-  const double bound = reached <= allowed_ulps ? allowed_ulps : tolerated_growth * reached;
-  return shortest([&](const Candidate& c) { return c.worst_to_expect() <= bound; });
+  return shortest([&](const Candidate& c) { return c.worst_to_expect() <= tolerated_growth * reached; });
 }
 
 }  // namespace anholon

@@ -2,7 +2,7 @@
 #pragma once
 
 // Double arithmetic that comes out the same on every machine: + - * / and roots as IEEE 754 rounds them, each
-// on its own; sines, cosines and other functions, in which libraries differ, rounded from 40 digits.
+// on its own; sines, cosines and other functions, in which libraries differ, rounded from 30 digits or more.
 
 #include <bit>
 #include <cmath>
@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <unordered_map>
 
+#include "optimise/accuracy/sine_and_cosine.hpp"
 #include "tape/interpret.hpp"
 
 namespace anholon {
@@ -72,18 +73,19 @@ struct Rounded {
   }
 
  private:
-  struct Parts {
-    double rounded, rest;
-  };
+  using Parts = DoubleDouble;
   /// The same few angles come in every function of a program.
   static Parts remembered(Op op, Rounded a) {
     constexpr std::size_t most = 1 << 20;
-    thread_local std::unordered_map<std::uint64_t, Parts> sines, cosines;
-    auto& known = op == Op::sin ? sines : cosines;
+    thread_local std::unordered_map<std::uint64_t, SineAndCosine> known;
     if (known.size() > most) known.clear();
     const auto [place, is_new] = known.try_emplace(std::bit_cast<std::uint64_t>(a.x));
-    if (is_new) place->second = from_exact(op, a);
-    return place->second;
+    if (is_new) {
+      place->second = std::abs(a.x) <= largest_angle
+                          ? sine_and_cosine(a.x)
+                          : SineAndCosine{from_exact(Op::sin, a), from_exact(Op::cos, a)};
+    }
+    return op == Op::sin ? place->second.sine : place->second.cosine;
   }
   static Parts from_exact(Op op, Rounded a, Rounded b = Rounded()) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();

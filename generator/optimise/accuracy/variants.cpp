@@ -43,12 +43,11 @@ void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::
   constexpr double root_of_two = 1.4142135623730951, least_share = 0.35, most_spread = 60;
   constexpr std::size_t steps = 4;     // over which a bound falls to a quarter,
   constexpr double improvement = 1.5;  // and the error by this much, or the inputs' own rounding is reached
-  measure(tape, candidates, at);
   const auto is_enough = [&](const Candidate& c) {
     return mode == OptimiseFor::accuracy ? c.error.excess <= tolerated_ulps / 4
                                          : c.worst_to_expect() <= allowed_ulps;
   };
-  if (std::ranges::any_of(candidates, is_enough)) return;
+  if (first_acceptable(tape, candidates, at, is_enough) < candidates.size()) return;
   std::vector<double> bounds = {std::numeric_limits<double>::infinity()};
   for (double bound = tolerated_ulps; bound > least_share; bound /= root_of_two) bounds.push_back(bound);
   std::vector<Candidate> plain;
