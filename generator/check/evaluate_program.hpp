@@ -44,36 +44,39 @@ inline const Function* find_function(const Program& program, const std::string& 
   return nullptr;
 }
 
+/// One value for each input of the tape, in order of their making; of blocks without a value zero.
+template <class S>
+std::vector<S> flat_inputs(const Program& program, const std::vector<S>& parameters,
+                           const NamedValues<S>& named) {
+  std::vector<S> inputs(program.tape.inputs().size(), S(0));
+  for (std::size_t i = 0; i < program.parameters.size(); ++i)
+    inputs[program.tape.node(program.parameters[i].node).a] = parameters[i];
+  for (const InputBlock& block : program.inputs) {
+    const auto value = named.find(block.name);
+    if (value == named.end()) continue;
+    if (value->second.size() != block.nodes.size())
+      throw std::invalid_argument("input block '" + block.name + "' has the wrong size");
+    for (std::size_t i = 0; i < block.nodes.size(); ++i)
+      inputs[program.tape.node(block.nodes[i]).a] = value->second[i];
+  }
+  return inputs;
+}
+
 /// Runs the tape itself; parameters at the given values.
 template <class S>
 ProgramCaller<S> interpreting_caller(const Program& program, std::vector<S> parameters) {
-  struct Cache {
-    std::map<std::string, Interpreter<S>> interpreters;
-    std::vector<S> inputs;
-  };
-  auto cache = std::make_shared<Cache>();
-  return [&program, parameters, cache](const std::string& name, const NamedValues<S>& named) {
+  auto interpreters = std::make_shared<std::map<std::string, Interpreter<S>>>();
+  return [&program, parameters, interpreters](const std::string& name, const NamedValues<S>& named) {
     const Function* function = find_function(program, name);
     if (function == nullptr) throw std::invalid_argument("the program has no function '" + name + "'");
-    auto found = cache->interpreters.find(name);
-    if (found == cache->interpreters.end()) {
+    auto found = interpreters->find(name);
+    if (found == interpreters->end()) {
       std::vector<NodeId> roots;
       for (const OutputBlock& b : function->outputs)
         roots.insert(roots.end(), b.nodes.begin(), b.nodes.end());
-      found = cache->interpreters.emplace(name, Interpreter<S>(program.tape, roots)).first;
+      found = interpreters->emplace(name, Interpreter<S>(program.tape, roots)).first;
     }
-    std::vector<S>& inputs = cache->inputs;
-    inputs.assign(program.tape.inputs().size(), S(0));
-    for (std::size_t i = 0; i < program.parameters.size(); ++i)
-      inputs[program.tape.node(program.parameters[i].node).a] = parameters[i];
-    for (const InputBlock& block : program.inputs) {
-      const auto value = named.find(block.name);
-      if (value == named.end()) continue;
-      if (value->second.size() != block.nodes.size())
-        throw std::invalid_argument("input block '" + block.name + "' has the wrong size");
-      for (std::size_t i = 0; i < block.nodes.size(); ++i)
-        inputs[program.tape.node(block.nodes[i]).a] = value->second[i];
-    }
+    const std::vector<S> inputs = flat_inputs(program, parameters, named);
     std::vector<S> flat(found->second.output_count(), S(0));
     found->second(inputs, flat);
     NamedValues<S> outputs;

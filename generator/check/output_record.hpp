@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <limits>
 #include <string>
@@ -22,33 +23,47 @@ struct OutputRecord {
   std::vector<double> recursion_error;
 };
 
-/// Condition of the output at a sample, given the scale and the relative error there.
-using ConditionAt = std::function<double(int sample, double scale, double error)>;
+/// Condition of an output at a sample, given the scale and the relative error there.
+struct ConditionAt {
+  std::function<double(int sample, double scale)> estimated;  // to first order
+  std::function<double(int sample, double scale, double error)> measured;
+};
 
 /// Relative error that an output of this condition may have: ten times what rounding its inputs costs.
 inline double allowed(double kappa) { return 10 * eps * kappa; }
 
 /// Errors are relative to the largest magnitude of the output at the sample, or to its median over the
-/// samples where that is larger. Beyond the bound an error needs the condition of the output as a reason.
+/// samples where that is larger. Beyond the bound an error needs the condition of the output as a reason: it
+/// is measured where the estimate leaves less than a factor of two, and where the error is largest.
 inline OutputError judged(const OutputRecord& record, double bound, const ConditionAt& condition) {
+  constexpr double certain = 0.5;
   std::vector<double> sizes = record.scale;
   std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
   const double typical = sizes[sizes.size() / 2];
+  const auto scale_at = [&](std::size_t i) {
+    return std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
+  };
   OutputError e;
-  double farthest = 1;  // beyond what is allowed
   std::vector<double> relative;
+  std::size_t worst = 0;
   for (std::size_t i = 0; i < record.error.size(); ++i) {
-    const double scale = std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
-    const double error = record.error[i] / scale;
-    relative.push_back(error);
-    if (!(error <= e.worst)) e.worst = error, e.worst_at = fmt::format("sample {}", record.sample[i]);
-    if (error <= bound) continue;
-    const double kappa = condition(record.sample[i], scale, error);
-    e.condition = std::max(e.condition, kappa);
-    if (error <= farthest * allowed(kappa)) continue;
+    const double error = record.error[i] / scale_at(i);
+    relative.push_back(std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
+    if (relative[i] > e.worst) e.worst = relative[i], worst = i;
+  }
+  if (e.worst != 0) e.worst_at = fmt::format("sample {}", record.sample[worst]);
+  double farthest = 1;  // beyond what is allowed
+  for (std::size_t i = 0; i < relative.size(); ++i) {
+    if (relative[i] <= bound) continue;
+    if (i != worst && relative[i] <= certain * allowed(condition.estimated(record.sample[i], scale_at(i))))
+      continue;
+    const double kappa = condition.measured(record.sample[i], scale_at(i), relative[i]);
+    if (i == worst) e.condition = kappa;
+    if (relative[i] <= farthest * allowed(kappa)) continue;
     e.passed = false;
-    farthest = error / allowed(kappa);
-    e.failed_at = fmt::format("sample {}: {:.1f} ulps, kappa {:.1e}", record.sample[i], error / eps, kappa);
+    farthest = relative[i] / allowed(kappa);
+    e.failed_at =
+        fmt::format("sample {}: {:.1f} ulps, kappa {:.1e}", record.sample[i], relative[i] / eps, kappa);
   }
   std::ranges::sort(relative);
   e.median = relative[relative.size() / 2];

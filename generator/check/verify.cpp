@@ -16,6 +16,7 @@
 #include "check/output_record.hpp"
 #include "check/relative_condition.hpp"
 #include "describe/mechanise.hpp"
+#include "optimise/accuracy/rounding_shares.hpp"
 #include "reduce/samples.hpp"
 
 namespace anholon {
@@ -384,6 +385,12 @@ class Verifier {
     return kappa + relative_condition(with_parameters, {{"parameters", parameters_}}, scale);
   }
 
+  double estimated_condition(const OutputBlock& block, int sample, double scale) const {
+    const std::vector<double> state =
+        flat_inputs(program_, double_parameters_, as_doubles(inputs_of_sample_.at(sample)));
+    return first_order_condition(program_.tape, block, state, scale);
+  }
+
   Verification summarise(int samples) {
     Verification v;
     v.samples = samples;
@@ -394,10 +401,12 @@ class Verifier {
     for (const Function& f : program_.functions) {
       for (const OutputBlock& b : f.outputs) {
         if (!records_.contains({f.name, b.name})) continue;  // of a chart that was never the best
-        OutputError e =
-            judged(records_.at({f.name, b.name}), bound_, [&](int sample, double scale, double error) {
+        const ConditionAt condition_at = {
+            [&](int sample, double scale) { return estimated_condition(b, sample, scale); },
+            [&](int sample, double scale, double error) {
               return condition(f.name, b.name, sample, scale, error);
-            });
+            }};
+        OutputError e = judged(records_.at({f.name, b.name}), bound_, condition_at);
         e.function = f.name;
         e.output = b.name;
         v.passed = v.passed && e.passed;

@@ -16,7 +16,7 @@ struct OutputError {
   std::string function, output;
   double median = 0, p99 = 0, worst = 0;  // of |generated - exact| / natural scale
   double recursion_worst = -1;  // of |double recursion - exact| / natural scale; negative: not computed there
-  double condition = 0;  // largest where the bound is exceeded: change per relative change of the inputs
+  double condition = 0;         // at the worst, if beyond the bound: relative change per that of the inputs
   std::string worst_at;
   bool passed = true;
   std::string failed_at;  // the sample that is farthest beyond what its condition allows

@@ -247,4 +247,11 @@ std::vector<std::vector<double>> first_order_errors(const Tape& tape, const std:
   return result;
 }
 
+double first_order_condition(const Tape& tape, const OutputBlock& block, const std::vector<double>& state,
+                             double scale) {
+  Evaluation evaluation(tape, block.nodes);
+  evaluation.run(state);
+  return largest_kappa(evaluation, tape, block, scale);
+}
+
 }  // namespace anholon

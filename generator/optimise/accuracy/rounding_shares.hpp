@@ -38,4 +38,9 @@ std::vector<std::vector<double>> first_order_errors(const Tape& tape, const std:
                                                     const std::vector<double>& shares = {},
                                                     const std::vector<double>& bounds = {0});
 
+/// What one ulp of every input, parameters among them, changes in a block, in ulps of a scale: to first
+/// order, with derivatives in double.
+double first_order_condition(const Tape& tape, const OutputBlock& block, const std::vector<double>& state,
+                             double scale);
+
 }  // namespace anholon
