@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
+#include <type_traits>
 
 #include "anholon/free_dynamics.hpp"
 #include "reduce/decompositions.hpp"
@@ -141,10 +142,20 @@ template Evaluated<double> evaluate_recursion(const Mechanism<double>&, const Pa
 template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, const Partition&,
                                              const EvaluationInput<Exact>&, const Exact&, const RowSharing&);
 
-std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b) {
-  return from_eigen<Exact>(
-      ConstraintFactors<Exact>(to_eigen(A), Exact::from_decimal("1e-25")).solve(to_eigen(b)));
+template <class S>
+std::vector<S> minimum_norm_solution(const Matrix<S>& A, const std::vector<S>& b) {
+  S tolerance(0);  // of ranks: far above what the entries' own rounding leaves
+  if constexpr (std::is_same_v<S, Exact>) {
+    tolerance = Exact::from_decimal("1e-25");
+  } else {
+    tolerance = 1e-12L;
+  }
+  return from_eigen<S>(ConstraintFactors<S>(to_eigen(A), tolerance).solve(to_eigen(b)));
 }
+
+template std::vector<long double> minimum_norm_solution(const Matrix<long double>&,
+                                                        const std::vector<long double>&);
+template std::vector<Exact> minimum_norm_solution(const Matrix<Exact>&, const std::vector<Exact>&);
 
 template <class S>
 Matrix<S> range_projector(const Matrix<S>& H) {

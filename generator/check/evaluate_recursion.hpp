@@ -31,8 +31,9 @@ extern template Evaluated<Exact> evaluate_recursion(const Mechanism<Exact>&, con
                                                     const EvaluationInput<Exact>&, const Exact&,
                                                     const RowSharing&);
 
-/// Minimum-norm least-squares solution of A x = b.
-std::vector<Exact> minimum_norm_solution(const Matrix<Exact>& A, const std::vector<Exact>& b);
+/// Minimum-norm least-squares solution of A x = b, for long double and Exact.
+template <class S>
+std::vector<S> minimum_norm_solution(const Matrix<S>& A, const std::vector<S>& b);
 
 /// Orthogonal projector onto the range of H, of full column rank.
 template <class S>

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <type_traits>
 
 #include "anholon/free_dynamics.hpp"
 #include "check/compiled_caller.hpp"
@@ -56,7 +57,7 @@ class Verifier {
     for (int s = 0; s < plan.samples; ++s) {
       if (progress) progress(s);
       sample_ = s + 1;
-      const NamedValues<Exact> inputs = random_inputs(source);
+      const NamedValues<Exact> inputs = random_inputs(source, s < exactly_judged);
       if (s < exactly_judged) {
         compare(inputs, exact_, inputs);
       } else {
@@ -69,7 +70,7 @@ class Verifier {
 
  private:
   /// Position in the working range; velocities, accelerations, torques in +-1. Every value is a double.
-  NamedValues<Exact> random_inputs(SampleSource& source) {
+  NamedValues<Exact> random_inputs(SampleSource& source, bool is_exact) {
     state_ = random_state(model_, source);
     NamedValues<Exact> in = position_inputs(model_, partition_, state_);
     chart_ = chart_prefix(chart_at_(in));
@@ -82,31 +83,46 @@ class Verifier {
       for (std::size_t i = 0; i < block.nodes.size(); ++i)
         in[block.name].push_back(source.uniform(Exact(-1), Exact(1)));
     }
-    make_compatible(in);
+    if (is_exact) {
+      make_compatible(in, exact_, in);
+    } else {
+      make_compatible(in, extended_, in_long_double(in));
+    }
     return in;
   }
 
   /// Imposed rates that satisfy C r_a_dot = 0, C r_a_ddot + ... = 0 as well as doubles can.
-  void make_compatible(NamedValues<Exact>& in) {
+  template <class S>
+  void make_compatible(NamedValues<Exact>& in, const ProgramCaller<S>& call, NamedValues<S> in_digits) {
     const std::string compatibility = chart_ + "compatibility";
     if (find_function(program_, compatibility) == nullptr) return;
     for (const char* name : {"velocity_residual", "acceleration_residual"}) {
       const std::string input = std::string(name) == "velocity_residual" ? "r_a_dot" : "r_a_ddot";
-      const std::vector<Exact> residual = exact_(compatibility, in).at(name);
+      const std::vector<S> residual = call(compatibility, in_digits).at(name);
       residual_scale_[name] = size_of(residual);  // before its terms are made to cancel
-      std::vector<Exact>& x = in.at(input);
-      Matrix<Exact> C(static_cast<int>(residual.size()), static_cast<int>(x.size()));
+      std::vector<S>& x = in_digits.at(input);
+      Matrix<S> C(static_cast<int>(residual.size()), static_cast<int>(x.size()));
       for (std::size_t j = 0; j < x.size(); ++j) {  // linear in x: columns by unit steps
-        NamedValues<Exact> moved = in;
-        moved[input][j] = x[j] + Exact(1);
-        const std::vector<Exact> column = exact_(compatibility, moved).at(name);
+        const S kept = x[j];
+        x[j] += S(1);
+        const std::vector<S> column = call(compatibility, in_digits).at(name);
         for (std::size_t i = 0; i < residual.size(); ++i)
           C(static_cast<int>(i), static_cast<int>(j)) = column[i] - residual[i];
+        x[j] = kept;
       }
-      const std::vector<Exact> step = minimum_norm_solution(C, residual);
-      for (std::size_t j = 0; j < x.size(); ++j) x[j] = Exact::from_double((x[j] - step[j]).to_double());
+      const std::vector<S> step = minimum_norm_solution(C, residual);
+      for (std::size_t j = 0; j < x.size(); ++j) {
+        in.at(input)[j] = rounded(x[j] - step[j]);
+        if constexpr (std::is_same_v<S, Exact>) {
+          x[j] = in.at(input)[j];
+        } else {
+          x[j] = in.at(input)[j].to_double();
+        }
+      }
     }
   }
+  static Exact rounded(const Exact& x) { return Exact::from_double(x.to_double()); }
+  static Exact rounded(long double x) { return Exact::from_double(static_cast<double>(x)); }
 
   static NamedValues<double> as_doubles(const NamedValues<Exact>& in) {
     NamedValues<double> out;
