@@ -288,8 +288,11 @@ class TreeDeriver {
       candidates[i].operations = steps.back().operations;
       passes[i] = std::move(steps);
     }
+    const int shortest_of_all = std::ranges::min(candidates, {}, &Candidate::operations).operations;
+    const bool is_too_large = request_.optimise == OptimiseFor::balanced && shortest_of_all > most_measured;
     const std::size_t best = choose(
-        tape_, candidates, request_.optimise, [this](int count) { return states(count); },
+        tape_, candidates, is_too_large ? OptimiseFor::speed : request_.optimise,
+        [this](int count) { return states(count); },
         [&](const MeasuredStates& at) {
           const auto least = std::ranges::min_element(candidates, {}, &Candidate::operations);
           const std::size_t route = least->route;
@@ -333,6 +336,8 @@ class TreeDeriver {
 
   /// Passes over the program itself are costly, so only the cheapest routes see them.
   static constexpr std::size_t finalists = 4;
+  /// Operations beyond which balance measures nothing: it would take minutes.
+  static constexpr int most_measured = 10'000;
 
   [[nodiscard]] int cost_of(const std::vector<OutputBlock>& outputs) const {
     return operations_per_call(tape_, roots_of(outputs), parameters_).total();
