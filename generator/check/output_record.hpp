@@ -14,6 +14,7 @@
 
 #include "check/error_measure.hpp"
 #include "check/verify.hpp"
+#include "optimise/accuracy/natural_scale.hpp"
 
 namespace anholon {
 
@@ -37,17 +38,12 @@ inline double allowed(double kappa) { return 10 * eps * kappa; }
 /// is measured where the estimate leaves less than a factor of two, and where the error is largest.
 inline OutputError judged(const OutputRecord& record, double bound, const ConditionAt& condition) {
   constexpr double certain = 0.5;
-  std::vector<double> sizes = record.scale;
-  std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-  const double typical = sizes[sizes.size() / 2];
-  const auto scale_at = [&](std::size_t i) {
-    return std::max({record.scale[i], typical, std::numeric_limits<double>::min()});
-  };
+  const std::vector<double> scale = natural_scales(record.scale, record.scale.size());
   OutputError e;
   std::vector<double> relative;
   std::size_t worst = 0;
   for (std::size_t i = 0; i < record.error.size(); ++i) {
-    const double error = record.error[i] / scale_at(i);
+    const double error = record.error[i] / scale[i];
     relative.push_back(std::isnan(error) ? std::numeric_limits<double>::infinity() : error);
     if (relative[i] > e.worst) e.worst = relative[i], worst = i;
   }
@@ -55,9 +51,9 @@ inline OutputError judged(const OutputRecord& record, double bound, const Condit
   double farthest = 1;  // beyond what is allowed
   for (std::size_t i = 0; i < relative.size(); ++i) {
     if (relative[i] <= bound) continue;
-    if (i != worst && relative[i] <= certain * allowed(condition.estimated(record.sample[i], scale_at(i))))
+    if (i != worst && relative[i] <= certain * allowed(condition.estimated(record.sample[i], scale[i])))
       continue;
-    const double kappa = condition.measured(record.sample[i], scale_at(i), relative[i]);
+    const double kappa = condition.measured(record.sample[i], scale[i], relative[i]);
     if (i == worst) e.condition = kappa;
     if (relative[i] <= farthest * allowed(kappa)) continue;
     e.passed = false;

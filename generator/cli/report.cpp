@@ -14,7 +14,6 @@
 #include "describe/location.hpp"
 #include "describe/sha256.hpp"
 #include "emit/plan.hpp"
-#include "emit/provenance.hpp"
 #include "emit/write_file.hpp"
 #include "report/page.hpp"
 #include "report/record.hpp"
@@ -193,7 +192,7 @@ int report(const ReportOptions& options) {
   Parts kept(folder / "parts");
   Console console(parts);
   const Stage stage = [&](const std::string& what) { console.stage(what); };
-  const std::string version(generator_version());
+  const std::string program = sha256_of(text_of("/proc/self/exe"));  // the machine record names its version
   const MeasureOptions defaults;
   ordered_json result = {{"schema", "anholon.report/1"},    {"machine", machine_record()},
                          {"samples", options.samples},      {"states", defaults.states},
@@ -204,7 +203,7 @@ int report(const ReportOptions& options) {
     const std::vector<fs::path>& scenes = item.second;
     const fs::path file = subject.file;
     const std::string inputs =
-        version + text_of(file) + (subject.is_floating ? "floating" : "") + result["machine"].dump();
+        program + text_of(file) + (subject.is_floating ? "floating" : "") + result["machine"].dump();
     const ordered_json model = kept.get(file.stem().string(), inputs + std::to_string(options.samples),
                                         console, [&] { return measured_model(options, subject, stage); });
     if (!model.at("verification").at("passed").get<bool>()) failures.push_back(file.string());

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // A function comes by several routes; the cheapest that keeps enough digits is kept.
 #include <algorithm>
+#include <numeric>
 
 #include "algebra/closed_form.hpp"
 #include "anholon/charts.hpp"
@@ -51,9 +52,10 @@ void Deriver::emit(const std::string& name, const std::string& meaning, std::vec
           for (const Route& r : accurate()) add(r.name, without_empty_blocks(r).outputs);
         }
         add_stable_forms(candidates);
-        const std::size_t derived = candidates.size();
+        std::vector<std::size_t> formulations(candidates.size());
+        std::iota(formulations.begin(), formulations.end(), std::size_t{0});
         if (request_.optimise == OptimiseFor::accuracy) add_after_passes(candidates);
-        add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at, derived);
+        add_compensated(tape_, candidates, parameter_nodes_, request_.optimise, at, formulations);
       });
   const std::string full_name = prefix_ + name;
   const std::size_t first_report = result_->candidates.size();

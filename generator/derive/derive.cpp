@@ -53,17 +53,7 @@ Deriver::Deriver(const Model& model, const DeriveRequest& request)
 }
 
 std::unique_ptr<Derivation> Deriver::run() {
-  program_.model = model_.name;
-  program_.scene = request_.scene;
-  program_.name_space = model_.name + "::" + request_.scene;
-  program_.source_file = model_.file;
-  program_.source_sha256 = model_.sha256;
-  for (const std::string& name : request_.functions) {
-    if (std::ranges::find(function_names(), name) == function_names().end()) {
-      throw std::invalid_argument(
-          fmt::format("there is no function '{}'; choose from {}", name, fmt::join(function_names(), ", ")));
-    }
-  }
+  begin_program(program_, model_, request_.scene, request_.functions, function_names());
   motion_ = reduce(motion_partition_);
   atlas_ = &motion_.atlas;
   nu_ = symbols_.block("nu", motion_.k(), "mixed", "reduced velocities: " + meaning_of_nu(motion_));
@@ -206,6 +196,20 @@ OperationCount operations_per_call(const Program& program, const std::vector<Nod
     prepared.push_back(id);
   }
   return count_operations(tape, roots, prepared);
+}
+
+void begin_program(Program& program, const Model& model, const std::string& scene,
+                   const std::vector<std::string>& functions, const std::vector<std::string>& known) {
+  program.model = model.name;
+  program.scene = scene;
+  program.name_space = model.name + "::" + scene;
+  program.source_file = model.file;
+  program.source_sha256 = model.sha256;
+  for (const std::string& name : functions) {
+    if (std::ranges::find(known, name) == known.end())
+      throw std::invalid_argument(
+          fmt::format("there is no function '{}'; choose from {}", name, fmt::join(known, ", ")));
+  }
 }
 
 std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request) {

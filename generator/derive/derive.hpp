@@ -81,6 +81,13 @@ struct Derivation {
 /// Operations of one call: what depends on parameters alone is computed by `prepare` and costs nothing here.
 OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots);
 
+/// What a program is of, and its name space.
+/// @param functions  wanted of it
+/// @param known  those that there are
+/// @throws std::invalid_argument for one that there is not
+void begin_program(Program& program, const Model& model, const std::string& scene,
+                   const std::vector<std::string>& functions, const std::vector<std::string>& known);
+
 /// @throws UnsupportedError, std::invalid_argument for a function name that does not exist
 std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request = {});
 

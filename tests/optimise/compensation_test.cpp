@@ -160,7 +160,9 @@ Candidate kept(Tape& tape, const Expr& y, const std::vector<std::vector<double>>
   std::vector<Candidate> candidates = {{"plain", {output({y.id(tape)})}, 1, 0}};
   const std::size_t best = choose(
       tape, candidates, OptimiseFor::balanced, [&](int) { return states; },
-      [&](const MeasuredStates& at) { add_compensated(tape, candidates, {}, OptimiseFor::balanced, at, 1); });
+      [&](const MeasuredStates& at) {
+        add_compensated(tape, candidates, {}, OptimiseFor::balanced, at, {0});
+      });
   return candidates[best];
 }
 

@@ -116,7 +116,7 @@ std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
   return result;
 }
 
-void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at) {
+void measure(const Tape& tape, std::span<Candidate> candidates, const MeasuredStates& at) {
   std::vector<std::vector<OutputBlock>> programs;
   std::vector<Candidate*> measured;
   for (Candidate& c : candidates) {
@@ -137,32 +137,19 @@ void measure(const Tape& tape, std::vector<Candidate>& candidates, const Measure
   }
 }
 
-std::size_t first_acceptable(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at,
-                             const std::function<bool(const Candidate&)>& acceptable) {
+std::vector<std::size_t> by_operations(const std::vector<Candidate>& candidates) {
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::ranges::stable_sort(order, {}, [&](std::size_t i) { return candidates[i].operations; });
-  for (const std::size_t i : order) {
-    std::vector<Candidate> one = {std::move(candidates[i])};
-    measure(tape, one, at);
-    candidates[i] = std::move(one[0]);
-    if (candidates[i].error.is_measured() && acceptable(candidates[i])) return i;
-  }
-  return candidates.size();
+  return order;
 }
 
 std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, OptimiseFor mode,
                    const StateSource& states, const std::function<void(const MeasuredStates&)>& more) {
-  const auto shortest = [&](const auto& acceptable) {
-    std::size_t best = candidates.size();
-    for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (acceptable(candidates[i]) &&
-          (best == candidates.size() || candidates[i].operations < candidates[best].operations))
-        best = i;
-    }
-    return best;
+  const std::size_t fast = by_operations(candidates).front();
+  const auto is_within = [](const Candidate& c) {
+    return c.error.is_measured() && c.worst_to_expect() <= allowed_ulps;
   };
-  const std::size_t fast = shortest([](const Candidate&) { return true; });
   if (mode == OptimiseFor::nothing) return 0;
   if (mode == OptimiseFor::speed) return fast;
   bool is_fine = false;
@@ -180,17 +167,16 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
   MeasuredStates at{with_hard_states(random.few(), errors), {}, std::move(random)};
   at.allowance = rounding_shares(tape, program, at.states).allowance;
   if (mode == OptimiseFor::balanced) {
-    std::vector<Candidate> one = {candidates[fast]};
-    measure(tape, one, at);
-    candidates[fast] = std::move(one[0]);
-    if (candidates[fast].error.is_measured() && candidates[fast].worst_to_expect() <= allowed_ulps)
-      return fast;
+    measure(tape, {&candidates[fast], 1}, at);
+    if (is_within(candidates[fast])) return fast;
   }
   more(at);
+  const std::vector<std::size_t> order = by_operations(candidates);
   if (mode == OptimiseFor::balanced) {
-    const std::size_t first = first_acceptable(
-        tape, candidates, at, [](const Candidate& c) { return c.worst_to_expect() <= allowed_ulps; });
-    if (first < candidates.size()) return first;
+    for (const std::size_t i : order) {
+      measure(tape, {&candidates[i], 1}, at);
+      if (is_within(candidates[i])) return i;
+    }
   }
   measure(tape, candidates, at);
   if (std::ranges::none_of(candidates, [](const Candidate& c) { return c.error.is_measured(); })) return fast;
@@ -200,6 +186,9 @@ std::size_t choose(const Tape& tape, std::vector<Candidate>& candidates, Optimis
       if (c.error.is_measured()) result = std::min(result, of(c));
     }
     return result;
+  };
+  const auto shortest = [&](const auto& acceptable) {
+    return *std::ranges::find_if(order, [&](std::size_t i) { return acceptable(candidates[i]); });
   };
   if (mode == OptimiseFor::accuracy) {
     const double worst = least([](const Candidate& c) { return c.error.worst; });

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -95,12 +96,10 @@ struct MeasuredStates {
   EstimatedStates estimated;
 };
 /// Measures the candidates that are not yet, and estimates what further states bring where these show little.
-void measure(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at);
+void measure(const Tape& tape, std::span<Candidate> candidates, const MeasuredStates& at);
 
-/// Measures candidates in the order of their operations, up to the first that is acceptable.
-/// @return its index; the number of candidates where there is none
-std::size_t first_acceptable(const Tape& tape, std::vector<Candidate>& candidates, const MeasuredStates& at,
-                             const std::function<bool(const Candidate&)>& acceptable);
+/// Indices in the order of operations.
+std::vector<std::size_t> by_operations(const std::vector<Candidate>& candidates);
 
 /// From the errors of each program at each of many random states.
 std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors);

@@ -34,12 +34,6 @@ struct BlockError {
   double error = 0, scale = 0, allowance = 1;
 };
 
-double median_of(std::vector<double> x) {
-  const auto middle = x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2);
-  std::ranges::nth_element(x, middle);
-  return *middle;
-}
-
 }  // namespace
 
 std::string RoundingError::text() const {

@@ -136,18 +136,29 @@ double largest_of(const Evaluation& evaluation, const OutputBlock& block) {
 }
 
 /// What one ulp of every input changes in some entries of a block, in ulps of its scale.
+/// @param visit_operation  told of every other node, and what one ulp of it changes in an entry
+template <class Visit>
 double largest_kappa(Evaluation& evaluation, const Tape& tape, const std::vector<NodeId>& entries,
-                     double scale) {
+                     double scale, const Visit& visit_operation) {
   double kappa = 0;
   for (const NodeId root : entries) {
     double of_inputs = 0;
     evaluation.derivatives_of(root, [&](NodeId id, double derivative) {
       const double change = std::abs(derivative * evaluation.value(id)) / scale;
-      if (tape.node(id).op == Op::input && std::isfinite(change)) of_inputs += change;
+      if (!std::isfinite(change)) return;
+      if (tape.node(id).op == Op::input) {
+        of_inputs += change;
+      } else {
+        visit_operation(id, change);
+      }
     });
     kappa = std::max(kappa, of_inputs);
   }
   return kappa;
+}
+double largest_kappa(Evaluation& evaluation, const Tape& tape, const std::vector<NodeId>& entries,
+                     double scale) {
+  return largest_kappa(evaluation, tape, entries, scale, [](NodeId, double) {});
 }
 
 double allowance_of(double kappa) { return std::max(1.0, kappa / 5); }
@@ -169,20 +180,9 @@ RoundingShares rounding_shares(const Tape& tape, const std::vector<OutputBlock>&
     evaluation.run(states[s]);
     result.allowance.emplace_back();
     for (std::size_t b = 0; b < outputs.size(); ++b) {
-      double kappa = 0;
-      for (const NodeId root : outputs[b].nodes) {
-        double of_inputs = 0;
-        evaluation.derivatives_of(root, [&](NodeId id, double derivative) {
-          const double change = std::abs(derivative * evaluation.value(id)) / scales[b][s];
-          if (!std::isfinite(change)) return;
-          if (tape.node(id).op == Op::input) {
-            of_inputs += change;
-          } else {
-            at_state[id] = std::max(at_state[id], change / 2);
-          }
-        });
-        kappa = std::max(kappa, of_inputs);
-      }
+      const double kappa =
+          largest_kappa(evaluation, tape, outputs[b].nodes, scales[b][s],
+                        [&](NodeId id, double change) { at_state[id] = std::max(at_state[id], change / 2); });
       result.allowance[s].push_back(allowance_of(kappa));
       for (const NodeId id : evaluation.nodes()) {
         result.of_node[id] = std::max(result.of_node[id], at_state[id] / result.allowance[s][b]);

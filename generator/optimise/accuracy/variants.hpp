@@ -21,10 +21,10 @@ std::optional<Candidate> in_stable_form(Tape& tape, const Candidate& candidate,
 
 /// Adds candidates with compensated operations (optimise/accuracy/compensation.hpp), of each formulation the
 /// one with the fewest of them that is expected to stay within allowed_ulps at 1e5 states, or for
-/// OptimiseFor::accuracy within a quarter of tolerated_ulps where it is measured. Nothing is added where a
-/// candidate is within that as it is. Measures those that it looks at.
-/// @param derived  so many candidates at the front are not compensated
+/// OptimiseFor::accuracy within a quarter of tolerated_ulps where it is measured. Nothing is added where one
+/// of them is within that as it is. Measures those that it looks at.
+/// @param formulations  the candidates that are compensated
 void add_compensated(Tape& tape, std::vector<Candidate>& candidates, const std::vector<NodeId>& parameters,
-                     OptimiseFor mode, const MeasuredStates& at, std::size_t derived);
+                     OptimiseFor mode, const MeasuredStates& at, std::vector<std::size_t> formulations);
 
 }  // namespace anholon
