@@ -225,7 +225,10 @@ std::string read_bytes(const std::filesystem::path& path) {
     throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
   }
   bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  return bytes;  // one byte too many is found by read_document
+  if (bytes.size() > largest_file)
+    throw ModelError({path.string(), 0, 0}, fmt::format("the file is larger than {} bytes", largest_file),
+                     "split it");
+  return bytes;
 }
 
 }  // namespace anholon

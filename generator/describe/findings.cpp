@@ -8,7 +8,9 @@ namespace anholon {
 
 void Findings::error(Location where, std::string fact, std::string mend) {
   for (const Diagnostic& d : diagnostics_) {
-    if (d.where.line == where.line && d.where.column == where.column) return;
+    if (std::tie(d.where.file, d.where.line, d.where.column) ==
+        std::tie(where.file, where.line, where.column))
+      return;
   }
   diagnostics_.push_back({std::move(where), std::move(fact), std::move(mend)});
   if (diagnostics_.size() >= most) throw_if_any();
@@ -17,7 +19,8 @@ void Findings::error(Location where, std::string fact, std::string mend) {
 void Findings::throw_if_any() {
   if (diagnostics_.empty()) return;
   std::stable_sort(diagnostics_.begin(), diagnostics_.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.where.line, a.where.column) < std::tie(b.where.line, b.where.column);
+    return std::tie(a.where.file, a.where.line, a.where.column) <
+           std::tie(b.where.file, b.where.line, b.where.column);
   });
   throw ModelError(std::move(diagnostics_));
 }

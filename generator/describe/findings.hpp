@@ -19,7 +19,7 @@ class Findings {
   void error(Location where, std::string fact, std::string mend);
   [[nodiscard]] bool empty() const { return diagnostics_.empty(); }
   [[nodiscard]] std::size_t size() const { return diagnostics_.size(); }
-  /// @throws ModelError with all findings, in the order of the file, if there are any
+  /// @throws ModelError with all findings, file by file in their order, if there are any
   void throw_if_any();
 
  private:

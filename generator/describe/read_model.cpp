@@ -147,15 +147,7 @@ Model read_model_text(std::string_view text, const std::string& file_name, const
     throw ModelError({file_name, 1, 1}, "the file has no 'anholon'",
                      "write anholon = 1, the version of this format");
   }
-  try {
-    fill(root, overrides, reading);
-  } catch (
-      const std::domain_error& error) {  // constants that meet in a derivative, far from where they stand
-    findings.throw_if_any();
-    throw ModelError({file_name, 0, 0}, fmt::format("a derivative is undefined everywhere: {}", error.what()),
-                     "check couplings, rows and motions for constant divisions and roots");
-  }
-  findings.throw_if_any();
+  fill_model(file_name, findings, [&] { fill(root, overrides, reading); });
   return model;
 }
 

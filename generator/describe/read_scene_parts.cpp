@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "describe/motion_table.hpp"
 #include "describe/names.hpp"
@@ -25,6 +27,25 @@ std::optional<int> read_moved(const std::string& name, const Location& where, Re
     return index;
   reading.findings.error(where, fmt::format("'{}' is passive", name), "only active coordinates move as told");
   return std::nullopt;
+}
+
+/// The last row of a periodic table is its first one again. To rounding only, where the table was made with
+/// sin(2 pi k/n); it is made exact, so that it closes in any scalar.
+void close_table(MotionTable& table, const std::vector<std::string>& names, const Location& top,
+                 Findings& findings) {
+  constexpr double roundings = 16 * std::numeric_limits<double>::epsilon();
+  const std::vector<double>& first = table.rows.front();
+  std::vector<double>& last = table.rows.back();
+  for (std::size_t c = 0; c < first.size(); ++c) {
+    double largest = 0;
+    for (const std::vector<double>& row : table.rows) largest = std::max(largest, std::abs(row[c]));
+    if (!(std::abs(last[c] - first[c]) <= roundings * largest))
+      findings.error(top,
+                     fmt::format("the table is periodic, but '{}' begins with {} and ends with {}",
+                                 names[c + 1], first[c], last[c]),
+                     "repeat the first row at the end of the period, or take other ends");
+  }
+  last = first;
 }
 
 void read_table(TableReader& motion, const std::filesystem::path& scene_file, Scene& scene,
@@ -62,6 +83,8 @@ void read_table(TableReader& motion, const std::filesystem::path& scene_file, Sc
     table.times.push_back(row[0]);
     table.rows.emplace_back(row.begin() + 1, row.end());
   }
+  if (table.ends == MotionTable::Ends::periodic && !table.rows.empty())
+    close_table(table, numbers.names, top, reading.findings);
   scene.motion_table = std::move(table);
 }
 

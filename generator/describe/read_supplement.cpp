@@ -31,10 +31,11 @@ class SupplementReader {
     Reading reading(model, findings_);
     name_symbols(reading);
     append_bodies(model);
-    read_couplings(outline_, reading);
-    fill(model, reading);
-    root_.report_unknown_keys();
-    findings_.throw_if_any();
+    fill_model(file_name_, findings_, [&] {
+      read_couplings(outline_, reading);
+      fill(model, reading);
+      root_.report_unknown_keys();
+    });
     return model;
   }
 

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -82,6 +83,20 @@ std::string decimal_text(const Value& value);
 
 /// A decimal number of bounded size, or a string that holds one.
 std::optional<Exact> decimal_value(const Value& value);
+
+/// Runs `fill`, in which derivatives are taken. @throws ModelError, naming the file alone, where constants
+/// meet in one of them and leave it undefined, far from where they stand
+template <class Fill>
+void fill_model(const std::string& file, Findings& findings, const Fill& fill) {
+  try {
+    fill();
+  } catch (const std::domain_error& error) {
+    findings.throw_if_any();
+    throw ModelError({file, 0, 0}, std::string("a derivative is undefined everywhere: ") + error.what(),
+                     "check couplings, rows and motions for constant divisions and roots");
+  }
+  findings.throw_if_any();
+}
 
 /// Scalar and vector product.
 Expr dot(const std::array<Expr, 3>& a, const std::array<Expr, 3>& b);

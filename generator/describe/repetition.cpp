@@ -15,7 +15,8 @@ namespace anholon {
 namespace {
 
 constexpr int largest_integer = 1'000'000;
-constexpr int most_copies = 1000;
+constexpr int most_copies = 1000;         // of one repetition
+constexpr int most_copies_made = 20'000;  // of all
 
 using Numbers = std::map<std::string, int, std::less<>>;
 
@@ -60,15 +61,16 @@ class Arithmetic {
   }
   int factor() {
     const char c = peek();
-    if (c == '-') {
+    if (c == '-' || c == '(') {
+      constexpr int deepest = 50;
+      if (++depth_ > deepest)
+        throw std::invalid_argument(fmt::format("a number is nested deeper than {}", deepest));
       ++at_;
-      return -factor();
-    }
-    if (c == '(' && ++depth_ <= 50) {
-      ++at_;
-      const int result = sum();
-      if (peek() != ')') throw std::invalid_argument(fmt::format("'{}' has an open parenthesis", text_));
-      ++at_;
+      const int result = c == '-' ? -factor() : sum();
+      if (c == '(' && peek() != ')')
+        throw std::invalid_argument(fmt::format("'{}' has an open parenthesis", text_));
+      if (c == '(') ++at_;
+      --depth_;
       return result;
     }
     const std::size_t begin = at_;
@@ -78,9 +80,9 @@ class Arithmetic {
     if (word.empty()) throw std::invalid_argument(fmt::format("'{}' is not a whole number", text_));
     if (std::isdigit(static_cast<unsigned char>(word[0])) != 0) {
       const bool is_number = std::ranges::all_of(word, [](unsigned char x) { return std::isdigit(x) != 0; });
-      if (!is_number || word.size() > 6)
-        throw std::invalid_argument(fmt::format("'{}' is not a whole number", word));
-      return std::stoi(std::string(word));
+      if (!is_number) throw std::invalid_argument(fmt::format("'{}' is not a whole number", word));
+      if (word.size() > 9) throw std::invalid_argument(fmt::format("the number {} is too large", word));
+      return checked(std::stol(std::string(word)));
     }
     const auto found = names_.find(word);
     if (found == names_.end()) throw std::invalid_argument(fmt::format("'{}' is not a count", word));
@@ -183,6 +185,12 @@ class CopyWriter {
     const auto range = range_of(repeat);
     if (!range) return;
     for (int i = range->first; i <= range->last; ++i) {
+      if (++copies_ > most_copies_made) {
+        findings_.error(repeat.where,
+                        fmt::format("the repetitions make more than {} copies", most_copies_made),
+                        "take smaller ranges");
+        break;
+      }
       numbers_[range->name] = i;
       f();
     }
@@ -235,6 +243,7 @@ class CopyWriter {
 
   Findings& findings_;
   Numbers numbers_;
+  int copies_ = 0;
 };
 
 bool repeats(const Value& value) {
@@ -252,11 +261,20 @@ std::optional<int> whole_number(const Value& value) {
   }
 }
 
+/// [counts] of a document, or nothing.
+const Value* counts_of(const Value& document, Findings& findings) {
+  const Value* table = document.find("counts");
+  if (table == nullptr || table->kind == Value::Kind::table) return table;
+  findings.error(table->where, fmt::format("counts is {}", table->kind_name()),
+                 "write a table [counts] with an entry for each");
+  return nullptr;
+}
+
 }  // namespace
 
 std::vector<Count> take_counts(Value& document, const CountValues& overrides, Findings& findings) {
   std::vector<Count> counts;
-  const Value* table = document.find("counts");
+  const Value* table = counts_of(document, findings);
   for (const Entry& entry : table == nullptr ? std::vector<Entry>{} : table->entries) {
     const std::string what = fmt::format("the count '{}'", entry.key);
     if (const std::string objection = objection_to_name(entry.key); !objection.empty())
@@ -311,7 +329,7 @@ void write_out(Value& document, const std::vector<Count>& counts, Findings& find
 
 CountValues read_count_values(const Value& document, Findings& findings) {
   CountValues values;
-  const Value* table = document.find("counts");
+  const Value* table = counts_of(document, findings);
   if (table == nullptr) return values;
   for (const Entry& entry : table->entries) {
     if (const auto number = whole_number(entry.value)) {

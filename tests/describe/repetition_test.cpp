@@ -66,5 +66,31 @@ TEST(Repetition, RefusesWhatItCannotCount) {
             "chain.toml:11:10: error: body 'b_2' has parent 'b_0', which is not a body; did you mean 'b_1'?");
 }
 
+TEST(Repetition, RefusesWhatHasNoBounds) {
+  EXPECT_EQ(message("{2*i}", "{" + std::string(5000, '-') + "1}"),
+            "chain.toml:12:25: error: a number is nested deeper than 50; use the numbers of [counts] and of "
+            "repeat = \"i = 1..N\": N and i");
+  std::string many = "1";
+  for (int k = 0; k < 60; ++k) many += "+(1)";  // beside each other, not nested
+  EXPECT_EQ(message("{2*i}", "{" + many + "}"), "accepted");
+  EXPECT_EQ(message("{2*i}", "{1000000}"), "accepted");
+  EXPECT_TRUE(message("counts = { N = { value = 4, range = [2, 9] } }", "counts = 5")
+                  .starts_with("chain.toml:4:10: error: counts is a number; write a table [counts]"));
+}
+
+TEST(Repetition, RefusesCopiesOfCopiesWithoutEnd) {
+  std::string text =
+      "anholon = 1\nname = \"chain\"\nx = [{ repeat = \"i = 1..900\", y = [{ repeat = \"j = "
+      "1..900\", z = [{ repeat = \"k = 1..900\", n = 1 }] }] }]\n";
+  try {
+    read_model_text(text, "copies.toml");
+    FAIL() << "accepted";
+  } catch (const ModelError& error) {
+    EXPECT_NE(std::string(error.what()).find("the repetitions make more than 20000 copies"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 }  // namespace
 }  // namespace anholon::repetition_test
