@@ -9,20 +9,20 @@
 //   kernel: none, the constraints determine every passive velocity
 //
 // Operations per call, each shared value once (a - b is one addition):
-//   kinematics                 9 add, 4 mul, 2 neg
+//   kinematics                 9 add, 6 mul, 2 neg
 //   constraints                none
 //   free_dynamics              4 mul, 1 neg
-//   forward_dynamics           9 add, 4 mul, 1 div, 2 neg
-//   inverse_torques            26 add, 51 mul
-//   multipliers                29 add, 41 mul, 1 neg
-//   compatibility              6 add, 4 mul
+//   forward_dynamics           9 add, 6 mul, 1 div, 2 neg
+//   inverse_torques            26 add, 53 mul
+//   multipliers                20 add, 32 mul, 1 neg
+//   compatibility              6 add, 2 mul
 //   torque_driven_kinematics   6 add, 5 mul
-//   torque_driven_velocities   14 add, 16 mul
+//   torque_driven_velocities   13 add, 6 mul, 3 div
 //   torque_driven_dynamics     105 add, 177 mul, 2 div, 4 sin, 4 cos
-//   torque_driven_multipliers  17 add, 30 mul, 1 div, 1 neg
+//   torque_driven_multipliers  13 add, 34 mul, 1 div, 2 neg
 //   energies                   9 add, 16 mul
 //   body_poses                 14 add, 20 mul, 5 neg, 5 sin, 5 cos
-//   prepare                    23 add, 37 mul, 7 div, 5 neg, once per set of parameters
+//   prepare                    21 add, 32 mul, 4 div, 5 neg, once per set of parameters
 //
 // Inputs; matrices are row-major, units are SI:
 //   g (3) m, m, rad: x, y, theta of the reference body in the world
@@ -143,13 +143,13 @@ struct Prepared {
   Real k2;  // -k1
   Real k3;  // 0.707107 * w + 0.707107 * l
   Real k4;  // -k3
-  Real k5;  // R * 0.25
-  Real k6;  // -k5
-  Real k7;  // R * 0.353553
-  Real k8;  // l + w
-  Real k9;  // 0.707107 * k8
-  Real k10;  // k7 / k9
-  Real k11;  // k10 * 0.5
+  Real k5;  // R * 0.353553
+  Real k6;  // l + w
+  Real k7;  // 0.707107 * k6
+  Real k8;  // k5 / k7
+  Real k9;  // k8 * 0.5
+  Real k10;  // -k9
+  Real k11;  // R * 0.25
   Real k12;  // -k11
   Real k13;  // J_d - J_a
   Real k14;  // J_a - J_d
@@ -157,27 +157,22 @@ struct Prepared {
   Real k16;  // l * l + w * w
   Real k17;  // 4 * (k16 * m_w + J_d) + J
   Real k18;  // m_w * 4 + m
-  Real k19;  // k8 * k8
+  Real k19;  // k6 * k6
   Real k20;  // 1 / (0.5 * k19)
-  Real k21;  // R * R
-  Real k22;  // 1 / (4 + k21)
-  Real k23;  // 1 / (k1 * k1 + 2 - k22 * 1.89288e-270)
-  Real k24;  // -k8
-  Real k25;  // 1.37582e-135 * k22
-  Real k26;  // 1 / (k19 + k19 + k21 + k19 + k19)
-  Real k27;  // k8 * J_a * k8
-  Real k28;
-  Real k29;  // k8 * 1
-  Real k30;  // k18 * k1
-  Real k31;  // 1 / (R * 1.41421 * k8)
-  Real k32;  // k18 * R * 0
-  Real k33;  // 1.41421 * k18 * k8
-  Real k34;  // k8 * 2
-  Real k35;  // k18 * 2 * k21 * k8
+  Real k21;  // k18 * k6
+  Real k22;  // 4 + R * R
+  Real k23;  // k1 * k1 + 2
+  Real k24;  // -k6
+  Real k25;  // 4 * w * w + R * R + (l + w * 2) * 4 * l
+  Real k26;  // k6 * J_a * k6
+  Real k27;
+  Real k28;  // k18 * k1
+  Real k29;  // 1.41421 * k18 * k6
+  Real k30;  // 1 / (k1 * k6)
 };
 
 /// To be called once per set of parameter values.
-/// operations: 23 add, 37 mul, 7 div, 5 neg
+/// operations: 21 add, 32 mul, 4 div, 5 neg
 template <class Real>
 inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   Prepared<Real> result;
@@ -191,13 +186,13 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t6 = -t5;
 
   // kernel
-  const Real t7 = par.R * constant<Real>(0.25L);
-  const Real t8 = -t7;
-  const Real t9 = par.R * constant<Real>(0.3535533905932737622L);
-  const Real t10 = par.l + par.w;
-  const Real t11 = constant<Real>(0.707106781186547524401L) * t10;
-  const Real t12 = t9 / t11;
-  const Real t13 = t12 * constant<Real>(0.5L);
+  const Real t7 = par.R * constant<Real>(0.3535533905932737622L);
+  const Real t8 = par.l + par.w;
+  const Real t9 = constant<Real>(0.707106781186547524401L) * t8;
+  const Real t10 = t7 / t9;
+  const Real t11 = t10 * constant<Real>(0.5L);
+  const Real t12 = -t11;
+  const Real t13 = par.R * constant<Real>(0.25L);
   const Real t14 = -t13;
 
   // front_left_wheel: wrench
@@ -232,61 +227,53 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   const Real t31 = t30 + par.m;
 
   // torques
-  const Real t32 = t10 * t10;
-  const Real t33 = constant<Real>(0.5L) * t32;
-  const Real t34 = constant<Real>(1.0L) / t33;
-
-  // kernel
-  const Real t35 = t1 * t1;
-  const Real t36 = t35 + constant<Real>(2.0L);
-  const Real t37 = par.R * par.R;
-  const Real t38 = constant<Real>(4.0L) + t37;
-  const Real t39 = constant<Real>(1.0L) / t38;
-  const Real t40 = t39 * constant<Real>(1.89288349786683953756e-270L);
-  const Real t41 = t36 - t40;
-  const Real t42 = constant<Real>(1.0L) / t41;
-  const Real t43 = -t10;
-  const Real t44 = constant<Real>(1.37582102682973977637e-135L) * t39;
-  const Real t45 = t32 + t37;
-  const Real t46 = t32 + t45;
-  const Real t47 = t46 + t32;
-  const Real t48 = t47 + t32;
-  const Real t49 = constant<Real>(1.0L) / t48;
-  const Real t50 = par.R * constant<Real>(1.4142135623730950488L);
-
-  // reduced mass matrix
-  const Real t51 = par.J_a * t10;
-
-  // reduced mass matrix
-  const Real t52 = par.J_a * constant<Real>(0.5L);
-
-  // reduced mass matrix
-  const Real t53 = t10 * t51;
-
-  // reduced mass matrix
-  const Real t54 = t1 * t21;
-  const Real t55 = t1 * t54;
-  const Real t56 = t52 + t55;
-  const Real t57 = t52 + t56;
-  const Real t58 = t52 + t57;
-  const Real t59 = t52 + t58;
-
-  // reduced accelerations
-  const Real t60 = constant<Real>(1.0L) / t59;
+  const Real t32 = par.w * constant<Real>(2.0L);
+  const Real t33 = par.l + t32;
+  const Real t34 = t8 * t8;
+  const Real t35 = constant<Real>(0.5L) * t34;
+  const Real t36 = constant<Real>(1.0L) / t35;
 
   // multipliers
-  const Real t61 = t10 * constant<Real>(1.0L);
-  const Real t62 = t31 * t1;
-  const Real t63 = t50 * t10;
-  const Real t64 = constant<Real>(1.0L) / t63;
-  const Real t65 = par.R * constant<Real>(0.0L);
-  const Real t66 = t31 * t65;
-  const Real t67 = constant<Real>(1.4142135623730950488L) * t31;
-  const Real t68 = t67 * t10;
-  const Real t69 = t10 * constant<Real>(2.0L);
-  const Real t70 = constant<Real>(2.0L) * t37;
-  const Real t71 = t31 * t70;
-  const Real t72 = t71 * t10;
+  const Real t37 = t31 * t8;
+
+  // kernel
+  const Real t38 = par.R * par.R;
+  const Real t39 = constant<Real>(4.0L) + t38;
+  const Real t40 = t1 * t1;
+  const Real t41 = t40 + constant<Real>(2.0L);
+  const Real t42 = -t8;
+  const Real t43 = t1 * t8;
+  const Real t44 = constant<Real>(4.0L) * t24;
+  const Real t45 = t44 + t38;
+  const Real t46 = t33 * constant<Real>(4.0L);
+  const Real t47 = t46 * par.l;
+  const Real t48 = t45 + t47;
+
+  // reduced mass matrix
+  const Real t49 = par.J_a * t8;
+
+  // reduced mass matrix
+  const Real t50 = constant<Real>(0.5L) * par.J_a;
+
+  // reduced mass matrix
+  const Real t51 = t8 * t49;
+
+  // reduced mass matrix
+  const Real t52 = t1 * t21;
+  const Real t53 = t1 * t52;
+  const Real t54 = t50 + t53;
+  const Real t55 = t50 + t54;
+  const Real t56 = t50 + t55;
+  const Real t57 = t50 + t56;
+
+  // reduced accelerations
+  const Real t58 = constant<Real>(1.0L) / t57;
+
+  // multipliers
+  const Real t59 = t31 * t1;
+  const Real t60 = constant<Real>(1.4142135623730950488L) * t31;
+  const Real t61 = t60 * t8;
+  const Real t62 = constant<Real>(1.0L) / t43;
 
   result.R = par.R;
   result.l = par.l;
@@ -314,29 +301,24 @@ inline Prepared<Real> prepare(const Parameters<Real>& par) noexcept {
   result.k16 = t25;
   result.k17 = t29;
   result.k18 = t31;
-  result.k19 = t32;
-  result.k20 = t34;
+  result.k19 = t34;
+  result.k20 = t36;
   result.k21 = t37;
   result.k22 = t39;
-  result.k23 = t42;
-  result.k24 = t43;
-  result.k25 = t44;
-  result.k26 = t49;
-  result.k27 = t53;
-  result.k28 = t60;
+  result.k23 = t41;
+  result.k24 = t42;
+  result.k25 = t48;
+  result.k26 = t51;
+  result.k27 = t58;
+  result.k28 = t59;
   result.k29 = t61;
   result.k30 = t62;
-  result.k31 = t64;
-  result.k32 = t66;
-  result.k33 = t68;
-  result.k34 = t69;
-  result.k35 = t72;
   return result;
 }
 
 /// Passive velocities from reduced ones, eq. (11): (eta, r_p_dot) = J r_a_dot + H nu.
 /// route: closed form
-/// operations: 9 add, 4 mul, 2 neg
+/// operations: 9 add, 6 mul, 2 neg
 /// @param[in]  par      made by prepare()
 /// @param[in]  r_a_dot  (4) rad/s or m/s: rates of r_a
 /// @param[out] eta_out  (3) m/s, rad/s: twist of the reference body in its own axes, linear part first
@@ -348,37 +330,39 @@ inline void kinematics(const Prepared<Real>& par,
                        Real (&J)[3 * 4]) noexcept {
   using detail::constant;
   // kernel
-  const Real t1 = r_a_dot[0] + r_a_dot[3];
-  const Real t2 = t1 - r_a_dot[1];
-  const Real t3 = t2 - r_a_dot[2];
-  const Real t4 = par.k5 * t3;
-  const Real t5 = -t4;
-  const Real t6 = r_a_dot[1] + r_a_dot[0];
-  const Real t7 = t6 + r_a_dot[2];
-  const Real t8 = t7 + r_a_dot[3];
-  const Real t9 = par.k5 * t8;
-  const Real t10 = r_a_dot[0] + r_a_dot[2];
-  const Real t11 = t10 - r_a_dot[1];
-  const Real t12 = t11 - r_a_dot[3];
-  const Real t13 = constant<Real>(0.5L) * t12;
-  const Real t14 = t13 * par.k10;
-  const Real t15 = -t14;
+  const Real t1 = r_a_dot[1] + r_a_dot[0];
+  const Real t2 = t1 + r_a_dot[2];
+  const Real t3 = t2 + r_a_dot[3];
+  const Real t4 = par.R * t3;
+  const Real t5 = constant<Real>(0.25L) * t4;
+  const Real t6 = r_a_dot[0] + r_a_dot[3];
+  const Real t7 = t6 - r_a_dot[1];
+  const Real t8 = t7 - r_a_dot[2];
+  const Real t9 = par.R * t8;
+  const Real t10 = constant<Real>(0.25L) * t9;
+  const Real t11 = -t10;
+  const Real t12 = r_a_dot[0] + r_a_dot[2];
+  const Real t13 = t12 - r_a_dot[1];
+  const Real t14 = t13 - r_a_dot[3];
+  const Real t15 = constant<Real>(0.5L) * t14;
+  const Real t16 = t15 * par.k8;
+  const Real t17 = -t16;
 
-  eta_out[0] = t9;
-  eta_out[1] = t5;
-  eta_out[2] = t15;
-  J[0] = par.k5;
-  J[1] = par.k5;
-  J[2] = par.k5;
-  J[3] = par.k5;
-  J[4] = par.k6;
-  J[5] = par.k5;
-  J[6] = par.k5;
-  J[7] = par.k6;
-  J[8] = par.k12;
-  J[9] = par.k11;
-  J[10] = par.k12;
-  J[11] = par.k11;
+  eta_out[0] = t5;
+  eta_out[1] = t11;
+  eta_out[2] = t17;
+  J[0] = par.k11;
+  J[1] = par.k11;
+  J[2] = par.k11;
+  J[3] = par.k11;
+  J[4] = par.k12;
+  J[5] = par.k11;
+  J[6] = par.k11;
+  J[7] = par.k12;
+  J[8] = par.k10;
+  J[9] = par.k9;
+  J[10] = par.k10;
+  J[11] = par.k9;
 }
 
 /// Rows of eq. (2), A eta + B_p r_p_dot + B_a r_a_dot = 0, and the bias (A_dot eta + B_p_dot r_p_dot +
@@ -511,7 +495,7 @@ inline void free_dynamics(const Prepared<Real>& par,
 
 /// Forward dynamics of the passive degrees of freedom: eq. (23) solved, then (18).
 /// route: closed form
-/// operations: 9 add, 4 mul, 1 div, 2 neg
+/// operations: 9 add, 6 mul, 1 div, 2 neg
 /// @param[in]  par       made by prepare()
 /// @param[in]  r_a_ddot  (4) rad/s^2 or m/s^2: second derivatives of r_a
 /// @param[out] eta_dot   (3) m/s^2, rad/s^2: twist of the reference body in its own axes, linear part first
@@ -524,28 +508,30 @@ inline void forward_dynamics(const Prepared<Real>& par,
   const Real t1 = r_a_ddot[3] + r_a_ddot[0];
   const Real t2 = t1 - r_a_ddot[1];
   const Real t3 = t2 - r_a_ddot[2];
-  const Real t4 = t3 * par.k5;
-  const Real t5 = -t4;
-  const Real t6 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t7 = t6 + r_a_ddot[2];
-  const Real t8 = t7 + r_a_ddot[3];
-  const Real t9 = par.k5 * t8;
-  const Real t10 = r_a_ddot[2] + r_a_ddot[0];
-  const Real t11 = t10 - r_a_ddot[1];
-  const Real t12 = t11 - r_a_ddot[3];
-  const Real t13 = t12 * par.k7;
-  const Real t14 = constant<Real>(0.5L) * t13;
-  const Real t15 = t14 / par.k9;
-  const Real t16 = -t15;
+  const Real t4 = par.R * t3;
+  const Real t5 = constant<Real>(0.25L) * t4;
+  const Real t6 = -t5;
+  const Real t7 = r_a_ddot[2] + r_a_ddot[0];
+  const Real t8 = t7 - r_a_ddot[1];
+  const Real t9 = t8 - r_a_ddot[3];
+  const Real t10 = t9 * par.k5;
+  const Real t11 = constant<Real>(0.5L) * t10;
+  const Real t12 = t11 / par.k7;
+  const Real t13 = -t12;
+  const Real t14 = r_a_ddot[1] + r_a_ddot[0];
+  const Real t15 = t14 + r_a_ddot[2];
+  const Real t16 = t15 + r_a_ddot[3];
+  const Real t17 = par.R * t16;
+  const Real t18 = constant<Real>(0.25L) * t17;
 
-  eta_dot[0] = t9;
-  eta_dot[1] = t5;
-  eta_dot[2] = t16;
+  eta_dot[0] = t18;
+  eta_dot[1] = t6;
+  eta_dot[2] = t13;
 }
 
 /// Torques of the active joints, eq. (27) with the sign of lambda_stat of (26).
 /// route: closed form
-/// operations: 26 add, 51 mul
+/// operations: 26 add, 53 mul
 /// @param[in]  par          made by prepare()
 /// @param[in]  r_a_dot      (4) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot     (4) rad/s^2 or m/s^2: second derivatives of r_a
@@ -573,85 +559,87 @@ inline void inverse_torques(const Prepared<Real>& par,
   const Real t8 = r_a_ddot[3] + r_a_ddot[0];
 
   // torques
-  const Real t9 = r_a_ddot[1] * constant<Real>(0.5L);
-  const Real t10 = t9 * par.J_a;
-  const Real t11 = t10 * par.k19;
-  const Real t12 = lambda_stat[0] * constant<Real>(0.3535533905932737622L);
-  const Real t13 = t12 * par.k19;
-  const Real t14 = constant<Real>(0.0441941738241592202751L) * t4;
-  const Real t15 = t3 * t14;
+  const Real t9 = constant<Real>(0.5L) * t8;
+  const Real t10 = t9 * par.k18;
+  const Real t11 = par.k19 * t10;
+  const Real t12 = t11 * constant<Real>(0.125L);
+  const Real t13 = r_a_dot[1] + r_a_dot[2];
+  const Real t14 = constant<Real>(0.707106781186547524401L) * t13;
+  const Real t15 = t14 * t3;
   const Real t16 = t15 * par.k18;
-  const Real t17 = par.k8 * t16;
-  const Real t18 = par.R * t17;
-  const Real t19 = t7 * constant<Real>(0.3535533905932737622L);
-  const Real t20 = t19 * par.k17;
-  const Real t21 = constant<Real>(0.25L) * t20;
-  const Real t22 = t18 + t21;
-  const Real t23 = t22 * constant<Real>(0.3535533905932737622L);
-  const Real t24 = r_a_ddot[1] + r_a_ddot[2];
-  const Real t25 = constant<Real>(0.03125L) * t24;
-  const Real t26 = par.k18 * t25;
-  const Real t27 = par.k19 * t26;
-  const Real t28 = t27 * constant<Real>(2.0L);
-  const Real t29 = t23 - t28;
+  const Real t17 = t16 * par.k6;
+  const Real t18 = t17 * constant<Real>(0.0625L);
+  const Real t19 = par.R * t18;
+  const Real t20 = t7 * constant<Real>(0.3535533905932737622L);
+  const Real t21 = t20 * par.k17;
+  const Real t22 = constant<Real>(0.25L) * t21;
+  const Real t23 = t19 - t22;
+  const Real t24 = t23 * constant<Real>(0.3535533905932737622L);
+  const Real t25 = t12 + t24;
+  const Real t26 = par.R * t25;
+  const Real t27 = lambda_stat[0] * constant<Real>(0.3535533905932737622L);
+  const Real t28 = t27 * par.k19;
+  const Real t29 = t26 + t28;
   const Real t30 = par.R * t29;
-  const Real t31 = t13 + t30;
-  const Real t32 = par.R * t31;
-  const Real t33 = t11 - t32;
-  const Real t34 = t33 * par.k20;
-  const Real t35 = constant<Real>(0.5L) * r_a_ddot[2];
-  const Real t36 = t35 * par.J_a;
-  const Real t37 = t36 * par.k19;
-  const Real t38 = t18 - t21;
-  const Real t39 = constant<Real>(0.3535533905932737622L) * t38;
-  const Real t40 = t39 - t28;
-  const Real t41 = t40 * par.R;
-  const Real t42 = t41 - t13;
-  const Real t43 = par.R * t42;
-  const Real t44 = t37 - t43;
-  const Real t45 = t44 * par.k20;
-  const Real t46 = constant<Real>(0.5L) * r_a_ddot[3];
-  const Real t47 = t46 * par.J_a;
-  const Real t48 = par.k19 * t47;
-  const Real t49 = r_a_dot[1] + r_a_dot[2];
-  const Real t50 = t49 * constant<Real>(0.0441941738241592202751L);
-  const Real t51 = t3 * t50;
-  const Real t52 = par.k18 * t51;
-  const Real t53 = t52 * par.k8;
-  const Real t54 = par.R * t53;
-  const Real t55 = t54 - t21;
-  const Real t56 = t55 * constant<Real>(0.3535533905932737622L);
-  const Real t57 = constant<Real>(0.03125L) * t8;
-  const Real t58 = t57 * par.k18;
-  const Real t59 = par.k19 * t58;
-  const Real t60 = t59 * constant<Real>(2.0L);
-  const Real t61 = t56 + t60;
-  const Real t62 = par.R * t61;
-  const Real t63 = t13 + t62;
+  const Real t31 = constant<Real>(0.5L) * r_a_ddot[3];
+  const Real t32 = par.J_a * t31;
+  const Real t33 = par.k19 * t32;
+  const Real t34 = t30 + t33;
+  const Real t35 = t34 * par.k20;
+  const Real t36 = constant<Real>(0.5L) * r_a_ddot[2];
+  const Real t37 = par.J_a * t36;
+  const Real t38 = t37 * par.k19;
+  const Real t39 = constant<Real>(0.707106781186547524401L) * t4;
+  const Real t40 = t39 * t3;
+  const Real t41 = t40 * par.k18;
+  const Real t42 = par.k6 * t41;
+  const Real t43 = constant<Real>(0.0625L) * t42;
+  const Real t44 = par.R * t43;
+  const Real t45 = t44 - t22;
+  const Real t46 = constant<Real>(0.3535533905932737622L) * t45;
+  const Real t47 = r_a_ddot[1] + r_a_ddot[2];
+  const Real t48 = constant<Real>(0.5L) * t47;
+  const Real t49 = t48 * par.k18;
+  const Real t50 = t49 * par.k19;
+  const Real t51 = t50 * constant<Real>(0.125L);
+  const Real t52 = t46 - t51;
+  const Real t53 = par.R * t52;
+  const Real t54 = t53 - t28;
+  const Real t55 = t54 * par.R;
+  const Real t56 = t38 - t55;
+  const Real t57 = par.k20 * t56;
+  const Real t58 = r_a_ddot[1] * constant<Real>(0.5L);
+  const Real t59 = par.J_a * t58;
+  const Real t60 = t59 * par.k19;
+  const Real t61 = t44 + t22;
+  const Real t62 = constant<Real>(0.3535533905932737622L) * t61;
+  const Real t63 = t62 - t51;
   const Real t64 = par.R * t63;
-  const Real t65 = t48 + t64;
-  const Real t66 = par.k20 * t65;
-  const Real t67 = t54 + t21;
-  const Real t68 = t67 * constant<Real>(0.3535533905932737622L);
-  const Real t69 = t68 + t60;
-  const Real t70 = par.R * t69;
-  const Real t71 = t70 - t13;
-  const Real t72 = t71 * par.R;
-  const Real t73 = constant<Real>(0.5L) * r_a_ddot[0];
-  const Real t74 = par.J_a * t73;
-  const Real t75 = par.k19 * t74;
-  const Real t76 = t72 + t75;
-  const Real t77 = par.k20 * t76;
+  const Real t65 = t64 + t28;
+  const Real t66 = par.R * t65;
+  const Real t67 = t60 - t66;
+  const Real t68 = t67 * par.k20;
+  const Real t69 = constant<Real>(0.5L) * r_a_ddot[0];
+  const Real t70 = par.J_a * t69;
+  const Real t71 = t70 * par.k19;
+  const Real t72 = t19 + t22;
+  const Real t73 = constant<Real>(0.3535533905932737622L) * t72;
+  const Real t74 = t12 + t73;
+  const Real t75 = par.R * t74;
+  const Real t76 = t75 - t28;
+  const Real t77 = par.R * t76;
+  const Real t78 = t71 + t77;
+  const Real t79 = t78 * par.k20;
 
-  tau_a_out[0] = t77;
-  tau_a_out[1] = t34;
-  tau_a_out[2] = t45;
-  tau_a_out[3] = t66;
+  tau_a_out[0] = t79;
+  tau_a_out[1] = t68;
+  tau_a_out[2] = t57;
+  tau_a_out[3] = t35;
 }
 
 /// Constraint forces, eq. (26). They grow without bound where (A, B_p) loses rank.
 /// route: closed form
-/// operations: 29 add, 41 mul, 1 neg
+/// operations: 20 add, 32 mul, 1 neg
 /// @param[in]  par          made by prepare()
 /// @param[in]  r_a_dot      (4) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot     (4) rad/s^2 or m/s^2: second derivatives of r_a
@@ -671,89 +659,71 @@ inline void multipliers(const Prepared<Real>& par,
   const Real t2 = t1 - r_a_dot[1];
   const Real t3 = t2 - r_a_dot[3];
   const Real t4 = r_a_dot[0] + r_a_dot[3];
-  const Real t5 = t4 - r_a_dot[1];
-  const Real t6 = t5 - r_a_dot[2];
 
   // passive accelerations
-  const Real t7 = r_a_ddot[2] + r_a_ddot[0];
-  const Real t8 = t7 - r_a_ddot[1];
-  const Real t9 = t8 - r_a_ddot[3];
-  const Real t10 = r_a_ddot[3] + r_a_ddot[0];
-  const Real t11 = r_a_ddot[1] + r_a_ddot[0];
-  const Real t12 = t11 + r_a_ddot[2];
-  const Real t13 = t12 + r_a_ddot[3];
+  const Real t5 = r_a_ddot[2] + r_a_ddot[0];
+  const Real t6 = t5 - r_a_ddot[1];
+  const Real t7 = t6 - r_a_ddot[3];
+  const Real t8 = r_a_ddot[3] + r_a_ddot[0];
 
   // torques
-  const Real t14 = r_a_dot[1] + r_a_dot[2];
-  const Real t15 = r_a_ddot[1] + r_a_ddot[2];
+  const Real t9 = r_a_dot[1] + r_a_dot[2];
+  const Real t10 = r_a_ddot[1] + r_a_ddot[2];
 
   // multipliers
-  const Real t16 = constant<Real>(0.5L) * lambda_stat[0];
-  const Real t17 = t16 * par.k19;
-  const Real t18 = t3 * constant<Real>(0.3535533905932737622L);
-  const Real t19 = constant<Real>(6.87910513414869888183e-136L) * t6;
-  const Real t20 = t14 * constant<Real>(2.0L);
-  const Real t21 = t19 - t20;
-  const Real t22 = t18 * t21;
-  const Real t23 = t22 * par.k18;
-  const Real t24 = t23 * par.k8;
-  const Real t25 = t24 * constant<Real>(0.5L);
+  const Real t11 = constant<Real>(0.5L) * lambda_stat[0];
+  const Real t12 = t11 * par.k19;
+  const Real t13 = t4 * constant<Real>(0.3535533905932737622L);
+  const Real t14 = t13 * t3;
+  const Real t15 = par.R * t14;
+  const Real t16 = constant<Real>(0.707106781186547524401L) * t10;
+  const Real t17 = t16 * par.k6;
+  const Real t18 = t17 * constant<Real>(2.0L);
+  const Real t19 = t15 - t18;
+  const Real t20 = t19 * par.k21;
+  const Real t21 = constant<Real>(0.1767766952966368811L) * t20;
+  const Real t22 = t7 * par.k17;
+  const Real t23 = constant<Real>(0.125L) * t22;
+  const Real t24 = t21 - t23;
+  const Real t25 = t24 * constant<Real>(0.3535533905932737622L);
   const Real t26 = par.R * t25;
-  const Real t27 = constant<Real>(6.87910513414869888183e-136L) * t13;
-  const Real t28 = t10 * constant<Real>(2.0L);
-  const Real t29 = t27 + t28;
-  const Real t30 = t29 * constant<Real>(0.707106781186547524401L);
-  const Real t31 = t30 * par.k18;
-  const Real t32 = t31 * par.k19;
-  const Real t33 = t26 - t32;
-  const Real t34 = constant<Real>(0.1767766952966368811L) * t33;
-  const Real t35 = t9 * par.k17;
-  const Real t36 = constant<Real>(0.125L) * t35;
-  const Real t37 = t34 + t36;
-  const Real t38 = t37 * constant<Real>(0.3535533905932737622L);
-  const Real t39 = par.R * t38;
-  const Real t40 = t17 - t39;
-  const Real t41 = t40 * par.k20;
-  const Real t42 = t34 - t36;
-  const Real t43 = t42 * constant<Real>(0.3535533905932737622L);
-  const Real t44 = par.R * t43;
-  const Real t45 = t17 + t44;
-  const Real t46 = par.k20 * t45;
-  const Real t47 = -t46;
-  const Real t48 = t4 * constant<Real>(2.0L);
-  const Real t49 = t19 - t48;
-  const Real t50 = t18 * t49;
-  const Real t51 = t50 * par.k18;
-  const Real t52 = t51 * par.k8;
-  const Real t53 = constant<Real>(0.5L) * t52;
-  const Real t54 = par.R * t53;
-  const Real t55 = constant<Real>(2.0L) * t15;
-  const Real t56 = t27 - t55;
-  const Real t57 = t56 * constant<Real>(0.707106781186547524401L);
-  const Real t58 = par.k18 * t57;
-  const Real t59 = t58 * par.k19;
-  const Real t60 = t54 - t59;
-  const Real t61 = constant<Real>(0.1767766952966368811L) * t60;
-  const Real t62 = t61 + t36;
-  const Real t63 = t62 * constant<Real>(0.3535533905932737622L);
-  const Real t64 = par.R * t63;
-  const Real t65 = t17 + t64;
-  const Real t66 = t65 * par.k20;
-  const Real t67 = t61 - t36;
-  const Real t68 = t67 * constant<Real>(0.3535533905932737622L);
-  const Real t69 = par.R * t68;
-  const Real t70 = t69 - t17;
-  const Real t71 = t70 * par.k20;
+  const Real t27 = t12 - t26;
+  const Real t28 = par.k20 * t27;
+  const Real t29 = constant<Real>(0.707106781186547524401L) * t8;
+  const Real t30 = t29 * par.k6;
+  const Real t31 = t30 * constant<Real>(2.0L);
+  const Real t32 = t9 * constant<Real>(0.3535533905932737622L);
+  const Real t33 = t32 * t3;
+  const Real t34 = par.R * t33;
+  const Real t35 = t31 + t34;
+  const Real t36 = t35 * par.k21;
+  const Real t37 = t36 * constant<Real>(0.1767766952966368811L);
+  const Real t38 = t37 - t23;
+  const Real t39 = t38 * constant<Real>(0.3535533905932737622L);
+  const Real t40 = par.R * t39;
+  const Real t41 = t12 + t40;
+  const Real t42 = t41 * par.k20;
+  const Real t43 = t21 + t23;
+  const Real t44 = t43 * constant<Real>(0.3535533905932737622L);
+  const Real t45 = par.R * t44;
+  const Real t46 = t12 + t45;
+  const Real t47 = t46 * par.k20;
+  const Real t48 = -t47;
+  const Real t49 = t37 + t23;
+  const Real t50 = t49 * constant<Real>(0.3535533905932737622L);
+  const Real t51 = par.R * t50;
+  const Real t52 = t51 - t12;
+  const Real t53 = t52 * par.k20;
 
-  lambda[0] = t47;
-  lambda[1] = t71;
-  lambda[2] = t66;
-  lambda[3] = t41;
+  lambda[0] = t53;
+  lambda[1] = t48;
+  lambda[2] = t28;
+  lambda[3] = t42;
 }
 
 /// Conditions on the imposed motion of an over-constrained system (remark 3): both residuals must vanish.
 /// route: closed form
-/// operations: 6 add, 4 mul
+/// operations: 6 add, 2 mul
 /// @param[in]  par                    made by prepare()
 /// @param[in]  r_a_dot                (4) rad/s or m/s: rates of r_a
 /// @param[in]  r_a_ddot               (4) rad/s^2 or m/s^2: second derivatives of r_a
@@ -765,7 +735,6 @@ inline void compatibility(const Prepared<Real>& par,
                           const Real (&r_a_ddot)[4],
                           Real (&velocity_residual)[1],
                           Real (&acceleration_residual)[1]) noexcept {
-  using detail::constant;
   // kernel
   const Real t1 = r_a_dot[1] + r_a_dot[0];
 
@@ -773,17 +742,15 @@ inline void compatibility(const Prepared<Real>& par,
   const Real t2 = r_a_ddot[1] + r_a_ddot[0];
 
   // joint angles
-  const Real t3 = t2 * constant<Real>(1.0L);
-  const Real t4 = r_a_ddot[2] + r_a_ddot[3];
-  const Real t5 = t3 - t4;
-  const Real t6 = par.k1 * t5;
-  const Real t7 = t1 * constant<Real>(1.0L);
-  const Real t8 = r_a_dot[2] + r_a_dot[3];
-  const Real t9 = t7 - t8;
-  const Real t10 = par.k1 * t9;
+  const Real t3 = t1 - r_a_dot[2];
+  const Real t4 = t3 - r_a_dot[3];
+  const Real t5 = t4 * par.k1;
+  const Real t6 = t2 - r_a_ddot[2];
+  const Real t7 = t6 - r_a_ddot[3];
+  const Real t8 = par.k1 * t7;
 
-  velocity_residual[0] = t10;
-  acceleration_residual[0] = t6;
+  velocity_residual[0] = t5;
+  acceleration_residual[0] = t8;
 }
 
 /// All velocities from the reduced ones, active joints free.
@@ -806,7 +773,7 @@ inline void torque_driven_kinematics(const Prepared<Real>& par,
   // kernel
   const Real t1 = constant<Real>(0.707106781186547524401L) * w[1];
   const Real t2 = t1 + w[0];
-  const Real t3 = w[2] * par.k8;
+  const Real t3 = w[2] * par.k6;
   const Real t4 = t2 + t3;
   const Real t5 = w[0] - t1;
   const Real t6 = t5 - t3;
@@ -837,18 +804,18 @@ inline void torque_driven_kinematics(const Prepared<Real>& par,
   H_w[11] = par.k24;
   H_w[12] = constant<Real>(1.0L);
   H_w[13] = constant<Real>(0.707106781186547524401L);
-  H_w[14] = par.k8;
+  H_w[14] = par.k6;
   H_w[15] = constant<Real>(1.0L);
   H_w[16] = constant<Real>(0.707106781186547524401L);
   H_w[17] = par.k24;
   H_w[18] = constant<Real>(1.0L);
   H_w[19] = constant<Real>(-0.707106781186547524401L);
-  H_w[20] = par.k8;
+  H_w[20] = par.k6;
 }
 
 /// Reduced velocities of admissible ones, active joints free.
-/// route: kernel
-/// operations: 14 add, 16 mul
+/// route: closed form
+/// operations: 13 add, 6 mul, 3 div
 /// @param[in]  par      made by prepare()
 /// @param[in]  r_a_dot  (4) rad/s or m/s: rates of r_a
 /// @param[in]  eta      (3) m/s, rad/s: twist of the reference body in its own axes, linear part first
@@ -860,40 +827,34 @@ inline void torque_driven_velocities(const Prepared<Real>& par,
                                      Real (&w_out)[3]) noexcept {
   using detail::constant;
   // kernel
-  const Real t1 = par.k8 * r_a_dot[3];
-  const Real t2 = par.R * eta[2];
-  const Real t3 = r_a_dot[0] * par.k8;
-  const Real t4 = t2 - t3;
-  const Real t5 = r_a_dot[1] * par.k8;
-  const Real t6 = t4 + t5;
-  const Real t7 = r_a_dot[2] * par.k8;
-  const Real t8 = t6 - t7;
-  const Real t9 = t1 + t8;
-  const Real t10 = t9 * par.k26;
-  const Real t11 = par.R * eta[0];
-  const Real t12 = t11 + r_a_dot[0];
-  const Real t13 = r_a_dot[1] + t12;
-  const Real t14 = t13 + r_a_dot[2];
-  const Real t15 = t14 + r_a_dot[3];
-  const Real t16 = t15 * par.k22;
-  const Real t17 = constant<Real>(0.707106781186547524401L) * r_a_dot[1];
-  const Real t18 = eta[1] * par.k1;
-  const Real t19 = constant<Real>(0.707106781186547524401L) * r_a_dot[0];
-  const Real t20 = t18 - t19;
-  const Real t21 = t17 + t20;
-  const Real t22 = constant<Real>(0.707106781186547524401L) * r_a_dot[2];
-  const Real t23 = t21 + t22;
-  const Real t24 = constant<Real>(0.707106781186547524401L) * r_a_dot[3];
-  const Real t25 = t23 - t24;
-  const Real t26 = t15 * par.k25;
-  const Real t27 = t25 - t26;
-  const Real t28 = par.k23 * t27;
-  const Real t29 = par.k25 * t28;
-  const Real t30 = t16 - t29;
+  const Real t1 = r_a_dot[0] + r_a_dot[2];
+  const Real t2 = t1 - r_a_dot[1];
 
-  w_out[0] = t30;
-  w_out[1] = t28;
-  w_out[2] = t10;
+  // kernel
+  const Real t3 = par.R * eta[0];
+  const Real t4 = t3 + r_a_dot[0];
+  const Real t5 = r_a_dot[1] + t4;
+  const Real t6 = t5 + r_a_dot[2];
+  const Real t7 = t6 + r_a_dot[3];
+  const Real t8 = t7 / par.k22;
+  const Real t9 = par.R * eta[1];
+  const Real t10 = t9 + r_a_dot[1];
+  const Real t11 = t10 + r_a_dot[2];
+  const Real t12 = t11 - r_a_dot[0];
+  const Real t13 = t12 - r_a_dot[3];
+  const Real t14 = t13 * constant<Real>(0.707106781186547524401L);
+  const Real t15 = t14 / par.k23;
+  const Real t16 = par.R * eta[2];
+  const Real t17 = r_a_dot[3] - t2;
+  const Real t18 = par.w * t17;
+  const Real t19 = t16 + t18;
+  const Real t20 = par.l * t17;
+  const Real t21 = t19 + t20;
+  const Real t22 = t21 / par.k25;
+
+  w_out[0] = t8;
+  w_out[1] = t15;
+  w_out[2] = t22;
 }
 
 /// Forward dynamics with the torques given, eq. (9): every constraint holds, compatibility included.
@@ -1067,7 +1028,7 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   // kernel
   const Real t96 = constant<Real>(0.707106781186547524401L) * w[1];
   const Real t97 = t96 + w[0];
-  const Real t98 = w[2] * par.k8;
+  const Real t98 = w[2] * par.k6;
   const Real t99 = t97 + t98;
   const Real t100 = w[0] - t96;
   const Real t101 = t100 - t98;
@@ -1240,14 +1201,14 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t230 = t228 + t229;
   const Real t231 = constant<Real>(0.707106781186547524401L) * tau_a[3];
   const Real t232 = t230 - t231;
-  const Real t233 = par.k8 * tau_a[1];
+  const Real t233 = par.k6 * tau_a[1];
   const Real t234 = t222 * par.R;
-  const Real t235 = tau_a[0] * par.k8;
+  const Real t235 = tau_a[0] * par.k6;
   const Real t236 = t234 + t235;
   const Real t237 = t233 - t236;
-  const Real t238 = par.k8 * tau_a[2];
+  const Real t238 = par.k6 * tau_a[2];
   const Real t239 = t237 - t238;
-  const Real t240 = par.k8 * tau_a[3];
+  const Real t240 = par.k6 * tau_a[3];
   const Real t241 = t239 + t240;
   const Real t242 = t215 - t211;
   const Real t243 = par.R * t242;
@@ -1267,53 +1228,53 @@ inline void torque_driven_dynamics(const Prepared<Real>& par,
   const Real t255 = par.J_a + t254;
   const Real t256 = par.R * t95;
   const Real t257 = par.R * t256;
-  const Real t258 = t257 + par.k27;
-  const Real t259 = t258 + par.k27;
-  const Real t260 = t259 + par.k27;
-  const Real t261 = t260 + par.k27;
+  const Real t258 = t257 + par.k26;
+  const Real t259 = t258 + par.k26;
+  const Real t260 = t259 + par.k26;
+  const Real t261 = t260 + par.k26;
 
   // reduced accelerations
-  const Real t262 = constant<Real>(1.0L) / t255;
-  const Real t263 = t262 * t247;
-  const Real t264 = t262 * t249;
-  const Real t265 = t264 * t249;
-  const Real t266 = t261 - t265;
-  const Real t267 = constant<Real>(1.0L) / t266;
-  const Real t268 = t264 * t247;
-  const Real t269 = t241 - t268;
-  const Real t270 = t267 * t269;
-  const Real t271 = t270 * t264;
-  const Real t272 = t263 - t271;
-  const Real t273 = t232 * par.k28;
+  const Real t262 = t232 * par.k27;
+  const Real t263 = constant<Real>(1.0L) / t255;
+  const Real t264 = t263 * t247;
+  const Real t265 = t263 * t249;
+  const Real t266 = t265 * t249;
+  const Real t267 = t261 - t266;
+  const Real t268 = constant<Real>(1.0L) / t267;
+  const Real t269 = t265 * t247;
+  const Real t270 = t241 - t269;
+  const Real t271 = t268 * t270;
+  const Real t272 = t271 * t265;
+  const Real t273 = t264 - t272;
 
   // accelerations
-  const Real t274 = t270 * par.k8;
-  const Real t275 = constant<Real>(0.707106781186547524401L) * t273;
-  const Real t276 = t272 - t275;
-  const Real t277 = t274 + t276;
-  const Real t278 = t275 + t272;
-  const Real t279 = t278 - t274;
-  const Real t280 = t274 + t278;
-  const Real t281 = par.R * t272;
-  const Real t282 = par.R * t270;
-  const Real t283 = par.k1 * t273;
-  const Real t284 = t276 - t274;
+  const Real t274 = constant<Real>(0.707106781186547524401L) * t262;
+  const Real t275 = t273 - t274;
+  const Real t276 = t271 * par.k6;
+  const Real t277 = t275 - t276;
+  const Real t278 = t262 * par.k1;
+  const Real t279 = t276 + t275;
+  const Real t280 = par.R * t273;
+  const Real t281 = t274 + t273;
+  const Real t282 = t281 - t276;
+  const Real t283 = t276 + t281;
+  const Real t284 = par.R * t271;
 
-  w_dot_out[0] = t272;
-  w_dot_out[1] = t273;
-  w_dot_out[2] = t270;
-  eta_dot[0] = t281;
-  eta_dot[1] = t283;
-  eta_dot[2] = t282;
-  r_a_ddot_out[0] = t284;
-  r_a_ddot_out[1] = t280;
-  r_a_ddot_out[2] = t279;
-  r_a_ddot_out[3] = t277;
+  w_dot_out[0] = t273;
+  w_dot_out[1] = t262;
+  w_dot_out[2] = t271;
+  eta_dot[0] = t280;
+  eta_dot[1] = t278;
+  eta_dot[2] = t284;
+  r_a_ddot_out[0] = t277;
+  r_a_ddot_out[1] = t283;
+  r_a_ddot_out[2] = t282;
+  r_a_ddot_out[3] = t279;
 }
 
 /// Constraint forces with the torques given, least norm.
 /// route: closed form
-/// operations: 17 add, 30 mul, 1 div, 1 neg
+/// operations: 13 add, 34 mul, 1 div, 2 neg
 /// @param[in]  par     made by prepare()
 /// @param[in]  w
 ///     (3) mixed: reduced velocities with r_a free: denominator-free basis, content divided out, built on
@@ -1335,7 +1296,7 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   // reduced mass matrix
   const Real t3 = w_dot[1] * constant<Real>(0.707106781186547524401L);
   const Real t4 = w_dot[0] + t3;
-  const Real t5 = w_dot[2] * par.k8;
+  const Real t5 = w_dot[2] * par.k6;
   const Real t6 = t4 + t5;
 
   // front_right_wheel: wrench
@@ -1345,52 +1306,53 @@ inline void torque_driven_multipliers(const Prepared<Real>& par,
   const Real t8 = t7 - tau_a[1];
 
   // multipliers
-  const Real t9 = t8 / par.k1;
-  const Real t10 = w_dot[0] * constant<Real>(1.0L);
-  const Real t11 = t10 + t3;
-  const Real t12 = w[2] * t2;
-  const Real t13 = par.R * t12;
-  const Real t14 = t11 + t13;
-  const Real t15 = par.k30 * t14;
-  const Real t16 = t9 + t15;
-  const Real t17 = par.R * w[1];
-  const Real t18 = t17 * w[2];
-  const Real t19 = constant<Real>(0.707106781186547524401L) * t18;
-  const Real t20 = t19 - w_dot[0];
-  const Real t21 = par.k33 * t20;
-  const Real t22 = constant<Real>(0.707106781186547524401L) * t21;
-  const Real t23 = w_dot[2] * par.k17;
-  const Real t24 = t22 - t23;
-  const Real t25 = t24 * par.k21;
-  const Real t26 = w_dot[0] + t5;
-  const Real t27 = t26 * par.J_a;
-  const Real t28 = t27 - tau_a[1];
-  const Real t29 = par.R * t15;
-  const Real t30 = w_dot[1] * par.J_a;
-  const Real t31 = t29 + t30;
-  const Real t32 = constant<Real>(0.707106781186547524401L) * t31;
-  const Real t33 = t28 + t32;
-  const Real t34 = par.k29 * t33;
-  const Real t35 = t34 * constant<Real>(2.0L);
-  const Real t36 = t25 - t35;
-  const Real t37 = t36 * constant<Real>(1.0L);
-  const Real t38 = par.k35 * t20;
-  const Real t39 = t37 - t38;
-  const Real t40 = par.k31 * t39;
-  const Real t41 = t9 * constant<Real>(1.0L);
-  const Real t42 = par.k32 * t14;
-  const Real t43 = t41 + t42;
-  const Real t44 = -t43;
-  const Real t45 = par.k34 * t8;
-  const Real t46 = par.R * t24;
+  const Real t9 = w_dot[2] * par.k17;
+  const Real t10 = constant<Real>(0.5L) * t9;
+  const Real t11 = t4 * par.k18;
+  const Real t12 = par.k6 * t11;
+  const Real t13 = par.k18 * w[0];
+  const Real t14 = t13 * par.k6;
+  const Real t15 = t14 * w[2];
+  const Real t16 = par.R * t15;
+  const Real t17 = t12 + t16;
+  const Real t18 = constant<Real>(0.707106781186547524401L) * t17;
+  const Real t19 = w_dot[0] * constant<Real>(1.4142135623730950488L);
+  const Real t20 = t19 * par.k18;
+  const Real t21 = t20 * par.k6;
+  const Real t22 = constant<Real>(0.5L) * t21;
+  const Real t23 = t18 - t22;
+  const Real t24 = constant<Real>(0.707106781186547524401L) * t23;
+  const Real t25 = t10 + t24;
+  const Real t26 = par.R * t25;
+  const Real t27 = par.R * t26;
+  const Real t28 = par.k6 * t8;
+  const Real t29 = t27 + t28;
+  const Real t30 = t29 * par.k30;
+  const Real t31 = -t30;
+  const Real t32 = par.R * w[1];
+  const Real t33 = t32 * w[2];
+  const Real t34 = constant<Real>(0.707106781186547524401L) * t33;
+  const Real t35 = t34 - w_dot[0];
+  const Real t36 = par.k29 * t35;
+  const Real t37 = constant<Real>(0.707106781186547524401L) * t36;
+  const Real t38 = t37 - t9;
+  const Real t39 = par.R * t38;
+  const Real t40 = constant<Real>(0.5L) * t39;
+  const Real t41 = t40 * par.R;
+  const Real t42 = t28 - t41;
+  const Real t43 = t42 * par.k30;
+  const Real t44 = t8 / par.k1;
+  const Real t45 = -t44;
+  const Real t46 = w[2] * t2;
   const Real t47 = par.R * t46;
-  const Real t48 = t45 - t47;
-  const Real t49 = t48 * par.k31;
+  const Real t48 = t4 + t47;
+  const Real t49 = par.k28 * t48;
+  const Real t50 = t44 + t49;
 
-  lambda[0] = t40;
-  lambda[1] = t44;
-  lambda[2] = t16;
-  lambda[3] = t49;
+  lambda[0] = t31;
+  lambda[1] = t45;
+  lambda[2] = t50;
+  lambda[3] = t43;
 }
 
 /// Kinetic energy, potential of gravity (zero at the world's origin), elastic and other potential energy;
@@ -1431,26 +1393,24 @@ inline void energies(const Prepared<Real>& par,
   // rear_right_wheel: acceleration
   const Real t5 = r_a_dot[3] * r_a_dot[3];
 
-  // multipliers
-  const Real t6 = t3 + t2;
-
   // chassis: energy
-  const Real t7 = eta[1] * eta[1];
-  const Real t8 = eta[0] * eta[0];
-  const Real t9 = t7 + t8;
-  const Real t10 = par.m * t9;
+  const Real t6 = eta[1] * eta[1];
+  const Real t7 = eta[0] * eta[0];
+  const Real t8 = t6 + t7;
+  const Real t9 = par.m * t8;
 
   // rear_right_wheel: energy
-  const Real t11 = t1 * par.J;
-  const Real t12 = t11 + t10;
-  const Real t13 = t6 + t4;
+  const Real t10 = t1 * par.J;
+  const Real t11 = t10 + t9;
+  const Real t12 = t3 + t2;
+  const Real t13 = t12 + t4;
   const Real t14 = t13 + t5;
   const Real t15 = t14 * par.J_a;
-  const Real t16 = t12 + t15;
+  const Real t16 = t11 + t15;
   const Real t17 = t1 * par.J_d;
   const Real t18 = eta[2] * par.k16;
   const Real t19 = eta[2] * t18;
-  const Real t20 = t19 + t9;
+  const Real t20 = t19 + t8;
   const Real t21 = par.m_w * t20;
   const Real t22 = t17 + t21;
   const Real t23 = t22 * constant<Real>(4.0L);

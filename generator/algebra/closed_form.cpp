@@ -31,6 +31,8 @@ std::optional<std::vector<NodeId>> closed_form(Tape& tape, const std::vector<Nod
     return best;
   } catch (const SizeLimitExceeded&) {
     return std::nullopt;
+  } catch (const std::domain_error&) {  // a denominator that is zero by c^2 + s^2 = 1
+    return std::nullopt;
   }
 }
 

@@ -16,8 +16,8 @@ namespace anholon {
 /// beyond the bound of terms that GiNaC is trusted with give their common monomial.
 Polynomial gcd(const Polynomial& p, const Polynomial& q);
 
-/// p = content * product of factor^exponent, factors primitive and sorted. Beyond the bound: {primitive(p)}
-/// alone.
+/// p = content * product of factor^exponent, factors primitive and sorted; the content is left out. Beyond
+/// the bound monomials and linear variables alone are split off.
 std::vector<std::pair<Polynomial, unsigned>> factors(const Polynomial& p);
 
 }  // namespace anholon

@@ -348,6 +348,8 @@ std::optional<KernelCore> kernel_core(Tape& tape, const std::vector<std::vector<
     return std::nullopt;
   } catch (const NoAnswer&) {
     return std::nullopt;
+  } catch (const std::domain_error&) {  // a denominator that is zero by c^2 + s^2 = 1
+    return std::nullopt;
   }
 }
 

@@ -5,6 +5,7 @@
 #include <cln/rational_ring.h>
 
 #include <algorithm>
+#include <limits>
 
 namespace anholon {
 namespace {
@@ -16,7 +17,11 @@ void trim(Monomial& monomial) {
 Monomial product(const Monomial& a, const Monomial& b) {
   Monomial result = a.size() >= b.size() ? a : b;
   const Monomial& other = a.size() >= b.size() ? b : a;
-  for (std::size_t i = 0; i < other.size(); ++i) result[i] = static_cast<std::uint16_t>(result[i] + other[i]);
+  for (std::size_t i = 0; i < other.size(); ++i) {
+    const int exponent = result[i] + other[i];
+    if (exponent > std::numeric_limits<std::uint16_t>::max()) throw SizeLimitExceeded();
+    result[i] = static_cast<std::uint16_t>(exponent);
+  }
   return result;
 }
 

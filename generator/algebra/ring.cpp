@@ -128,13 +128,13 @@ std::size_t Ring::variable(NodeId id) {
   return found->second;
 }
 
-std::size_t Ring::function_variable(NodeId id, const std::vector<Fraction>& known) {
+std::size_t Ring::function_variable(NodeId id, const Known& known) {
   const Node& n = tape_->node(id);
   if (info(n.op).arity == 0) return variable(id);
-  std::vector<Polynomial> operands{known[n.a].numerator, known[n.a].denominator};
+  std::vector<Polynomial> operands{known.at(n.a).numerator, known.at(n.a).denominator};
   if (info(n.op).arity == 2) {
-    operands.push_back(known[n.b].numerator);
-    operands.push_back(known[n.b].denominator);
+    operands.push_back(known.at(n.b).numerator);
+    operands.push_back(known.at(n.b).denominator);
   }
   const auto [found, is_new] = functions_.try_emplace({n.op, std::move(operands)}, 0);
   if (is_new) return found->second = variable(id);
@@ -208,7 +208,7 @@ std::pair<Polynomial, Polynomial> Ring::turn(NodeId argument, const Fraction& va
   return result;
 }
 
-Fraction Ring::of_node(NodeId id, const std::vector<Fraction>& known) {
+Fraction Ring::of_node(NodeId id, const Known& known) {
   const Node n = tape_->node(id);
   switch (n.op) {
     case Op::constant: {
@@ -217,21 +217,21 @@ Fraction Ring::of_node(NodeId id, const std::vector<Fraction>& known) {
       return {Polynomial::variable(variable(id)), 1};
     }
     case Op::add:
-      return sum(known[n.a], known[n.b]);
+      return sum(known.at(n.a), known.at(n.b));
     case Op::sub:
-      return sum(known[n.a], {-known[n.b].numerator, known[n.b].denominator});
+      return sum(known.at(n.a), {-known.at(n.b).numerator, known.at(n.b).denominator});
     case Op::neg:
-      return {-known[n.a].numerator, known[n.a].denominator};
+      return {-known.at(n.a).numerator, known.at(n.a).denominator};
     case Op::mul:
-      return product(known[n.a], known[n.b]);
+      return product(known.at(n.a), known.at(n.b));
     case Op::div:
-      return quotient(known[n.a], known[n.b]);
+      return quotient(known.at(n.a), known.at(n.b));
     case Op::cos:
-      return {turn(n.a, known[n.a]).first, 1};
+      return {turn(n.a, known.at(n.a)).first, 1};
     case Op::sin:
-      return {turn(n.a, known[n.a]).second, 1};
+      return {turn(n.a, known.at(n.a)).second, 1};
     case Op::tan: {
-      const auto [c, s] = turn(n.a, known[n.a]);
+      const auto [c, s] = turn(n.a, known.at(n.a));
       return quotient({s, 1}, {c, 1});
     }
     default:
@@ -240,17 +240,17 @@ Fraction Ring::of_node(NodeId id, const std::vector<Fraction>& known) {
 }
 
 std::vector<Fraction> Ring::convert(const std::vector<NodeId>& roots) {
-  std::vector<Fraction> known(tape_->size());
+  Known known;
   for (const NodeId id : tape_->reachable(roots)) {
     try {
-      known[id] = of_node(id, known);
+      known.emplace(id, of_node(id, known));
     } catch (const SizeLimitExceeded&) {
       if (beyond_ == Beyond::give_up) throw;
-      known[id] = {Polynomial::variable(variable(id)), 1};
+      known.emplace(id, Fraction{Polynomial::variable(variable(id)), 1});
     }
   }
   std::vector<Fraction> result;
-  for (const NodeId id : roots) result.push_back(known[id]);
+  for (const NodeId id : roots) result.push_back(known.at(id));
 
   // Number the variables by structure: inputs, then angles of inputs, then the rest by key.
   const auto rank = [this](NodeId id) {

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <unordered_map>
 #include <vector>
 
 #include "algebra/polynomial.hpp"
@@ -66,13 +67,14 @@ class Ring {
     NodeId cosine;
     NodeId sine;
   };
-  Fraction of_node(NodeId id, const std::vector<Fraction>& known);
+  using Known = std::unordered_map<NodeId, Fraction>;  // of the nodes before
+  Fraction of_node(NodeId id, const Known& known);
   /// (cos, sin) of a node: angle sums and multiples are expanded.
   std::pair<Polynomial, Polynomial> turn(NodeId argument, const Fraction& value);
   std::pair<Polynomial, Polynomial> basic_turn(NodeId argument);
   std::size_t variable(NodeId id);
   /// Variable of an operation that polynomials cannot see into; equal operands make equal variables.
-  std::size_t function_variable(NodeId id, const std::vector<Fraction>& known);
+  std::size_t function_variable(NodeId id, const Known& known);
   NodeId monomial_node(const Monomial& monomial, const cln::cl_I& denominator);
   [[nodiscard]] bool is_opaque_constant(const Monomial& monomial) const;
   [[nodiscard]] Fraction reduced(Fraction f) const;

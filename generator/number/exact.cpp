@@ -38,9 +38,9 @@ cln::cl_F to_float(const cln::cl_R& x) {
 
 cln::cl_RA to_rational(const cln::cl_R& x) { return cln::rational(x); }
 
-/// A rational that has outgrown its bound becomes a float.
+/// A rational that has outgrown its bound becomes a float, and a float that vanishes the rational zero.
 cln::cl_R bounded(const cln::cl_R& x) {
-  if (!cln:: instanceof (x, cln::cl_RA_ring)) return x;
+  if (!cln:: instanceof (x, cln::cl_RA_ring)) return cln::zerop(x) ? cln::cl_R(0) : x;
   const auto q = cln::the<cln::cl_RA>(x);
   const auto bits = cln::integer_length(cln::numerator(q)) + cln::integer_length(cln::denominator(q));
   return bits <= 2 * rational_bits
@@ -258,8 +258,7 @@ Exact log(const Exact& x) {
 Exact tanh(const Exact& x) {
   if (x.is_zero()) return 0;
   if (abs(x) > Exact(1 << 12)) return sign(x);
-  const Exact twice = exp(x + x);
-  return (twice - Exact(1)) / (twice + Exact(1));
+  return Exact(cln::cl_R(cln::tanh(to_float(x.value()))));
 }
 Exact abs(const Exact& x) { return cln::minusp(x.value()) ? -x : x; }
 Exact sign(const Exact& x) { return x.is_zero() ? 0 : cln::minusp(x.value()) ? -1 : 1; }

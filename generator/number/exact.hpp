@@ -49,7 +49,7 @@ class Exact {
   [[nodiscard]] double to_double() const;
   /// Shortest decimal text with at most `digits` significant digits, rounded half away from zero.
   [[nodiscard]] std::string decimal(unsigned digits) const;
-  /// Text that two values share exactly when they are equal.
+  /// Text that two rationals share exactly when they are equal, and two floats when they agree in all digits.
   [[nodiscard]] std::string key() const;
   [[nodiscard]] const cln::cl_R& value() const { return value_; }
 

@@ -2,6 +2,7 @@
 #include "tape/tape.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -32,6 +33,23 @@ StructuralKey key_of_text(std::uint64_t tag, std::string_view text) {
     key.low = mixed(key.low + static_cast<unsigned char>(c));
   }
   return key;
+}
+
+/// Irrational constants may make a simple number, as sqrt(2)/2 squared does: their rounding must not hide it.
+/// @param size  of what x was made from
+Exact without_rounding(const Exact& x, const Exact& size) {
+  static const Exact rounding = Exact::from_decimal("1e-100");  // of 128 digits
+  if (x.is_rational()) return x;
+  if (abs(x) <= rounding * size) return 0;
+  const double eighths = 8 * x.to_double();
+  if (!(std::abs(eighths) < 1e6)) return x;
+  const Exact near = Exact::ratio(std::lround(eighths), 8);
+  return abs(x - near) <= rounding * abs(x) ? near : x;
+}
+Exact folded_sum(const Exact& a, const Exact& b) { return without_rounding(a + b, std::max(abs(a), abs(b))); }
+Exact folded_product(const Exact& a, const Exact& b) {
+  const Exact x = a * b;
+  return without_rounding(x, abs(x));
 }
 
 }  // namespace
@@ -130,7 +148,7 @@ NodeId Tape::neg(NodeId a) {
 NodeId Tape::add(NodeId a, NodeId b) {
   if (is_zero(a)) return b;
   if (is_zero(b)) return a;
-  if (is_constant(a) && is_constant(b)) return constant(value(a) + value(b));
+  if (is_constant(a) && is_constant(b)) return constant(folded_sum(value(a), value(b)));
   if (is(b, Op::neg)) return sub(a, nodes_[b].a);
   if (is(a, Op::neg)) return sub(b, nodes_[a].a);
   if (is(a, Op::sub) && nodes_[a].b == b) return nodes_[a].a;  // (x - b) + b
@@ -138,7 +156,7 @@ NodeId Tape::add(NodeId a, NodeId b) {
   if (!is_constant(a) && !is_constant(b)) {
     const auto [ca, xa] = scaled(a);
     const auto [cb, xb] = scaled(b);
-    if (xa == xb) return mul(constant(ca + cb), xa);
+    if (xa == xb) return mul(constant(folded_sum(ca, cb)), xa);
   }
   if (is(a, Op::mul) && is(b, Op::mul) && nodes_[a].a == nodes_[a].b && nodes_[b].a == nodes_[b].b) {
     const Node& x = nodes_[nodes_[a].a];
@@ -149,8 +167,8 @@ NodeId Tape::add(NodeId a, NodeId b) {
   for (const auto& [c, sum] : {std::pair{a, b}, std::pair{b, a}}) {  // c + (d + x)
     if (!is_constant(c) || !is(sum, Op::add)) continue;
     const Node s = nodes_[sum];
-    if (is_constant(s.a)) return add(constant(value(c) + value(s.a)), s.b);
-    if (is_constant(s.b)) return add(constant(value(c) + value(s.b)), s.a);
+    if (is_constant(s.a)) return add(constant(folded_sum(value(c), value(s.a))), s.b);
+    if (is_constant(s.b)) return add(constant(folded_sum(value(c), value(s.b))), s.a);
   }
   return intern(Op::add, a, b);
 }
@@ -159,7 +177,7 @@ NodeId Tape::sub(NodeId a, NodeId b) {
   if (a == b) return zero_;
   if (is_zero(b)) return a;
   if (is_zero(a)) return neg(b);
-  if (is_constant(a) && is_constant(b)) return constant(value(a) - value(b));
+  if (is_constant(a) && is_constant(b)) return constant(folded_sum(value(a), -value(b)));
   if (is(b, Op::neg)) return add(a, nodes_[b].a);
   if (is(a, Op::neg)) return neg(add(nodes_[a].a, b));
   if (is(a, Op::add) && nodes_[a].a == b) return nodes_[a].b;  // (b + x) - b
@@ -171,7 +189,7 @@ NodeId Tape::sub(NodeId a, NodeId b) {
   if (!is_constant(a) && !is_constant(b)) {
     const auto [ca, xa] = scaled(a);
     const auto [cb, xb] = scaled(b);
-    if (xa == xb) return mul(constant(ca - cb), xa);
+    if (xa == xb) return mul(constant(folded_sum(ca, -cb)), xa);
   }
   return intern(Op::sub, a, b);
 }
@@ -181,10 +199,10 @@ NodeId Tape::mul(NodeId a, NodeId b) {
   if (is_constant(a)) {
     if (is_zero(a)) return zero_;
     if (is_one(a)) return b;
-    if (is_constant(b)) return constant(value(a) * value(b));
+    if (is_constant(b)) return constant(folded_product(value(a), value(b)));
     if (value(a) < Exact(0)) return neg(mul(constant(-value(a)), b));
     if (is(b, Op::neg)) return neg(mul(a, nodes_[b].a));
-    if (const auto [c, x] = scaled(b); x != b) return mul(constant(value(a) * c), x);
+    if (const auto [c, x] = scaled(b); x != b) return mul(constant(folded_product(value(a), c)), x);
     return intern(Op::mul, a, b);
   }
   if (is(a, Op::neg) && is(b, Op::neg)) return mul(nodes_[a].a, nodes_[b].a);

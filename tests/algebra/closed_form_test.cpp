@@ -122,6 +122,20 @@ TEST(ClosedForm, GivesUpBySize) {
   EXPECT_TRUE(closed_form(tape, {sum.id(tape)}));
 }
 
+TEST(ClosedForm, LeavesPowersThatAreTooHigh) {
+  Tape tape;
+  Expr power = input(tape, "x");
+  for (int doubled = 0; doubled < 17; ++doubled) power = power * power;
+  EXPECT_FALSE(closed_form(tape, {(power + input(tape, "y")).id(tape)}));
+}
+
+TEST(ClosedForm, LeavesWhatDividesByAHiddenZero) {
+  Tape tape;
+  const Expr x = input(tape, "x");
+  const Expr zero = cos(Expr(2) * x) - cos(x) * cos(x) + sin(x) * sin(x);
+  EXPECT_FALSE(closed_form(tape, {(Expr(1) / zero).id(tape)}));
+}
+
 TEST(ProvablyEqual, SeesThroughAnglesAndQuotients) {
   Tape tape;
   const Expr a = input(tape, "a"), b = input(tape, "b"), x = input(tape, "x"), y = input(tape, "y");

@@ -148,6 +148,18 @@ TEST(WorkingDigits, AreRestoredAtTheEndOfTheirScope) {
   EXPECT_EQ(WorkingDigits::current(), before);
 }
 
+TEST(Exact, KeepsTheDigitsOfSmallHyperbolicTangents) {
+  const WorkingDigits scope(40);
+  const Exact x = Exact::from_decimal("1e-30");  // tanh x = x - x^3/3
+  EXPECT_LE(abs(tanh(x) - x), Exact::from_decimal("1e-68"));
+}
+
+TEST(Exact, IsTheOneZeroHoweverItCame) {
+  const Exact zero = sqrt(Exact(2)) - sqrt(Exact(2));
+  EXPECT_TRUE(zero.is_rational());
+  EXPECT_EQ(zero.key(), Exact(0).key());
+}
+
 TEST(WorkingDigits, AreNeverSoFewThatSinesAreRoundedToRationals) {
   const WorkingDigits scope(15);
   const Exact x = Exact::pi() / Exact(6) + Exact::from_decimal("1e-20");

@@ -160,6 +160,16 @@ TEST_F(FoldsTo, ExactConstants) {
   EXPECT_THROW((void)(x / (y - y)), std::domain_error);
 }
 
+TEST_F(FoldsTo, SimpleNumbersThatIrrationalOnesMake) {
+  const auto root = [&](const Exact& of) { return sqrt(Expr(tape, tape.constant(of))); };
+  const Expr h = root(Exact::ratio(1, 2)), w = root(Exact::ratio(3, 4));
+  EXPECT_EQ(id((h * h) * x), id(x / 2));
+  EXPECT_EQ(id(x * (h * h - Expr(1) / 2) + y), id(y));
+  EXPECT_EQ(id(w * w * x), id((Expr(3) / 4) * x));
+  EXPECT_EQ(id(h * x - h * x), id(Expr(0)));
+  EXPECT_NE(id(h * x), id(Expr(0)));
+}
+
 TEST(StructuralKeys, AgreeExactlyForEqualNodes) {
   const Program forwards = test::random_program({4, 6, 400, 5, 40}, 3, false);
   const Program backwards = test::random_program({4, 6, 400, 5, 40}, 3, true);
