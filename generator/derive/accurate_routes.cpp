@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "derive/deriver.hpp"
+#include "optimise/accuracy/rounded.hpp"
 
 namespace anholon {
 
@@ -101,8 +102,9 @@ bool Deriver::have_inertia(const Matrix<Expr>& M, const SymmetricFactors& factor
   std::vector<NodeId> nodes;
   for (int i = 0; i < M.rows(); ++i)
     nodes.push_back((factors.pivots()[static_cast<std::size_t>(i)] / M(i, i)).id(tape_));
+  ReproducibleInterpreter values(tape_, nodes);
   for (const std::vector<double>& state : states_of(atlas_, chart_, measured_states)) {
-    for (const double pivot : reproducible_values(tape_, nodes, state)) {
+    for (const double pivot : values(state)) {
       if (!(pivot > rounded_zero)) return false;
     }
   }

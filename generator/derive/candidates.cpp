@@ -6,6 +6,7 @@
 #include "algebra/closed_form.hpp"
 #include "anholon/charts.hpp"
 #include "derive/deriver.hpp"
+#include "optimise/accuracy/rounded.hpp"
 #include "optimise/tape/passes.hpp"
 
 namespace anholon {
@@ -93,8 +94,9 @@ std::vector<std::vector<double>> Deriver::states_of(const KernelAtlas* atlas, st
   if (charts < 2) return states;
   std::vector<NodeId> quality;
   for (const Expr& e : atlas->quality) quality.push_back(e.id(tape_));
+  ReproducibleInterpreter qualities(tape_, quality);
   std::erase_if(states, [&](const std::vector<double>& inputs) {
-    return best_chart(std::span<const double>(reproducible_values(tape_, quality, inputs))) != chart;
+    return best_chart(std::span<const double>(qualities(inputs))) != chart;
   });
   if (states.size() > static_cast<std::size_t>(count)) states.resize(static_cast<std::size_t>(count));
   return states;

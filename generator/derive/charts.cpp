@@ -113,7 +113,7 @@ class AtlasChooser {
       double largest = 0;
       for (std::size_t i = j_at; i < values.size(); ++i) {
         const double x = std::abs(values[i]);
-        if (!(x <= largest)) largest = x;  // also not-a-number
+        if (x > largest || std::isnan(x)) largest = x;  // keeps not-a-number
       }
       return largest;
     };

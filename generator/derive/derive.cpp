@@ -10,7 +10,7 @@
 
 #include "derive/deriver.hpp"
 #include "describe/function_names.hpp"
-#include "optimise/tape/count.hpp"
+#include "optimise/tape/hoist.hpp"
 
 namespace anholon {
 namespace {
@@ -182,20 +182,9 @@ void Deriver::note_header() {
 std::string chart_prefix(std::size_t chart) { return chart == 0 ? "" : fmt::format("chart{}::", chart + 1); }
 
 OperationCount operations_per_call(const Program& program, const std::vector<NodeId>& roots) {
-  const Tape& tape = program.tape;
-  std::vector<char> on_parameters(tape.size(), 0);
-  for (const ParameterInfo& p : program.parameters) on_parameters[p.node] = 1;
-  std::vector<NodeId> prepared;
-  for (const NodeId id : tape.reachable(roots)) {
-    const Node& n = tape.node(id);
-    const int arity = info(n.op).arity;
-    if (arity == 0) continue;
-    const auto fixed = [&](NodeId x) { return on_parameters[x] != 0 || tape.is_constant(x); };
-    if (!fixed(n.a) || (arity == 2 && !fixed(n.b))) continue;
-    on_parameters[id] = 1;
-    prepared.push_back(id);
-  }
-  return count_operations(tape, roots, prepared);
+  std::vector<NodeId> parameters;
+  for (const ParameterInfo& p : program.parameters) parameters.push_back(p.node);
+  return operations_per_call(program.tape, roots, parameters);
 }
 
 void begin_program(Program& program, const Model& model, const std::string& scene,

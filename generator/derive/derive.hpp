@@ -2,9 +2,8 @@
 #pragma once
 
 // From a description to a program: the wanted functions, derived on one tape. Each comes from the routes that
-// exist for it; the one with the fewest operations is kept.
+// exist for it; the shortest of those that keep enough digits is taken.
 
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -27,7 +26,7 @@ struct DeriveRequest {
   std::set<std::string> torque_driven;  // active coordinates whose torque is given in the reduced dynamics
   Inverse inverse = Inverse::pseudo;
   std::vector<int> leading_rows;  // for Inverse::leading; row indices
-  bool closed_forms = true;       // also try GiNaC's simplified closed form of each function
+  bool closed_forms = true;       // also try the simplified closed form of each function
   bool rates = false;             // fill Derivation::rates
   bool state_jacobian = false;    // also that function, which no empty list of functions stands for
   OptimiseFor optimise = OptimiseFor::balanced;

@@ -118,7 +118,7 @@ class Deriver {
   // candidates.cpp: routes to a function, and the one that is kept
   OutputBlock block(std::string name, std::string unit, std::string meaning, const Matrix<Expr>& m);
   OutputBlock block(std::string name, std::string unit, std::string meaning, const std::vector<Expr>& v);
-  /// Keeps the cheapest route; the closed form of the cheapest one is a further candidate.
+  /// Keeps the route that choose() takes; the closed form of the cheapest one is a further candidate.
   /// @param simplified  let the closed form compete: it expands products, and with them loses digits again
   /// @param accurate  further routes, which are derived only where those lose digits
   void emit(const std::string& name, const std::string& meaning, std::vector<Route> routes,

@@ -37,7 +37,12 @@ std::optional<std::vector<int>> subtree_ends(const std::vector<int>& parent) {
 
 }  // namespace
 
+bool has_loops(const std::string& function) {
+  return function == "regressor" || function == "mass_factor" || function == "inverse_mass_matrix";
+}
+
 std::optional<TreeLoops> tree_loops(const std::string& function, const RigidTree<Expr>& tree) {
+  if (!has_loops(function)) return std::nullopt;
   const auto components = free_components(tree.mechanism().group);
   const int base = static_cast<int>(components.size());
   const auto entry = entries_of_joints(tree, base);
@@ -52,13 +57,8 @@ std::optional<TreeLoops> tree_loops(const std::string& function, const RigidTree
     loops.rows = base + tree.mechanism().coordinates;
     return loops;
   }
-  if (function == "mass_factor") {
-    loops.kind = TreeLoops::Kind::mass_factor;
-  } else if (function == "inverse_mass_matrix") {
-    loops.kind = TreeLoops::Kind::inverse_mass_matrix;
-  } else {
-    return std::nullopt;
-  }
+  loops.kind =
+      function == "mass_factor" ? TreeLoops::Kind::mass_factor : TreeLoops::Kind::inverse_mass_matrix;
   loops.from = "mass_matrix";
   loops.parent.assign(at(base + tree.mechanism().coordinates), 0);
   for (int c = 0; c < base; ++c) loops.parent[at(c)] = c - 1;

@@ -17,6 +17,9 @@ namespace anholon {
 /// Function from whose outputs the loops of the regressor start.
 inline constexpr const char* regressor_motion = "regressor_motion";
 
+/// Whether a function can be emitted as loops.
+bool has_loops(const std::string& function);
+
 /// Tables of a function of a tree whose position is set; none where the function has no loops, or where the
 /// coordinates are not one for each joint in the order of the tree, subtree by subtree.
 std::optional<TreeLoops> tree_loops(const std::string& function, const RigidTree<Expr>& tree);

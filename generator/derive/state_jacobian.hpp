@@ -23,7 +23,6 @@ struct StateDirections {
   Direction time;  // t, and the motion of r_a with it: r_a -> r_a_dot -> r_a_ddot -> r_a_dddot
 };
 
-/// @param passive  velocities of the partition: n, then coordinates; `active` those whose motion is imposed
 StateDirections state_directions(Tape& tape, const ProgramSymbols& symbols, const Partition& partition,
                                  const std::vector<Expr>& nu, const std::vector<Expr>& r_a_dot,
                                  const std::vector<Expr>& r_a_ddot, const std::vector<Expr>& r_a_dddot);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <memory>
 
-#include "tape/interpret.hpp"
+#include "optimise/accuracy/rounded.hpp"
 
 namespace anholon {
 
@@ -122,24 +122,21 @@ Sampler ProgramSymbols::sampler(const std::vector<State<double>>& states) const 
   }
   return [inputs, &tape = program_.tape](const std::vector<NodeId>& nodes) {
     std::vector<std::vector<double>> result;
-    Interpreter<double> run(tape, nodes);
+    ReproducibleInterpreter run(tape, nodes);
     for (std::vector<double>& values : *inputs) {
       values.resize(tape.inputs().size(), 0.0);
-      result.emplace_back(nodes.size());
-      run(values, result.back());
+      result.push_back(run(values));
     }
     return result;
   };
 }
 
 ConfigurationSearch::Values ProgramSymbols::evaluator(const std::vector<NodeId>& nodes) const {
-  const auto run = std::make_shared<Interpreter<double>>(program_.tape, nodes);
+  const auto run = std::make_shared<ReproducibleInterpreter>(program_.tape, nodes);
   return [this, run, parameters = default_parameters()](const State<double>& state) {
     std::vector<double> inputs(program_.tape.inputs().size(), 0.0);
     fill_position(state, parameters, inputs);
-    std::vector<double> outputs(run->output_count());
-    (*run)(inputs, outputs);
-    return outputs;
+    return (*run)(inputs);
   };
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 
@@ -151,6 +150,7 @@ class TreeDeriver {
   /// Derives a function that is emitted as loops, and the one that they start from.
   /// @return false where a straight line does
   bool derive_loops(const std::string& name) {
+    if (!has_loops(name)) return false;
     RigidTree<Expr> tree(name == "regressor" ? quantities_.merged() : frames_[0].mechanism);
     tree.position(quantities_.inputs().r);
     const std::optional<TreeLoops> loops = tree_loops(name, tree);

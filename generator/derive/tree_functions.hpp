@@ -3,7 +3,7 @@
 
 // The functions of an unconstrained tree of rigid bodies, all of whose coordinates are driven: inverse and
 // forward dynamics, mass matrix and their like. Each is derived in several frames and by several algorithms;
-// the cheapest program is kept.
+// the shortest program that keeps enough digits is taken.
 
 #include <memory>
 #include <string>

@@ -47,7 +47,11 @@ std::vector<double> velocity_sizes(const std::vector<Eigen::MatrixXd>& A) {
     }
   }
   std::vector<double> sizes;
-  for (const double s : size) sizes.push_back(std::exp2(std::round(std::log2(s))));
+  for (const double s : size) {  // the nearest power of two
+    int exponent = 0;
+    const double fraction = std::frexp(s, &exponent);
+    sizes.push_back(std::ldexp(1.0, fraction < std::sqrt(0.5) ? exponent - 1 : exponent));
+  }
   return sizes;
 }
 

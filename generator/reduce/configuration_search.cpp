@@ -24,6 +24,7 @@ State<double> rounded_configuration(const State<Exact>& from) {
   for (int i = 0; i < 3; ++i) s.p[i] = from.p[i].to_double();
   for (const Exact& x : from.r) s.r.push_back(x.to_double());
   s.r_dot.assign(s.r.size(), 0.0);
+  s.t = from.t.to_double();
   return s;
 }
 

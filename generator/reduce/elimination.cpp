@@ -62,7 +62,7 @@ Elimination::Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& col
         choices.push_back({tier, fill(i, j), s, i, j});
       }
     }
-    if (choices.empty()) throw std::logic_error("elimination of a matrix without full row rank");
+    if (choices.empty()) throw RankDeficient();
     const Choice best = *std::ranges::min_element(choices, [](const Choice& a, const Choice& b) {
       if (a.tier != b.tier) return a.tier < b.tier;
       if (a.tier == 3 && a.strength != b.strength) return a.strength > b.strength;

@@ -6,6 +6,7 @@
 // matrix.
 
 #include <functional>
+#include <stdexcept>
 #include <vector>
 
 #include "anholon/matrix.hpp"
@@ -16,12 +17,17 @@ namespace anholon {
 /// Values of nodes at every sampled configuration: result[sample][node].
 using Sampler = std::function<std::vector<std::vector<double>>(const std::vector<NodeId>&)>;
 
+struct RankDeficient : std::runtime_error {
+  RankDeficient() : std::runtime_error("elimination of a matrix without full row rank") {}
+};
+
 class Elimination {
  public:
   /// Pivots: constants of unit size first, then constants, then what stays away from zero at the samples,
   /// with the least fill-in.
   /// @param A  rows x cols of full row rank
   /// @param columns  columns that may hold pivots
+  /// @throws RankDeficient where they are dependent
   Elimination(Tape& tape, Matrix<Expr> A, const std::vector<int>& columns, const Sampler& sampler);
 
   /// Columns that hold the pivots, in ascending order.

@@ -18,9 +18,9 @@
 namespace anholon {
 namespace {
 
-constexpr int combination_limit = 400;   // free sets that are tried one by one
-constexpr int derivation_limit = 12;     // of these, how many are derived and counted
-constexpr double condition_limit = 1e7;  // beyond it a basis counts as irregular at a sample
+constexpr int combination_limit = 400;        // free sets that are tried one by one
+constexpr std::size_t derivation_limit = 12;  // of these, how many are derived and counted
+constexpr double condition_limit = 1e7;       // beyond it a basis counts as irregular at a sample
 constexpr double dependable_pivot =
     1e-3;                           // least pivot of the leading rows, for a static basis that divides by it
 constexpr double vanishing = 1e-7;  // a column this much smaller than its median has vanished
@@ -55,6 +55,23 @@ std::vector<std::vector<int>> combinations(int n, int k) {
     for (int j = i + 1; j < k; ++j)
       pick[static_cast<std::size_t>(j)] = pick[static_cast<std::size_t>(j - 1)] + 1;
   }
+}
+
+/// In falling order of their worth; of those that differ by a hundredth at most the order stays as it was.
+std::vector<std::vector<int>> best_first(const std::vector<std::vector<int>>& sets,
+                                         const std::vector<double>& worth) {
+  std::vector<int> order = range(static_cast<int>(sets.size()));
+  const auto of = [&](int i) { return worth[static_cast<std::size_t>(i)]; };
+  std::ranges::stable_sort(order, std::greater<>(), of);
+  for (auto first = order.begin(); first != order.end();) {
+    const double equal = 0.99 * of(*first);
+    const auto last = std::find_if(first, order.end(), [&](int i) { return of(i) < equal; });
+    std::sort(first, last);
+    first = last;
+  }
+  std::vector<std::vector<int>> result;
+  for (const int i : order) result.push_back(sets[static_cast<std::size_t>(i)]);
+  return result;
 }
 
 std::vector<NodeId> nodes_of(Tape& tape, const Matrix<Expr>& m) {
@@ -201,8 +218,8 @@ std::optional<Kernel> KinematicReduction::candidate(const std::vector<int>& free
     std::optional<Elimination> elimination;
     try {
       if (A_1_.rows() > 0) elimination.emplace(tape_, A_1_, complement(free, passive), sampler_);
-    } catch (const std::logic_error&) {
-      return std::nullopt;  // the other columns are dependent
+    } catch (const RankDeficient&) {
+      return std::nullopt;
     }
     kernel.divides_by_constants =
         (!elimination || elimination->has_constant_pivots()) && rows_.A.rows() == A_1_.rows();
@@ -278,7 +295,7 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
       for (int j = 0; j < p.cols(); ++j) p.col(j) = A[s].col(pivots[static_cast<std::size_t>(j)]);
       least = std::min(least, smallest(p) / best_possible[s]);
     }
-    return least;
+    return std::isfinite(least) ? least : 0.0;
   };
 
   // What the description names, and beside it what the elimination of the others leaves.
@@ -303,19 +320,11 @@ void KinematicReduction::choose_kernel(const std::vector<int>& preferred_free) {
   if (free_sets.empty() && A_1_.rows() == 0) {
     free_sets = {range(passive)};
   } else if (free_sets.empty()) {
-    std::vector<std::pair<double, std::vector<int>>> ranked;
-    for (auto& set : combinations(passive, k)) {
-      const double w = worth(set);
-      ranked.emplace_back(std::isfinite(w) ? w : 0, std::move(set));
-    }
-    std::ranges::stable_sort(ranked,
-                             [](const auto& a, const auto& b) {  // equal to 1 %: keep the declared order
-                               return std::floor(std::log(std::max(a.first, 1e-300)) * 100) >
-                                      std::floor(std::log(std::max(b.first, 1e-300)) * 100);
-                             });
-    for (auto& [w, set] : ranked) {
-      if (static_cast<int>(free_sets.size()) < derivation_limit) free_sets.push_back(set);
-    }
+    free_sets = combinations(passive, k);
+    std::vector<double> worths;
+    for (const auto& set : free_sets) worths.push_back(worth(set));
+    free_sets = best_first(free_sets, worths);
+    if (free_sets.size() > derivation_limit) free_sets.resize(derivation_limit);
     if (free_sets.empty()) {
       const Elimination elimination(tape_, A_1_, range(passive), sampler_);
       free_sets = {complement(elimination.pivot_columns(), passive)};

@@ -44,7 +44,7 @@ struct ChartRequest {
 
 class KinematicReduction {
  public:
-  /// @param preferred_free  names of velocities that the description wants as nu
+  /// @param preferred_free  passive columns that the description wants as nu
   KinematicReduction(Tape& tape, ConstraintRows rows, const RankAnalysis& ranks, Inverse inverse,
                      const std::vector<int>& preferred_free, const std::vector<std::string>& names,
                      const Sampler& sampler);

@@ -33,8 +33,8 @@ struct RankAnalysis {
   [[nodiscard]] std::string table_I_class(const Partition& partition) const;
 };
 
-/// Rows that take part in a dependency that exists at A alone, not where the rank is `rank`: the combinations
-/// u with u A = 0 beyond those of rows that are redundant everywhere.
+/// Rows that take part in a dependency that exists at A alone: the combinations u with u A = 0 beyond those
+/// of rows that are redundant everywhere.
 /// @param leading  rows that are independent almost everywhere
 std::vector<int> dependent_rows(const std::vector<std::vector<double>>& A, const std::vector<int>& leading);
 

@@ -40,6 +40,16 @@ struct NamedValue {
   }
 };
 
+bool reads_time(const Model& model) {
+  const Tape& tape = *model.tape;
+  for (NodeId id = 0; id < tape.size(); ++id) {
+    const Node& n = tape.node(id);
+    const int arity = info(n.op).arity;
+    if ((arity >= 1 && n.a == model.symbols.t) || (arity == 2 && n.b == model.symbols.t)) return true;
+  }
+  return false;
+}
+
 /// Angles at which constraints tend to lose rank.
 std::vector<NamedValue> special_angles() {
   const WorkingDigits digits(60);
@@ -102,6 +112,7 @@ State<Exact> random_state(const Model& model, SampleSource& source) {
     s.r.push_back(source.uniform(c.lower, c.upper));
     s.r_dot.push_back(symmetric(1));
   }
+  if (reads_time(model)) s.t = source.uniform(Exact(0), Exact(10));
   return s;
 }
 
@@ -114,11 +125,11 @@ std::vector<SampleState> sample_states(const Model& model, int random_count) {
   for (std::size_t i = 0; i < model.coordinates.size(); ++i) {
     if (model.coordinates[i].is_angle) angles.push_back(i);
   }
+  if (angles.empty()) return samples;
   /// False where the value is out of the working range.
   const auto place = [&](SampleState& sample, std::size_t coordinate, const NamedValue& to) {
     const Coordinate& c = model.coordinates[coordinate];
     if (to.value < c.lower || to.value > c.upper) return false;
-    sample.special = true;
     sample.state.r[coordinate] = to.value;
     sample.places[coordinate] = {c.name, to.text, true};
     return true;
@@ -128,7 +139,6 @@ std::vector<SampleState> sample_states(const Model& model, int random_count) {
     for (std::size_t k = 0; k < angles.size(); ++k) {
       if (!place(sample, angles[k], k % 2 == 0 ? even : odd)) return;
     }
-    sample.special = true;
     samples.push_back(std::move(sample));
   };
   const std::vector<NamedValue> special = special_angles();

@@ -21,7 +21,6 @@ struct SamplePlace {
 
 struct SampleState {
   std::vector<SamplePlace> places;  // of all coordinates
-  bool special = false;
   State<Exact> state;  // exact binary values, so that double and exact evaluation see the same numbers
 };
 
@@ -38,7 +37,8 @@ class SampleSource {
   std::uint64_t state_;
 };
 
-/// Random state in the working range with velocities in +-1 (free components only).
+/// Random state in the working range with velocities in +-1 (free components only); for a model that reads
+/// the time within 10 s, else at t = 0.
 State<Exact> random_state(const Model& model, SampleSource& source);
 
 /// `random_count` random states and every special configuration of the angles.

@@ -12,6 +12,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "optimise/accuracy/rounded.hpp"
 #include "optimise/accuracy/rounding_shares.hpp"
 
 namespace anholon {
@@ -107,11 +108,15 @@ std::vector<Outlook> outlooks_of(std::vector<std::vector<double>> errors) {
     if (tail < least_tail || !(of_program[tail] > 0)) continue;
     outlook.spread = of_program[0] / of_program[tail];
     // the tail falls like a power of the number of states (Hill 1975)
+    outlook.growth = most;
+    if (!std::isfinite(outlook.spread)) continue;
+    const WorkingDigits precision(rounded_digits);
     double exponent = 0;
     for (std::size_t i = 0; i < tail; ++i)
-      exponent += std::log(of_program[i] / of_program[tail]) / static_cast<double>(tail);
-    const double states = expected_states / static_cast<double>(of_program.size());
-    outlook.growth = std::min(std::pow(states, exponent), most);
+      exponent += log(Rounded(of_program[i] / of_program[tail])).x / static_cast<double>(tail);
+    const Rounded states(expected_states / static_cast<double>(of_program.size()));
+    const Rounded log_growth(exponent * log(states).x);
+    if (log_growth.x < log(Rounded(most)).x) outlook.growth = exp(log_growth).x;
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
+#include <vector>
 
 #include "optimise/accuracy/sine_and_cosine.hpp"
 #include "tape/interpret.hpp"
@@ -103,6 +104,26 @@ struct Rounded {
 template <>
 struct FromExact<Rounded> {
   Rounded operator()(const Exact& value) const { return Rounded(value.to_double()); }
+};
+
+/// Values of nodes in double, the same on every machine.
+class ReproducibleInterpreter {
+ public:
+  ReproducibleInterpreter(const Tape& tape, const std::vector<NodeId>& nodes)
+      : run_(tape, nodes, FromExact<Rounded>{}) {}
+
+  std::vector<double> operator()(const std::vector<double>& inputs) {
+    const WorkingDigits precision(rounded_digits);
+    std::vector<Rounded> in, out(run_.output_count());
+    for (const double x : inputs) in.emplace_back(x);
+    run_(in, out);
+    std::vector<double> result;
+    for (const Rounded& x : out) result.push_back(x.x);
+    return result;
+  }
+
+ private:
+  Interpreter<Rounded> run_;
 };
 
 }  // namespace anholon

@@ -54,6 +54,7 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
   Interpreter<Rounded> in_double(tape, roots, FromExact<Rounded>{});
 
   std::vector<std::vector<BlockError>> blocks;  // one for each block of each program, over the states
+  std::size_t random = 0;                       // of these states, at the front
   for (std::size_t s = 0; s < states.size(); ++s) {
     const std::vector<double>& state = states[s];
     std::vector<Exact> expected;
@@ -65,6 +66,7 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
     } catch (const std::domain_error&) {
       continue;
     }
+    if (s < measured_states) ++random;
     std::vector<Rounded> inputs, got(roots.size());
     for (const double x : state) inputs.emplace_back(x);
     in_double(inputs, got);
@@ -93,7 +95,7 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
     for (std::size_t b = 0; b < program.size() && block < blocks.size(); ++b, ++block) {
       std::vector<double> scales;
       for (const BlockError& e : blocks[block]) scales.push_back(e.scale);
-      scales = natural_scales(scales, measured_states);
+      scales = natural_scales(scales, random);
       of_state.resize(scales.size(), 0.0);
       for (std::size_t s = 0; s < scales.size(); ++s) {
         const double error = blocks[block][s].error / scales[s] / ulp;
@@ -105,17 +107,6 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
     if (!of_state.empty()) e = {median_of(of_state), *std::ranges::max_element(of_state), excess};
     result.push_back(e);
   }
-  return result;
-}
-
-std::vector<double> reproducible_values(const Tape& tape, const std::vector<NodeId>& nodes,
-                                        const std::vector<double>& inputs) {
-  const WorkingDigits precision(rounded_digits);
-  std::vector<Rounded> in, out(nodes.size());
-  for (const double x : inputs) in.emplace_back(x);
-  Interpreter<Rounded>(tape, nodes, FromExact<Rounded>{})(in, out);
-  std::vector<double> result;
-  for (const Rounded& x : out) result.push_back(x.x);
   return result;
 }
 

@@ -42,8 +42,4 @@ std::vector<RoundingError> rounding_errors(const Tape& tape,
                                            const std::vector<std::vector<double>>& states,
                                            const std::vector<std::vector<double>>& allowance = {});
 
-/// Values of nodes in double, the same on every machine.
-std::vector<double> reproducible_values(const Tape& tape, const std::vector<NodeId>& nodes,
-                                        const std::vector<double>& inputs);
-
 }  // namespace anholon

@@ -40,7 +40,8 @@ Hoisted hoist(const Tape& tape, const std::vector<NodeId>& roots, const std::vec
     values.push_back(id);
     is_value.insert(id);
   }
-  for (const NodeId id : emission_order(tape, values).nodes) {  // by structure, not by node id
+  std::ranges::sort(values, {}, [&](NodeId id) { return tape.key(id); });  // by structure, not by node id
+  for (const NodeId id : emission_order(tape, values).nodes) {
     if (is_value.contains(id)) result.values.push_back(id);
   }
   return result;
