@@ -6,6 +6,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -156,6 +157,18 @@ double seconds_of_children() {
   return of(used.ru_utime) + of(used.ru_stime);
 }
 
+/// What of the processor decides what -march=native means.
+std::string processor() {
+  std::ifstream info("/proc/cpuinfo");
+  std::string result, line;
+  while (std::getline(info, line) && !line.empty()) {  // up to the second processor
+    for (const char* key : {"model name", "flags", "Features", "CPU part"}) {
+      if (line.starts_with(key)) result += line + "\n";
+    }
+  }
+  return result;
+}
+
 /// Every part with its length, so that no two lists of parts give the same text.
 void append(std::string& text, std::string_view part) { text += fmt::format("{}:{}\n", part.size(), part); }
 
@@ -179,6 +192,8 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
   for (const std::string& word : compiler) append(identity, word);
   append(identity, compiler_version(compiler, cache));
   for (const std::string& flag : flags) append(identity, flag);
+  if (std::ranges::any_of(flags, [](const std::string& f) { return f.ends_with("=native"); }))
+    append(identity, processor());  // the folder may be shared by different machines
   const fs::path folder = cache / sha256_hex(identity);
   const fs::path library = folder / "program.so";
   if (fs::exists(library)) return {library, true};
@@ -188,6 +203,11 @@ CompiledFile compile_cached(const std::string& header, const std::string& source
   compile(compiler, flags, header, source, work, work / "program.so");
   std::error_code error;
   fs::rename(work, folder, error);
+  if (error && !fs::exists(library)) {  // what a cleaner left of the folder
+    std::error_code ignored;
+    fs::remove_all(folder, ignored);
+    fs::rename(work, folder, error);
+  }
   if (error && !fs::exists(library)) {  // else another process was faster, with the same bytes
     throw CompileError(
         fmt::format("cannot move compiled code to '{}': {}", folder.string(), error.message()));

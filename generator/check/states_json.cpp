@@ -13,6 +13,16 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+bool is_rotation(const Mat3<Exact>& R) {
+  const Mat3<Exact> square = R * R.transposed();
+  const Mat3<Exact> identity = Mat3<Exact>::identity();
+  for (std::size_t i = 0; i < 9; ++i) {
+    if (std::abs((square.m[i] - identity.m[i]).to_double()) > 1e-9) return false;
+  }
+  const auto row = [&](std::size_t i) { return Vec3<Exact>{R.m[3 * i], R.m[3 * i + 1], R.m[3 * i + 2]}; };
+  return dot(row(0), cross(row(1), row(2))) > Exact(0);
+}
+
 class Reader {
  public:
   Reader(std::string file, const Model& model) : file_(std::move(file)), model_(model) {}
@@ -112,6 +122,8 @@ class Reader {
           fail(where + ": g.R is not a 3x3 matrix", "give three rows of three numbers");
         for (std::size_t j = 0; j < 3; ++j) s.R.m[3 * i + j] = number(R[i][j], where + ", g.R");
       }
+      if (!is_rotation(s.R))
+        fail(where + ": g.R is not a rotation", "its rows must be orthonormal to 1e-9, its determinant 1");
       const auto p = numbers(g, "p", 3, where + ", g");
       for (int i = 0; i < 3; ++i) s.p[i] = p[static_cast<std::size_t>(i)];
     }
@@ -178,15 +190,20 @@ Json to_json(const Matrix<S>& m, unsigned digits) {
 
 StatesFile read_states(const std::filesystem::path& path, const Model& model) {
   std::ifstream stream(path);
-  if (!stream) throw ModelError({path.filename().string(), 0, 0}, "cannot be read", "check the path");
+  if (!stream || std::filesystem::is_directory(path))
+    throw ModelError({path.string(), 0, 0}, "cannot be read", "check the path");
   Json json;
   try {
     json = Json::parse(stream);
   } catch (const Json::parse_error& error) {
-    throw ModelError({path.filename().string(), 0, 0}, fmt::format("is not JSON at byte {}", error.byte),
+    throw ModelError({path.string(), 0, 0}, fmt::format("is not JSON at byte {}", error.byte),
                      "mend the syntax there");
+  } catch (const Json::out_of_range& error) {
+    throw ModelError({path.string(), 0, 0},
+                     fmt::format("has a number that no double holds: {}", error.what()),
+                     "write it as a string");
   }
-  return Reader(path.filename().string(), model).read(json);
+  return Reader(path.string(), model).read(json);
 }
 
 template <class S>

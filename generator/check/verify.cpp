@@ -16,6 +16,7 @@
 #include "check/evaluate_recursion.hpp"
 #include "check/output_record.hpp"
 #include "check/relative_condition.hpp"
+#include "check/states_json.hpp"
 #include "describe/mechanise.hpp"
 #include "optimise/accuracy/rounding_shares.hpp"
 #include "reduce/samples.hpp"
@@ -211,7 +212,7 @@ class Verifier {
     const Evaluated<Exact> expected =
         evaluate_recursion(mechanism, reduced_, input, Exact::from_decimal("1e-25"), sharing);
     const Evaluated<double> numeric =
-        evaluate_recursion(rounded, reduced_, double_input(input), 1e-9, sharing);
+        evaluate_recursion(rounded, reduced_, rounded_input<double>(input), 1e-9, sharing);
 
     NamedValues<Exact> at = in;
     const NamedValues<Exact> forward = run("forward_dynamics", at);
@@ -331,19 +332,6 @@ class Verifier {
     const NamedValues<Exact> got = exact_(name, in);
     compare_formula("state_jacobian", "rates_x", got.at("rates_x"), by_state);
     compare_formula("state_jacobian", "rates_t", got.at("rates_t"), by_time);
-  }
-
-  static EvaluationInput<double> double_input(const EvaluationInput<Exact>& e) {
-    EvaluationInput<double> d;
-    for (std::size_t i = 0; i < 9; ++i) d.state.R.m[i] = e.state.R.m[i].to_double();
-    for (int i = 0; i < 3; ++i) d.state.p[i] = e.state.p[i].to_double();
-    for (int i = 0; i < 6; ++i) d.state.eta[i] = e.state.eta[i].to_double();
-    for (const Exact& x : e.state.r) d.state.r.push_back(x.to_double());
-    for (const Exact& x : e.state.r_dot) d.state.r_dot.push_back(x.to_double());
-    for (const Exact& x : e.r_ddot) d.r_ddot.push_back(x.to_double());
-    for (const Exact& x : e.tau) d.tau.push_back(x.to_double());
-    d.has_acceleration = true;
-    return d;
   }
 
   /// d(T + V_gravity)/dt = tau_a . r_a_dot + power of what is applied; the derivative by central differences,

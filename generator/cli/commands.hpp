@@ -17,6 +17,7 @@ inline constexpr int check_failed = 1;
 inline constexpr int usage = 2;
 inline constexpr int bad_input = 3;
 inline constexpr int unsupported = 4;
+inline constexpr int environment = 5;  // no compiler, no gnuplot, nowhere to write
 inline constexpr int internal_error = 70;
 
 struct ModelOptions {

@@ -54,10 +54,21 @@ CountValues counts_of(const ModelOptions& options) {
 
 }  // namespace
 
+std::string scene_file(const ModelOptions& options) {
+  if (!options.scene.empty()) return options.scene;
+  return !is_robot_file(options.model) && is_scene(options.model) ? options.model : "";
+}
+
 Scene load_scene(const ModelOptions& options) {
   if (!options.counts.empty())
     throw std::invalid_argument("--count is for a model file; a scene says it itself: counts = { N = 12 }");
-  Scene scene = read_scene(options.scene.empty() ? options.model : options.scene);
+  Scene scene = read_scene(scene_file(options));
+  if (!options.scene.empty() &&
+      std::filesystem::weakly_canonical(options.model) != std::filesystem::weakly_canonical(scene.model_file))
+    throw ModelError(
+        scene.where,
+        fmt::format("the scene is one of '{}', not of '{}'", scene.model_file.string(), options.model),
+        "name that model, or the scene alone");
   if (options.contacts.empty()) return scene;
   if (std::ranges::find(scene.contact_sets, options.contacts, &ContactSet::name) == scene.contact_sets.end())
     throw std::invalid_argument(
@@ -68,17 +79,19 @@ Scene load_scene(const ModelOptions& options) {
 
 Model load_model(const ModelOptions& options) {
   const bool has_robot_option = options.robot.floating || options.robot.as_written ||
-                                options.robot.symbolic_inertia || !options.gravity.empty();
-  if (is_robot_file(options.model) && options.scene.empty()) {
+                                options.robot.symbolic_inertia || !options.gravity.empty() || !options.search;
+  const bool has_scene = !scene_file(options).empty();
+  if (is_robot_file(options.model) && !has_scene) {
     if (!options.counts.empty()) throw std::invalid_argument("--count is for a model file");
+    if (!options.contacts.empty())
+      throw std::invalid_argument("--contacts: contact sets are those of a scene");
     return read_robot(options.model, robot_options(options));
   }
   if (has_robot_option)
     throw std::invalid_argument(
-        "--floating, --as-written, --symbolic-inertia and --gravity are for a robot file (URDF, SDFormat, "
-        "MJCF) "
-        "without a scene; a model file says these things itself (docs/robot-files.md)");
-  if (!options.scene.empty() || is_scene(options.model)) {
+        "--floating, --as-written, --symbolic-inertia, --gravity and --no-search are for a robot file (URDF, "
+        "SDFormat, MJCF) without a scene; a model file says these things itself (docs/robot-files.md)");
+  if (has_scene) {
     const Scene scene = load_scene(options);
     return specialise(scene.model, scene);
   }
@@ -123,8 +136,9 @@ AnyDerivation derive_any(const ModelOptions& options, const Model& model, bool t
 DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
   DeriveRequest request;
   request.functions = options.functions;
+  if (named(request.functions, "all")) request.functions.clear();
   request.optimise = optimise_for(options.optimise);
-  if (!options.scene.empty() || is_scene(options.model)) {
+  if (!scene_file(options).empty()) {
     const Scene scene = load_scene(options);
     request.scene = program_name(scene);
     request.torque_driven = {scene.torque_driven.begin(), scene.torque_driven.end()};
@@ -150,8 +164,9 @@ DeriveRequest derive_request(const ModelOptions& options, const Model& model) {
       throw std::invalid_argument(
           fmt::format("--inverse leading: rows are whole numbers from 1 to {}", rows));
     request.leading_rows.push_back(row - 1);
-    at = next < end && *next == ',' ? next + 1 : next;
-    if (at == next && next < end) throw std::invalid_argument("--inverse leading: separate rows by commas");
+    at = next < end ? next + 1 : next;
+    if (next < end && (*next != ',' || at == end))
+      throw std::invalid_argument("--inverse leading: separate rows by commas");
   }
   return request;
 }

@@ -15,6 +15,8 @@
 
 namespace anholon::cli {
 
+/// --scene, or MODEL where that is a scene; empty where there is none.
+std::string scene_file(const ModelOptions& options);
 /// The scene that the options name, with the contact set that they choose.
 Scene load_scene(const ModelOptions& options);
 /// The model, specialised to the scene if one is named.

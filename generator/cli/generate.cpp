@@ -24,8 +24,7 @@ namespace {
 /// Operations of the same functions for the whole model, nothing frozen, locked or left out; empty without a
 /// scene.
 std::map<std::string, int> operations_without_scene(const GenerateOptions& options, const Program& program) {
-  const std::string file = !options.scene.empty() ? options.scene : options.model;
-  if (is_robot_file(file) || !is_scene(file)) return {};
+  if (scene_file(options).empty()) return {};
   const Scene scene = load_scene(options);
   DeriveRequest request = derive_request(options, scene.model);
   request.functions.clear();
@@ -148,8 +147,9 @@ int generate_one(const GenerateOptions& options) {
                dearest);
   }
   if (operations_before > 0)
-    fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % fewer\n", operations,
-               operations_before, 100.0 * (operations_before - operations) / operations_before);
+    fmt::print("scene: {} operations where the whole model takes {}, {:.0f} % {}\n", operations,
+               operations_before, 100.0 * std::abs(operations_before - operations) / operations_before,
+               operations > operations_before ? "more" : "fewer");
   if (options.passes) {
     const AnyDerivation traced = derive_any(options, model, true);
     print_routes(traced, true);
@@ -165,8 +165,7 @@ int generate_one(const GenerateOptions& options) {
 }  // namespace
 
 int generate(const GenerateOptions& options) {
-  const std::string file = !options.scene.empty() ? options.scene : options.model;
-  if (!options.contacts.empty() || is_robot_file(file) || !is_scene(file)) return generate_one(options);
+  if (!options.contacts.empty() || scene_file(options).empty()) return generate_one(options);
   const std::vector<ContactSet> sets = load_scene(options).contact_sets;
   if (sets.size() > 1 && std::filesystem::path(options.output).extension() == ".hpp")
     throw std::invalid_argument(

@@ -7,9 +7,12 @@
 #include <cstdio>
 #include <functional>
 #include <stdexcept>
+#include <system_error>
 
+#include "check/compile_cache.hpp"
 #include "cli/commands.hpp"
 #include "describe/location.hpp"
+#include "report/plot.hpp"
 
 int main(int argc, char** argv) {
   using namespace anholon;
@@ -18,10 +21,11 @@ int main(int argc, char** argv) {
       "Symbolic generator of reduced multibody dynamics: from one description of a robot to C++ functions.",
       "anholon");
   app.require_subcommand(1);
+  app.option_defaults()->always_capture_default();
   app.set_version_flag("--version", ANHOLON_VERSION);
   app.footer(
-      "Exit status: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 unsupported, 70 a fault of this "
-      "program.\n\n"
+      "Exit status: 0 ok, 1 a check failed, 2 usage, 3 bad input, 4 unsupported, 5 compiling, plotting or "
+      "writing failed, 70 a fault of this program.\n\n"
       "Environment, for generated code that verify, evaluate, simulate and report compile: CXX, the "
       "compiler; "
       "ANHOLON_CXXFLAGS, flags after its own, such as -march=native; ANHOLON_CACHE, the folder that keeps "
@@ -42,7 +46,9 @@ int main(int argc, char** argv) {
     verb->add_option(
         "--inverse", o.inverse,
         "generalised inverse where rows are redundant: pseudo, or leading:ROW[,ROW...] (from 1)");
-    verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")->delimiter(',');
+    verb->add_option("--count", o.counts, "numbers for counts of the description: N=12")
+        ->delimiter(',')
+        ->default_str("");
     verb->add_option("--contacts", o.contacts, "contact set of the scene; default: that of its first phase");
     optimise_option(verb, o.optimise);
     if (functions)
@@ -50,7 +56,8 @@ int main(int argc, char** argv) {
               "--functions", o.functions,
               "functions to generate, separated by commas; default: all, or of a robot file the five "
               "of docs/robot-files.md; 'all' for every one there")
-          ->delimiter(',');
+          ->delimiter(',')
+          ->default_str("");
     verb->add_flag("--floating", o.robot.floating, "URDF: the root link moves freely");
     verb->add_flag("--as-written", o.robot.as_written,
                    "robot file: angles and axes exactly as their digits say");
@@ -58,8 +65,9 @@ int main(int argc, char** argv) {
                    "robot file: inertial figures become parameters");
     verb->add_option("--gravity", o.gravity,
                      "robot file: acceleration along -z of the world, m/s^2; default: the file's, or 9.81");
-    verb->add_flag("!--no-search", o.search,
-                   "robot file: take the first formulation instead of the cheapest");
+    verb->add_flag_callback(
+        "--no-search", [&o] { o.search = false; },
+        "robot file: take the first formulation instead of the cheapest");
   };
 
   cli::CheckOptions check;
@@ -112,9 +120,8 @@ int main(int argc, char** argv) {
   model_options(verb, verify, true);
   verb->add_option("--samples", verify.samples, "random states; beyond 1000, long double is the judge")
       ->check(CLI::Range(1, 10000000));
-  verb->add_option(
-          "--bound", verify.bound_ulps,
-          "largest error in ulps of the natural scale, 2^-52; beyond it 10 eps kappa. Default 450, 1e-13")
+  verb->add_option("--bound", verify.bound_ulps,
+                   "largest error in ulps of the natural scale, 2^-52; beyond it 10 eps kappa. 450 are 1e-13")
       ->check(CLI::PositiveNumber);
   verb->add_flag("--json", verify.json, "print JSON, schema anholon.verify/1");
   verb->callback([&] { run = [&] { return cli::verify(verify); }; });
@@ -123,21 +130,29 @@ int main(int argc, char** argv) {
   verb = app.add_subcommand("simulate", "Generate, compile and integrate a scene");
   verb->add_option("SCENE", simulate.scene, "scene file (TOML)")->required();
   verb->add_option("-o,--output", simulate.output,
-                   "folder for the trajectory and its summary; default: out/<scene>");
+                   "folder for the trajectory and its summary; default: out/<model>_<scene>");
   optimise_option(verb, simulate.optimise);
-  verb->add_flag("--work-precision", simulate.work_precision,
-                 "error against CPU time over a ladder of tolerances");
-  verb->add_flag("--conditioning", simulate.conditioning,
-                 "conditioning and error of the accelerations along the path, as CSV and SVG");
-  verb->add_option("--stiffen", simulate.stiffen,
-                   "shares of elastic contacts at these factors of their stiffness, beside rigid ones")
-      ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+  auto* ladder = verb->add_flag("--work-precision", simulate.work_precision,
+                                "error against CPU time over a ladder of tolerances");
+  auto* path = verb->add_flag("--conditioning", simulate.conditioning,
+                              "conditioning and error of the accelerations along the path, as CSV and SVG")
+                   ->excludes(ladder);
+  auto* stiffen =
+      verb->add_option("--stiffen", simulate.stiffen,
+                       "shares of elastic contacts at these factors of their stiffness, beside rigid ones")
+          ->delimiter(',')
+          ->check(CLI::PositiveNumber)
+          ->excludes(ladder)
+          ->excludes(path);
   verb->add_option(
           "--stiffness-cost", simulate.stiffness_cost,
           "cost of the same accuracy as parameters grow 1e8-fold, each to its exponent (EI:1,c:0.5): "
           "stiff and explicit method")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->default_str("")
+      ->excludes(ladder)
+      ->excludes(path)
+      ->excludes(stiffen);
   verb->callback([&] { run = [&] { return cli::simulate(simulate); }; });
 
   cli::ReportOptions report;
@@ -145,13 +160,16 @@ int main(int argc, char** argv) {
       "report", "Measure models and their motions: a page of speed against error, and its figures as JSON");
   verb->add_option("MODELS", report.models,
                    "descriptions or robot files, 'FILE:floating' for a robot whose root link moves freely; "
-                   "default: models/NAME/NAME.toml of this folder");
+                   "default: models/NAME/NAME.toml of this folder")
+      ->default_str("");
   verb->add_option("-o,--output", report.output,
                    "folder for index.html and report.json; an interrupted run "
                    "goes on where it was");
   verb->add_option("--samples", report.samples, "random states at which errors are measured")
       ->check(CLI::Range(1, 10000000));
-  verb->add_flag("!--no-motions", report.motions, "leave out the motions of the scenes beside the models");
+  verb->add_flag_callback(
+      "--no-motions", [&report] { report.motions = false; },
+      "leave out the motions of the scenes beside the models");
   verb->callback([&] { run = [&] { return cli::report(report); }; });
 
   try {
@@ -160,7 +178,10 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? cli::ok : cli::usage;
   }
   try {
-    return run();
+    const int status = run();
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return status;
+    fmt::print(stderr, "anholon: cannot write standard output\n");
+    return cli::environment;
   } catch (const ModelError& error) {
     fmt::print(stderr, "{}\n", error.what());
     return cli::bad_input;
@@ -170,6 +191,15 @@ int main(int argc, char** argv) {
   } catch (const std::invalid_argument& error) {
     fmt::print(stderr, "anholon: {}\n", error.what());
     return cli::usage;
+  } catch (const CompileError& error) {
+    fmt::print(stderr, "anholon: {}\n", error.what());
+    return cli::environment;
+  } catch (const PlotError& error) {
+    fmt::print(stderr, "anholon: {}\n", error.what());
+    return cli::environment;
+  } catch (const std::system_error& error) {
+    fmt::print(stderr, "anholon: {}\n", error.what());
+    return cli::environment;
   } catch (const std::exception& error) {
     fmt::print(stderr, "anholon: internal error: {}\n", error.what());
     return cli::internal_error;

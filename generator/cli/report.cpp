@@ -16,6 +16,7 @@
 #include "emit/plan.hpp"
 #include "emit/write_file.hpp"
 #include "report/page.hpp"
+#include "report/plot.hpp"
 #include "report/record.hpp"
 
 namespace anholon::cli {
@@ -176,6 +177,7 @@ ordered_json measured_motion(const fs::path& file, const Stage& stage) {
 
 int report(const ReportOptions& options) {
   const Stopwatch watch;
+  (void)draw({"", "", "", {{"", {{1, 1}}}}});  // a missing gnuplot is to show before an hour of measuring
   std::vector<Subject> subjects;
   for (const std::string& text : options.models.empty() ? models_here() : options.models)
     subjects.push_back(subject_of(text));

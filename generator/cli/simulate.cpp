@@ -74,8 +74,14 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
   Ladder ladder;
   ladder.single = true;
   const WorkPrecision result = work_precision(scene, show, ladder);
-  fmt::print("\nreference   {} in long double, {} steps; half as many move it by {:.1e}\n",
-             result.reference_method, result.reference_steps, result.reference_error);
+  const bool has_reference = result.reference_steps > 0;
+  if (has_reference) {
+    fmt::print("\nreference   {} in long double, {} steps; half as many move it by {:.1e}\n",
+               result.reference_method, result.reference_steps, result.reference_error);
+  } else {
+    fmt::print("\nreference   NONE: {} in long double does not converge; no error is known\n",
+               result.reference_method);
+  }
   for (const char* code : {"generated", "recursion"}) {
     const RoundingFloor floor = rounding_floor(result, code);
     fmt::print("floor       {:10s} {:.1e}, {}\n", code, floor.error,
@@ -87,7 +93,8 @@ int print_work_precision(const Scene& scene, const std::filesystem::path& folder
   write_output((folder / "work_precision.json").string(), to_json(scene, result).dump(1) + "\n");
   fmt::print("files       {}, {}\n", (folder / "work_precision.csv").string(),
              (folder / "work_precision.json").string());
-  return ok;
+  const auto is_ok = [](const WorkPrecisionPoint& p) { return p.status == "ok"; };
+  return has_reference && std::ranges::any_of(result.points, is_ok) ? ok : check_failed;
 }
 
 int print_conditioning(const Scene& scene, const std::filesystem::path& folder) {

@@ -94,6 +94,18 @@ TEST(WriteFile, ReplacesWholeFilesAndLeavesEqualOnesAlone) {
   EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
 }
 
+TEST(WriteFile, KeepsLinksAndDevices) {
+  const std::filesystem::path folder = test::test_folder();
+  const std::filesystem::path file = folder / "a.txt", link = folder / "link";
+  write_file(file, "one");
+  std::filesystem::create_symlink(file, link);
+  EXPECT_TRUE(write_file(link, "two"));
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(test::read_text(file), "two");
+  EXPECT_TRUE(write_file("/dev/null", "gone"));
+  EXPECT_FALSE(std::filesystem::is_regular_file("/dev/null"));
+}
+
 TEST(DescribeJson, ListsParametersFunctionsAndBlocks) {
   const auto data = nlohmann::json::parse(describe_json(test::cart_pendulum()));
   EXPECT_EQ(data["schema"], "anholon.program/1");
