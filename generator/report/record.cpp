@@ -181,9 +181,9 @@ ordered_json motion_record(const Scene& scene, const Stage& stage) {
         scene,
         work_precision(
             scene, [&](const auto& p) { stage(fmt::format("{} at {:.0e}", p.code, p.tolerance)); }, ladder));
-  } catch (const CompileError&) {
-    throw;
-  } catch (const std::exception& error) {  // several phases, a projected motion, no duration
+  } catch (const UnfitSceneError& error) {  // several phases, no duration
+    record["left_out"] = error.what();
+  } catch (const UnsupportedError& error) {  // a projected motion, or what has no program
     record["left_out"] = error.what();
   }
   return record;

@@ -15,15 +15,6 @@
 namespace anholon {
 namespace {
 
-std::vector<NodeId> nodes_of(const Program& program, const std::string& function, const std::string& block) {
-  for (const Function& f : program.functions) {
-    for (const OutputBlock& b : f.outputs) {
-      if (f.name == function && b.name == block) return b.nodes;
-    }
-  }
-  return {};
-}
-
 /// Function `settling`: fourth and fifth derivatives of some passive coordinates along the motion, as
 /// functions of pose, shape, nu and t alone.
 void add_settling(SceneProgram& p, std::size_t chart, const std::vector<std::size_t>& which) {
@@ -37,15 +28,15 @@ void add_settling(SceneProgram& p, std::size_t chart, const std::vector<std::siz
     inputs.emplace_back(tape, found->nodes[i]), values.emplace_back(tape, value);
   };
   for (const auto& [block, motion] : {std::pair{"r_a_dot", "r_m_dot"}, std::pair{"r_a_ddot", "r_m_ddot"}}) {
-    const std::vector<NodeId> imposed = nodes_of(program, "imposed", motion);
+    const std::vector<NodeId> imposed = output_of(program, "imposed", motion);
     for (std::size_t i = 0; i < imposed.size(); ++i) replace(block, i, imposed[i]);
   }
-  const std::vector<NodeId> r_m = nodes_of(program, "imposed", "r_m");
+  const std::vector<NodeId> r_m = output_of(program, "imposed", "r_m");
   for (std::size_t i = 0; i < r_m.size(); ++i) {
     const auto at = std::ranges::find(p.original.active, p.reduced.active[i]);
     replace("r_a", static_cast<std::size_t>(at - p.original.active.begin()), r_m[i]);
   }
-  const std::vector<NodeId> torque = nodes_of(program, prefix + "imposed_torque", "torque");
+  const std::vector<NodeId> torque = output_of(program, prefix + "imposed_torque", "torque");
   for (std::size_t i = 0; i < torque.size(); ++i)
     replace(p.reduced.active.empty() ? "tau_a" : "tau_d", i, torque[i]);
   const auto closed = [&](const std::vector<NodeId>& nodes) {
@@ -55,13 +46,13 @@ void add_settling(SceneProgram& p, std::size_t chart, const std::vector<std::siz
   std::vector<NodeId> moving, rates;
   for (const auto& [input, rate] : p.derivation->rates[chart]) moving.push_back(input), rates.push_back(rate);
   const auto nu = std::ranges::find(program.inputs, "nu", &InputBlock::name);
-  const std::vector<NodeId> nu_dot = nodes_of(program, prefix + "forward_dynamics", "nu_dot");
+  const std::vector<NodeId> nu_dot = output_of(program, prefix + "forward_dynamics", "nu_dot");
   for (std::size_t i = 0; i < nu_dot.size(); ++i) moving.push_back(nu->nodes[i]), rates.push_back(nu_dot[i]);
   rates = closed(rates);
   Direction flow;
   for (std::size_t i = 0; i < moving.size(); ++i) flow.emplace_back(moving[i], rates[i]);
 
-  std::vector<NodeId> accelerations = nodes_of(program, prefix + "forward_dynamics", "r_p_ddot");
+  std::vector<NodeId> accelerations = output_of(program, prefix + "forward_dynamics", "r_p_ddot");
   std::vector<NodeId> derivative;
   for (const std::size_t i : which) derivative.push_back(accelerations[i]);
   derivative = closed(derivative);

@@ -11,15 +11,6 @@
 namespace anholon {
 namespace {
 
-std::vector<NodeId> output_of(const Program& program, const std::string& function, const std::string& block) {
-  for (const Function& f : program.functions) {
-    for (const OutputBlock& b : f.outputs) {
-      if (f.name == function && b.name == block) return b.nodes;
-    }
-  }
-  return {};
-}
-
 std::vector<NodeId> input_of(const Program& program, const std::string& block) {
   const auto found = std::ranges::find(program.inputs, block, &InputBlock::name);
   return found == program.inputs.end() ? std::vector<NodeId>{} : found->nodes;

@@ -41,6 +41,7 @@ double error_of(const NamedValues<double>& got, const NamedValues<Exact>& want) 
 }  // namespace
 
 PathConditioning path_conditioning(const Scene& scene, const Progress& progress) {
+  require_one_phase(scene, "conditioning is followed along the motion of one set of contacts");
   PathConditioning path;
   std::vector<Seen> rows;
   path.motion = simulate_scene(scene, progress, [&](const SceneProgram& program, Runner<double>& run) {

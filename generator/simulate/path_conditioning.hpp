@@ -24,7 +24,7 @@ struct PathConditioning {
   std::vector<PathPoint> points;  // one for each row of the motion
 };
 
-/// @throws ModelError, CompileError
+/// @throws ModelError, CompileError, UnfitSceneError for a scene of several phases
 PathConditioning path_conditioning(const Scene& scene, const Progress& progress = {});
 
 /// One line of names with units first.

@@ -20,7 +20,7 @@ double state_error(const std::vector<S>& state, const std::vector<long double>& 
   scale.insert(scale.end(), 3, sizes.length);
   scale.insert(scale.end(), sizes.shape.begin(), sizes.shape.end());
   scale.insert(scale.end(), sizes.nu.begin(), sizes.nu.end());
-  double worst = 0;
+  double worst = reference.empty() ? INFINITY : 0;  // nothing is near what is not known
   for (std::size_t i = 0; i < reference.size(); ++i) {
     const double error =
         static_cast<double>(std::abs(static_cast<long double>(state[i]) - reference[i])) / scale[i];

@@ -13,14 +13,14 @@
 namespace anholon {
 
 struct ReferenceSolution {
-  std::vector<long double> state;  // R (9, row-major), p (3), r_p, r_d, nu
+  std::vector<long double> state;  // R (9, row-major), p (3), r_p, r_d, nu; empty where none was found
   long steps = 0;                  // of the finer of two runs that agree; 0: none was found
   double own_error = 0;            // how far the two differ, as in state_error()
   const char* method = "";
 };
 
 /// Largest difference of two final states: of an entry of R as it is, of the others relative to their size
-/// along the motion. Infinite where a value is not finite.
+/// along the motion. Infinite where a value is not finite or the reference is empty.
 template <class S>
 double state_error(const std::vector<S>& state, const std::vector<long double>& reference,
                    const MotionSizes& sizes);

@@ -115,6 +115,15 @@ void add_contact_shares(const Scene& scene, SceneProgram& p) {
 
 }  // namespace
 
+std::vector<NodeId> output_of(const Program& program, const std::string& function, const std::string& block) {
+  for (const Function& f : program.functions) {
+    for (const OutputBlock& b : f.outputs) {
+      if (f.name == function && b.name == block) return b.nodes;
+    }
+  }
+  return {};
+}
+
 SceneProgram make_program(const Scene& scene) {
   SceneProgram p{specialise(scene.model, scene), nullptr, {}, {}, {}};
   DeriveRequest request;

@@ -7,6 +7,7 @@
 // multipliers in the contact forces.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "derive/derive.hpp"
@@ -40,6 +41,9 @@ void add_projection(SceneProgram& program);
 /// Function `field_jacobian` of a chart: the derivative of all rates that an integrator sees, quadratures
 /// included. Where the program has been derived with state_jacobian.
 void add_field_jacobian(SceneProgram& program, std::size_t chart);
+
+/// Nodes of an output of a function; none where the program has no such output.
+std::vector<NodeId> output_of(const Program& program, const std::string& function, const std::string& block);
 
 /// Nodes of the program for expressions of the scene. Velocities are those that nu and r_a_dot mean in a
 /// chart.

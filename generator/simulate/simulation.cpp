@@ -336,7 +336,12 @@ class PhaseRunner {
 
 void require_duration(const Scene& scene) {
   if (!(scene.duration > 0))
-    throw ModelError(scene.where, "the scene has no duration", "write how long it lasts, in s: duration = 5");
+    throw UnfitSceneError(scene.where, "the scene has no duration",
+                          "write how long it lasts, in s: duration = 5");
+}
+
+void require_one_phase(const Scene& scene, const std::string& why) {
+  if (scene.phases.size() > 1) throw UnfitSceneError(scene.phases[1].where, why, "take a scene of one phase");
 }
 
 SimulationResult simulate_scene(const Scene& wanted, const Progress& wanted_progress,
@@ -350,8 +355,6 @@ SimulationResult simulate_scene(const Scene& wanted, const Progress& wanted_prog
   scene = settled(scene);
   const std::map<std::string, SetOfContacts> sets = sets_of_contacts(scene, phases, progress);
   SimulationResult result;
-  result.was_cached =
-      std::ranges::all_of(sets, [](const auto& set) { return set.second.code->was_cached(); });
   const SceneProgram& first = *sets.at(phases.front().set).program;
   result.operations = first.operations;
   result.class_of_table_I = first.derivation->reduction.ranks.table_I_class(first.reduced);

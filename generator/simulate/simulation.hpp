@@ -60,7 +60,6 @@ struct SimulationResult {
   double position_residual = 0;    // largest residual of a condition on the position [m or 1]
   double orthonormality = 0;       // largest ||R^T R - 1||
   int operations = 0;              // of one evaluation of the field
-  bool was_cached = false;         // the compiled code
   std::string class_of_table_I;
   std::size_t charts = 1;             // of the kernel
   bool projected = false;             // the imposed motion, to a compatible one
@@ -81,12 +80,22 @@ class Runner;
 /// Told of each row of the trajectory, with the state in the buffers.
 using RowObserver = std::function<void(const SceneProgram& program, Runner<double>& run)>;
 
-/// @throws ModelError, CompileError
+/// The scene is right, but describes no motion of the kind that is asked for. An error of its own, so that
+/// who goes through many scenes may leave this one out.
+class UnfitSceneError : public ModelError {
+ public:
+  using ModelError::ModelError;
+};
+
+/// @throws ModelError, CompileError, UnfitSceneError for a scene without duration
 SimulationResult simulate_scene(const Scene& scene, const Progress& progress = {},
                                 const RowObserver& observer = {});
 
-/// @throws ModelError where the scene has no duration
+/// @throws UnfitSceneError where the scene has no duration
 void require_duration(const Scene& scene);
+
+/// @throws UnfitSceneError at the second phase, where the scene has one. @param why  what asks for one alone
+void require_one_phase(const Scene& scene, const std::string& why);
 
 /// The trajectory as comma-separated values, one line of names with units first; empty where a phase has no
 /// such quantity.

@@ -110,6 +110,11 @@ StiffnessCost stiffness_cost(const Scene& scene, const std::vector<Growth>& grow
           motion_sizes<G>(program, run, initial_state<G>(at, program, run, 2), at.duration, &stiffness);
       row.fast = stiffness.fast / at.duration;
       const ReferenceSolution reference = reference_solution(at, program, sizes, cost_accuracy * 1e-4);
+      if (reference.steps == 0)
+        throw UnsupportedError(
+            fmt::format("the cost of stiffness has nothing to measure errors by: at the factor {:g} no "
+                        "reference converges, by {}",
+                        factor, reference.method));
       row.reference_error = reference.own_error;
       ends.push_back(reference.state);
       last_sizes = std::make_unique<MotionSizes>(sizes);

@@ -44,7 +44,8 @@ constexpr double cost_accuracy = 1e-6;
 
 /// Factors are 1, 1e2, ..., 1e8: of a stiffness; frequencies then grow by ten from row to row.
 /// @param fastest_explicit  rate [1/s] beyond which the explicit method is left out
-/// @throws ModelError, CompileError, std::invalid_argument for a parameter that the model has not
+/// @throws ModelError, CompileError, std::invalid_argument for a parameter that the model has not,
+/// UnsupportedError where the kernel has several charts, or no reference converges at a factor
 StiffnessCost stiffness_cost(const Scene& scene, const std::vector<Growth>& growths,
                              const std::function<void(const StiffnessCostRow&)>& on_row = {},
                              double fastest_explicit = 1e300);

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "simulate/stiffness_ladder.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "describe/specialise.hpp"
 #include "simulate/simulation.hpp"
 
 namespace anholon {
@@ -34,8 +37,14 @@ StiffnessLadder stiffness_ladder(const Scene& scene, const std::vector<double>& 
   Scene rigid = scene;
   rigid.elasticity.reset();
   rigid.sharing = LoadSharing::least_norm;
-  for (const RowDescription& row : scene.model.rows) ladder.rows.push_back(row.name);
-  ladder.rigid = last_multipliers(simulate_scene(rigid), ladder.rows);
+  for (const RowDescription& row : specialise(scene.model, rigid).rows) ladder.rows.push_back(row.name);
+  const SimulationResult result_of_rigid = simulate_scene(rigid);
+  if (!result_of_rigid.finished)
+    throw ModelError(
+        scene.where,
+        fmt::format("with rigid contacts the motion stops before its end: {}", result_of_rigid.status),
+        "end the scene before that, or give it a motion that rigid contacts allow");
+  ladder.rigid = last_multipliers(result_of_rigid, ladder.rows);
   for (const double factor : factors) {
     Scene elastic = scene;
     elastic.elasticity->stiffness = scene.elasticity->stiffness * Exact::from_double(factor);

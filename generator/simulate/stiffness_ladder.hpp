@@ -22,13 +22,13 @@ struct StiffnessStep {
 };
 
 struct StiffnessLadder {
-  std::vector<std::string> rows;
-  Eigen::VectorXd rigid;  // least norm
+  std::vector<std::string> rows;  // of rigid contacts: those that hold by themselves carry nothing
+  Eigen::VectorXd rigid;          // least norm
   std::vector<StiffnessStep> steps;
 };
 
 /// @param factors  of the scene's stiffness; its damping grows with their root, so that damping ratios stay
-/// @throws ModelError where the scene has no contact_elasticity
+/// @throws ModelError where the scene has no contact_elasticity, or stops early with rigid contacts
 StiffnessLadder stiffness_ladder(const Scene& scene, const std::vector<double>& factors);
 
 }  // namespace anholon

@@ -34,10 +34,12 @@ class TableMotion {
         values(i, column) = S(table.rows[static_cast<std::size_t>(i)][c]);
     }
     using Ends = MotionTable::Ends;
+    const decltype(values) at_rest = decltype(values)::Zero(2, values.cols());  // slopes of clamped ends
     spline_.emplace(times, values,
                     table.ends == Ends::periodic  ? SplineEnds::periodic
                     : table.ends == Ends::clamped ? SplineEnds::clamped
-                                                  : SplineEnds::natural);
+                                                  : SplineEnds::natural,
+                    at_rest);
     r_.setZero(values.cols()), r_dot_.setZero(values.cols()), r_ddot_.setZero(values.cols());
   }
   void operator()(S t, Buffers<S>& b) {

@@ -66,9 +66,7 @@ WorkPrecision work_precision(const Scene& wanted,
   const Scene scene = settled(wanted);
   if (scene.project_motion)
     throw UnsupportedError("work-precision needs a motion that is given, not one that is projected");
-  if (scene.phases.size() > 1)
-    throw ModelError(scene.phases[1].where, "work and precision are those of a smooth motion",
-                     "take a scene of one phase");
+  require_one_phase(scene, "work and precision are those of a smooth motion");
   const SceneProgram program = make_program(scene);
   const auto code = std::make_shared<CompiledProgram>(program.derivation->program);
   WorkPrecision result;

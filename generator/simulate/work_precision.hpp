@@ -63,7 +63,8 @@ struct Ladder {
 };
 
 /// @param on_point  called after each point; may be empty
-/// @throws ModelError, CompileError
+/// @throws ModelError, CompileError, UnfitSceneError for a scene without duration or of several phases,
+/// UnsupportedError for a projected motion
 WorkPrecision work_precision(const Scene& scene,
                              const std::function<void(const WorkPrecisionPoint&)>& on_point = {},
                              const Ladder& ladder = {});

@@ -5,23 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include "simulate/simulation.hpp"
+#include "simulate/written_scene.hpp"
 
 namespace anholon::contact_switch_test {
 namespace {
 
-/// A model and a scene of it, written to a folder of the test.
-Scene scene_of(const std::string& model, const std::string& scene) {
-  const std::filesystem::path folder = std::filesystem::path(::testing::TempDir()) / "contact_switch";
-  std::filesystem::create_directories(folder);
-  const std::string name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
-  std::ofstream(folder / (name + ".toml")) << model;
-  return read_scene_text("anholon = 1\nname = \"scene\"\nmodel = \"" + name + ".toml\"\n" + scene,
-                         folder / "scene.toml");
-}
+using testing::two_bodies;
+using testing::written_scene;
 
 /// Value of a column at the last row not later than t, or behind a switch at t.
 double value(const SimulationResult& result, const std::string& column, double t, bool after) {
@@ -39,25 +31,9 @@ double value(const SimulationResult& result, const std::string& column, double t
 
 constexpr double rounding = 1e-13;  // relative to numbers of order one; the integrator adds 1e-12 at most
 
-const std::string two_bodies = R"toml(anholon = 1
-name = "two_bodies"
-group = "R1"
-[[body]]
-name = "first"
-inertia = { mass = 2 }
-[[body]]
-name = "second"
-parent = "first"
-joint = { kind = "prismatic", axis = [1, 0, 0], coordinate = "r1", range = [-10, 10] }
-inertia = { mass = 3 }
-[[constraint]]
-name = "latch"
-row = "dot(r1)"
-)toml";
-
 // Two masses on a line meet at 4 and -1 m/s and stay together.
 TEST(ContactSwitch, TwoBodiesThatLatchKeepTheirMomentumAndLoseHalfDvMDv) {
-  const SimulationResult result = simulate_scene(scene_of(two_bodies, R"(
+  const SimulationResult result = simulate_scene(written_scene(two_bodies, R"(
 duration = 1
 output_step = 0.25
 integrator = { method = "dopri5", tolerance = 1e-12 }
@@ -90,7 +66,7 @@ initial = { coordinates = { r1 = 2.5 }, velocities = { V_X = 4, r1 = -5 } }
 TEST(ContactSwitch, MotorsKeepTheirMotionAndTheirImpulsesWork) {
   const std::string stop = two_bodies.substr(0, two_bodies.find("[[constraint]]")) +
                            "[[constraint]]\nname = \"stop\"\nrow = \"V_X\"\n";
-  const SimulationResult result = simulate_scene(scene_of(stop, R"(
+  const SimulationResult result = simulate_scene(written_scene(stop, R"(
 duration = 1
 output_step = 0.5
 integrator = { method = "dopri5", tolerance = 1e-12 }
@@ -131,7 +107,7 @@ contact_sets = { free = [], pinned = ["pin"] }
 phase = [{ contacts = "free" }, { start = 0.5, contacts = "pinned" }]
 initial = { velocities = { V_X = 0.3, V_Y = 1.1, Omega_Z = 0.9 } }
 )";
-  const SimulationResult result = simulate_scene(scene_of(rod, motion));
+  const SimulationResult result = simulate_scene(written_scene(rod, motion));
   ASSERT_TRUE(result.finished) << result.status;
   const double v_y = 1.1 * std::cos(0.45) - 0.3 * std::sin(0.45);  // body axes turn by 0.45 rad on the way
   const double turn = (0.08 * 0.9 - 1.5 * 0.4 * v_y) / (0.08 + 1.5 * 0.16);
@@ -141,7 +117,7 @@ initial = { velocities = { V_X = 0.3, V_Y = 1.1, Omega_Z = 0.9 } }
   EXPECT_LT(result.position_residual, 1e-13);
 
   try {
-    simulate_scene(scene_of(rod, motion + "continuous = 1e-6\n"));
+    simulate_scene(written_scene(rod, motion + "continuous = 1e-6\n"));
     FAIL() << "the jump was accepted";
   } catch (const ModelError& error) {
     const std::string text = error.what();
@@ -153,7 +129,7 @@ initial = { velocities = { V_X = 0.3, V_Y = 1.1, Omega_Z = 0.9 } }
 
 // Letting go changes no velocity.
 TEST(ContactSwitch, ContactsThatEndLeaveTheVelocitiesAlone) {
-  const SimulationResult result = simulate_scene(scene_of(two_bodies, R"(
+  const SimulationResult result = simulate_scene(written_scene(two_bodies, R"(
 duration = 1
 integrator = { method = "dopri5", tolerance = 1e-12 }
 contact_sets = { open = [], latched = ["latch"] }
@@ -181,7 +157,7 @@ body = "ball"
 semi_axes = [0.2, 0.2, 0.2]
 )";
   try {
-    simulate_scene(scene_of(ball, R"(
+    simulate_scene(written_scene(ball, R"(
 duration = 1
 contact_sets = { free = [], down = ["ground"] }
 phase = [{ contacts = "free" }, { start = 0.5, contacts = "down" }]

@@ -9,6 +9,7 @@
 #include "simulate/equilibrium.hpp"
 #include "simulate/groups.hpp"
 #include "simulate/initial_state.hpp"
+#include "simulate/reference_solution.hpp"
 #include "simulate/runner.hpp"
 #include "simulate/stiffness_cost.hpp"
 #include "simulate/work_precision.hpp"
@@ -108,6 +109,14 @@ TEST(StiffMotion, CostsNoMoreWhereModesAreFaster) {
   }
   // the explicit method follows the modes: ten times the frequency, ten times the steps
   EXPECT_GT(cost.rows[1].explicit_method.evaluations, 5 * cost.rows[0].explicit_method.evaluations);
+}
+
+// What is compared with no reference has no error that any tolerance could allow.
+TEST(ReferenceSolution, ThatWasNotFoundIsInfinitelyFarFromEveryState) {
+  const Scene scene = scene_of("mobile_pendulum/swing");
+  const SceneProgram program = make_program(scene);
+  const Runner<double> run(scene, program, &program.derivation->program);
+  EXPECT_EQ(state_error(std::vector<double>(20, 0.0), {}, MotionSizes(program, run)), INFINITY);
 }
 
 /// The final pose with beams of this stiffness; `modes` false: without.
