@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <random>
@@ -158,7 +159,7 @@ class BlockErrors {
     Real worst = 0;
     for (const Entry& e : entries) {
       const Real error = e.error / std::max(median, e.size);
-      if (!(error <= worst)) worst = error;
+      if (error > worst || std::isnan(error)) worst = error;
     }
     return worst;
   }

@@ -168,6 +168,7 @@ TEST(EnergyBalance, CountsWhatCameInAndWhatWentOut) {
   EXPECT_NEAR(balance.observe(10.1), 0.05, 1e-15);  // rounding of 10.1
   EXPECT_DOUBLE_EQ(balance.largest(), 0.25);
   balance.observe(std::nan(""));
+  balance.observe(10);
   EXPECT_TRUE(std::isnan(balance.largest()));  // never hides a failure
 }
 
@@ -178,6 +179,8 @@ TEST(ConstraintResidual, IsTheWorstRow) {
   const Eigen::Vector3d v(1, 1, 1.5);
   EXPECT_DOUBLE_EQ(constraint_residual(A, v), 5.5);
   EXPECT_DOUBLE_EQ(relative_constraint_residual(A, v), 5.5 / 7.5);
+  A(0, 0) = std::nan("");  // of the first row, behind which a sound one stands
+  EXPECT_TRUE(std::isnan(constraint_residual(A, v)));
   EXPECT_EQ(constraint_residual(MatrixXd(0, 3), v), 0);
   EXPECT_EQ(relative_constraint_residual(MatrixXd(0, 3), v), 0);
 }

@@ -12,8 +12,7 @@
 //   1. void* prepared = storage of prepared_size bytes, aligned for any scalar type (malloc will do);
 //   2. program->prepare(parameters, prepared), once per set of parameter values;
 //   3. function->call(prepared, inputs, outputs): one pointer per block, in the order of the table. Inputs
-//   may be
-//      outputs too: a function reads all before it writes. Calls may run in parallel.
+//      may be outputs too: a function reads all before it writes. Calls may run in parallel.
 
 // NOLINTBEGIN(modernize-*): C reads it too.
 #include <stddef.h>

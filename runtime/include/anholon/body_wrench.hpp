@@ -5,8 +5,8 @@
 // form of Khalil and Kleinfinger 1987 with U = [wd] + [w][w]; compliant bodies add the rows of eq. (69).
 // These are the equations of Lagrange for
 //
-//   T = m v^2/2 + v . (w x m s) + w . I w/2 + sum_j r_dot_j (v . S_j + w . C_j) + sum_jl m_jl r_dot_j
-//   r_dot_l/2
+//   T = m v^2/2 + v . (w x m s) + w . I w/2
+//       + sum_j r_dot_j (v . S_j + w . C_j) + sum_jl m_jl r_dot_j r_dot_l/2
 //
 // with m s, I, S_j and C_j as polynomials of the shape: whatever these keep, the energy balance holds.
 

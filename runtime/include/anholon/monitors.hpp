@@ -30,9 +30,8 @@ template <class Real>
 class EnergyBalance {
  public:
   /// @param initial_energy  E(0) = T + V [J]
-  /// @param scale           an energy of ordinary size for this motion, such as its largest T [J], > 0; not
-  /// E,
-  ///                        whose zero is arbitrary
+  /// @param scale           an energy of ordinary size for this motion, such as its largest T [J], > 0;
+  ///                        not E, whose zero is arbitrary
   EnergyBalance(Real initial_energy, Real scale) : initial_energy_(initial_energy), scale_(scale) {}
 
   /// @param energy, work, dissipated  E(t), and what has gone in and out since the start [J]
@@ -40,7 +39,7 @@ class EnergyBalance {
   Real observe(Real energy, Real work = Real(0), Real dissipated = Real(0)) {
     using std::abs;
     const Real defect = ((energy - initial_energy_) - work + dissipated) / scale_;
-    if (!(abs(defect) <= largest_)) largest_ = abs(defect);  // keeps not-a-number
+    if (abs(defect) > largest_ || defect != defect) largest_ = abs(defect);  // keeps not-a-number
     return defect;
   }
 
@@ -62,7 +61,7 @@ typename DerivedA::Scalar constraint_residual(const Eigen::MatrixBase<DerivedA>&
   for (Eigen::Index i = 0; i < A.rows(); ++i) {
     Real row = Real(0);
     for (Eigen::Index j = 0; j < A.cols(); ++j) row += A(i, j) * v[j];
-    if (!(abs(row) <= largest)) largest = abs(row);  // keeps not-a-number
+    if (abs(row) > largest || row != row) largest = abs(row);  // keeps not-a-number
   }
   return largest;
 }

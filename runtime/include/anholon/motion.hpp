@@ -56,8 +56,11 @@ class TabulatedMotion {
 
   /// r_a and its two derivatives at t. On an interval of length h, with a = (t_1 - t)/h, b = (t - t_0)/h:
   ///
-  ///   r      = a r_0 + b r_1 + h^2/6 ((a^3 - a) m_0 + (b^3 - b) m_1)          m: second derivatives at the
-  ///   knots r_dot  = (r_1 - r_0)/h + h/6 ((1 - 3 a^2) m_0 + (3 b^2 - 1) m_1) r_ddot = a m_0 + b m_1
+  ///   r      = a r_0 + b r_1 + h^2/6 ((a^3 - a) m_0 + (b^3 - b) m_1)
+  ///   r_dot  = (r_1 - r_0)/h + h/6 ((1 - 3 a^2) m_0 + (3 b^2 - 1) m_1)
+  ///   r_ddot = a m_0 + b m_1
+  ///
+  /// with m the second derivatives at the knots.
   ///
   /// @param[in]   t  any time [s]
   /// @param[out]  r, r_dot, r_ddot  (s) each, every entry written; vectors or Eigen::Map of arrays

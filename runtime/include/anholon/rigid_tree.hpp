@@ -6,11 +6,10 @@
 // it:
 //
 // - The second derivative of a joint's axis n is U n, the same in the parent and in the body. One column of U
-// comes from the
-//   parent's by the turn of a vector, and the others follow from it and w; wd is never formed across the
-//   axis.
+//   comes from the parent's by the turn of a vector, and the others follow from it and w; wd is never formed
+//   across the axis.
 // - The body's moment is taken from the second moment Sigma (second_moment.hpp), where Sigma_nn = 0 after
-// regrouping.
+//   regrouping.
 //
 // Bodies have no modes here. What the tape does not need, it does not keep; numbers pay for all components.
 

@@ -6,8 +6,8 @@
 //
 //   eta_1 at g,   eta_2 at g exp(h eta_1/2),   eta_3 at g exp(h eta_2/2),
 //   eta_4 at g exp(h eta_1/2) exp(h (eta_3 - eta_1/2)),
-//   g_end = g exp(h/12 (3 eta_1 + 2 eta_2 + 2 eta_3 - eta_4)) exp(h/12 (-eta_1 + 2 eta_2 + 2 eta_3 + 3
-//   eta_4))
+//   g_end = g exp(h/12 (3 eta_1 + 2 eta_2 + 2 eta_3 - eta_4))
+//             exp(h/12 (-eta_1 + 2 eta_2 + 2 eta_3 + 3 eta_4))
 //
 // and y by Kutta's weights 1/6, 1/3, 1/3, 1/6. Five exponentials a step.
 #pragma once

@@ -231,6 +231,7 @@ concept FixedStages = requires(Stages& stages) {
 /// @param stages    workspace; its size_y() must be state.y.size()
 /// @param field     see the head of this file
 /// @param state     in: initial; out: at the last accepted step
+/// @param steps     > 0
 /// @param observer  called after each step as observer(Real t, const G& g, const Vector& y)
 template <FixedStages Stages, class Field, class Observer>
 Result<typename Stages::Real> integrate_fixed(Stages& stages, Field&& field,
@@ -238,6 +239,7 @@ Result<typename Stages::Real> integrate_fixed(Stages& stages, Field&& field,
                                               typename Stages::Real t_end, long steps, Observer&& observer) {
   using Real = typename Stages::Real;
   eigen_assert(stages.size_y() == state.y.size());
+  eigen_assert(steps > 0);
   Result<Real> result;
   const Real t_begin = state.t;
   const Real h = (t_end - t_begin) / Real(steps);

@@ -67,6 +67,7 @@ class ErrorScale {
       largest = larger(largest, abs(theta[i]) / (i < G::linear_dim ? translation : rotation));
     }
     for (Eigen::Index i = 0; i < y.size(); ++i) {
+      if (y[i] == Real(0)) continue;  // what is and stays 0 is allowed 0 by atol = 0: no 0/0
       const Real size = options_.sizes.empty() ? Real(1) : options_.sizes[static_cast<std::size_t>(i)];
       const Real allowed = options_.atol * size + options_.rtol * std::max(abs(y_0[i]), abs(y_1[i]));
       largest = larger(largest, abs(y[i]) / allowed);
