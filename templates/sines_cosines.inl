@@ -1,5 +1,7 @@
 // Sines and cosines of n numbers. For double both come from one polynomial pair, which compilers vectorise;
-// every other scalar, and every compiler that may reorder sums, uses the functions of <cmath>.
+// every other scalar uses the functions of <cmath>. So does double where the compiler says that it reorders
+// sums or keeps more digits than a double has: (x + round) - round is no integer then. clang does not say
+// that -funsafe-math-optimizations reorders; from 14 on a pragma keeps the order here.
 //
 // Method: x = k pi/2 + r, |r| <= pi/4, with pi/2 in four parts (Cody and Waite 1980) so that r + tail has far
 // more digits than a double; sin r and cos r by minimax polynomials; k mod 4 says which is which, and the
@@ -13,10 +15,13 @@ inline void sines_cosines(const Real (&x)[n], Real (&sine)[n], Real (&cosine)[n]
     cosine[i] = cos(x[i]);
   }
 }
-#if !defined(__FAST_MATH__)
+#if !defined(__FAST_MATH__) && !defined(__ASSOCIATIVE_MATH__) && __FLT_EVAL_METHOD__ + 0 == 0
 template <int n>
 inline void sines_cosines(const double (&__restrict x)[n], double (&__restrict sine)[n],
                           double (&__restrict cosine)[n]) noexcept {
+#if defined(__clang__) && __clang_major__ >= 14
+#pragma clang fp reassociate(off)
+#endif
   constexpr double largest = 0x1p20;
   constexpr double round = 0x1.8p52;  // added and taken off: leaves the nearest integer
   constexpr double half_pi_1 = 0x1.921fb544p+0, half_pi_2 = 0x1.0b4611a6p-34;  // 33 bits each: k times them
