@@ -3,12 +3,11 @@
 // Tables and pictures on the pages of the flexible models:
 //
 //   flexible_figures rotating-beam [FOLDER]   frequencies over the speed of rotation, deflection in the
-//   spin-up; with a
-//                                             folder also as rotating_beam_frequencies.svg and
-//                                             rotating_beam_spin_up.svg
+//                                             spin-up; with a folder also as
+//                                             rotating_beam_frequencies.svg and rotating_beam_spin_up.svg
 //   flexible_figures two-link-arm             frequencies for each number of modes, by three methods
-//   flexible_figures modes [N]                operations and generation of the soft snake-board with 1..N
-//   modes a beam
+//   flexible_figures modes [N]                operations and generation of the soft snake-board with
+//                                             1..N modes a beam
 #include <fmt/format.h>
 
 #include <algorithm>

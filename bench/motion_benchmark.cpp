@@ -216,7 +216,7 @@ struct Reference {
 double distance(const FinalState& a, const FinalState& b) {
   double largest = 0, size = 0;
   const auto note = [&](double difference) {
-    if (!(difference <= largest)) largest = difference;
+    if (!(difference <= largest) && !std::isnan(largest)) largest = difference;  // keeps not-a-number
   };
   for (const double v : b.velocity) size = std::max(size, std::abs(v));
   for (std::size_t i = 0; i < b.position.size(); ++i) note(std::abs(a.position[i] - b.position[i]));

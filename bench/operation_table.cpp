@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 
 // Operations of the functions of every robot in a folder of URDF and model files: additions, multiplications
-// and divisions together, sines and cosines apart. A robot whose name does not begin like an arm's on a
-// pedestal has a free base.
+// and divisions together, sines and cosines apart. A URDF file has a free base unless its name is one of
+// fixed_bases() or is given by --fixed.
 //
 //   operation_table [--routes | --passes | --symbolic] [--fixed NAME]... FOLDER
 //
@@ -14,6 +14,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -23,6 +24,7 @@
 #include "describe/read_model.hpp"
 #include "describe/read_robot.hpp"
 #include "optimise/tree_loops.hpp"
+#include "robot.hpp"
 
 namespace {
 
@@ -55,37 +57,61 @@ void print_ratios(const std::string& robot, const TreeDerivation& frozen, const 
   fmt::print(" {} |\n", symbolic.program.parameters.size());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  std::set<std::string> fixed = {"double_pendulum", "iiwa", "panda", "ur5"};
+struct Options {
   bool routes = false, passes = false, symbolic = false;
+  std::set<std::string> fixed = bench::fixed_bases();
   std::string folder;
+};
+
+[[noreturn]] void usage() {
+  std::fputs("usage: operation_table [--routes | --passes | --symbolic] [--fixed NAME]... FOLDER\n", stderr);
+  std::exit(2);
+}
+
+Options read_options(int argc, char** argv) {
+  Options options;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
     if (argument == "--routes") {
-      routes = true;
+      options.routes = true;
     } else if (argument == "--passes") {
-      passes = true;
+      options.passes = true;
     } else if (argument == "--symbolic") {
-      symbolic = true;
+      options.symbolic = true;
     } else if (argument == "--fixed" && i + 1 < argc) {
-      fixed.insert(argv[++i]);
+      options.fixed.insert(argv[++i]);
+    } else if (!argument.starts_with("--") && options.folder.empty()) {
+      options.folder = argument;
     } else {
-      folder = argument;
+      usage();
     }
   }
-  if (folder.empty()) {
-    std::fputs("usage: operation_table [--routes | --passes | --symbolic] [--fixed NAME]... FOLDER\n",
-               stderr);
-    return 2;
-  }
+  if (options.folder.empty()) usage();
+  return options;
+}
+
+/// URDF and model files of a folder, by name.
+std::vector<std::filesystem::path> files_of(const std::string& folder) {
   std::vector<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() == ".urdf" || entry.path().extension() == ".toml")
       files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end());
+  std::ranges::sort(files);
+  return files;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const auto [routes, passes, symbolic, fixed, folder] = read_options(argc, argv);
+  std::vector<std::filesystem::path> files;
+  try {
+    files = files_of(folder);
+  } catch (const std::filesystem::filesystem_error& error) {
+    fmt::print(stderr, "{}\n", error.what());
+    return 3;
+  }
 
   fmt::print("| robot |");
   for (const std::string& name : standard_tree_functions()) fmt::print(" {} |", name);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <filesystem>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -30,6 +31,9 @@ struct Robot {
   Mechanism<double> mechanism;  // of the described frames
   std::vector<Sample> samples;
 };
+
+/// Robots whose base stands on the ground, by the names of their files; all others float.
+inline std::set<std::string> fixed_bases() { return {"double_pendulum", "iiwa", "panda", "ur5"}; }
 
 /// R of a unit quaternion, scalar first.
 Mat3<double> rotation(const std::array<double, 4>& wxyz);

@@ -34,7 +34,7 @@ struct Options {
   int rounds = 101;
   bool orders = false;  // compare the orders in which operations may be emitted
   std::vector<std::string> functions = {"inverse_dynamics", "mass_matrix", "forward_dynamics"};
-  std::set<std::string> fixed = {"double_pendulum", "iiwa", "panda", "ur5"};  // base on the ground
+  std::set<std::string> fixed = fixed_bases();
   std::vector<std::string> robots;
 };
 
@@ -94,7 +94,8 @@ void stay_on_one_core() {
   sched_setaffinity(0, sizeof set, &set);
 }
 
-/// Largest difference between two contenders over some samples, relative to the largest component.
+/// Largest difference between two contenders over some samples, relative to the largest component; infinite
+/// where a value is not finite.
 double disagreement(const Contender& a, const Contender& b) {
   double worst = 0;
   for (std::size_t i = 0; i < 20; ++i) {
@@ -104,9 +105,11 @@ double disagreement(const Contender& a, const Contender& b) {
     double scale = 0, difference = 0;
     for (std::size_t j = 0; j < x.size(); ++j) {
       scale = std::max(scale, std::abs(x[j]));
-      difference = std::max(difference, std::abs(x[j] - y[j]));
+      const double d = std::abs(x[j] - y[j]);
+      if (!std::isfinite(d)) return INFINITY;  // std::max would drop not-a-number
+      difference = std::max(difference, d);
     }
-    worst = std::max(worst, difference / scale);
+    if (difference > 0) worst = std::max(worst, difference / scale);  // all zero on both sides: they agree
   }
   return worst;
 }

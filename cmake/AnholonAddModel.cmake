@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: MIT
 #
 # anholon_add_model(<target> MODEL <file> [SCENE <file>] [FUNCTIONS <name>...] [INVERSE <inverse>]
-#                   [SINCOS cmath|batch] [OPTIMISE accuracy|balanced|speed] [STATIC [COMPILE_OPTIONS <option>...]])
+#                   [SINCOS cmath|batch] [OPTIMISE accuracy|balanced|speed] [OPTIONS <arg>...]
+#                   [STATIC [COMPILE_OPTIONS <option>...]])
 #
 # Generates the C++ of a model at build time and makes it a target. Programs that link the target include
 #
 #   <model>.hpp  or, with a scene,  <model>_<scene>.hpp
 #
-# named after the files: board.toml with gait.scene.toml gives board_gait.hpp.
+# named after the files: board.toml with gait.scene.toml gives board_gait.hpp. A contact set adds its name, so that the
+# headers of several sets can be included side by side.
 #
 #   MODEL, SCENE   description (TOML, or a robot file: URDF, SDFormat, MJCF) and scene (TOML); relative to the current
 #                  source folder
@@ -15,6 +17,7 @@
 #   INVERSE        generalised inverse where rows are redundant: pseudo (default) or leading:ROW[,ROW...]
 #   SINCOS         cmath (default): std::sin and std::cos; batch: those of double by one loop that compilers vectorise
 #   OPTIMISE       accuracy, speed, or balanced (default): docs/accuracy.md
+#   OPTIONS        further arguments of `anholon generate`, as they stand: --floating, --count N=8, --contacts stance
 #   STATIC         a static library with the functions of double compiled in; without it an INTERFACE library, a header
 #   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math
 #                  -ffp-contract=off, with g++ also -frename-registers
@@ -27,7 +30,7 @@ include_guard(GLOBAL)
 set_property(GLOBAL PROPERTY ANHOLON_INSTANTIATE_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/AnholonInstantiate.cmake")
 
 function(anholon_add_model target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE;SINCOS;OPTIMISE" "FUNCTIONS;COMPILE_OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STATIC" "MODEL;SCENE;INVERSE;SINCOS;OPTIMISE" "FUNCTIONS;OPTIONS;COMPILE_OPTIONS")
   if(arg_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "anholon_add_model(${target}): unknown arguments: ${arg_UNPARSED_ARGUMENTS}")
   endif()
@@ -89,6 +92,10 @@ function(anholon_add_model target)
   endif()
   if(arg_OPTIMISE)
     list(APPEND options --optimise "${arg_OPTIMISE}")
+  endif()
+  list(APPEND options ${arg_OPTIONS})
+  if("${arg_OPTIONS}" MATCHES "(^|;)--contacts[=;]([^;]+)")
+    string(APPEND name "_${CMAKE_MATCH_2}")
   endif()
 
   # The folder with what programs include holds nothing else.

@@ -45,7 +45,7 @@ TEST(VerifyTree, EveryFunctionOfAFreeBaseWithAFixedLink) {
 TEST(VerifyTree, SymbolicInertia) {
   RobotOptions options;
   options.symbolic_inertia = true;
-  expect_passed(read_robot_text(testing::arm(), "arm.urdf", options), {}, 20);
+  expect_passed(read_robot_text(testing::arm(), "arm.urdf", options), {}, 5);
 }
 TEST(VerifyTree, Arm7) { expect_passed(testing::shipped_robot("arm7"), tree_function_names(), 10); }
 TEST(VerifyTree, Quadruped) { expect_passed(testing::shipped_robot("quadruped"), {}, 10); }
