@@ -325,12 +325,6 @@ std::string Writer::product(const Product& p) {
   return fmt::format("\\frac{{{}}}{{{}}}", numerator, denominator);
 }
 
-std::string with_definitions(const LatexText& text) {
-  std::string result = text.formula;
-  for (const std::string& definition : text.definitions) result += ", \\quad " + definition;
-  return result;
-}
-
 }  // namespace
 
 LatexText latex_text(const Tape& tape, const std::vector<std::vector<NodeId>>& rows,
@@ -357,19 +351,6 @@ LatexText latex_text(const Tape& tape, const std::vector<std::vector<NodeId>>& r
   if (!is_scalar) result.formula = fmt::format("\\begin{{bmatrix}} {} \\end{{bmatrix}}", result.formula);
   result.definitions = writer.definitions();
   return result;
-}
-
-std::string latex(const Tape& tape, NodeId root, const LatexNames& names) {
-  return with_definitions(latex_text(tape, {{root}}, names));
-}
-
-std::string latex_matrix(const Tape& tape, const std::vector<std::vector<NodeId>>& rows,
-                         const LatexNames& names) {
-  const LatexText text = latex_text(tape, rows, names);
-  const bool is_scalar = rows.size() == 1 && rows.front().size() == 1;
-  if (!is_scalar) return with_definitions(text);
-  return with_definitions(
-      {fmt::format("\\begin{{bmatrix}} {} \\end{{bmatrix}}", text.formula), text.definitions});
 }
 
 }  // namespace anholon

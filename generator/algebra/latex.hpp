@@ -38,9 +38,4 @@ struct LatexText {
 LatexText latex_text(const Tape& tape, const std::vector<std::vector<NodeId>>& rows,
                      const LatexNames& names = {});
 
-/// The formula, followed by its definitions: "..., \quad k_{1} = ...".
-std::string latex(const Tape& tape, NodeId root, const LatexNames& names = {});
-std::string latex_matrix(const Tape& tape, const std::vector<std::vector<NodeId>>& rows,
-                         const LatexNames& names = {});
-
 }  // namespace anholon

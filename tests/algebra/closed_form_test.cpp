@@ -75,7 +75,7 @@ TEST(ClosedForm, OfThePendulumsEnergyIsTheTextbooks) {
   const auto form = closed_form(tape, {energy});
   ASSERT_TRUE(form);
   expect_equal_values(tape, form->front(), energy);
-  EXPECT_TRUE(provably_equal(tape, form->front(), expected));
+  EXPECT_TRUE(test::provably_equal(tape, form->front(), expected));
   EXPECT_LT(operation_weight(tape, *form), operation_weight(tape, {energy}));
   EXPECT_LE(operation_weight(tape, *form), operation_weight(tape, {expected})) << text(tape, form->front());
 }
@@ -86,7 +86,7 @@ TEST(ClosedForm, OfTheSnakeboardsEnergyLosesTheAxlesAngles) {
   const auto form = closed_form(tape, {energy});
   ASSERT_TRUE(form);
   expect_equal_values(tape, form->front(), energy);
-  EXPECT_TRUE(provably_equal(tape, form->front(), expected));
+  EXPECT_TRUE(test::provably_equal(tape, form->front(), expected));
   EXPECT_LE(operation_weight(tape, *form), operation_weight(tape, {expected})) << text(tape, form->front());
 }
 
@@ -140,7 +140,7 @@ TEST(ProvablyEqual, SeesThroughAnglesAndQuotients) {
   Tape tape;
   const Expr a = input(tape, "a"), b = input(tape, "b"), x = input(tape, "x"), y = input(tape, "y");
   const auto equal = [&](const Expr& p, const Expr& q) {
-    return provably_equal(tape, p.id(tape), q.id(tape));
+    return test::provably_equal(tape, p.id(tape), q.id(tape));
   };
   EXPECT_TRUE(equal(sin(x + y) * sin(x - y), sin(x) * sin(x) - sin(y) * sin(y)));
   EXPECT_TRUE(equal(tan(Expr(2) * x), Expr(2) * tan(x) / (Expr(1) - tan(x) * tan(x))));

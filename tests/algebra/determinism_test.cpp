@@ -3,6 +3,7 @@
 // GiNaC orders by address, and addresses change from process to process. This program is therefore run again
 // and again, and must write the same text each time.
 
+#include <ginac/ginac.h>
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,7 +12,6 @@
 #include <string>
 
 #include "algebra/closed_form.hpp"
-#include "algebra/convert.hpp"
 #include "algebra/kernel_core.hpp"
 #include "algebra/latex.hpp"
 #include "algebra/tape_samples.hpp"
@@ -35,22 +35,14 @@ std::string everything(unsigned symbols_made_before) {
   Tape tape;
   const Expr a = input(tape, "a"), b = input(tape, "b"), c = input(tape, "c"), d = input(tape, "d");
   const Expr x = input(tape, "x"), y = input(tape, "y");
-  GinacConverter converter(tape, GinacConverter::Angles::symbols);
-  const auto ginac = [&](const Expr& e) { return converter.to_ginac(e.id(tape)); };
-  const GiNaC::ex quotient = ginac((a - b) * (c - d) * cos(x) / ((d - b) * sin(x)) - (b - c) / (a - d));
-  const GiNaC::ex polynomial = ginac((a - b) * (c * cos(x) - d * sin(y)) * (a * c - b * d)).expand();
-  for (const GiNaC::ex& e :
-       {quotient, quotient.normal(), polynomial, GiNaC::factor(polynomial), polynomial.collect(ginac(a)),
-        GiNaC::collect_common_factors(polynomial), GiNaC::sqrt(polynomial) * GiNaC::exp(-quotient)}) {
-    add(tape, {converter.to_tape(e)});
-  }
-
   const Expr energy = (a * cos(x) + b * sin(x)) * (a * cos(x) + b * sin(x)) * c +
                       (b - a) * (d - c) * sin(x + y) +
                       (a * a - b * b) / (a - b) * sqrt(c * d + sin(y) * sin(y));
   const std::vector<NodeId> roots{energy.id(tape), (energy * (c - d) / (a * cos(x))).id(tape)};
   if (const auto form = closed_form(tape, roots)) add(tape, *form);
-  result += latex_matrix(tape, {roots}) + "\n";
+  const LatexText latex = latex_text(tape, {roots});
+  result += latex.formula + "\n";
+  for (const std::string& definition : latex.definitions) result += definition + "\n";
 
   const auto A = test::matrix(tape, {{a * cos(x), b - c, sin(y), d, 0},
                                      {c, a * sin(x), (b - d) * cos(y), 0, d},

@@ -109,7 +109,7 @@ TEST(KernelCore, OfTheBicycleIsTheTiltVelocity) {
   const auto expected = entries(test::matrix(
       tape, {{0, 0}, {0, h}, {0, psi * l3}, {0, psi}, {0, 0}, {0, 0}, {-(sa * ca * s1), front}}));  // (54)
   for (std::size_t i = 0; i < J.size(); ++i)
-    EXPECT_TRUE(provably_equal(tape, J[i], expected[i])) << text(tape, J[i]);
+    EXPECT_TRUE(test::provably_equal(tape, J[i], expected[i])) << text(tape, J[i]);
   EXPECT_EQ(divisions(tape, core->J), 2U) << "by cos r1 (l2 + l3) and by cos r1";
   EXPECT_LE(operation_weight(tape, J), 204U);
 }

@@ -28,7 +28,7 @@ TEST(Latex, WritesSumsProductsAndPowers) {
   Tape tape;
   const Expr m = input(tape, "m"), l = input(tape, "l"), r1 = input(tape, "r1"), r2 = input(tape, "r2"),
              w = input(tape, "r1_dot");
-  const auto written = [&](const Expr& e) { return latex(tape, e.id(tape)); };
+  const auto written = [&](const Expr& e) { return latex_text(tape, {{e.id(tape)}}).formula; };
   EXPECT_EQ(written(m * l * l * cos(r1) * w), "m l^{2} \\dot{r}_{1} \\cos r_{1}");
   EXPECT_EQ(written(-(m * l)), "-m l");
   EXPECT_EQ(written(-m + l), "l - m");
@@ -46,10 +46,11 @@ TEST(Latex, WritesMatrices) {
   Tape tape;
   const Expr l = input(tape, "l"), r1 = input(tape, "r1");
   const auto H = test::matrix(tape, {{-(l * cos(r1))}, {0}, {sin(r1)}});
-  EXPECT_EQ(latex_matrix(tape, H), "\\begin{bmatrix} -l \\cos r_{1} \\\\ 0 \\\\ \\sin r_{1} \\end{bmatrix}");
+  EXPECT_EQ(latex_text(tape, H).formula,
+            "\\begin{bmatrix} -l \\cos r_{1} \\\\ 0 \\\\ \\sin r_{1} \\end{bmatrix}");
   LatexNames names;
   names.inputs = {"\\ell", ""};
-  EXPECT_EQ(latex_matrix(tape, H, names),
+  EXPECT_EQ(latex_text(tape, H, names).formula,
             "\\begin{bmatrix} -\\ell \\cos r_{1} \\\\ 0 \\\\ \\sin r_{1} \\end{bmatrix}");
 }
 

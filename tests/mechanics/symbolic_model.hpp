@@ -8,8 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "algebra/convert.hpp"
-#include "algebra/ginac_scalar.hpp"
+#include "algebra/ginac_view.hpp"
 #include "check/evaluate_program.hpp"
 #include "derive/derive.hpp"
 #include "describe/mechanise.hpp"
@@ -26,10 +25,10 @@ class SymbolicModel {
       : model_(std::move(model)),
         derivation_(derive(model_, request)),
         partition_(partition_of(model_)),
-        converter_(derivation_->program.tape, GinacConverter::Angles::functions) {
+        view_(derivation_->program.tape) {
     Expressions parameters;
     for (const ParameterInfo& p : derivation_->program.parameters)
-      parameters.push_back(converter_.to_ginac(p.node));
+      parameters.push_back(view_.to_ginac(p.node));
     mechanism_ = mechanise<ex>(describe_mechanism(model_), parameters);
   }
 
@@ -43,17 +42,17 @@ class SymbolicModel {
     Expressions symbols;
     for (const InputBlock& block : derivation_->program.inputs) {
       if (block.name != name) continue;
-      for (const NodeId id : block.nodes) symbols.push_back(converter_.to_ginac(id));
+      for (const NodeId id : block.nodes) symbols.push_back(view_.to_ginac(id));
     }
     return symbols;
   }
   ex parameter(const std::string& name) {
     for (const ParameterInfo& p : derivation_->program.parameters) {
-      if (p.name == name) return converter_.to_ginac(p.node);
+      if (p.name == name) return view_.to_ginac(p.node);
     }
     throw std::invalid_argument("no parameter " + name);
   }
-  ex node(NodeId id) { return converter_.to_ginac(id); }
+  ex node(NodeId id) { return view_.to_ginac(id); }
   /// An output block of a function.
   Matrix<ex> output(const std::string& function, const std::string& name) {
     const Function* found = find_function(derivation_->program, function);
@@ -70,7 +69,7 @@ class SymbolicModel {
     return {};
   }
   /// normal(e) == 0 with c^2 + s^2 = 1.
-  bool vanishes(const ex& e) { return converter_.residual(e).is_zero(); }
+  bool vanishes(const ex& e) { return view_.vanishes(e); }
 
   /// A state of the program's symbols with passive velocities `passive` and the input r_a_dot.
   State<ex> state(const Expressions& passive) {
@@ -106,7 +105,7 @@ class SymbolicModel {
   Model model_;
   std::unique_ptr<Derivation> derivation_;
   Partition partition_;
-  GinacConverter converter_;
+  GinacView view_;
   Mechanism<ex> mechanism_;
 };
 
