@@ -22,9 +22,13 @@
 #   COMPILE_OPTIONS  of the static library, after the project's own; default: -O2 -fno-math-errno -fno-trapping-math
 #                  -ffp-contract=off, with g++ also -frename-registers
 #
-# Everything is written below the current build folder. The code is generated again when the model, the robot file
-# that it stands on, the scene or the program changes. Generated code needs C++17 and a standard library, nothing else.
+# Everything is written below the current build folder. The code is generated again when the program or a file that it read
+# changes: model, scene, robot file, tables. Generated code needs C++17 and a standard library, nothing else.
 include_guard(GLOBAL)
+
+# A function keeps the policies of its definition, whatever its caller asks for; with CMP0116, a DEPFILE is read as written.
+cmake_policy(PUSH)
+cmake_policy(VERSION 3.22)
 
 # A property, so that every folder of the project finds the script, wherever this file was included.
 set_property(GLOBAL PROPERTY ANHOLON_INSTANTIATE_SCRIPT "${CMAKE_CURRENT_LIST_DIR}/AnholonInstantiate.cmake")
@@ -62,16 +66,6 @@ function(anholon_add_model target)
 
   get_filename_component(name "${arg_MODEL}" NAME_WLE)
   set(inputs "${arg_MODEL}")
-  # The robot file that the model stands on, if it names one.
-  file(STRINGS "${arg_MODEL}" lines REGEX "^(urdf|sdf|mjcf)[ \t]*=[ \t]*[\"'][^\"']+[\"']")
-  foreach(line IN LISTS lines)
-    string(REGEX REPLACE "^[a-z]+[ \t]*=[ \t]*[\"']([^\"']+).*$" "\\1" robot "${line}")
-    get_filename_component(model_folder "${arg_MODEL}" DIRECTORY)
-    get_filename_component(robot "${robot}" ABSOLUTE BASE_DIR "${model_folder}")
-    if(EXISTS "${robot}")  # else the program says what is wrong
-      list(APPEND inputs "${robot}")
-    endif()
-  endforeach()
   set(options "")
   if(arg_SCENE)
     get_filename_component(scene "${arg_SCENE}" NAME_WLE)
@@ -110,10 +104,11 @@ function(anholon_add_model target)
   file(MAKE_DIRECTORY "${include}")
   add_custom_command(
     OUTPUT "${header}"
-    COMMAND anholon::anholon generate "${arg_MODEL}" ${options} -o "${header}"
+    COMMAND anholon::anholon generate "${arg_MODEL}" ${options} -o "${header}" --depfile "${folder}/${name}.d"
     # The program leaves a file alone that has the right bytes already, so make it newer than what it came from.
     COMMAND "${CMAKE_COMMAND}" -E touch "${header}"
     DEPENDS ${inputs} "$<TARGET_FILE:anholon::anholon>"
+    DEPFILE "${folder}/${name}.d"
     COMMENT "Generating ${name}.hpp"
     VERBATIM)
   set(outputs "${header}")
@@ -151,3 +146,5 @@ function(anholon_add_model target)
   add_custom_target(${target}_generated DEPENDS ${outputs})
   add_dependencies(${target} ${target}_generated)
 endfunction()
+
+cmake_policy(POP)

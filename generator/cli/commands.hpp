@@ -40,6 +40,7 @@ struct GenerateOptions : ModelOptions {
   std::string output = ".";
   std::string sincos = "cmath";  // or "batch"
   std::string order = "auto";    // or "sections", "lifetimes"
+  std::string depfile;           // empty: none
   bool c_abi = false;
   bool passes = false;
 };

@@ -12,6 +12,7 @@
 #include "cli/common.hpp"
 #include "describe/deformation.hpp"
 #include "describe/function_names.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/scene.hpp"
 #include "emit/c_abi.hpp"
 #include "emit/header.hpp"
@@ -94,8 +95,8 @@ void print_routes(const AnyDerivation& derivation, bool errors) {
   }
 }
 
-/// One set of functions: of the model, or of a scene and one of its contact sets.
-int generate_one(const GenerateOptions& options) {
+/// One set of functions: of the model, or of a scene and one of its contact sets. Returns the header's file.
+std::filesystem::path generate_one(const GenerateOptions& options) {
   const Stopwatch watch;
   const Model model = load_model(options);
   const AnyDerivation derivation = derive_any(options, model);
@@ -159,23 +160,42 @@ int generate_one(const GenerateOptions& options) {
     print_routes(derivation, false);
   }
   fmt::print("wrote {} ({} bytes) in {:.2f} s\n", file.string(), header.size(), seconds);
-  return ok;
+  return file;
+}
+
+/// A path in a rule of make.
+std::string in_rule(const std::filesystem::path& path) {
+  std::string text;
+  for (const char c : std::filesystem::absolute(path).lexically_normal().string()) {
+    if (c == ' ' || c == '#') text += '\\';
+    if (c == '$') text += '$';
+    text += c;
+  }
+  return text;
 }
 
 }  // namespace
 
 int generate(const GenerateOptions& options) {
-  if (!options.contacts.empty() || scene_file(options).empty()) return generate_one(options);
-  const std::vector<ContactSet> sets = load_scene(options).contact_sets;
+  const FilesRead read;
+  std::vector<std::string> sets{options.contacts};
+  if (options.contacts.empty() && !scene_file(options).empty()) {
+    const Scene scene = load_scene(options);
+    if (!scene.contact_sets.empty()) sets.clear();
+    for (const ContactSet& set : scene.contact_sets) sets.push_back(set.name);
+  }
   if (sets.size() > 1 && std::filesystem::path(options.output).extension() == ".hpp")
     throw std::invalid_argument(
         "the scene has several contact sets: name a folder, or one set by --contacts");
-  if (sets.empty()) return generate_one(options);
-  for (const ContactSet& set : sets) {
+  std::string rule;
+  for (const std::string& set : sets) {
     GenerateOptions one = options;
-    one.contacts = set.name;
-    generate_one(one);
+    one.contacts = set;
+    rule += in_rule(generate_one(one)) + (set == sets.back() ? ":" : " ");
   }
+  if (options.depfile.empty()) return ok;
+  for (const std::filesystem::path& file : read.files()) rule += " \\\n  " + in_rule(file);
+  write_file(options.depfile, rule + "\n");
   return ok;
 }
 

@@ -2,16 +2,21 @@
 // The program `anholon`: reads the command line and calls the verb.
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include "check/compile_cache.hpp"
 #include "cli/commands.hpp"
 #include "describe/location.hpp"
+#include "describe/names.hpp"
 #include "report/plot.hpp"
 
 int main(int argc, char** argv) {
@@ -89,6 +94,8 @@ int main(int argc, char** argv) {
                    "of operations: sections as derived, lifetimes as processors like it, or auto: lifetimes "
                    "in long functions")
       ->check(CLI::IsMember({"auto", "sections", "lifetimes"}));
+  verb->add_option("--depfile", generate.depfile,
+                   "also write the files that were read, as a rule of make: for build systems");
   verb->add_flag("--c-abi", generate.c_abi, "also write a source with a flat C interface, and its JSON");
   verb->add_flag(
       "--passes", generate.passes,
@@ -172,6 +179,14 @@ int main(int argc, char** argv) {
       "leave out the motions of the scenes beside the models");
   verb->callback([&] { run = [&] { return cli::report(report); }; });
 
+  std::vector<std::string> verbs;
+  for (const CLI::App* known : app.get_subcommands({})) verbs.push_back(known->get_name());
+  if (argc > 1 && argv[1][0] != '-' && std::ranges::find(verbs, argv[1]) == verbs.end()) {
+    const std::string near = closest_name(argv[1], verbs);
+    fmt::print(stderr, "anholon: there is no '{}'; {}choose from {}\n", argv[1],
+               near.empty() ? "" : fmt::format("did you mean '{}'? ", near), fmt::join(verbs, ", "));
+    return cli::usage;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

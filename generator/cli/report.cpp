@@ -12,6 +12,7 @@
 
 #include "cli/common.hpp"
 #include "describe/location.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/sha256.hpp"
 #include "emit/plan.hpp"
 #include "emit/write_file.hpp"
@@ -64,6 +65,23 @@ std::vector<fs::path> scenes_beside(const fs::path& model) {
 std::string text_of(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+/// Contents of all files that a model or a scene stands on.
+template <class Load>
+std::string contents_read(const Load& load) {
+  const FilesRead read;
+  (void)load();
+  std::string contents;
+  for (const fs::path& file : read.files()) contents += text_of(file);
+  return contents;
+}
+
+ModelOptions options_of(const Subject& subject) {
+  ModelOptions options;
+  options.model = subject.file;
+  options.robot.floating = subject.is_floating;
+  return options;
 }
 
 /// The last line of the terminal says what is being done; without a terminal, a line for each part.
@@ -127,9 +145,7 @@ class Parts {
 };
 
 ordered_json measured_model(const ReportOptions& options, const Subject& subject, const Stage& stage) {
-  ModelOptions one;
-  one.model = subject.file;
-  one.robot.floating = subject.is_floating;
+  ModelOptions one = options_of(subject);
   const Model model = load_model(one);
   stage("deriving");
   const Stopwatch watch;
@@ -204,21 +220,22 @@ int report(const ReportOptions& options) {
     const Subject& subject = item.first;  // clang++ 14 captures no structured bindings
     const std::vector<fs::path>& scenes = item.second;
     const fs::path file = subject.file;
-    const std::string inputs =
-        program + text_of(file) + (subject.is_floating ? "floating" : "") + result["machine"].dump();
-    const ordered_json model = kept.get(file.stem().string(), inputs + std::to_string(options.samples),
+    const std::string with = program + (subject.is_floating ? "floating" : "") + result["machine"].dump();
+    const std::string inputs = contents_read([&] { return load_model(options_of(subject)); });
+    const ordered_json model = kept.get(file.stem().string(), with + inputs + std::to_string(options.samples),
                                         console, [&] { return measured_model(options, subject, stage); });
     if (!model.at("verification").at("passed").get<bool>()) failures.push_back(file.string());
     result["models"].push_back(model);
     for (const fs::path& scene : scenes) {
       const std::string name = fmt::format("{}.{}", file.stem().string(), scene.stem().stem().string());
-      ordered_json motion = kept.get(name, inputs + text_of(scene), console, [&]() -> ordered_json {
-        try {
-          return measured_motion(scene, stage);
-        } catch (const UnsupportedError& error) {
-          return {{"left_out", error.what()}};
-        }
-      });
+      ordered_json motion = kept.get(name, with + contents_read([&] { return read_scene(scene); }), console,
+                                     [&]() -> ordered_json {
+                                       try {
+                                         return measured_motion(scene, stage);
+                                       } catch (const UnsupportedError& error) {
+                                         return {{"left_out", error.what()}};
+                                       }
+                                     });
       if (!motion.contains("scene")) {
         motion["scene"] = scene.stem().stem().string();
         motion["model"] = model.at("model");

@@ -25,8 +25,9 @@ struct TomlAssertion {};
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <tuple>
+
+#include "describe/read_bytes.hpp"
 
 namespace anholon {
 namespace {
@@ -214,21 +215,6 @@ Value read_document(std::string_view text, const std::string& file_name) {
     throw ModelError(source.location_of_assertion(), "not TOML: something here is neither a key nor a value",
                      "see toml.io for the syntax");
   }
-}
-
-std::string read_bytes(const std::filesystem::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string bytes(largest_file + 1, '\0');
-  std::error_code ignored;
-  if (!stream || std::filesystem::is_directory(path, ignored) ||
-      (stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())), stream.bad())) {
-    throw ModelError({path.string(), 0, 0}, "the file cannot be read", "check its path and permissions");
-  }
-  bytes.resize(static_cast<std::size_t>(stream.gcount()));
-  if (bytes.size() > largest_file)
-    throw ModelError({path.string(), 0, 0}, fmt::format("the file is larger than {} bytes", largest_file),
-                     "split it");
-  return bytes;
 }
 
 }  // namespace anholon

@@ -5,7 +5,6 @@
 // that decimals stay exact; strings map each of their characters to its place in the file.
 
 #include <cstddef>
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -43,13 +42,7 @@ struct Entry {
   Value value;
 };
 
-/// Largest file that is read, in bytes.
-inline constexpr std::size_t largest_file = 1 << 20;
-
 /// Reads TOML text. @param file_name  stands in messages. @throws ModelError where the text is not valid TOML
 Value read_document(std::string_view text, const std::string& file_name);
-
-/// Bytes of a file. @throws ModelError where it cannot be read or is larger than `largest_file`
-std::string read_bytes(const std::filesystem::path& path);
 
 }  // namespace anholon

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "describe/read_bytes.hpp"
 #include "describe/read_parts.hpp"
 
 namespace anholon {

@@ -7,6 +7,7 @@
 
 #include "describe/chain.hpp"
 #include "describe/names.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/read_parts.hpp"
 #include "describe/read_robot.hpp"
 #include "describe/read_supplement.hpp"

@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "describe/document.hpp"
 #include "describe/identifiers.hpp"
 #include "describe/mjcf_elements.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/robot_tree.hpp"
 #include "describe/sdf_elements.hpp"
 #include "describe/sha256.hpp"

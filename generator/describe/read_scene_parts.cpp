@@ -10,6 +10,7 @@
 #include "describe/motion_table.hpp"
 #include "describe/names.hpp"
 #include "describe/outline.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/read_parts.hpp"
 #include "tape/derivative.hpp"
 

@@ -10,6 +10,7 @@
 #include "describe/function_names.hpp"
 #include "describe/names.hpp"
 #include "describe/outline.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/read_model.hpp"
 #include "describe/read_scene_parts.hpp"
 #include "describe/sha256.hpp"

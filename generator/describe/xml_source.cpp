@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "describe/document.hpp"
+#include "describe/read_bytes.hpp"
 
 namespace anholon {
 namespace {

@@ -13,6 +13,7 @@ set(project "${WORK}/project")
 set(build "${WORK}/build")
 file(COPY "${CMAKE_CURRENT_LIST_DIR}/" DESTINATION "${project}")
 file(COPY "${SOURCE}/models/bicycle/" "${SOURCE}/bench/free_chain.urdf" DESTINATION "${project}/model")
+file(WRITE "${project}/model/chain.toml" "anholon = 1\nname = \"chain\"\nurdf = \"free_chain.urdf\"\ngroup = \"SE3\"\n")
 
 function(run)
   execute_process(COMMAND ${ARGV} RESULT_VARIABLE status OUTPUT_VARIABLE text ERROR_VARIABLE text ECHO_OUTPUT_VARIABLE
@@ -93,6 +94,12 @@ foreach(part IN ITEMS balance balance_compiled)
     message(FATAL_ERROR "the new model did not reach ${part}")
   endif()
 endforeach()
+run(${CMAKE_COMMAND} --build "${build}" --target chain_generated)
+file(APPEND "${project}/model/free_chain.urdf" "<!-- changed -->\n")
+run(${CMAKE_COMMAND} --build "${build}" --target chain_generated)
+if(NOT text MATCHES "Generating chain.hpp")
+  message(FATAL_ERROR "a new robot file did not reach the model that stands on it")
+endif()
 
 # A model with a fault stops the build at its line.
 file(APPEND "${project}/model/bicycle.toml" "\n[[nonsense]]\n")

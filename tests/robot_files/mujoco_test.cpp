@@ -15,8 +15,8 @@
 #include <random>
 
 #include "anholon/free_dynamics.hpp"
-#include "describe/document.hpp"
 #include "describe/mechanise.hpp"
+#include "describe/read_bytes.hpp"
 #include "robot_files/same_robot.hpp"
 
 namespace anholon::mujoco_test {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <random>
 
-#include "describe/document.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/read_robot.hpp"
 
 namespace anholon::mutation_test {

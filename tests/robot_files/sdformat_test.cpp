@@ -13,7 +13,7 @@
 #include <sdf/Model.hh>
 #include <sdf/Root.hh>
 
-#include "describe/document.hpp"
+#include "describe/read_bytes.hpp"
 #include "robot_files/same_robot.hpp"
 #include "robot_files/zero_pose.hpp"
 

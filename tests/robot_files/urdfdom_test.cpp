@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "describe/document.hpp"
+#include "describe/read_bytes.hpp"
 #include "describe/read_robot.hpp"
 #include "robot_files/zero_pose.hpp"
 
