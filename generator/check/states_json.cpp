@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <fstream>
+#include <iterator>
+#include <string>
 
 #include "tape/interpret.hpp"
 
@@ -192,12 +194,16 @@ StatesFile read_states(const std::filesystem::path& path, const Model& model) {
   std::ifstream stream(path);
   if (!stream || std::filesystem::is_directory(path))
     throw ModelError({path.string(), 0, 0}, "cannot be read", "check the path");
+  const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   Json json;
   try {
-    json = Json::parse(stream);
-  } catch (const Json::parse_error& error) {
-    throw ModelError({path.string(), 0, 0}, fmt::format("is not JSON at byte {}", error.byte),
-                     "mend the syntax there");
+    json = Json::parse(text);
+  } catch (const Json::parse_error& error) {  // its byte is the first that does not fit, from 1
+    const std::string before = text.substr(0, error.byte == 0 ? 0 : error.byte - 1);
+    const auto line = 1 + std::ranges::count(before, '\n');
+    const std::size_t column = before.size() - (before.rfind('\n') + 1) + 1;  // npos + 1 == 0
+    throw ModelError({path.string(), static_cast<int>(line), static_cast<int>(column)}, "this is not JSON",
+                     "mend the syntax here");
   } catch (const Json::out_of_range& error) {
     throw ModelError({path.string(), 0, 0},
                      fmt::format("has a number that no double holds: {}", error.what()),

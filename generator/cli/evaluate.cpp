@@ -2,6 +2,7 @@
 #include "check/evaluate.hpp"
 
 #include "cli/common.hpp"
+#include "describe/function_names.hpp"
 
 namespace anholon::cli {
 
@@ -19,6 +20,8 @@ int evaluate(const EvaluateOptions& options) {
   wanted.leading_rows = request.leading_rows;
   wanted.optimise = request.optimise;
   if (is_tree) wanted.tree = tree_request(options);
+  refuse_unknown_functions(is_tree ? wanted.tree->functions : request.functions,
+                           is_tree ? tree_function_names() : function_names());
   write_output(options.output, evaluate_states(model, states, wanted).dump(1) + "\n");
   return ok;
 }

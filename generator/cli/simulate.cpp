@@ -150,8 +150,14 @@ int print_stiffness_ladder(const Scene& scene, const std::vector<double>& factor
   for (const StiffnessStep& step : ladder.steps) fmt::print(" {:>13.2e}", step.distance);
   fmt::print(
       "\n\ndistance: the largest difference to the rigid contacts, relative to the largest multiplier\n");
-  const auto is_ok = [](const StiffnessStep& step) { return step.status == "ok"; };
-  return std::ranges::all_of(ladder.steps, is_ok) ? ok : check_failed;
+  int status = ok;
+  for (const StiffnessStep& step : ladder.steps) {
+    if (step.status == "ok") continue;
+    fmt::print("FAILED: stiffness {:.2g} stopped before the end, and its column is of there: {}\n",
+               step.stiffness, step.status);
+    status = check_failed;
+  }
+  return status;
 }
 
 /// "EI:1" or "EI" as a parameter and its exponent.

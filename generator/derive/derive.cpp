@@ -194,11 +194,7 @@ void begin_program(Program& program, const Model& model, const std::string& scen
   program.name_space = model.name + "::" + scene;
   program.source_file = model.file;
   program.source_sha256 = model.sha256;
-  for (const std::string& name : functions) {
-    if (std::ranges::find(known, name) == known.end())
-      throw std::invalid_argument(
-          fmt::format("there is no function '{}'; choose from {}", name, fmt::join(known, ", ")));
-  }
+  refuse_unknown_functions(functions, known);
 }
 
 std::unique_ptr<Derivation> derive(const Model& model, const DeriveRequest& request) {

@@ -11,4 +11,8 @@ namespace anholon {
 /// Names of all functions, in the order in which programs list them.
 const std::vector<std::string>& function_names();
 
+/// @throws std::invalid_argument for a name that is not known
+void refuse_unknown_functions(const std::vector<std::string>& functions,
+                              const std::vector<std::string>& known);
+
 }  // namespace anholon

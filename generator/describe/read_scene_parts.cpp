@@ -105,6 +105,11 @@ void read_motion(TableReader& root, const std::filesystem::path& scene_file, Sce
                                "name a table, or remove the ends");
       continue;
     }
+    if (value->find("table") != nullptr) {
+      reading.findings.error(entry.where, fmt::format("the motion has a table and '{}'", entry.key),
+                             "write a column of the table for it, or expressions for all");
+      continue;
+    }
     const auto index = read_moved(entry.key, entry.where, reading);
     if (!index) continue;
     const bool is_angle = model.coordinates[static_cast<std::size_t>(*index)].is_angle;

@@ -176,6 +176,10 @@ TEST(Scene, SaysWhatIsWrong) {
        "5:17: error: the motion of 'r1' has a kink; it needs two derivatives: do without abs and sign"},
       {"motion = { r1 = \"r3\" }\n",
        "5:18: error: 'r3' is a coordinate; only parameters and t may stand here"},
+      {"motion = { table = \"none.csv\", r3 = \"t\" }\n",
+       "5:20: error: there is no file 'none.csv'; name the table, relative to the "
+       "scene\ntest.scene.toml:5:32: error: the motion has a "
+       "table and 'r3'; write a column of the table for it, or expressions for all"},
       {"motion = { table = \"none.csv\" }\n",
        "5:20: error: there is no file 'none.csv'; name the table, relative to the scene"},
       {"initial = { coordinates = { r1 = 0 } }\n",
