@@ -119,24 +119,27 @@ class GeneratedField {
         code_(std::make_unique<CompiledProgram>(derivation_->program, options(scalar))),
         function_(&code_->function("forward_dynamics")),
         zeros_(robot.model.coordinates.size(), 0.0) {
-    for (int i = 0; i < function_->input_count; ++i) names_.emplace_back(function_->inputs[i].name);
-    inputs_.resize(names_.size());
+    const auto n = static_cast<Eigen::Index>(zeros_.size());
+    inputs_.resize(static_cast<std::size_t>(function_->input_count));
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+      const std::string name = function_->inputs[i].name;
+      inputs_[i] = name == "R" ? R_.data() : zeros_.data();
+      if (name == "r") of_y_.emplace_back(i, 0);
+      if (name == "eta") of_y_.emplace_back(i, n);
+      if (name == "r_dot") of_y_.emplace_back(i, n + G::dim);
+    }
   }
+  GeneratedField(const GeneratedField&) = delete;  // inputs are places of this one
+  GeneratedField& operator=(const GeneratedField&) = delete;
   void operator()(double, const G& g, const Vector<double>& y, typename G::Tangent& eta,
                   Vector<double>& y_dot) {
     const auto n = static_cast<Eigen::Index>(zeros_.size());
-    std::array<double, 9> R{};
     if constexpr (G::dim > 0) {
       const auto rotation = g.R();
-      for (int i = 0; i < 9; ++i) R[static_cast<std::size_t>(i)] = rotation(i / 3, i % 3);
+      for (int i = 0; i < 9; ++i) R_[static_cast<std::size_t>(i)] = rotation(i / 3, i % 3);
       eta = y.segment(n, G::dim);
     }
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      inputs_[i] = names_[i] == "r"       ? y.data()
-                   : names_[i] == "eta"   ? y.data() + n
-                   : names_[i] == "r_dot" ? y.data() + n + G::dim
-                   : names_[i] == "R"     ? R.data()
-                                          : zeros_.data();
+    for (const auto& [input, at] : of_y_) inputs_[input] = y.data() + at;
     y_dot.head(n) = y.tail(n);
     double* const outputs[] = {y_dot.data() + n, y_dot.data() + n + G::dim};  // a fixed base has no first
     code_->call(*function_, inputs_.data(), outputs);
@@ -151,8 +154,10 @@ class GeneratedField {
   std::unique_ptr<TreeDerivation> derivation_;
   std::unique_ptr<CompiledProgram> code_;
   const anholon_function* function_;
-  std::vector<std::string> names_;
   std::vector<const double*> inputs_;
+  std::vector<std::pair<std::size_t, Eigen::Index>>
+      of_y_;  // inputs that are parts of y, and where these begin
+  std::array<double, 9> R_{};
   std::vector<double> zeros_;
 };
 
