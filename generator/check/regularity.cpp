@@ -38,8 +38,8 @@ class Search {
       if (m.J.size() > 0) entries.push_back(m.J.cwiseAbs().maxCoeff());
       independence.push_back(rank_quality(m));
     }
-    column_size_ = search_.median(columns), J_size_ = search_.median(entries),
-    independence_ = search_.median(independence);
+    column_size_ = ConfigurationSearch::median(columns), J_size_ = ConfigurationSearch::median(entries),
+    independence_ = ConfigurationSearch::median(independence);
   }
 
   Regularity run() {

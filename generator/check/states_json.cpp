@@ -79,7 +79,8 @@ class Reader {
       fail(fmt::format("{}: '{}' has {} entries, not {}", where, key, list.size(), size),
            "give one number for each coordinate");
     std::vector<Exact> result;
-    for (const Json& e : list) result.push_back(number(e, where + ", " + key));
+    const std::string what = fmt::format("{}, {}", where, key);
+    for (const Json& e : list) result.push_back(number(e, what));
     return result;
   }
 

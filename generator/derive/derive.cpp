@@ -169,8 +169,9 @@ void Deriver::note_header() {
   program_.notes.push_back("Table I: " + r.table_I_class(motion_partition_));
   const auto& charts = motion_.atlas.charts;
   for (std::size_t c = 0; c < charts.size(); ++c)
-    program_.notes.push_back((charts.size() > 1 ? fmt::format("chart {}: ", c + 1) : "kernel: ") +
-                             charts[c]->kernel().description);
+    program_.notes.push_back(fmt::format("{}: {}",
+                                         charts.size() > 1 ? fmt::format("chart {}", c + 1) : "kernel",
+                                         charts[c]->kernel().description));
   if (charts.size() > 1)
     program_.notes.push_back(
         "no basis serves everywhere: functions that know nu are there once for each chart, in namespaces "

@@ -45,7 +45,8 @@ Value table_at(const Location& where, std::vector<std::pair<const char*, Value>>
   Value value;
   value.kind = Value::Kind::table;
   value.where = where;
-  for (auto& [key, of] : entries) value.entries.push_back({key, of.where, std::move(of)});
+  for (std::pair<const char*, Value>& entry : entries)
+    value.entries.push_back({entry.first, entry.second.where, std::move(entry.second)});
   return value;
 }
 

@@ -115,8 +115,7 @@ Mechanism<S> mechanise(const MechanismDescription& d, const std::vector<S>& para
     for (const Expr& e : m.m) want(e);
   };
   const auto visit = [&](auto&& scalar, auto&& vector, auto&& matrix) {
-    for (std::size_t k = 0; k < d.bodies.size(); ++k) {
-      const Body<Expr>& b = d.bodies[k];
+    for (const Body<Expr>& b : d.bodies) {
       scalar(b.pitch), scalar(b.armature), matrix(b.R), vector(b.p), matrix(b.R_frame), scalar(b.mass),
           vector(b.first_moment), matrix(b.inertia);
       if (b.fluid) {

@@ -103,7 +103,6 @@ class MjcfElements : MjcfInertials {
 
   void read_joints(const XMLElement& body, const std::string& parent, const std::string& child,
                    const std::string& childclass, const ExactPose& pose, const Location& where) {
-    const Location here = where;
     std::vector<PlacedJoint> joints;
     int unnamed = 0;
     for (const XMLElement* e = body.FirstChildElement(); e != nullptr; e = e->NextSiblingElement()) {
@@ -140,7 +139,7 @@ class MjcfElements : MjcfInertials {
       file_.notes.push_back(fmt::format("dropped: the pose of body '{}', which moves", child));
     RobotJoint fixed;
     fixed.name = fmt::format("{} (fixed)", child);
-    fixed.where = fixed.parent_where = fixed.child_where = here;
+    fixed.where = fixed.parent_where = fixed.child_where = where;
     join(file_, parent, child, pose, std::move(joints), fixed);
   }
 

@@ -356,7 +356,7 @@ class FluidReader {
         if (drag_) coefficient = coefficient + (*drag_)[i] * abs(v[i]);
         (i < 3 ? wrench.force : wrench.torque)[i % 3] = -(place.share * coefficient * v[i]);
       }
-      reading_.model.wrenches.push_back(std::move(wrench));
+      reading_.model.wrenches.push_back(wrench);
     }
     if (wake_) {  // F = -u m w + m w^2/2 forward, with u the velocity forward and w that across
       WrenchDescription wrench = wrench_at(place);
@@ -365,7 +365,7 @@ class FluidReader {
       wrench.force[0] = forward * (m_y * (v[1] * v[1]) + m_z * (v[2] * v[2])) / Expr(2);
       wrench.force[1] = -(forward * (m_y * (v[0] * v[1])));
       wrench.force[2] = -(forward * (m_z * (v[0] * v[2])));
-      reading_.model.wrenches.push_back(std::move(wrench));
+      reading_.model.wrenches.push_back(wrench);
     }
   }
 

@@ -373,12 +373,12 @@ class RobotBuilder {
       const ExactVector y = {normal[1] * x[2] - normal[2] * x[1], normal[2] * x[0] - normal[0] * x[2],
                              normal[0] * x[1] - normal[1] * x[0]};
       for (const ExactVector& a : {x, y})
-        steps.push_back({JointKind::prismatic, {constant(a[0]), constant(a[1]), constant(a[2])}});
-      steps.push_back({JointKind::revolute, axis(j)});
+        steps.emplace_back(JointKind::prismatic, std::array{constant(a[0]), constant(a[1]), constant(a[2])});
+      steps.emplace_back(JointKind::revolute, axis(j));
     } else {
       const std::array<std::array<Expr, 3>, 3> e = {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
-      for (std::size_t k = 0; k < 3; ++k) steps.push_back({JointKind::prismatic, e[k]});
-      for (std::size_t k = 3; k-- > 0;) steps.push_back({JointKind::revolute, e[k]});
+      for (std::size_t k = 0; k < 3; ++k) steps.emplace_back(JointKind::prismatic, e[k]);
+      for (std::size_t k = 3; k-- > 0;) steps.emplace_back(JointKind::revolute, e[k]);
     }
     for (std::size_t i = 0; i < steps.size(); ++i) {
       const int place =

@@ -358,7 +358,7 @@ class HeaderWriter {
           fmt::format("static constexpr int {}[{}] = {{{}}};", name, values.size(), fmt::join(values, ", ")),
           "  ", 4);
     };
-    const auto call = [&](const std::string& name, std::vector<std::string> passed) {
+    const auto call = [&](const std::string& name, const std::vector<std::string>& passed) {
       body.text += fmt::format("  {}({});\n", name, joined(passed, ", "));
     };
     std::vector<std::string> passed;

@@ -75,7 +75,7 @@ SharingRule equal_friction_sharing() {
     for (const ContactMap& contact : problem.contacts) {
       if (contact.normal.size() == 0 || contact.friction == 0 || largest == 0) continue;
       const double load = std::max((contact.normal * so_far)(0), least_share * largest);
-      tangential.push_back(contact.tangential / std::sqrt(contact.friction * load));
+      tangential.emplace_back(contact.tangential / std::sqrt(contact.friction * load));
     }
     const Eigen::MatrixXd all_tangential = stacked(tangential, rows);
     s.minimise(all_tangential * problem.N, all_tangential * problem.lambda);

@@ -98,7 +98,7 @@ void meet_position_conditions(const Scene& scene, const SceneProgram& program,
   if (keeper.empty()) return;
   keeper.start(state.t, state.g, state.y);
   keeper(state.t, state.g, state.y);
-  const double left = static_cast<double>(keeper.residual(state.t, state.g, state.y));
+  const auto left = static_cast<double>(keeper.residual(state.t, state.g, state.y));
   if (!(left <= 1e-12))  // m: far above rounding, far below what anybody could mean
     throw ModelError(
         scene.initial_where,

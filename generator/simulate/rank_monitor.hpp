@@ -35,11 +35,11 @@ class RankMonitor {
     if (now.size() > 0 && before_.rows() == now.rows() && turned_over(now)) {
       // the rows turn over where they lose rank: bisection, g being that of the end of the step
       double low = t_before_, high = t;
-      const Eigen::VectorXd y_before = y_before_, y_now = y;
+      const Eigen::VectorXd y_before = y_before_;
       for (int i = 0; i < bisections; ++i) {
         const double middle = (low + high) / 2, part = (middle - t_before_) / (t - t_before_);
         run_.impose(middle);
-        run_.set(g, Eigen::VectorXd(y_before + part * (y_now - y_before)));
+        run_.set(g, Eigen::VectorXd(y_before + part * (y - y_before)));
         (turned_over(leading_rows()) ? high : low) = middle;
       }
       found = obstacle(high, crossed);

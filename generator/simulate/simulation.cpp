@@ -54,7 +54,7 @@ std::pair<Integrator::Method, std::string> chosen_method(const Scene& scene, con
   if (program.jacobian_operations == 0) return {Integrator::Method::dopri5, "no Jacobian of this motion"};
   constexpr double stable = 1;  // |h lambda| of Dormand-Prince on the imaginary axis; 3.3 on the real one
   constexpr int stages = 8, explicit_stages = 6;
-  const double n = static_cast<double>(size);
+  const auto n = static_cast<double>(size);
   const double accurate = stiffness.steps * std::pow(coarse_tolerance / scene.integrator.tolerance, 0.2);
   const double stable_steps = stiffness.fast / stable;
   const double by_stiff = accurate * (stages * (program.operations + 2 * n * n + 2 * stages * n) +

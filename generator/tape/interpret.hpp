@@ -45,7 +45,7 @@ class Interpreter {
       const Node& n = tape.node(id);
       slot[id] = static_cast<std::uint32_t>(values_.size());
       values_.emplace_back(n.op == Op::constant ? constant(tape.value(id)) : S(0));
-      if (n.op == Op::input) inputs_.push_back({slot[id], n.a});
+      if (n.op == Op::input) inputs_.emplace_back(slot[id], n.a);
       if (info(n.op).arity > 0)
         steps_.push_back({n.op, slot[id], slot[n.a], info(n.op).arity == 2 ? slot[n.b] : slot[n.a]});
     }

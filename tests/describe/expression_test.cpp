@@ -16,7 +16,7 @@ class Expression : public ::testing::Test {
  protected:
   Expression() {
     const auto input = [&](const std::string& name, SymbolKind kind, Dimension unit, int value) {
-      inputs.push_back(Exact(value));
+      inputs.emplace_back(value);
       return Symbol{kind, {Expr(tape, tape.input(name)), unit}, "", ""};
     };
     scope.add("l", input("l", SymbolKind::parameter, units::m, 3));
@@ -191,7 +191,7 @@ TEST_F(Expression, EndsSoonWhateverTheText) {
   for (int i = 0; i < 300; ++i) tower += "^2";
   EXPECT_EQ(error(tower), "400: more than 200 levels of nesting; simplify the expression");
   std::string roots = "n";
-  for (int i = 0; i < 150; ++i) roots = "sqrt(" + roots + ")";
+  for (int i = 0; i < 150; ++i) roots = fmt::format("sqrt({})", roots);
   EXPECT_EQ(error(roots), "no error");
 }
 

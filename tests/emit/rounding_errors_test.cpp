@@ -50,7 +50,7 @@ TYPED_TEST(RoundingErrorsOf, SumsAndProductsAreExact) {
 TYPED_TEST(RoundingErrorsOf, QuotientsAreRightToTheLastDigitsOfTheError) {
   using Real = TypeParam;
   test::Dice dice(4);
-  const double eps = static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const auto eps = static_cast<double>(std::numeric_limits<Real>::epsilon());
   for (int i = 0; i < 2000; ++i) {
     const Real a = draw<Real>(dice, 20), b = draw<Real>(dice, 20), quotient = a / b;
     if (b == Real(0)) continue;

@@ -2,6 +2,7 @@
 // The checked-in sources of the models, and the equations on their pages, are what the generator writes
 // today, byte for byte.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +40,7 @@ std::string first_difference(const std::string& a, const std::string& b) {
   for (int line = 1;; ++line) {
     const bool more_a = static_cast<bool>(std::getline(x, p)), more_b = static_cast<bool>(std::getline(y, q));
     if (!more_a && !more_b) return "none";
-    if (more_a != more_b || p != q) return "line " + std::to_string(line) + "\n- " + p + "\n+ " + q;
+    if (more_a != more_b || p != q) return fmt::format("line {}\n- {}\n+ {}", line, p, q);
   }
 }
 

@@ -271,7 +271,8 @@ std::array<Real, 6> own_velocity(const Pose& frame) {
 }
 
 /// A free base with an oblique hinge; forces act at `points`, of the base (first) and of the hinge.
-Witness base_and_hinge(const std::string& fluids, std::vector<Vector> on_base, std::vector<Vector> on_hinge) {
+Witness base_and_hinge(const std::string& fluids, const std::vector<Vector>& on_base,
+                       const std::vector<Vector>& on_hinge) {
   Witness w;
   w.description = header("SE3") + body("base", "", cloud(0)) +
                   body("hinge", "base", cloud(1),

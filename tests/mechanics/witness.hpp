@@ -193,7 +193,7 @@ void add_dynamics(BlockErrors& errors, const std::string& by, std::size_t n,
     want.push_back(force[i]);
     have.push_back(have_force[i]);
   }
-  for (const auto& [name, b] : blocks) errors.add(by + " " + name, b.first, b.second);
+  for (const auto& [name, b] : blocks) errors.add(fmt::format("{} {}", by, name), b.first, b.second);
 }
 
 inline State<double> rounded(const State<Real>& s) {

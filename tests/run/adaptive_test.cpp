@@ -37,7 +37,7 @@ AdaptiveOptions<Real> tolerance(long double value) {
 
 TEST(DormandPrince, ErrorIsProportionalToTheTolerance) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   std::vector<double> errors;
   for (int exponent = -3; exponent >= -12; --exponent) {
     SCOPED_TRACE(::testing::Message() << "tolerance 1e" << exponent);
@@ -77,7 +77,7 @@ TEST(DormandPrince, TakesTheSameStepsForAMotionOfAnySize) {
 
 TEST(DormandPrince, EvaluatesSixTimesAStepAndReportsIt) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   const auto result = integrate_adaptive(stages, motion, state, 2.0, tolerance<double>(1e-8));
   EXPECT_EQ(result.evaluations, motion.evaluations);
@@ -87,7 +87,7 @@ TEST(DormandPrince, EvaluatesSixTimesAStepAndReportsIt) {
 
 TEST(MuntheKaas4, EvaluatesFourTimesAStepAndReportsIt) {
   ManufacturedMotion<SE3<double>> motion;
-  Rkmk4<SE3<double>> stages(motion.size_y);
+  Rkmk4<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   const auto result = integrate_fixed(stages, motion, state, 1.0, 10);
   EXPECT_EQ(result.evaluations, motion.evaluations);
@@ -149,7 +149,7 @@ TEST(DormandPrince, FollowsTheFreeSymmetricTop) {
 
 TEST(DormandPrince, DenseOutputMeetsTheToleranceAtRequestedTimes) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   std::vector<double> times, seen;
   for (int i = 0; i <= 500; ++i) times.push_back(i * 0.004);
@@ -167,7 +167,7 @@ TEST(DormandPrince, DenseOutputMeetsTheToleranceAtRequestedTimes) {
 
 TEST(DormandPrince, DenseOutputIsContinuousWithItsSlopeFromStepToStep) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   const double small = 1e-6;
   VectorXd last_y, last_slope;
@@ -228,7 +228,7 @@ TEST(DormandPrince, NeverTakesAnErrorThatIsNotANumberForASmallOne) {
 
 TEST(DormandPrince, NamesAStartThatIsNotANumber) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   state.y[2] = std::nan("");
   EXPECT_EQ(integrate_adaptive(stages, motion, state, 1.0, {}).status, Status::non_finite);
@@ -236,7 +236,7 @@ TEST(DormandPrince, NamesAStartThatIsNotANumber) {
 
 TEST(DormandPrince, StopsAtTheLimitOfSteps) {
   const ManufacturedMotion<SE3<double>> motion;
-  DormandPrince<SE3<double>> stages(motion.size_y);
+  DormandPrince<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   auto options = tolerance<double>(1e-9);
   options.max_steps = 7;
@@ -296,14 +296,14 @@ TEST(Integration, SumsAMillionEqualIncrementsToOneUlp) {
 TEST(DormandPrince, WorksInFloatAndLongDouble) {
   {
     const ManufacturedMotion<SE3<float>> motion;
-    DormandPrince<SE3<float>> stages(motion.size_y);
+    DormandPrince<SE3<float>> stages(decltype(motion)::size_y);
     State<SE3<float>> state{0, motion.pose(0), motion.y(0)};
     ASSERT_TRUE(integrate_adaptive(stages, motion, state, 1.0f, tolerance<float>(1e-4L)));
     EXPECT_LT(motion.error(1, state.g, state.y), 1e-3f);
   }
   {
     const ManufacturedMotion<SE3<long double>> motion;
-    DormandPrince<SE3<long double>> stages(motion.size_y);
+    DormandPrince<SE3<long double>> stages(decltype(motion)::size_y);
     State<SE3<long double>> state{0, motion.pose(0), motion.y(0)};
     ASSERT_TRUE(integrate_adaptive(stages, motion, state, 1.0L, tolerance<long double>(1e-15L)));
     EXPECT_LT(motion.error(1, state.g, state.y), 1e-14L);

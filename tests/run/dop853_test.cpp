@@ -30,7 +30,7 @@ AdaptiveOptions<Real> tolerance(long double value) {
 
 TEST(Dop853, ErrorIsProportionalToTheTolerance) {
   const ManufacturedMotion<SE3<double>> motion;
-  Dop853<SE3<double>> stages(motion.size_y);
+  Dop853<SE3<double>> stages(decltype(motion)::size_y);
   std::vector<double> errors;
   for (int exponent = -3; exponent >= -12; --exponent) {
     SCOPED_TRACE(::testing::Message() << "tolerance 1e" << exponent);
@@ -48,7 +48,7 @@ TEST(Dop853, ErrorIsProportionalToTheTolerance) {
 
 TEST(Dop853, EvaluatesTwelveTimesAStepAndThreeMoreWhereOutputIsWanted) {
   const ManufacturedMotion<SE3<double>> motion;
-  Dop853<SE3<double>> stages(motion.size_y);
+  Dop853<SE3<double>> stages(decltype(motion)::size_y);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
   const auto plain = integrate_adaptive(stages, motion, state, 2.0, tolerance<double>(1e-8));
   EXPECT_EQ(plain.evaluations, motion.evaluations);
@@ -66,7 +66,7 @@ TEST(Dop853, EvaluatesTwelveTimesAStepAndThreeMoreWhereOutputIsWanted) {
 
 TEST(Dop853, ReportsTheStateAtTheTimesWithinTheTolerance) {
   const ManufacturedMotion<SE3<double>> motion;
-  Dop853<SE3<double>> stages(motion.size_y);
+  Dop853<SE3<double>> stages(decltype(motion)::size_y);
   std::vector<double> times, seen;
   for (int i = 0; i <= 1000; ++i) times.push_back(0.002 * i);
   State<SE3<double>> state{0, motion.pose(0), motion.y(0)};
@@ -85,14 +85,14 @@ TEST(Dop853, ReportsTheStateAtTheTimesWithinTheTolerance) {
 TEST(Dop853, WorksInFloatAndLongDouble) {
   {
     const ManufacturedMotion<SE3<float>> motion;
-    Dop853<SE3<float>> stages(motion.size_y);
+    Dop853<SE3<float>> stages(decltype(motion)::size_y);
     State<SE3<float>> state{0, motion.pose(0), motion.y(0)};
     ASSERT_TRUE(integrate_adaptive(stages, motion, state, 1.0f, tolerance<float>(1e-4L)));
     EXPECT_LT(motion.error(1, state.g, state.y), 1e-3f);
   }
   {
     const ManufacturedMotion<SE3<long double>> motion;
-    Dop853<SE3<long double>> stages(motion.size_y);
+    Dop853<SE3<long double>> stages(decltype(motion)::size_y);
     State<SE3<long double>> state{0, motion.pose(0), motion.y(0)};
     ASSERT_TRUE(integrate_adaptive(stages, motion, state, 1.0L, tolerance<long double>(1e-17L)));
     EXPECT_LT(motion.error(1, state.g, state.y), 1e-16L);

@@ -234,8 +234,8 @@ TYPED_TEST(EveryLieGroup, AgreesWithLongDoubleThroughEveryBranch) {
     SCOPED_TRACE(::testing::Message() << "angle " << angle);
     const auto xi = tangent_of_angle<TypeParam>(angle, this->rng);
     const auto eta = this->random_tangent();
-    const typename Long::Tangent xi_long = xi.template cast<long double>(),
-                                 eta_long = eta.template cast<long double>();
+    const typename Long::Tangent& xi_long = xi.template cast<long double>();
+    const typename Long::Tangent& eta_long = eta.template cast<long double>();
     EXPECT_LT(this->distance(TypeParam::exp(xi), Long::exp(xi_long)), 8 * this->ulp);
     const auto difference =
         (TypeParam::dexp_inv(xi, eta).template cast<long double>() - Long::dexp_inv(xi_long, eta_long))

@@ -128,7 +128,8 @@ TEST(TabulatedMotion, NaturalSplineOfTwoRowsIsALine) {
 
 TEST(TabulatedMotion, RefusesATableThatIsNoFunctionOfTime) {
   const MatrixXd values = MatrixXd::Ones(4, 1);
-  const auto message = [&](std::vector<double> times, const MatrixXd& rows, SplineEnds ends) -> std::string {
+  const auto message = [&](const std::vector<double>& times, const MatrixXd& rows,
+                           SplineEnds ends) -> std::string {
     try {
       Motion(times, rows, ends);
     } catch (const std::invalid_argument& error) {

@@ -39,7 +39,7 @@ struct Errors {
 template <class G>
 Errors errors_of(const StiffMotion<G>& motion, long steps) {
   using Real = typename G::Scalar;
-  RosenbrockStages<G> stages(motion.size_y);
+  RosenbrockStages<G> stages(StiffMotion<G>::size_y);
   State<G> state{0, motion.pose(0), motion.y(0)};
   Errors errors;
   const auto outcome = integrate_adaptive(
@@ -215,7 +215,7 @@ TEST(Rosenbrock, CountsWhatItCalls) {
   options.rtol = options.atol = 1e-9;
   options.initial_step = 0.5;  // too long: steps are rejected
   State<G> state{0, motion.pose(0), motion.y(0)};
-  RosenbrockStages<G> stages(motion.size_y);
+  RosenbrockStages<G> stages(decltype(motion)::size_y);
   const auto outcome = integrate_adaptive(stages, motion, state, 1.0, options);
   ASSERT_TRUE(outcome);
   EXPECT_GT(outcome.rejected_steps, 0);

@@ -102,7 +102,7 @@ double slope_of_error() {
   for (int i = 0; i < 2; ++i) {
     State<G> state = start<G>();
     EXPECT_TRUE(integrate_fixed(stages, body, state, Real(2), 80 << i));
-    const double pose = static_cast<double>((reference.g.inverse() * state.g).log().norm());
+    const auto pose = static_cast<double>((reference.g.inverse() * state.g).log().norm());
     errors[i] = pose + static_cast<double>((state.y - reference.y).norm());
   }
   return std::log2(errors[0] / errors[1]);
@@ -120,10 +120,10 @@ TEST(Variational, KeepsTheMomentumOfAFreeBodyToRounding) {
   const PulledBody<G> body;
   VariationalStages<G, 2> stages;
   State<G> state = start<G>();
-  const auto before = body.of_world(state.g, state.y);
+  const auto before = decltype(body)::of_world(state.g, state.y);
   double worst = 0;
   const auto observe = [&](double, const G& g, const auto& mu) {
-    worst = std::max(worst, (body.of_world(g, mu) - before).norm() / before.norm());
+    worst = std::max(worst, (decltype(body)::of_world(g, mu) - before).norm() / before.norm());
   };
   EXPECT_TRUE(integrate_fixed(stages, body, state, 200.0, 2000, observe));  // steps of 0.1 s, 0.13 rad each
   EXPECT_LT(worst, 1e-12);  // roundings of 2000 steps, times the distance of up to 60 m that it has moved

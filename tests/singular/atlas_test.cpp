@@ -73,7 +73,7 @@ std::vector<Eigen::Vector3d> verticals() {
       Eigen::Vector3d u(small, -small, small / 2);
       u(axis) = 1;
       all.push_back(u.normalized());
-      all.push_back(-u.normalized());
+      all.emplace_back(-u.normalized());
       Eigen::Vector3d v = u;
       v((axis + 1) % 3) = 1;
       all.push_back(v.normalized());

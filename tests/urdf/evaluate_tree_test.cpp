@@ -2,6 +2,7 @@
 
 // `evaluate` of robots from URDF files: generated code, recursion and exact arithmetic answer alike.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -62,7 +63,7 @@ void compare(const std::string& where, const Json& got, const Json& want, double
     ASSERT_TRUE(got.is_object()) << where;
     for (const auto& [key, value] : want.items()) {
       ASSERT_TRUE(got.contains(key)) << where << " has no " << key;
-      compare(where + "." + key, got[key], value, tolerance, compared);
+      compare(fmt::format("{}.{}", where, key), got[key], value, tolerance, compared);
     }
     return;
   }

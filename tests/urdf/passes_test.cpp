@@ -111,7 +111,7 @@ TEST(ModelPasses, ParallelJointsInCommonAxesGiveTheSameMassMatrix) {
   m.bodies.back().coordinate = 3;
   m.coordinates = 4;
   State<Exact> state;
-  for (int i = 0; i < 4; ++i) state.r.push_back(Exact::ratio(2 * i - 3, 5)), state.r_dot.push_back(Exact(0));
+  for (int i = 0; i < 4; ++i) state.r.push_back(Exact::ratio(2 * i - 3, 5)), state.r_dot.emplace_back(0);
   const std::vector<Exact> expected = FreeDynamics<Exact>(m).mass_matrix(state).entries();
   EXPECT_EQ(align_parallel(m), 2);
   for (const bool regrouped : {false, true}) {

@@ -85,7 +85,7 @@ class GatherPass {
 
 }  // namespace
 
-std::vector<NodeId> gather_parameters(Tape& tape, std::vector<NodeId> roots,
+std::vector<NodeId> gather_parameters(Tape& tape, const std::vector<NodeId>& roots,
                                       const std::vector<NodeId>& parameters) {
   const GatherPass pass(tape, roots, parameters);
   const std::vector<NodeId> next = rebuild(

@@ -14,7 +14,7 @@ namespace anholon {
 /// @param parameters  input nodes that are constant between calls
 /// @return nodes with the values of the roots; never more additions, multiplications and divisions per call
 /// than before
-std::vector<NodeId> gather_parameters(Tape& tape, std::vector<NodeId> roots,
+std::vector<NodeId> gather_parameters(Tape& tape, const std::vector<NodeId>& roots,
                                       const std::vector<NodeId>& parameters);
 
 }  // namespace anholon

@@ -81,7 +81,7 @@ class SignPass {
 
 }  // namespace
 
-std::vector<NodeId> merge_opposite_differences(Tape& tape, std::vector<NodeId> roots) {
+std::vector<NodeId> merge_opposite_differences(Tape& tape, const std::vector<NodeId>& roots) {
   const std::vector<NodeId> next = SignPass(tape).run(roots);
   return count_operations(tape, next).total() < count_operations(tape, roots).total() ? next : roots;
 }

@@ -12,6 +12,6 @@ namespace anholon {
 
 /// @return nodes with the values of the roots; never more additions, multiplications and divisions than
 /// before
-std::vector<NodeId> merge_opposite_differences(Tape& tape, std::vector<NodeId> roots);
+std::vector<NodeId> merge_opposite_differences(Tape& tape, const std::vector<NodeId>& roots);
 
 }  // namespace anholon

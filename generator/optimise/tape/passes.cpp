@@ -20,17 +20,16 @@ constexpr int rounds = 3;
 
 struct TapePass {
   const char* name;
-  Roots (*run)(Tape&, Roots, const Roots& parameters);
+  Roots (*run)(Tape&, const Roots&, const Roots& parameters);
 };
 constexpr std::array tape_passes = {
     TapePass{"opposite differences",
-             [](Tape& t, Roots r, const Roots&) { return merge_opposite_differences(t, std::move(r)); }},
+             [](Tape& t, const Roots& r, const Roots&) { return merge_opposite_differences(t, r); }},
     TapePass{"common factors",
-             [](Tape& t, Roots r, const Roots&) { return extract_common_factors(t, std::move(r)); }},
-    TapePass{"common sums",
-             [](Tape& t, Roots r, const Roots&) { return share_common_sums(t, std::move(r)); }},
+             [](Tape& t, const Roots& r, const Roots&) { return extract_common_factors(t, r); }},
+    TapePass{"common sums", [](Tape& t, const Roots& r, const Roots&) { return share_common_sums(t, r); }},
     TapePass{"gathered parameters",
-             [](Tape& t, Roots r, const Roots& p) { return gather_parameters(t, std::move(r), p); }}};
+             [](Tape& t, const Roots& r, const Roots& p) { return gather_parameters(t, r, p); }}};
 
 }  // namespace
 

@@ -183,7 +183,7 @@ S kinetic_energy(const Body<S>& body, const BodyInertia<S>& shape, const BodyMot
             dot(k.w, shape.inertia * k.w);
   for (std::size_t j = 0; j < body.modes.size(); ++j) {
     const Mode<S>& mode = body.modes[j];
-    const S rate = r_dot[static_cast<std::size_t>(mode.coordinate)];
+    const S& rate = r_dot[static_cast<std::size_t>(mode.coordinate)];
     twice = twice + S(2) * rate * (dot(k.v, shape.S_j[j]) + dot(k.w, axial(shape.N_j[j])));
     for (std::size_t l = 0; l < body.modes.size(); ++l)
       twice = twice + rate * r_dot[static_cast<std::size_t>(body.modes[l].coordinate)] * mode.m_jl[l];

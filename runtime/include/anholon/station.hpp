@@ -46,7 +46,7 @@ class StationFrame {
     theta_ = {};
     slopes_.clear();
     for (const StationMode<S>& mode : station.modes) {
-      const S shape = r[static_cast<std::size_t>(mode.coordinate)];
+      const S& shape = r[static_cast<std::size_t>(mode.coordinate)];
       Vec3<S> slope = mode.phi;
       for (std::size_t l = 0; l < mode.psi.size(); ++l)
         slope += r[static_cast<std::size_t>(station.modes[l].coordinate)] * mode.psi[l];
@@ -82,7 +82,7 @@ class StationFrame {
     Spatial<S> v;
     Vec3<S> turning;
     for (std::size_t j = 0; j < slopes_.size(); ++j) {
-      const S rate = r_dot[static_cast<std::size_t>(station_->modes[j].coordinate)];
+      const S& rate = r_dot[static_cast<std::size_t>(station_->modes[j].coordinate)];
       v.linear += rate * slopes_[j];
       turning += rate * station_->modes[j].turn;
     }
