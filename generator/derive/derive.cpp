@@ -173,7 +173,7 @@ void Deriver::note_header() {
                                          charts.size() > 1 ? fmt::format("chart {}", c + 1) : "kernel",
                                          charts[c]->kernel().description));
   if (charts.size() > 1)
-    program_.notes.push_back(
+    program_.notes.emplace_back(
         "no basis serves everywhere: functions that know nu are there once for each chart, in namespaces "
         "chart1, chart2, ...; those without such a namespace are of chart 1; choose_chart() compares and "
         "is "
