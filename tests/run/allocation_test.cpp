@@ -35,8 +35,8 @@ std::atomic<long> allocations{0};
 #endif
 
 #ifdef ANHOLON_COUNTS_MALLOC
-extern "C" void* __libc_malloc(
-    std::size_t);  // NOLINT(bugprone-reserved-identifier): the name that glibc gives it
+// NOLINTNEXTLINE(bugprone-reserved-identifier): the name that glibc gives it
+extern "C" void* __libc_malloc(std::size_t);
 extern "C" void* malloc(std::size_t size) noexcept {
   ++allocations;
   return __libc_malloc(size);
